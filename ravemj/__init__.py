@@ -1,0 +1,1 @@
+"""OpenRAVE's models, tutorial, Python API and GUI, on MuJoCo."""

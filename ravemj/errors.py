@@ -1,0 +1,192 @@
+"""Where things are in a file, what is wrong with them, and the exceptions of ravemj.
+
+::
+
+    RavemjError                 also called openrave_exception
+    ├── SourceError             .source .hint: a file that cannot be read as a model
+    │   └── CompileError        MuJoCo refuses the translated model
+    ├── ArgumentError           also a ValueError: a wrong argument of a call
+    ├── OutputError             also an OSError: a file that cannot be written
+    └── RenderingError          no picture can be drawn
+
+    RavemjWarning               .code .diagnostic: read, but not as the author may think
+"""
+
+import warnings
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Literal
+
+
+class ErrorCode(IntEnum):
+    """OpenRAVE's error codes, as ``openrave_exception.GetCode()`` returns them."""
+
+    Failed = 0
+    InvalidArguments = 1
+    EnvironmentNotLocked = 2
+    CommandNotSupported = 3
+    Assert = 4
+    InvalidPlugin = 5
+    InvalidInterfaceHash = 6
+    NotImplemented = 7
+    InconsistentConstraints = 8
+    NotInitialized = 9
+    InvalidState = 10
+    Timeout = 11
+    InvalidURI = 12
+    BodyNameConflict = 13
+    SensorNameConflict = 14
+    BodyIdConflict = 15
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A place in a file that a user wrote.
+
+    Attributes:
+        file: Path of the file, as the user or the including file gave it.
+        line: Line number, from 1; 0 stands for the file as a whole.
+        included_from: The element that included the file, or None for the file that was loaded.
+    """
+
+    file: str
+    line: int = 0
+    included_from: "Source | None" = None
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}" if self.line else self.file
+
+    def chain(self) -> str:
+        """Return this place and those that included it, innermost first."""
+        if self.included_from is None:
+            return str(self)
+        return f"{self} (included from {self.included_from.chain()})"
+
+
+class RavemjError(Exception):
+    """The root of ravemj's exceptions; OpenRAVE scripts know it as ``openrave_exception``.
+
+    Attributes:
+        message: What is wrong, in words.
+    """
+
+    code = ErrorCode.Failed
+
+    def __init__(self, message: str, code: ErrorCode | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        if code is not None:
+            self.code = code
+
+    def GetCode(self) -> ErrorCode:  # noqa: N802 - OpenRAVE's name
+        """Return OpenRAVE's code for this kind of error."""
+        return self.code
+
+
+class SourceError(RavemjError):
+    """A file cannot be read as a model.
+
+    Attributes:
+        source: The place in the file.
+        hint: What the author can do about it; may be empty.
+    """
+
+    def __init__(self, message: str, source: Source, hint: str = "") -> None:
+        super().__init__(message)
+        self.source = source
+        self.hint = hint
+
+    def __str__(self) -> str:
+        return describe("error", self.message, self.source, self.hint)
+
+
+class CompileError(SourceError):
+    """MuJoCo refuses the translated model; ``source`` is the element that the refused part comes from."""
+
+
+class ArgumentError(RavemjError, ValueError):
+    """A wrong argument: its length, its value or its type."""
+
+    code = ErrorCode.InvalidArguments
+
+
+class OutputError(RavemjError, OSError):
+    """A file or folder cannot be written."""
+
+
+class RenderingError(RavemjError):
+    """No picture can be drawn; the message says what was tried and how to install what is missing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding about a file that was read all the same.
+
+    Attributes:
+        severity: ``error`` where OpenRAVE's ``Load`` returns False though the bodies are there.
+        code: Stable name of the kind of finding, for instance ``unknown-tag``.
+        message: What was found and what was done about it.
+        source: The place in the file.
+        hint: What the author can do about it; may be empty.
+    """
+
+    severity: Literal["error", "warning"]
+    code: str
+    message: str
+    source: Source
+    hint: str = ""
+
+    def __str__(self) -> str:
+        return describe(f"{self.severity}[{self.code}]", self.message, self.source, self.hint)
+
+
+class RavemjWarning(UserWarning):
+    """A diagnostic, sent through Python's ``warnings``; filter on this class.
+
+    Attributes:
+        diagnostic: The finding, with its place in the file.
+    """
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(str(diagnostic))
+        self.diagnostic = diagnostic
+
+    @property
+    def code(self) -> str:
+        """Stable name of the kind of finding."""
+        return self.diagnostic.code
+
+
+class Diagnostics:
+    """The findings of one reading or translation, in the order in which they were made."""
+
+    def __init__(self) -> None:
+        self._found: list[Diagnostic] = []
+
+    def __iter__(self) -> Iterator[Diagnostic]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def warn(self, code: str, message: str, source: Source, hint: str = "") -> None:
+        """Record something that OpenRAVE lets pass in silence or with a log line."""
+        self._found.append(Diagnostic("warning", code, message, source, hint))
+
+    def error(self, code: str, message: str, source: Source, hint: str = "") -> None:
+        """Record something for which OpenRAVE's ``Load`` returns False though it goes on."""
+        self._found.append(Diagnostic("error", code, message, source, hint))
+
+
+def describe(kind: str, message: str, source: Source, hint: str) -> str:
+    """Format a finding as compilers do: ``file:line: kind: message``."""
+    tail = f"; {hint}" if hint else ""
+    included = f" (included from {source.included_from.chain()})" if source.included_from else ""
+    return f"{source}: {kind}: {message}{tail}{included}"
+
+
+def send_warnings(diagnostics: Iterable[Diagnostic]) -> None:
+    """Send every diagnostic through Python's ``warnings``, pointing at the caller of ravemj."""
+    for diagnostic in diagnostics:
+        warnings.warn(RavemjWarning(diagnostic), stacklevel=3)

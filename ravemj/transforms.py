@@ -1,0 +1,142 @@
+"""Rigid transforms as plain tuples of floats.
+
+A ``Pose`` is what OpenRAVE keeps in memory: a unit quaternion (w, x, y, z) and a translation. Tuples
+compare, hash and print by themselves, which frozen scene data needs, and for one pose at a time they are
+faster than numpy arrays. ``T_a_b`` maps coordinates of frame b to frame a, so ``T_a_c = T_a_b @ T_b_c``.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Vec3 = tuple[float, float, float]
+Wxyz = tuple[float, float, float, float]
+Rows = tuple[Vec3, Vec3, Vec3]
+
+ZERO: Vec3 = (0.0, 0.0, 0.0)
+UNIT_WXYZ: Wxyz = (1.0, 0.0, 0.0, 0.0)
+
+
+class Pose(NamedTuple):
+    """A rigid transform.
+
+    Attributes:
+        position: Origin of the inner frame in the outer one [m].
+        wxyz: Unit quaternion that rotates from the inner frame to the outer one.
+    """
+
+    position: Vec3 = ZERO
+    wxyz: Wxyz = UNIT_WXYZ
+
+    def __matmul__(self, other: "Pose") -> "Pose":
+        """Compose: the result applies ``other`` first."""
+        return Pose(self.apply(other.position), multiply(self.wxyz, other.wxyz))
+
+    def apply(self, point: Vec3) -> Vec3:
+        """Map a point from the inner frame to the outer one."""
+        return add(self.position, rotate(self.wxyz, point))
+
+    def inverse(self) -> "Pose":
+        """Return the transform from the outer frame to the inner one."""
+        inverse_wxyz = conjugate(self.wxyz)
+        return Pose(rotate(inverse_wxyz, scale(self.position, -1.0)), inverse_wxyz)
+
+    def matrix(self) -> Floats:
+        """Return the transform as a 4x4 matrix."""
+        matrix = np.eye(4)
+        matrix[:3, :3] = rows_from_wxyz(self.wxyz)
+        matrix[:3, 3] = self.position
+        return matrix
+
+
+def add(a: Vec3, b: Vec3) -> Vec3:
+    """Return a + b."""
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def scale(a: Vec3, factor: float) -> Vec3:
+    """Return the vector a times a number."""
+    return (a[0] * factor, a[1] * factor, a[2] * factor)
+
+
+def dot(a: Vec3, b: Vec3) -> float:
+    """Return the scalar product of two vectors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def multiply(a: Wxyz, b: Wxyz) -> Wxyz:
+    """Return the quaternion that rotates by b, then by a."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+def conjugate(wxyz: Wxyz) -> Wxyz:
+    """Return the inverse of a unit quaternion."""
+    w, x, y, z = wxyz
+    return (w, -x, -y, -z)
+
+
+def rotate(wxyz: Wxyz, vector: Vec3) -> Vec3:
+    """Rotate a vector by a unit quaternion."""
+    x_row, y_row, z_row = rows_from_wxyz(wxyz)
+    return (dot(x_row, vector), dot(y_row, vector), dot(z_row, vector))
+
+
+def normalize(wxyz: Wxyz) -> Wxyz:
+    """Return the quaternion with unit length.
+
+    Raises:
+        ValueError: all four numbers are zero.
+    """
+    length = math.sqrt(sum(part * part for part in wxyz))
+    if length == 0.0:
+        raise ValueError("a quaternion of zeros is no rotation")
+    w, x, y, z = wxyz
+    return (w / length, x / length, y / length, z / length)
+
+
+def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
+    """Return the right-handed rotation by an angle [rad] about an axis of any length; no axis, no rotation."""
+    length = math.sqrt(dot(axis, axis))
+    if length == 0.0:
+        return UNIT_WXYZ
+    factor = math.sin(angle / 2) / length
+    return (math.cos(angle / 2), axis[0] * factor, axis[1] * factor, axis[2] * factor)
+
+
+def wxyz_from_rows(rows: Sequence[Sequence[float]]) -> Wxyz:
+    """Return the quaternion of a rotation matrix, given as three rows (Shepperd's method)."""
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rows
+    trace = xx + yy + zz
+    if trace >= 0:
+        wxyz = (trace + 1, zy - yz, xz - zx, yx - xy)
+    elif xx >= yy and xx >= zz:
+        wxyz = (zy - yz, xx - yy - zz + 1, yx + xy, xz + zx)
+    elif yy >= zz:
+        wxyz = (xz - zx, yx + xy, yy - zz - xx + 1, zy + yz)
+    else:
+        wxyz = (yx - xy, xz + zx, zy + yz, zz - xx - yy + 1)
+    return normalize(wxyz)
+
+
+def rows_from_wxyz(wxyz: Wxyz) -> Rows:
+    """Return the three rows of the rotation matrix of a unit quaternion."""
+    w, x, y, z = wxyz
+    xx, yy, zz = x * x, y * y, z * z
+    xy, xz, yz = x * y, x * z, y * z
+    wx, wy, wz = w * x, w * y, w * z
+    return (
+        (1 - 2 * (yy + zz), 2 * (xy - wz), 2 * (xz + wy)),
+        (2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx)),
+        (2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy)),
+    )
