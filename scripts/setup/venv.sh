@@ -91,7 +91,11 @@ install_lock() {
     { pip_install --require-hashes --only-binary :all: --requirement "$lock" &&
         pip_install --no-index --no-deps --no-build-isolation --editable "$root"; } || installed=false
     echo "$root $version" >"$venv/made" # pip has ended; where it was killed, .venv is made anew next time
-    "$installed" || fail "cannot install the packages: $(sed -n 's/^ERROR: //p' "$log" | tail -n 1) (log: $log)"
+    if ! "$installed"; then
+        reason=$(sed -n 's/^ERROR: //p' "$log" | tail -n 1)
+        ! grep -q 'connection broken' "$log" || reason="no connection to the package index"
+        fail "cannot install the packages: $reason (log: $log)"
+    fi
 }
 
 pip_install() { "$python" -m pip install --quiet "$@" >>"$log" 2>&1; }
