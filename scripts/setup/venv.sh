@@ -6,6 +6,7 @@
 
 venv=$root/.venv
 python=$venv/bin/python
+work= # a temporary folder, while .venv is made
 unset PYTHONPATH PYTHONHOME # ROS sets them, and they would reach into .venv
 export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_USER=0
 
@@ -13,6 +14,7 @@ say() { echo "${0##*/}: $*" >&2; }
 
 fail() {
     say "$*"
+    [ -z "$work" ] || [ -s "$log" ] || rm -rf "$work"
     exit 1
 }
 
@@ -23,12 +25,14 @@ ready() {
     if usable && [ "$(cat "$venv/ready-$1" 2>/dev/null)" = "$content" ]; then
         return
     fi
-    work=$(mktemp -d "${TMPDIR:-/tmp}/ravemj.XXXXXX") || fail "cannot make a temporary folder"
+    work=$(mktemp -d "${TMPDIR:-/tmp}/ravemj.XXXXXX" 2>/dev/null) || fail "cannot make a temporary folder"
     log=$work/log
+    trap 'rm -rf "$work"; exit 130' INT TERM
     usable || make_venv
     install_lock
     echo "$content" >"$venv/ready-$1"
     rm -rf "$work"
+    trap - INT TERM
 }
 
 # .venv was made here and in full, its Python still is what it was, and it is the one asked for.
@@ -87,14 +91,14 @@ with_apt() {
 install_lock() {
     say "installing the packages of ${lock#"$root/"}; the first time takes a minute or two"
     rm -f "$venv/made"
-    installed=true
+    status=0
     { pip_install --require-hashes --only-binary :all: --requirement "$lock" &&
-        pip_install --no-index --no-deps --no-build-isolation --editable "$root"; } || installed=false
-    echo "$root $version" >"$venv/made" # pip has ended; where it was killed, .venv is made anew next time
-    if ! "$installed"; then
+        pip_install --no-index --no-deps --no-build-isolation --editable "$root"; } || status=$?
+    [ "$status" -gt 128 ] || echo "$root $version" >"$venv/made" # pip was not killed: no package is half there
+    if [ "$status" != 0 ]; then
         reason=$(sed -n 's/^ERROR: //p' "$log" | tail -n 1)
         ! grep -q 'connection broken' "$log" || reason="no connection to the package index"
-        fail "cannot install the packages: $reason (log: $log)"
+        fail "cannot install the packages: ${reason:-pip was stopped} (log: $log)"
     fi
 }
 
