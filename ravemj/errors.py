@@ -20,7 +20,7 @@ from typing import Literal
 
 
 class ErrorCode(IntEnum):
-    """OpenRAVE's error codes, as ``openrave_exception.GetCode()`` returns them."""
+    """OpenRAVE's error codes; ``openrave_exception.GetCode()`` returns their names."""
 
     Failed = 0
     InvalidArguments = 1
@@ -71,17 +71,17 @@ class RavemjError(Exception):
         message: What is wrong, in words.
     """
 
-    code = ErrorCode.Failed
+    _code = ErrorCode.Failed
 
     def __init__(self, message: str, code: ErrorCode | None = None) -> None:
         super().__init__(message)
         self.message = message
         if code is not None:
-            self.code = code
+            self._code = code
 
-    def GetCode(self) -> ErrorCode:  # noqa: N802 - OpenRAVE's name
-        """Return OpenRAVE's code for this kind of error."""
-        return self.code
+    def GetCode(self) -> str:  # noqa: N802 - OpenRAVE's name
+        """Return the name of OpenRAVE's code for this kind of error, for instance ``InvalidArguments``."""
+        return self._code.name
 
 
 class SourceError(RavemjError):
@@ -108,7 +108,7 @@ class CompileError(SourceError):
 class ArgumentError(RavemjError, ValueError):
     """A wrong argument: its length, its value or its type."""
 
-    code = ErrorCode.InvalidArguments
+    _code = ErrorCode.InvalidArguments
 
 
 class OutputError(RavemjError, OSError):

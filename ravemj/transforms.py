@@ -106,12 +106,20 @@ def normalize(wxyz: Wxyz) -> Wxyz:
 
 
 def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
-    """Return the right-handed rotation by an angle [rad] about an axis of any length; no axis, no rotation."""
+    """Return the right-handed rotation by an angle [rad] about an axis of any length; no axis, no rotation.
+
+    Quarter and half turns come out without rounding, since models are full of them.
+    """
     length = math.sqrt(dot(axis, axis))
     if length == 0.0:
         return UNIT_WXYZ
-    factor = math.sin(angle / 2) / length
-    return (math.cos(angle / 2), axis[0] * factor, axis[1] * factor, axis[2] * factor)
+    cosine, sine = math.cos(angle / 2), math.sin(angle / 2)
+    if abs(abs(cosine) - abs(sine)) < 1e-15:
+        cosine, sine = math.copysign(math.sqrt(0.5), cosine), math.copysign(math.sqrt(0.5), sine)
+    elif abs(cosine) < 1e-15:
+        cosine = 0.0
+    factor = sine / length
+    return (cosine, axis[0] * factor, axis[1] * factor, axis[2] * factor)
 
 
 def wxyz_from_rows(rows: Sequence[Sequence[float]]) -> Wxyz:

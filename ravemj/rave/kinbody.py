@@ -1,0 +1,266 @@
+"""Bodies and robots."""
+
+import warnings
+from collections.abc import Sequence
+from enum import IntEnum
+from types import EllipsisType
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning
+from ravemj.rave.joint import Joint
+from ravemj.rave.link import Link
+from ravemj.simulation import BodyState
+from ravemj.transforms import Floats
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+ROUNDING = 2e-10
+"""How far outside its limits [rad or m] OpenRAVE moves a value without a warning."""
+
+
+class CheckLimitsAction(IntEnum):
+    """What ``SetDOFValues`` does with values outside the limits."""
+
+    Nothing = 0
+    """Set them as they are."""
+    CheckLimits = 1
+    """Move them to the limit, with a warning."""
+    CheckLimitsSilent = 2
+    """Move them to the limit."""
+    CheckLimitsThrow = 3
+    """Raise, and change nothing."""
+
+
+class KinBody:
+    """A body: links connected by joints. ``env.GetBodies()`` makes it.
+
+    Example:
+        >>> body.GetDOF()
+        2
+        >>> body.SetDOFValues([0.5, -0.5])
+        >>> body.GetLink("Arm1").GetTransform()
+    """
+
+    CheckLimitsAction = CheckLimitsAction
+    Joint = Joint
+    Link = Link
+
+    def __init__(self, env: "Environment", state: BodyState) -> None:
+        self._env = env
+        self._state = state
+        self._simulation = state.simulation
+
+    def GetName(self) -> str:
+        """Return the body's name, unique in its environment."""
+        return self._state.scene.name
+
+    def GetEnv(self) -> "Environment":
+        """Return the environment that the body is in."""
+        return self._env
+
+    def IsRobot(self) -> bool:
+        """Return whether the body is a robot."""
+        return self._state.scene.is_robot
+
+    def GetDOF(self) -> int:
+        """Return the number of degrees of freedom: the joint axes that ``SetDOFValues`` sets.
+
+        Passive joints are not counted.
+        """
+        return len(self._state.scene.dof_axes)
+
+    def GetDOFValues(self, indices: "ArrayLike | None | EllipsisType" = ...) -> Floats:
+        """Return the joint values.
+
+        Args:
+            indices: Which DOFs, in which order; left out: all. None and [] are no DOFs, as in OpenRAVE.
+
+        Returns:
+            Values [rad, for sliders m] in DOF order: that of the joints in the file, shape (dof,); a copy.
+
+        Raises:
+            IndexError: there is no such DOF.
+        """
+        with self._simulation.lock:
+            values = self._state.kinematics.values()
+        return values if indices is ... else values[_checked_indices(indices, len(values))]
+
+    def SetDOFValues(
+        self,
+        values: ArrayLike,
+        dofindices: "ArrayLike | None" = None,
+        checklimits: int = CheckLimitsAction.CheckLimits,
+    ) -> None:
+        """Set joint values and place all links by them: forward kinematics.
+
+        It happens at once, without dynamics; viewers show it.
+
+        Args:
+            values: Joint values [rad, for sliders m], as many as there are DOFs, or as there are indices. NaN leaves
+                a joint as it is.
+            dofindices: Which DOFs to set, in which order; None: all.
+            checklimits: What to do with values outside the limits, a ``CheckLimitsAction``: by default they are
+                moved to the limit with a warning. Circular joints have no limits.
+
+        Raises:
+            ArgumentError: the number of values is wrong or one is infinite; with ``CheckLimitsThrow``, one is outside
+                its limits. Nothing has changed then.
+            IndexError: there is no such DOF.
+
+        Example:
+            >>> robot.SetDOFValues([3.14 / 4, 3.14 / 4])
+            >>> robot.SetDOFValues([1.57], [1])  # the second joint only
+        """
+        with self._simulation.lock:
+            kinematics = self._state.kinematics
+            target = self._full_values(values, dofindices)
+            if not kinematics.within_limits(target.tolist()):
+                target = self._settled(target, checklimits)
+            kinematics.set_values(target)
+
+    def _full_values(self, values: ArrayLike, dofindices: "ArrayLike | None") -> Floats:
+        """Return one value for each DOF, in DOF order."""
+        try:
+            given = np.array(values, dtype=np.float64, ndmin=1)
+        except (TypeError, ValueError):
+            raise ArgumentError(f"SetDOFValues: values are {values!r}, and should be numbers") from None
+        dof = self._state.kinematics.dof
+        if dofindices is None:
+            if given.shape != (dof,) and dof:
+                raise ArgumentError(
+                    f"SetDOFValues: values has shape {given.shape}, and '{self.GetName()}' has {dof} DOFs: give {dof} "
+                    f"numbers, or dofindices"
+                )
+            return given[:dof]
+        indices = _checked_indices(dofindices, dof)
+        if given.ndim != 1 or len(given) < len(indices):
+            raise ArgumentError(f"SetDOFValues: values has shape {given.shape} for {len(indices)} dofindices")
+        full = self._state.kinematics.values()
+        full[indices] = given[: len(indices)]
+        return full
+
+    def _settled(self, target: Floats, checklimits: int) -> Floats:
+        """Replace NaN by the present values and, as ``checklimits`` says, values outside the limits."""
+        kinematics = self._state.kinematics
+        if np.isinf(target).any():
+            raise ArgumentError(f"SetDOFValues: values are {target}, and should be finite")
+        target = np.where(np.isnan(target), kinematics.values(), target)
+        if checklimits == CheckLimitsAction.Nothing:
+            return target
+        limited = np.where(kinematics.circular, target, np.clip(target, kinematics.lower, kinematics.upper))
+        outside = np.flatnonzero(np.abs(target - limited) > ROUNDING)
+        if len(outside) and checklimits != CheckLimitsAction.CheckLimitsSilent:
+            self._report_limits(target, outside[0], checklimits)
+        return limited
+
+    def _report_limits(self, target: Floats, dof: np.intp, checklimits: int) -> None:
+        kinematics = self._state.kinematics
+        joint = next(joint for joint in reversed(self.GetJoints()) if joint.GetDOFIndex() <= dof)
+        source = self._state.scene.joints[joint.GetJointIndex()].source
+        limits = f"[{kinematics.lower[dof]:.6g}, {kinematics.upper[dof]:.6g}]"
+        message = f"joint '{joint.GetName()}' is set to {target[dof]:.6g}, outside its limits {limits}"
+        if checklimits == CheckLimitsAction.CheckLimitsThrow:
+            raise ArgumentError(message)
+        diagnostic = Diagnostic("warning", "value-outside-limits", f"{message}; it stops at the limit", source)
+        warnings.warn(RavemjWarning(diagnostic), stacklevel=4)
+
+    def GetDOFLimits(self, indices: "ArrayLike | None | EllipsisType" = ...) -> tuple[Floats, Floats]:
+        """Return the joint limits.
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+
+        Returns:
+            Lower and upper limits [rad or m], each of shape (dof,); ±10000 for circular joints.
+        """
+        axes = self._state.scene.dof_axes
+        lower, upper = np.array([axis.lower for axis in axes]), np.array([axis.upper for axis in axes])
+        if indices is ...:
+            return lower, upper
+        chosen = _checked_indices(indices, len(axes))
+        return lower[chosen], upper[chosen]
+
+    def GetTransform(self) -> Floats:
+        """Return the body's pose: that of its first link, not of the file's origin.
+
+        Returns:
+            ``T_world_link0``, shape (4, 4); a copy.
+        """
+        with self._simulation.lock:
+            return self._state.kinematics.link_transform(0)
+
+    def GetLinkTransformations(self) -> list[Floats]:
+        """Return the poses of all links in the world.
+
+        Returns:
+            ``T_world_link`` of shape (4, 4) for each link, in the order of ``GetLinks()``; copies.
+        """
+        with self._simulation.lock:
+            return list(self._state.kinematics.link_transforms())
+
+    def GetLinks(self, indices: Sequence[int] | None = None) -> list[Link]:
+        """Return the links in the order of the file; the first one is the root.
+
+        Args:
+            indices: Which links; None: all.
+        """
+        links = [Link(self, self._state, index) for index in range(len(self._state.scene.links))]
+        return links if indices is None else [links[index] for index in indices]
+
+    def GetLink(self, name: str) -> Link | None:
+        """Return the link of that name, or None."""
+        return next((link for link in self.GetLinks() if link.GetName() == name), None)
+
+    def GetJoints(self, indices: Sequence[int] | None = None) -> list[Joint]:
+        """Return the joints that have DOFs, in DOF order.
+
+        Args:
+            indices: Which joints; None: all.
+        """
+        joints = [Joint(self, self._state, index) for index in range(len(self._state.scene.joints))]
+        return joints if indices is None else [joints[index] for index in indices]
+
+    def GetPassiveJoints(self) -> list[Joint]:
+        """Return the joints that have no DOF."""
+        body = self._state.scene
+        first = len(body.joints)
+        return [Joint(self, self._state, index) for index in range(first, first + len(body.passive_joints))]
+
+    def GetJoint(self, name: str) -> Joint | None:
+        """Return the joint of that name, passive or not, or None."""
+        joints = (*self.GetJoints(), *self.GetPassiveJoints())
+        return next((joint for joint in joints if joint.GetName() == name), None)
+
+    @property
+    def qpos_indices(self) -> "np.ndarray[tuple[int], np.dtype[np.int_]]":
+        """Where each DOF is in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld."""
+        return self._state.kinematics.qpos_indices.copy()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, KinBody) and self._state is other._state
+
+    def __hash__(self) -> int:
+        return hash(id(self._state))
+
+    def __repr__(self) -> str:
+        return f"{self._env!r}.Get{'Robot' if self.IsRobot() else 'KinBody'}('{self.GetName()}')"
+
+    def __str__(self) -> str:
+        kind = "robot" if self.IsRobot() else "body"
+        return f"<{kind}:{self.GetName()}, dof={self.GetDOF()}, links={len(self._state.scene.links)}>"
+
+
+class Robot(KinBody):
+    """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
+
+
+def _checked_indices(indices: "ArrayLike | None | EllipsisType", dof: int) -> "np.ndarray[tuple[int], np.dtype[np.int_]]":
+    """Return DOF indices as an array; None stands for none."""
+    checked = np.array([] if indices is None else indices, dtype=np.int_).reshape(-1)
+    if checked.size and not (checked.min() >= 0 and checked.max() < dof):
+        raise IndexError(f"DOF indices are {checked.tolist()}, and should be from 0 to {dof - 1}")
+    return checked

@@ -1,0 +1,74 @@
+"""Links of a body."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ravemj import scene
+from ravemj.simulation import BodyState
+from ravemj.transforms import Floats
+
+if TYPE_CHECKING:
+    from ravemj.rave.kinbody import KinBody
+
+
+class Link:
+    """A rigid part of a body; ``body.GetLinks()`` makes it."""
+
+    def __init__(self, parent: "KinBody", state: BodyState, index: int) -> None:
+        self._parent = parent
+        self._state = state
+        self._index = index
+
+    @property
+    def _scene(self) -> scene.Link:
+        return self._state.scene.links[self._index]
+
+    def GetName(self) -> str:
+        """Return the link's name."""
+        return self._scene.name
+
+    def GetIndex(self) -> int:
+        """Return the link's position in ``body.GetLinks()``."""
+        return self._index
+
+    def GetParent(self) -> "KinBody":
+        """Return the body that the link belongs to."""
+        return self._parent
+
+    def GetTransform(self) -> Floats:
+        """Return the link's pose in the world.
+
+        Returns:
+            ``T_world_link``, shape (4, 4); a copy.
+        """
+        with self._state.simulation.lock:
+            return self._state.kinematics.link_transform(self._index)
+
+    def GetMass(self) -> float:
+        """Return the link's mass [kg]."""
+        return self._scene.inertial.mass
+
+    def GetLocalCOM(self) -> Floats:
+        """Return the centre of mass in the link frame [m], shape (3,)."""
+        return np.array(self._scene.inertial.com)
+
+    def GetLocalInertia(self) -> Floats:
+        """Return the inertia about the centre of mass, in axes parallel to the link's [kg m^2], shape (3, 3)."""
+        return np.array(self._scene.inertial.inertia)
+
+    def IsStatic(self) -> bool:
+        """Return whether the file calls the link static."""
+        return self._scene.static
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Link) and self._state is other._state and self._index == other._index
+
+    def __hash__(self) -> int:
+        return hash((id(self._state), self._index))
+
+    def __repr__(self) -> str:
+        return f"{self._parent!r}.GetLink('{self.GetName()}')"
+
+    def __str__(self) -> str:
+        return f"<link:{self.GetName()} ({self._index}), parent={self._parent.GetName()}>"
