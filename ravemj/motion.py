@@ -182,7 +182,7 @@ def _problems_in(file: str) -> Generator[None]:
 
 def _read_npz(file: str, dof: int) -> Motion:
     try:
-        with np.load(file, allow_pickle=False) as archive:
+        with open(file, "rb") as raw, np.load(raw, allow_pickle=False) as archive:
             arrays: dict[str, Floats] = {name: archive[name] for name in (_TIME, "values") if name in archive}
     except OSError:
         raise

@@ -1,0 +1,139 @@
+"""Files and folders that appear whole or not at all.
+
+They are written under a temporary name beside the target and renamed at the end. What fails leaves nothing behind,
+and a target that was there before stays as it was.
+"""
+
+import os
+import secrets
+import shutil
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ravemj.errors import OutputError
+
+AnyPath = str | os.PathLike[str]
+
+
+def check_file(path: AnyPath) -> None:
+    """Check that a file can be written, without touching anything.
+
+    Raises:
+        OutputError: The folder around it is missing or cannot be written, or something other than a file is there.
+    """
+    with _output_errors(path):
+        target = _real(path)
+        _check_permissions(path, target)
+        if target.exists() and not target.is_file():
+            raise OutputError(f"cannot write {os.fspath(path)}: it exists and is no file")
+
+
+def check_folder(path: AnyPath, pattern: str) -> None:
+    """Check that a folder can be written, without touching anything.
+
+    Args:
+        path: The folder; what is there may only be an older one of its kind.
+        pattern: Names of the files that the folder consists of, for instance ``frame_*.png``.
+
+    Raises:
+        OutputError: The folder around it is missing or cannot be written, or something else is there.
+    """
+    with _output_errors(path):
+        target = _real(path)
+        if target == Path.cwd() or target.is_mount():
+            raise OutputError(f"cannot write {os.fspath(path)}: it is the current folder or a mounted disk")
+        _check_permissions(path, target)
+        if not target.exists():
+            return
+        for entry in target.iterdir():
+            if not (entry.is_file() and entry.match(pattern)):
+                raise OutputError(f"cannot replace {os.fspath(path)}: it contains {entry.name}, not only {pattern}")
+
+
+@contextmanager
+def new_file(path: AnyPath) -> Generator[Path]:
+    """Make a file: write it at the yielded temporary path, and the end of the block renames it.
+
+    Raises:
+        OutputError: As for ``check_file``, or the temporary file cannot be created or renamed.
+    """
+    check_file(path)
+    temporary = _temporary_name(path)
+    try:
+        with _output_errors(path):
+            temporary.touch(exist_ok=False)
+        yield temporary
+        with _output_errors(path):
+            os.replace(temporary, _real(path))
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+@contextmanager
+def new_folder(path: AnyPath, pattern: str) -> Generator[Path]:
+    """Make a folder of files: write them into the yielded temporary folder, and the end of the block renames it.
+
+    Raises:
+        OutputError: As for ``check_folder``, or the temporary folder cannot be created or renamed.
+    """
+    check_folder(path, pattern)
+    temporary = _temporary_name(path)
+    try:
+        with _output_errors(path):
+            temporary.mkdir()
+        yield temporary
+        check_folder(path, pattern)  # while the files were written, others may have come
+        with _output_errors(path):
+            _replace_folder(temporary, _real(path))
+    except BaseException:
+        shutil.rmtree(temporary, ignore_errors=True)
+        raise
+
+
+def output_error(path: AnyPath, error: Exception) -> OutputError:
+    """Return the error of one line that says why a target cannot be written."""
+    reason = getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
+    return OutputError(f"cannot write {os.fspath(path)}: {reason}")
+
+
+@contextmanager
+def _output_errors(path: AnyPath) -> Generator[None]:
+    try:
+        yield
+    except OutputError:
+        raise
+    except (OSError, ValueError) as error:  # ValueError: a path that holds a null byte
+        raise output_error(path, error) from error
+
+
+def _real(path: AnyPath) -> Path:
+    """Return the absolute path; a link stays, and what it points at is replaced."""
+    return Path(os.path.realpath(path))
+
+
+def _temporary_name(path: AnyPath) -> Path:
+    return _real(path).with_name(f".ravemj-{secrets.token_hex(8)}.tmp")
+
+
+def _check_permissions(path: AnyPath, target: Path) -> None:
+    if not target.parent.is_dir():
+        raise OutputError(f"cannot write {os.fspath(path)}: there is no folder {target.parent}")
+    for place in (target.parent, target):
+        if place.exists() and not os.access(place, os.W_OK):
+            raise OutputError(f"cannot write {os.fspath(path)}: no permission to change {place}")
+
+
+def _replace_folder(temporary: Path, target: Path) -> None:
+    if not target.exists():
+        os.replace(temporary, target)
+        return
+    old = _temporary_name(target)
+    os.replace(target, old)
+    try:
+        os.replace(temporary, target)
+    except BaseException:
+        os.replace(old, target)
+        raise
+    shutil.rmtree(old)
