@@ -1,0 +1,143 @@
+"""Pictures of a MuJoCo model: by OpenGL where it works, by ray casting everywhere.
+
+::
+
+    with open_renderer(model, 640, 480) as renderer:
+        picture = renderer.render(data, Camera.from_matrix(T_world_camera))
+
+This package knows ``MjModel`` and ``MjData`` and nothing of OpenRAVE's scenes; its cameras follow OpenRAVE's
+convention (see :mod:`ravemj.rendering.camera`).
+"""
+
+import logging
+from typing import Protocol, Self
+
+import mujoco
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ravemj.errors import ArgumentError
+from ravemj.rendering.camera import Camera, bounding_sphere, three_quarter_view, view_from_above
+from ravemj.rendering.camera_file import read_camera, write_camera
+from ravemj.rendering.contexts import GL_BACKENDS, RAY, make_with_any_backend, make_with_backend, requested_backend
+from ravemj.rendering.doctor import BackendReport, probe_backends
+from ravemj.rendering.frame import WHITE
+from ravemj.rendering.gl import GlRenderer
+from ravemj.rendering.ray import RayRenderer
+from ravemj.rendering.stage import Quality, Stage
+
+__all__ = [
+    "BackendReport",
+    "Camera",
+    "Quality",
+    "Renderer",
+    "Stage",
+    "bounding_sphere",
+    "open_renderer",
+    "probe_backends",
+    "read_camera",
+    "three_quarter_view",
+    "view_from_above",
+    "write_camera",
+]
+
+_LOG = logging.getLogger("ravemj")
+
+
+class Renderer(Protocol):
+    """Draws one model in pictures of one size.
+
+    Attributes:
+        backend: What draws: ``egl``, ``osmesa``, ``glfw`` or ``ray``.
+    """
+
+    backend: str
+
+    def render(self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE) -> NDArray[np.uint8]:
+        """Draw a picture.
+
+        Args:
+            data: State of the model with the poses computed (``mj_kinematics`` or ``mj_forward``). Where the
+                model has lights, they are placed (``mj_camlight``).
+            camera: Where the picture is taken from.
+            background: Colour where nothing is: red, green, blue in 0..1.
+
+        Returns:
+            A new array (height, width, 3), top row first.
+
+        Raises:
+            ArgumentError: the data are of another model, or the background is no colour.
+            RenderingError: the renderer is closed.
+        """
+        ...
+
+    def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
+        """Say which geom each pixel centre shows.
+
+        Args:
+            data: State of the model with the poses computed.
+            camera: Where the picture is taken from.
+
+        Returns:
+            A new array (height, width) of geom ids, -1 where nothing is. Transparent geoms count.
+
+        Raises:
+            ArgumentError: the data are of another model.
+            RenderingError: the renderer is closed.
+        """
+        ...
+
+    def close(self) -> None:
+        """Free what the renderer holds. Also done at the end of a ``with`` block."""
+        ...
+
+    def __enter__(self) -> Self: ...
+    def __exit__(self, *_: object) -> None: ...
+
+
+def open_renderer(
+    model: mujoco.MjModel,
+    width: int,
+    height: int,
+    *,
+    shadows: bool = False,
+    samples: int = 4,
+    backend: str | None = None,
+) -> Renderer:
+    """Open a renderer with the first backend that works: EGL, OSMesa, GLFW, else ray casting.
+
+    Args:
+        model: What is drawn; geoms may change their poses and colours later, but not their number.
+        width: Columns of the pictures.
+        height: Rows of the pictures.
+        shadows: Whether the model's lights cast shadows; costly without a graphics card. Rays ignore it.
+        samples: Samples per pixel against jagged edges: 4 for stills, 0 for speed.
+        backend: ``egl``, ``osmesa``, ``glfw`` or ``ray``; by default what ``MUJOCO_GL`` names, or any.
+
+    Raises:
+        ArgumentError: a size that is not positive, or an argument that is not among those named here.
+        RenderingError: the backend that was asked for does not work here; the message says why.
+    """
+    quality = Quality(width, height, shadows, samples)
+    _check(quality, backend)
+    renderer = _open(model, quality, backend or requested_backend())
+    _LOG.info("pictures of %d x %d are drawn by %s", width, height, renderer.backend)
+    return renderer
+
+
+def _open(model: mujoco.MjModel, quality: Quality, backend: str | None) -> Renderer:
+    renderer: Renderer | None = None
+    if backend is None:
+        renderer = make_with_any_backend(lambda context: GlRenderer(model, context, quality))
+    elif backend != RAY:
+        renderer = make_with_backend(backend, lambda context: GlRenderer(model, context, quality))
+    return renderer or RayRenderer(model, quality.width, quality.height, quality.samples)
+
+
+def _check(quality: Quality, backend: str | None) -> None:
+    if quality.width < 1 or quality.height < 1:
+        raise ArgumentError(f"picture size {quality.width} x {quality.height}: expected at least 1 x 1 pixels")
+    if quality.samples not in (0, 4):
+        raise ArgumentError(f"samples is {quality.samples}, expected 0 or 4")
+    if backend is not None and backend not in (*GL_BACKENDS, RAY):
+        raise ArgumentError(f"backend is {backend!r}, expected one of {', '.join((*GL_BACKENDS, RAY))}")

@@ -1,0 +1,78 @@
+"""Does EGL work here? Asked without a trace: a failing libEGL is unloaded again.
+
+MuJoCo takes its OpenGL functions from the first platform library that it finds in the process. A libEGL that
+was loaded and does not work would therefore keep OSMesa from working too, and PyOpenGL, which mujoco.egl uses,
+settles for one platform when it is imported. So EGL is tried with ctypes first.
+"""
+
+import _ctypes
+import contextlib
+import ctypes
+import os
+from collections.abc import Iterator
+
+_EGL_PLATFORM_DEVICE_EXT = 0x313F
+_MAX_DEVICES = 32
+
+
+def check_egl() -> None:
+    """Raise RuntimeError with the reason where EGL cannot draw without a display; else do nothing."""
+    library = _load(("libEGL.so.1",))
+    try:
+        _load(("libOpenGL.so.0", "libGL.so.1"))
+        with _quiet():
+            _initialize_a_device(library)
+    except BaseException:
+        _ctypes.dlclose(library._handle)  # pyright: ignore[reportPrivateUsage] - documented in the manual
+        raise
+
+
+def _load(names: tuple[str, ...]) -> ctypes.CDLL:
+    for name in names:
+        with contextlib.suppress(OSError):
+            return ctypes.CDLL(name)
+    raise RuntimeError(f"{' or '.join(names)} is not installed")
+
+
+def _initialize_a_device(library: ctypes.CDLL) -> None:
+    """Initialize the display of any device, as mujoco.egl does."""
+    query = ctypes.CFUNCTYPE(
+        ctypes.c_uint, ctypes.c_int, ctypes.POINTER(ctypes.c_void_p), ctypes.POINTER(ctypes.c_int)
+    )(_address(library, b"eglQueryDevicesEXT"))
+    get_display = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_uint, ctypes.c_void_p, ctypes.c_void_p)(
+        _address(library, b"eglGetPlatformDisplayEXT")
+    )
+    devices = (ctypes.c_void_p * _MAX_DEVICES)()
+    count = ctypes.c_int(0)
+    query(_MAX_DEVICES, devices, ctypes.byref(count))
+    if count.value == 0:
+        raise RuntimeError("EGL finds no device: no OpenGL driver is installed")
+    for device in devices[: count.value]:
+        display = get_display(_EGL_PLATFORM_DEVICE_EXT, device, None)
+        if display and library.eglInitialize(ctypes.c_void_p(display), None, None):
+            return
+    raise RuntimeError("EGL cannot initialize any device: the OpenGL driver is missing or does not work")
+
+
+def _address(library: ctypes.CDLL, name: bytes) -> int:
+    get_address = library.eglGetProcAddress
+    get_address.restype = ctypes.c_void_p
+    get_address.argtypes = [ctypes.c_char_p]
+    address = get_address(name)
+    if not address:
+        raise RuntimeError(f"this EGL is too old: it has no {name.decode()}")
+    return int(address)
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep Mesa from writing its own warnings to stderr."""
+    name = "EGL_LOG_LEVEL"
+    if name in os.environ:
+        yield
+        return
+    os.environ[name] = "fatal"
+    try:
+        yield
+    finally:
+        del os.environ[name]

@@ -1,0 +1,201 @@
+"""MuJoCo's classic drawing, wherever it goes: into an offscreen buffer or into a window.
+
+A ``Stage`` belongs to one model and one OpenGL context. Its methods need that context to be current in the
+calling thread; making it current is the caller's business, which is why a window can use the same code.
+"""
+
+import contextlib
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.rendering.camera import Camera, bounding_sphere
+from ravemj.rendering.visibility import DRAWN_GROUPS, drawn_geoms
+
+SHADOW_SIZE = 1024
+"""Texels along one side of the shadow map: a quarter of MuJoCo's default, a seventh of its cost on a CPU."""
+
+_SPARE_GEOMS = 1000
+
+
+@dataclass(frozen=True)
+class Quality:
+    """What an OpenGL context is made for; it cannot be changed afterwards.
+
+    Attributes:
+        width: Columns of the offscreen buffer.
+        height: Rows of the offscreen buffer.
+        shadows: Whether lights that cast shadows do so. MuJoCo's headlight never does.
+        samples: Samples per pixel against jagged edges, 0 or 4.
+    """
+
+    width: int
+    height: int
+    shadows: bool = False
+    samples: int = 4
+
+
+class Stage:
+    """Draws one model with OpenGL.
+
+    Attributes:
+        scene: MuJoCo's list of what is drawn; filled by :meth:`fill`.
+        context: MuJoCo's resources on the graphics card.
+        has_background: Whether the model has the skybox texture that background colours are painted with.
+    """
+
+    def __init__(self, model: mujoco.MjModel, quality: Quality) -> None:
+        self._model = model
+        with _quality_of(model, quality):
+            self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_150.value)
+        self.scene = mujoco.MjvScene(model, model.ngeom + _SPARE_GEOMS)
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = quality.shadows
+        self._option = drawing_option()
+        self._skybox = _find_skybox(model)
+        self._background: bytes | None = None
+
+    @property
+    def has_background(self) -> bool:
+        """Whether the model has the skybox texture that background colours are painted with."""
+        return self._skybox is not None
+
+    def fill(self, data: mujoco.MjData, camera: Camera, width: int, height: int) -> None:
+        """Take over the poses of the geoms and the point of view.
+
+        Args:
+            data: State of the model with the poses computed.
+            camera: Where the picture is taken from.
+            width: Columns of the viewport.
+            height: Rows of the viewport.
+        """
+        aim(self.scene, camera, width / height, near_and_far(self._model, data, camera))
+        if self._model.nlight:
+            mujoco.mj_camlight(self._model, data)
+        user_camera = mujoco.MjvCamera()
+        user_camera.type = mujoco.mjtCamera.mjCAMERA_USER
+        everything = mujoco.mjtCatBit.mjCAT_ALL.value
+        mujoco.mjv_updateScene(self._model, data, self._option, None, user_camera, everything, self.scene)
+
+    def draw(self, viewport: mujoco.MjrRect, background: NDArray[np.uint8]) -> None:
+        """Draw into the current framebuffer.
+
+        Args:
+            viewport: Rectangle of the framebuffer, in pixels from its lower left corner.
+            background: Colour where nothing is, (3,) in 0..255; black where the model has no skybox texture.
+        """
+        self._paint_background(background)
+        mujoco.mjr_render(viewport, self.scene, self.context)
+
+    def draw_ids(self, viewport: mujoco.MjrRect) -> None:
+        """Draw geom numbers instead of colours; :meth:`geom_ids` reads them back."""
+        flags = self.scene.flags.copy()
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = True
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = True
+        mujoco.mjr_render(viewport, self.scene, self.context)
+        self.scene.flags[:] = flags
+
+    def geom_ids(self, pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
+        """Return the geom that each pixel drawn by :meth:`draw_ids` shows: (..., 3) to (...), -1 for none."""
+        codes = pixels.astype(np.int32) @ np.array([1, 1 << 8, 1 << 16], dtype=np.int32)
+        geom_of_code = np.full(self.scene.ngeom + 1, -1, dtype=np.int32)
+        for drawn in self.scene.geoms[: self.scene.ngeom]:
+            if drawn.objtype == mujoco.mjtObj.mjOBJ_GEOM:
+                geom_of_code[drawn.segid + 1] = drawn.objid
+        return geom_of_code[codes]
+
+    def close(self) -> None:
+        """Free the resources on the graphics card."""
+        self.context.free()
+
+    def _paint_background(self, background: NDArray[np.uint8]) -> None:
+        """Upload a new skybox where the colour changed; the model keeps its own texture."""
+        if self._skybox is None or self._background == background.tobytes():
+            return
+        model, texture = self._model, self._skybox
+        channels = int(model.tex_nchannel[texture])
+        start = int(model.tex_adr[texture])
+        stop = start + int(model.tex_width[texture]) * int(model.tex_height[texture]) * channels
+        original = model.tex_data[start:stop].copy()
+        model.tex_data[start:stop].reshape(-1, channels)[:, :3] = background
+        mujoco.mjr_uploadTexture(model, self.context, texture)
+        model.tex_data[start:stop] = original
+        self._background = background.tobytes()
+
+
+def drawing_option() -> mujoco.MjvOption:
+    """Return what is drawn: the geoms of groups 0 to 2, and no sites, tendons or other aids."""
+    option = mujoco.MjvOption()
+    option.geomgroup[:] = DRAWN_GROUPS
+    option.sitegroup[:] = 0
+    option.tendongroup[:] = 0
+    option.flags[mujoco.mjtVisFlag.mjVIS_RANGEFINDER] = False
+    return option
+
+
+def aim(scene: mujoco.MjvScene, camera: Camera, aspect: float, depths: tuple[float, float]) -> None:
+    """Write a camera into a scene; ``mjv_updateScene`` keeps it for a camera of type ``mjCAMERA_USER``.
+
+    Args:
+        scene: The scene.
+        camera: Where the picture is taken from.
+        aspect: Width of the picture divided by its height.
+        depths: Nearest and farthest depth that is drawn [m].
+    """
+    near, far = depths
+    right_down_forward = camera.rotation
+    top = near * math.tan(0.5 * camera.fovy)
+    for eye in scene.camera:  # two, for stereo; a mono picture takes their mean
+        eye.pos = camera.position
+        eye.forward = right_down_forward[:, 2]
+        eye.up = -right_down_forward[:, 1]
+        eye.frustum_near, eye.frustum_far = near, far
+        eye.frustum_top, eye.frustum_bottom = top, -top
+        eye.frustum_center, eye.frustum_width = 0.0, top * aspect  # half the width
+        eye.orthographic = 0
+
+
+def near_and_far(model: mujoco.MjModel, data: mujoco.MjData, camera: Camera) -> tuple[float, float]:
+    """Return depths [m] between which everything lies that the camera can see, wherever it stands.
+
+    MuJoCo paints the background on the walls of a cube that fits into the farthest depth, so that has to be
+    well behind the scene. Its depth buffer holds floats, 1 for near, so wide ranges cost no precision.
+    """
+    center, radius = bounding_sphere(model, data)
+    depth = float((center - camera.position) @ camera.rotation[:, 2])
+    near = max(0.9 * (depth - radius), 1e-4 * radius)
+    far = 5 * max(depth + radius, near)
+    if (drawn_geoms(model) & (model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)).any():
+        near = min(near, 1e-2 * radius)
+        far = max(far, 5 * model.vis.map.zfar * model.stat.extent)
+    return near, far
+
+
+def _find_skybox(model: mujoco.MjModel) -> int | None:
+    """Return the texture that MuJoCo draws behind everything; None without one that can be written."""
+    skyboxes = np.flatnonzero(model.tex_type == mujoco.mjtTexture.mjTEXTURE_SKYBOX)
+    if skyboxes.size == 0 or model.tex_adr[skyboxes[0]] < 0 or model.tex_nchannel[skyboxes[0]] < 3:
+        return None
+    return int(skyboxes[0])
+
+
+@contextlib.contextmanager
+def _quality_of(model: mujoco.MjModel, quality: Quality) -> Iterator[None]:
+    """Set what ``MjrContext`` reads from the model, and give the model its own values back."""
+    sizes: Sequence[tuple[object, str, int]] = (
+        (model.vis.global_, "offwidth", quality.width),
+        (model.vis.global_, "offheight", quality.height),
+        (model.vis.quality, "offsamples", quality.samples),
+        (model.vis.quality, "shadowsize", SHADOW_SIZE if quality.shadows else 0),
+    )
+    before = [getattr(owner, name) for owner, name, _ in sizes]
+    for owner, name, value in sizes:
+        setattr(owner, name, value)
+    try:
+        yield
+    finally:
+        for (owner, name, _), value in zip(sizes, before, strict=True):
+            setattr(owner, name, value)
