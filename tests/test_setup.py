@@ -91,6 +91,14 @@ def test_bash_can_read_ci():
     subprocess.run(["bash", "-n", ROOT / ".ci/run"], check=True)
 
 
+def make_program(path: Path, status: int = 0) -> None:
+    """Write a stand-in that says where it runs and with what; what `python -c` is to say comes from Python."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    real = f'[ "$1" = -c ] && exec "{sys.executable}" "$@"'
+    path.write_text(f'#!/bin/sh\n{real}\npwd\nprintf "%s\\n" "$@"\nexit {status}\n')
+    path.chmod(0o755)
+
+
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
     """A repository, in a folder with a blank in its name, whose .venv only pretends to be complete."""
@@ -98,10 +106,8 @@ def copy(tmp_path: Path) -> Path:
     for name in ["scripts/setup/venv.sh", "pyproject.toml", *COMMANDS, *(f"scripts/locks/{n}.txt" for n in WANTED)]:
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, root / name)
-    python = root / ".venv" / "bin" / "python"
-    python.parent.mkdir(parents=True)
-    python.write_text(f'#!/bin/sh\n[ "$1" = -c ] && exec "{sys.executable}" "$@"\npwd\nprintf "%s\\n" "$@"\n')
-    python.chmod(0o755)
+    for program in ["python", "ravemj"]:
+        make_program(root / ".venv" / "bin" / program)
     (root / ".venv" / "made").write_text(f"{root} {sys.version_info.major}.{sys.version_info.minor}\n")
     for name in WANTED:
         files = [root / "scripts" / "locks" / f"{name}.txt", root / "pyproject.toml"]
@@ -124,9 +130,9 @@ def test_play_passes_arguments_on_and_stays_in_the_callers_folder(copy: Path):
     assert done.stderr == ""
     folder, *arguments = done.stdout.splitlines()
     assert folder == "/"
-    assert arguments[:4] == ["-m", "ravemj", "play", f"{copy}/models/env.xml"]
-    assert arguments[4:8] == ["-o", f"{copy}/pendulum.mp4", "--camera", f"{copy}/models/tutorial-camera.json"]
-    assert arguments[8:] == ["--fps", "60", "-o", "my film.mp4"]
+    assert arguments[:4] == ["play", f"{copy}/models/env.xml", "-o", f"{copy}/pendulum.mp4"]
+    assert arguments[4:6] == ["--camera", f"{copy}/models/tutorial-camera.json"]
+    assert arguments[6:] == ["--fps", "60", "-o", "my film.mp4"]
 
 
 @pytest.mark.parametrize(("given", "passed"), [([], ["--numprocesses", "auto"]), (["-k", "a or b"], ["-k", "a or b"])])
@@ -136,8 +142,7 @@ def test_test_runs_pytest_at_the_root(copy: Path, given: list[str], passed: list
 
 
 def test_check_runs_all_three_though_the_first_fails(copy: Path):
-    python = copy / ".venv" / "bin" / "python"
-    python.write_text(python.read_text() + "exit 3\n")
+    make_program(copy / ".venv" / "bin" / "python", status=3)
     done = run(copy / "scripts/check", "ravemj/cli")
     assert done.returncode == 1
     lines = done.stdout.splitlines()
@@ -146,8 +151,8 @@ def test_check_runs_all_three_though_the_first_fails(copy: Path):
 
 
 def test_exit_status_is_passed_on(copy: Path):
-    python = copy / ".venv" / "bin" / "python"
-    python.write_text(python.read_text() + "exit 3\n")
+    make_program(copy / ".venv" / "bin" / "python", status=3)
+    make_program(copy / ".venv" / "bin" / "ravemj", status=3)
     assert run(copy / "scripts/test").returncode == 3
     assert run(copy / "scripts/play").returncode == 3
 
