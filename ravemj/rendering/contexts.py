@@ -18,7 +18,7 @@ import sys
 import threading
 import warnings
 import weakref
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from typing import Protocol, TypeVar
 
 from ravemj.errors import RenderingError
@@ -74,7 +74,7 @@ class OffscreenContext:
         _used.add(backend)
 
     @contextlib.contextmanager
-    def current(self) -> Iterator[None]:
+    def current(self) -> Generator[None]:
         """Make the context current in this thread, then give the thread back the one that it had."""
         with self._context.as_current():
             yield
@@ -181,7 +181,7 @@ def _close_all() -> None:
 
 
 @contextlib.contextmanager
-def _pyopengl_platform_restored() -> Iterator[None]:
+def _pyopengl_platform_restored() -> Generator[None]:
     """Undo what mujoco.egl and mujoco.osmesa write into the environment: children inherit it and then fail."""
     name = "PYOPENGL_PLATFORM"
     before = os.environ.get(name)

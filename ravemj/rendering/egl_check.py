@@ -9,7 +9,7 @@ import _ctypes
 import contextlib
 import ctypes
 import os
-from collections.abc import Iterator
+from collections.abc import Generator
 
 _EGL_PLATFORM_DEVICE_EXT = 0x313F
 _MAX_DEVICES = 32
@@ -65,7 +65,7 @@ def _address(library: ctypes.CDLL, name: bytes) -> int:
 
 
 @contextlib.contextmanager
-def _quiet() -> Iterator[None]:
+def _quiet() -> Generator[None]:
     """Keep Mesa from writing its own warnings to stderr."""
     name = "EGL_LOG_LEVEL"
     if name in os.environ:

@@ -5,7 +5,7 @@ microseconds per pixel and geom in view.
 """
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from typing import Self
 
@@ -93,7 +93,7 @@ class RayRenderer:
         self.close()
 
     @contextlib.contextmanager
-    def _scene(self, data: mujoco.MjData, camera: Camera) -> "Iterator[_RayScene]":
+    def _scene(self, data: mujoco.MjData, camera: Camera) -> "Generator[_RayScene]":
         """Hide what is not drawn for as long as one picture takes; the model gets its groups back."""
         if self._closed:
             raise RenderingError("this renderer is closed")
@@ -211,7 +211,7 @@ class _RayScene:
         return np.where(self._has_two_walls(geom_ids), 1 - (1 - alpha) ** 2, alpha)
 
     @contextlib.contextmanager
-    def _without(self, geom: int) -> Iterator[None]:
+    def _without(self, geom: int) -> Generator[None]:
         group = int(self.model.geom_group[geom])
         self.model.geom_group[geom] = _HIDDEN_GROUP
         try:

@@ -6,7 +6,7 @@ calling thread; making it current is the caller's business, which is why a windo
 
 import contextlib
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -183,7 +183,7 @@ def _find_skybox(model: mujoco.MjModel) -> int | None:
 
 
 @contextlib.contextmanager
-def _quality_of(model: mujoco.MjModel, quality: Quality) -> Iterator[None]:
+def _quality_of(model: mujoco.MjModel, quality: Quality) -> Generator[None]:
     """Set what ``MjrContext`` reads from the model, and give the model its own values back."""
     sizes: Sequence[tuple[object, str, int]] = (
         (model.vis.global_, "offwidth", quality.width),
