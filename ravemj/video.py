@@ -47,6 +47,8 @@ _FRAMES_BETWEEN_THREADS = 4
 _LOWEST_FPS = 0.01
 _FOLDER = ""  # the suffix that stands for a folder of PNG files
 _FILES_OF_FOLDER = "frame_*.png"
+_BT709, _SRGB = 1, 13  # ITU-T H.273
+_LIMITED, _FULL = 1, 2  # FFmpeg's AVColorRange
 _MANY_FRAMES = 300
 _MANY_PIXELS = 100_000_000
 
@@ -124,7 +126,6 @@ def write_png(path: AnyPath, frame: Frame) -> Path:
 
 def _write_mp4(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
     import av  # noqa: PLC0415 - slow to import
-    from av.video.reformatter import ColorPrimaries, ColorRange, Colorspace, ColorTrc  # noqa: PLC0415 - slow to import
 
     first = next(frames)
     with av.open(str(temporary), "w", format="mp4", options={"movflags": "+faststart"}) as container:
@@ -133,15 +134,12 @@ def _write_mp4(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None
         stream.pix_fmt = "yuv420p"
         codec = stream.codec_context
         codec.thread_count = 1  # more threads would take the processor from drawing
-        codec.color_range, codec.colorspace = ColorRange.MPEG, Colorspace.ITU709
-        codec.color_primaries, codec.color_trc = ColorPrimaries.BT709, ColorTrc.IEC61966_2_1  # sRGB
+        codec.color_range, codec.colorspace = _LIMITED, _BT709
+        codec.color_primaries, codec.color_trc = _BT709, _SRGB
         for number, frame in enumerate(itertools.chain([first], frames)):
             even = np.pad(frame, [(0, size % 2) for size in frame.shape[:2]] + [(0, 0)], mode="edge")
             picture = av.VideoFrame.from_ndarray(even, format="rgb24").reformat(
-                format="yuv420p",
-                dst_colorspace=Colorspace.ITU709,
-                src_color_range=ColorRange.JPEG,
-                dst_color_range=ColorRange.MPEG,
+                format="yuv420p", dst_colorspace=_BT709, src_color_range=_FULL, dst_color_range=_LIMITED
             )
             picture.pts = number
             container.mux(stream.encode(picture))
