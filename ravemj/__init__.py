@@ -1,1 +1,61 @@
-"""OpenRAVE's models, tutorial, Python API and GUI, on MuJoCo."""
+"""OpenRAVE's models, tutorial, Python API and GUI, on MuJoCo.
+
+>>> import ravemj
+>>> env = ravemj.load("models/env.xml")
+>>> robot = env.GetRobots()[0]
+>>> robot.SetDOFValues([0.785, 0.785])
+>>> picture = env.render(640, 480)
+
+``CamelCase`` names are OpenRAVE's, with OpenRAVE's meaning; ``snake_case`` names are ravemj's own.
+"""
+
+from ravemj.errors import (
+    ArgumentError,
+    CompileError,
+    Diagnostic,
+    ErrorCode,
+    OutputError,
+    RavemjError,
+    RavemjWarning,
+    RenderingError,
+    Source,
+    SourceError,
+)
+from ravemj.extension import load_ipython_extension
+from ravemj.motion import Motion, read_motion
+from ravemj.rave import CheckLimitsAction, Environment, Joint, KinBody, Link, RaveGetEnvironment, Robot, load
+from ravemj.recording import record
+from ravemj.viewers import Viewer
+
+__version__ = "0.1.0"
+
+OpenRAVEException = openrave_exception = RavemjError
+
+__all__ = [
+    "ArgumentError",
+    "CheckLimitsAction",
+    "CompileError",
+    "Diagnostic",
+    "Environment",
+    "ErrorCode",
+    "Joint",
+    "KinBody",
+    "Link",
+    "Motion",
+    "OpenRAVEException",
+    "OutputError",
+    "RaveGetEnvironment",
+    "RavemjError",
+    "RavemjWarning",
+    "RenderingError",
+    "Robot",
+    "Source",
+    "SourceError",
+    "Viewer",
+    "__version__",
+    "load",
+    "load_ipython_extension",
+    "openrave_exception",
+    "read_motion",
+    "record",
+]

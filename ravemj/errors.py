@@ -170,6 +170,10 @@ class Diagnostics:
     def __len__(self) -> int:
         return len(self._found)
 
+    def add(self, diagnostic: Diagnostic) -> None:
+        """Record a finding that another collection holds."""
+        self._found.append(diagnostic)
+
     def warn(self, code: str, message: str, source: Source, hint: str = "") -> None:
         """Record something that OpenRAVE lets pass in silence or with a log line."""
         self._found.append(Diagnostic("warning", code, message, source, hint))

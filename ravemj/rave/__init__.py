@@ -4,9 +4,9 @@
 objects is ravemj's own.
 """
 
-from ravemj.rave.environment import Environment, load
+from ravemj.rave.environment import Environment, RaveGetEnvironment, load
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import CheckLimitsAction, KinBody, Robot
 from ravemj.rave.link import Link
 
-__all__ = ["CheckLimitsAction", "Environment", "Joint", "KinBody", "Link", "Robot", "load"]
+__all__ = ["CheckLimitsAction", "Environment", "Joint", "KinBody", "Link", "RaveGetEnvironment", "Robot", "load"]

@@ -236,6 +236,11 @@ class KinBody:
         return next((joint for joint in joints if joint.GetName() == name), None)
 
     @property
+    def simulation_state(self) -> BodyState:
+        """The body below the OpenRAVE API: its scene and its kinematics."""
+        return self._state
+
+    @property
     def qpos_indices(self) -> "np.ndarray[tuple[int], np.dtype[np.int_]]":
         """Where each DOF is in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld."""
         return self._state.kinematics.qpos_indices.copy()

@@ -1,0 +1,7 @@
+"""``python -m ravemj``: the command line."""
+
+import sys
+
+from ravemj.cli import main
+
+sys.exit(main())

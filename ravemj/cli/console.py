@@ -1,0 +1,96 @@
+"""What the commands print: errors, warnings, tables and progress."""
+
+import contextlib
+import sys
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, SourceError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+_LEAST_WIDTH = 100
+
+
+def print_error(error: RavemjError) -> None:
+    """Print an error in one line."""
+    text = str(error) if isinstance(error, SourceError) else f"ravemj: error: {error.message}"
+    print(" ".join(text.split()), file=sys.stderr)
+
+
+def print_findings(findings: Iterable[Diagnostic]) -> None:
+    """Print findings, one line for those that say the same of several places."""
+    found = list(findings)
+    counts = Counter((finding.code, finding.message) for finding in found)
+    for finding in found:
+        count = counts.pop((finding.code, finding.message), 0)
+        if count:
+            more = f" (and at {count - 1} more)" if count > 1 else ""
+            print(f"{finding}{more}", file=sys.stderr)
+
+
+@contextlib.contextmanager
+def show_warnings_in_one_line() -> Iterator[None]:
+    """Print ravemj's warnings as compilers do, each text once."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("default", RavemjWarning)
+        before = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *place: object) -> None:
+            if isinstance(message, RavemjWarning):
+                print(message, file=sys.stderr)
+            else:
+                before(message, category, *place)  # pyright: ignore[reportArgumentType]
+
+        warnings.showwarning = show
+        yield
+
+
+def table(title: str, *columns: str) -> "Table":
+    """Return an empty table; columns whose name ends with ``>`` are numbers."""
+    from rich import box  # noqa: PLC0415 - slow to import
+    from rich.table import Table  # noqa: PLC0415
+
+    made = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
+    for column in columns:
+        made.add_column(column.rstrip(">"), justify="right" if column.endswith(">") else "left")
+    return made
+
+
+def console() -> "Console":
+    """Return what prints tables to standard output, wide enough when it is a file or a pipe."""
+    from rich.console import Console  # noqa: PLC0415 - slow to import
+
+    made = Console(highlight=False)
+    if not made.is_terminal:
+        made.width = max(made.width, _LEAST_WIDTH)
+    return made
+
+
+@contextlib.contextmanager
+def progress(task: str, total: int) -> Iterator[Callable[[int], None]]:
+    """Show a bar with the frames done and the time left, if standard error is a terminal.
+
+    Yields:
+        Takes the number of frames done so far.
+    """
+    if not sys.stderr.isatty():
+        yield lambda done: None
+        return
+    from rich import progress as bars  # noqa: PLC0415 - slow to import
+    from rich.console import Console  # noqa: PLC0415
+
+    columns = (
+        bars.TextColumn("{task.description}"),
+        bars.BarColumn(),
+        bars.MofNCompleteColumn(),
+        bars.TextColumn("frames"),
+        bars.TimeRemainingColumn(),
+    )
+    with bars.Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        number = bar.add_task(task, total=total)
+        yield lambda done: bar.update(number, completed=done)

@@ -1,0 +1,215 @@
+"""The arguments of the commands, with their help."""
+
+import argparse
+import math
+from typing import NoReturn
+
+from ravemj.cli import models, pictures, sessions
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says in one line what it does not understand."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: error: {message}; see {self.prog} --help\n")
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command line; ``run`` of its result is the command's function."""
+    from ravemj import __version__  # noqa: PLC0415 - ravemj is being imported when this module is
+
+    parser = _Parser(
+        prog="ravemj",
+        description="OpenRAVE's models, tutorial, Python API and GUI, on MuJoCo.",
+        epilog="ravemj COMMAND --help explains a command, with examples.",
+    )
+    parser.add_argument("--version", action="version", version=f"ravemj {__version__}")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    _add_play(commands)
+    _add_render(commands)
+    _add_convert(commands)
+    _add_info(commands)
+    _add_run(commands)
+    _add_shell(commands)
+    _add_alias(commands)
+    _add_doctor(commands)
+    return parser
+
+
+Commands = "argparse._SubParsersAction[_Parser]"
+
+
+def _command(commands: Commands, name: str, summary: str, *examples: str) -> argparse.ArgumentParser:
+    return commands.add_parser(
+        name,
+        help=summary,
+        description=f"{summary[0].upper()}{summary[1:]}.",
+        epilog="examples:\n" + "\n".join(f"  {example}" for example in examples),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+
+
+def _add_model(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("model", metavar="MODEL", help="OpenRAVE XML file: an environment, a robot or a kinbody")
+    parser.add_argument("--strict", action="store_true", help="take warnings about the model for errors")
+
+
+def _add_picture_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--size", type=_size, default=(640, 480), metavar="WxH", help="picture size (640x480)")
+    parser.add_argument(
+        "--camera", metavar="FILE", help="camera as a 4x4 matrix in JSON or text: z forward, y down; default: all in view"
+    )
+    parser.add_argument(
+        "--background", type=_colour, metavar="R,G,B", help="background, each from 0 to 1; default: the model's, or white"
+    )
+
+
+def _add_play(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "play",
+        "play a motion of a robot: in a window, or into a video",
+        "ravemj play models/env.xml",
+        "ravemj play models/env.xml -o pendulum.mp4 --camera models/tutorial-camera.json",
+        'ravemj play models/env.xml -o frames/ --to "1.57,-1.57" --duration 2',
+        "ravemj play models/env.xml -o swing.gif --trajectory swing.csv --fps 25",
+    )
+    _add_model(parser)
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help=".mp4, .gif, .webp, or a folder for PNG frames; without a display: MODEL.mp4"
+    )
+    goal = parser.add_mutually_exclusive_group()
+    goal.add_argument(
+        "--to",
+        type=_vector,
+        metavar="Q",
+        help="joint values at the end, rad or m, separated by commas; default: the first joint to pi, the others to 0",
+    )
+    goal.add_argument(
+        "--trajectory",
+        metavar="FILE",
+        help="motion as .csv (header time,<joint>,…; seconds, rad or m) or .npz (arrays time and values)",
+    )
+    parser.add_argument(
+        "--duration", type=_positive, metavar="S", help="seconds the motion takes; default: 1, or as the file says"
+    )
+    parser.add_argument("--fps", type=_positive, default=30.0, help="frames in a second (30)")
+    _add_picture_options(parser)
+    parser.set_defaults(run=pictures.play)
+
+
+def _add_render(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "render",
+        "draw a picture of a model",
+        "ravemj render models/env.xml -o pendulum.png",
+        'ravemj render models/env.xml -o pendulum.png --q "0.785,0.785" --size 1280x720',
+    )
+    _add_model(parser)
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help=".png, .jpg or .webp")
+    parser.add_argument(
+        "--q", type=_vector, metavar="Q", help="joint values of the first robot, rad or m, separated by commas"
+    )
+    _add_picture_options(parser)
+    parser.set_defaults(run=pictures.render)
+
+
+def _add_convert(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "convert",
+        "translate a model to MJCF, MuJoCo's format",
+        "ravemj convert models/env.xml -o pendulum.mjcf.xml",
+        "ravemj convert models/env.xml | less",
+    )
+    _add_model(parser)
+    parser.add_argument("-o", "--output", default="-", metavar="FILE", help="the MJCF file; default: standard output")
+    parser.set_defaults(run=models.convert)
+
+
+def _add_info(commands: Commands) -> None:
+    parser = _command(commands, "info", "show the bodies, links and joints of a model", "ravemj info models/env.xml")
+    _add_model(parser)
+    parser.set_defaults(run=models.info)
+
+
+def _add_run(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "run",
+        "run a script that imports openravepy, on ravemj",
+        "ravemj run myscript.py",
+        "ravemj run -i myscript.py      # stays in IPython",
+        "ravemj run myscript.py --robot arm.xml",
+    )
+    parser.add_argument("-i", "--interactive", action="store_true", help="stay in IPython when the script ends")
+    parser.add_argument("script", metavar="SCRIPT", help="Python file")
+    parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="arguments of the script")
+    parser.set_defaults(run=sessions.run)
+
+
+def _add_shell(commands: Commands) -> None:
+    parser = _command(
+        commands, "shell", "open IPython with env, robot and viewer of a model", "ravemj shell models/env.xml"
+    )
+    _add_model(parser)
+    parser.set_defaults(run=sessions.shell)
+
+
+def _add_alias(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "alias",
+        "let scripts that import openravepy run on ravemj by themselves",
+        "ravemj alias --install      # then: ipython -i myscript.py, ./myscript.py",
+        "ravemj alias --remove",
+    )
+    action = parser.add_mutually_exclusive_group(required=True)
+    action.add_argument(
+        "--install", action="store_true", help="put a package openravepy, which forwards to ravemj, into this Python"
+    )
+    action.add_argument("--remove", action="store_true", help="take it out again")
+    parser.set_defaults(run=sessions.alias)
+
+
+def _add_doctor(commands: Commands) -> None:
+    parser = _command(
+        commands, "doctor", "say what can draw pictures here, and how to install what cannot", "ravemj doctor"
+    )
+    parser.set_defaults(run=pictures.doctor)
+
+
+def _vector(text: str) -> list[float]:
+    return [_number(part) for part in text.replace(",", " ").split()]
+
+
+def _number(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f"'{text}' is no finite number")
+    return number
+
+
+def _positive(text: str) -> float:
+    number = _number(text)
+    if number <= 0:
+        raise argparse.ArgumentTypeError(f"{text} is not above 0")
+    return number
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, cross, height = text.lower().partition("x")
+    if not (cross and width.isdecimal() and height.isdecimal() and 0 < int(width) <= 16384 and 0 < int(height) <= 16384):
+        raise argparse.ArgumentTypeError(f"'{text}' is no size like 640x480")
+    return int(width), int(height)
+
+
+def _colour(text: str) -> list[float]:
+    colour = _vector(text)
+    if len(colour) != 3 or not all(0 <= part <= 1 for part in colour):
+        raise argparse.ArgumentTypeError(f"'{text}' is no colour like 0.8,0.85,0.9")
+    return colour

@@ -1,0 +1,118 @@
+"""Commands that draw: ``play``, ``render`` and ``doctor``."""
+
+import argparse
+import math
+import os
+import platform
+import sys
+import time
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from ravemj.cli.console import console, progress, table
+from ravemj.cli.models import load_model
+from ravemj.errors import ArgumentError
+from ravemj.motion import Motion, read_motion
+from ravemj.rave import CheckLimitsAction, Environment, KinBody
+from ravemj.recording import Shot, camera_for_motion, draw_frames, moving_body, within_limits
+from ravemj.rendering import probe_backends, read_camera
+from ravemj.rendering.contexts import INSTALL, RAY, requested_backend
+from ravemj.studio import Format
+from ravemj.video import check_target, write_frames, write_png
+from ravemj.viewers import WindowViewer, has_display
+
+
+def play(options: argparse.Namespace) -> int:
+    """Play a motion: in a window, or into a video."""
+    if options.output is not None:
+        check_target(options.output)
+    camera = None if options.camera is None else read_camera(options.camera)
+    env = load_model(options)
+    body = moving_body(env)
+    motion = within_limits(body, _motion(options, body))
+    camera = camera or camera_for_motion(env, body, motion)
+    background = env.background if options.background is None else tuple(options.background)
+    shot = Shot(camera, background, Format(*options.size), options.fps)
+    if options.output is None and _play_in_window(env, body, motion, shot):
+        return 0
+    return _write_video(options.output or f"{Path(options.model).stem}.mp4", env, body, motion, shot)
+
+
+def _motion(options: argparse.Namespace, body: KinBody) -> Motion:
+    """Return the motion that the options ask for, from where the robot is."""
+    start = body.GetDOFValues()
+    if options.trajectory is not None:
+        motion = read_motion(options.trajectory, [joint.GetName() for joint in body.GetJoints()], start)
+        return motion if options.duration is None else motion.rescaled(options.duration)
+    if options.to is None:
+        lower, upper = body.GetDOFLimits()
+        goal = np.clip([math.pi] + [0.0] * (len(start) - 1), lower, upper)
+    elif len(options.to) != len(start):
+        raise ArgumentError(f"--to has {len(options.to)} values, and '{body.GetName()}' has {len(start)} DOFs")
+    else:
+        goal = options.to
+    return Motion.line(start, goal, options.duration or 1.0)
+
+
+def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot) -> bool:
+    """Play in real time and wait until the window is closed; False where no window can be opened."""
+    if not has_display():
+        return False
+    env.SetViewer("window")
+    viewer = env.GetViewer()
+    if not isinstance(viewer, WindowViewer):
+        return False
+    viewer.SetCamera(shot.camera.T_world_camera)
+    viewer.SetBkgndColor(shot.background)
+    start = time.monotonic()
+    while viewer.is_open and (elapsed := time.monotonic() - start) < motion.duration:
+        body.SetDOFValues(motion.sample(float(motion.times[0]) + elapsed), None, CheckLimitsAction.Nothing)
+        time.sleep(1 / 120)
+    body.SetDOFValues(motion.values[-1], None, CheckLimitsAction.Nothing)
+    viewer.wait()
+    return True
+
+
+def _write_video(path: str, env: Environment, body: KinBody, motion: Motion, shot: Shot) -> int:
+    count = motion.number_of_frames(shot.fps)
+    with progress(f"drawing {path}", count) as advance:
+        write_frames(path, draw_frames(env, body, motion, shot), shot.fps, on_frame=advance)
+    backend = env.studio.backend(shot.form)
+    _explain_rays(backend)
+    seconds = f"{motion.duration:g} s, {count} frames of {shot.form.width}x{shot.form.height} by {backend}"
+    print(f"wrote {os.path.abspath(path)} ({seconds})")
+    return 0
+
+
+def render(options: argparse.Namespace) -> int:
+    """Draw a picture of a model."""
+    camera = None if options.camera is None else read_camera(options.camera)
+    env = load_model(options)
+    if options.q is not None:
+        moving_body(env).SetDOFValues(options.q)
+    width, height = options.size
+    matrix = None if camera is None else camera.T_world_camera
+    write_png(options.output, env.render(width, height, camera=matrix, background=options.background))
+    _explain_rays(env.studio.backend(Format(width, height, shadows=True)))
+    print(f"wrote {options.output}")
+    return 0
+
+
+def _explain_rays(backend: str) -> None:
+    """Say how to get OpenGL where rays drew for want of it."""
+    if backend == RAY and requested_backend() is None:
+        print(f"ravemj: no OpenGL here, so rays drew the picture; faster: {INSTALL['egl']}", file=sys.stderr)
+
+
+def doctor(options: argparse.Namespace) -> int:
+    """Say what can draw pictures here, and how to install what cannot."""
+    del options
+    print(f"Python {platform.python_version()}, MuJoCo {mujoco.mj_versionString()}, {platform.platform()}")
+    print(f"display: {'yes' if has_display() else 'none, so viewers have no window'}\n")
+    rows = table("Rendering", "backend", "works", "why", "to install")
+    for report in probe_backends():
+        rows.add_row(report.name, "yes" if report.works else "no", report.detail, "" if report.works else report.install)
+    console().print(rows)
+    return 0

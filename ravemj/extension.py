@@ -1,0 +1,11 @@
+"""``%load_ext ravemj`` in IPython and notebooks: ``import openravepy`` then gives ravemj."""
+
+from typing import Any
+
+from ravemj.alias import install_finder
+
+
+def load_ipython_extension(ipython: Any) -> None:  # noqa: ANN401 - IPython's shell; IPython is not imported here
+    """Make ``import openravepy`` give ravemj, in this session; IPython calls it on ``%load_ext ravemj``."""
+    del ipython
+    install_finder()

@@ -1,0 +1,108 @@
+"""Pictures of a simulation: who draws them, from where, on what background."""
+
+import threading
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ravemj.errors import ArgumentError
+from ravemj.rendering import Camera, Renderer, bounding_sphere, open_renderer, three_quarter_view, view_from_above
+from ravemj.simulation import Simulation
+
+Frame = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """What a picture costs and how it looks.
+
+    Attributes:
+        width: Columns [pixels].
+        height: Rows [pixels].
+        shadows: Whether lights cast shadows; too slow for videos without a graphics card.
+    """
+
+    width: int = 640
+    height: int = 480
+    shadows: bool = False
+
+
+class Studio:
+    """Draws a simulation; each thread keeps the renderer of its last picture, for the next one."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._kept = threading.local()
+
+    def picture(self, camera: Camera, background: ArrayLike, form: Format) -> Frame:
+        """Draw the bodies as they are now.
+
+        Args:
+            camera: Where the picture is taken from.
+            background: Colour where nothing is: red, green, blue from 0 to 1.
+            form: Size and quality.
+
+        Returns:
+            Shape (height, width, 3), top row first.
+
+        Raises:
+            RenderingError: nothing can draw here, or ``MUJOCO_GL`` names what does not work.
+        """
+        with self._simulation.lock:
+            compiled = self._simulation.compile()
+            return self._renderer(form).render(compiled.data, camera, background)
+
+    def backend(self, form: Format) -> str:
+        """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""
+        with self._simulation.lock:
+            return self._renderer(form).backend
+
+    def _renderer(self, form: Format) -> Renderer:
+        key = (self._simulation.version, form)
+        if getattr(self._kept, "key", None) != key:
+            self.close()
+            model = self._simulation.compile().model
+            self._kept.renderer = open_renderer(model, form.width, form.height, shadows=form.shadows)
+            self._kept.key = (self._simulation.version, form)
+        return self._kept.renderer
+
+    def close(self) -> None:
+        """Free the renderer of this thread."""
+        if getattr(self._kept, "key", None) is not None:
+            self._kept.renderer.close()
+            self._kept.key = None
+
+    def file_camera(self) -> Camera | None:
+        """Return the camera that the loaded file asks for, or None."""
+        T_world_camera = self._simulation.view.T_world_camera
+        return None if T_world_camera is None else Camera(T_world_camera.matrix())
+
+    def camera_from_above(self) -> Camera:
+        """Return OpenRAVE's first view: along -z, with +y up, of the whole scene."""
+        return view_from_above(*self.bounding_sphere())
+
+    def camera_for_stills(self) -> Camera:
+        """Return the file's camera, else a view of the whole scene from the front left and above."""
+        return self.file_camera() or three_quarter_view(*self.bounding_sphere())
+
+    def bounding_sphere(self) -> tuple[NDArray[np.float64], float]:
+        """Return centre (3,) and radius [m] of a sphere around all that is drawn."""
+        with self._simulation.lock:
+            compiled = self._simulation.compile()
+            return bounding_sphere(compiled.model, compiled.data)
+
+
+def checked_colour(colour: ArrayLike) -> tuple[float, float, float]:
+    """Return a colour as three floats.
+
+    Raises:
+        ArgumentError: it is not three numbers from 0 to 1.
+    """
+    try:
+        red, green, blue = (float(part) for part in np.asarray(colour, dtype=np.float64).reshape(-1)[:4])
+    except (TypeError, ValueError):
+        raise ArgumentError(f"a colour is three numbers from 0 to 1, not {colour!r}") from None
+    if not all(0 <= part <= 1 for part in (red, green, blue)):
+        raise ArgumentError(f"a colour is three numbers from 0 to 1, not {colour!r}")
+    return (red, green, blue)

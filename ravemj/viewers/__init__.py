@@ -1,0 +1,45 @@
+"""Viewers: a camera and a background on a simulation, with or without a window.
+
+The methods in ``CamelCase`` are OpenRAVE's.
+"""
+
+import logging
+import os
+import sys
+
+from ravemj.errors import RenderingError
+from ravemj.simulation import Simulation
+from ravemj.studio import Studio
+from ravemj.viewers.viewer import Viewer
+from ravemj.viewers.window import WindowViewer
+
+__all__ = ["Viewer", "WindowViewer", "has_display", "open_viewer"]
+
+_LOG = logging.getLogger("ravemj")
+
+
+def has_display() -> bool:
+    """Return whether a window could be opened from here."""
+    if sys.platform == "darwin":  # GLFW wants the main thread there
+        return False
+    return sys.platform == "win32" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -> Viewer:
+    """Open the viewer that a name asks for.
+
+    Args:
+        simulation: What it shows.
+        studio: What draws pictures of it.
+        name: ``offscreen``, or anything else (``window``, ``qtcoin``, ``qtosg``) for a window.
+        show: False for a viewer without a window.
+
+    Returns:
+        A window where there is a display; else a viewer that draws when it is asked for pictures.
+    """
+    if show and name != "offscreen" and has_display():
+        try:
+            return WindowViewer(simulation, studio, name)
+        except RenderingError as error:
+            _LOG.warning("%s; pictures are drawn without a window", error)
+    return Viewer(simulation, studio, name)
