@@ -189,6 +189,24 @@ def test_what_others_put_into_the_folder_meanwhile_stays(tmp_path):
     assert len(content(folder)) == 6
 
 
+def test_the_old_folder_comes_back_if_the_new_one_cannot_take_its_place(tmp_path, monkeypatch):
+    folder = tmp_path / "frames"
+    write_frames(folder, shades(5), 30)
+    before = content(folder)
+    renamed = []
+
+    def replace(source, target):
+        renamed.append(target)
+        if len(renamed) == 2:
+            raise PermissionError(errno.EACCES, "Permission denied")
+        os.rename(source, target)
+
+    monkeypatch.setattr(os, "replace", replace)
+    with pytest.raises(OutputError, match=r"frames: Permission denied$"):
+        write_frames(folder, shades(2), 30)
+    assert content(folder) == before
+
+
 # Stills
 
 
