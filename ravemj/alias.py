@@ -37,7 +37,7 @@ class _Finder(MetaPathFinder, Loader):
     ) -> ModuleSpec | None:
         """Return a spec for ``openravepy`` and for its sub-modules that ravemj has."""
         del path, target
-        if fullname.split(".")[0] != NAME or not _exists(_translated(fullname)):
+        if fullname.partition(".")[0] != NAME or not _exists(_translated(fullname)):
             return None
         return ModuleSpec(fullname, self)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ravemj.mjcf import BodyNames
 from ravemj.scene import KinBody
-from ravemj.transforms import Floats
+from ravemj.transforms import Floats, Ints
 
 LARGEST = float(np.finfo(np.float64).max)
 
@@ -93,7 +93,9 @@ def _qpos_index(model: mujoco.MjModel, joint_name: str | None) -> int:
     return int(model.jnt_qposadr[_index(model, mujoco.mjtObj.mjOBJ_JOINT, joint_name)])
 
 
-def _index_range(indices: "np.ndarray[tuple[int], np.dtype[np.int_]]") -> "slice | np.ndarray[tuple[int], np.dtype[np.int_]]":
+def _index_range(
+    indices: Ints,
+) -> slice | Ints:
     """Return the indices as a slice if they follow one another, since slices are faster."""
     first = int(indices[0]) if len(indices) else 0
     if np.array_equal(indices, np.arange(first, first + len(indices))):

@@ -140,8 +140,9 @@ def camera_for_motion(env: Environment, body: KinBody, motion: Motion) -> Camera
         return chosen
     before = body.GetDOFValues()
     spheres = [env.studio.bounding_sphere()]
-    for time in np.linspace(motion.times[0], motion.times[-1], _POSES_FOR_THE_VIEW):
-        body.SetDOFValues(motion.sample(float(time)), None, CheckLimitsAction.Nothing)
+    for step in range(_POSES_FOR_THE_VIEW):
+        time = float(motion.times[0]) + motion.duration * step / (_POSES_FOR_THE_VIEW - 1)
+        body.SetDOFValues(motion.sample(time), None, CheckLimitsAction.Nothing)
         spheres.append(env.studio.bounding_sphere())
     body.SetDOFValues(before, None, CheckLimitsAction.Nothing)
     lowest = np.min([center - radius for center, radius in spheres], axis=0)

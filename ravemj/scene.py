@@ -4,17 +4,55 @@ Readers make a ``Scene`` (through ``ravemj.builder``), writers and the runtime r
 angles radians, masses kilograms. Links are referred to by their index in ``KinBody.links``.
 """
 
+import hashlib
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
+import numpy as np
+
 from ravemj.errors import Source
-from ravemj.transforms import Pose, Rows, Vec3
+from ravemj.transforms import Floats, Ints, Pose, Rows, Vec3
 
 Rgb = tuple[float, float, float]
 JointKind = Literal["hinge", "slider"]
 
 UNLIMITED = 10000.0
 """The limit [rad] that OpenRAVE reports for a circular joint."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles; two meshes are equal if their numbers are.
+
+    Attributes:
+        vertices: Shape (n, 3) [m]; read-only.
+        triangles: Indices of the corners of each triangle, counter-clockwise seen from outside, shape (m, 3);
+            read-only.
+    """
+
+    vertices: Floats
+    triangles: Ints
+
+    def __post_init__(self) -> None:
+        vertices = np.array(self.vertices, dtype=np.float64).reshape(-1, 3)
+        triangles = np.array(self.triangles, dtype=np.int_).reshape(-1, 3)
+        for name, numbers in (("vertices", vertices), ("triangles", triangles)):
+            numbers.flags.writeable = False
+            object.__setattr__(self, name, numbers)
+
+    @cached_property
+    def digest(self) -> str:
+        """A name for the content: the same for the same numbers."""
+        content = hashlib.sha256(self.vertices.tobytes())
+        content.update(self.triangles.tobytes())
+        return content.hexdigest()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Mesh) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from ravemj import mjcf
 from ravemj.errors import CompileError, Diagnostics, ErrorCode, RavemjError, Source
 from ravemj.kinematics import BodyKinematics
 from ravemj.scene import KinBody, Scene, View
-from ravemj.transforms import Floats, wxyz_from_rows
+from ravemj.transforms import wxyz_from_rows
 
 _LINE = re.compile(r"line (\d+)", re.IGNORECASE)
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int_]
 Vec3 = tuple[float, float, float]
 Wxyz = tuple[float, float, float, float]
 Rows = tuple[Vec3, Vec3, Vec3]

@@ -4,7 +4,7 @@ import contextlib
 import sys
 import warnings
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from typing import TYPE_CHECKING
 
 from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, SourceError
@@ -34,7 +34,7 @@ def print_findings(findings: Iterable[Diagnostic]) -> None:
 
 
 @contextlib.contextmanager
-def show_warnings_in_one_line() -> Iterator[None]:
+def show_warnings_in_one_line() -> Generator[None]:
     """Print ravemj's warnings as compilers do, each text once."""
     with warnings.catch_warnings():
         warnings.simplefilter("default", RavemjWarning)
@@ -72,7 +72,7 @@ def console() -> "Console":
 
 
 @contextlib.contextmanager
-def progress(task: str, total: int) -> Iterator[Callable[[int], None]]:
+def progress(task: str, total: int) -> Generator[Callable[[int], None]]:
     """Show a bar with the frames done and the time left, if standard error is a terminal.
 
     Yields:

@@ -2,7 +2,7 @@
 
 import argparse
 import math
-from typing import NoReturn
+from typing import NoReturn, TypeAlias
 
 from ravemj.cli import models, pictures, sessions
 
@@ -36,7 +36,7 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-Commands = "argparse._SubParsersAction[_Parser]"
+Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"  # pyright: ignore[reportPrivateUsage]
 
 
 def _command(commands: Commands, name: str, summary: str, *examples: str) -> argparse.ArgumentParser:
@@ -57,10 +57,15 @@ def _add_model(parser: argparse.ArgumentParser) -> None:
 def _add_picture_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--size", type=_size, default=(640, 480), metavar="WxH", help="picture size (640x480)")
     parser.add_argument(
-        "--camera", metavar="FILE", help="camera as a 4x4 matrix in JSON or text: z forward, y down; default: all in view"
+        "--camera",
+        metavar="FILE",
+        help="camera as a 4x4 matrix in JSON or text: z forward, y down; default: all in view",
     )
     parser.add_argument(
-        "--background", type=_colour, metavar="R,G,B", help="background, each from 0 to 1; default: the model's, or white"
+        "--background",
+        type=_colour,
+        metavar="R,G,B",
+        help="background, each from 0 to 1; default: the model's, or white",
     )
 
 
@@ -76,7 +81,10 @@ def _add_play(commands: Commands) -> None:
     )
     _add_model(parser)
     parser.add_argument(
-        "-o", "--output", metavar="FILE", help=".mp4, .gif, .webp, or a folder for PNG frames; without a display: MODEL.mp4"
+        "-o",
+        "--output",
+        metavar="FILE",
+        help=".mp4, .gif, .webp, or a folder for PNG frames; without a display: MODEL.mp4",
     )
     goal = parser.add_mutually_exclusive_group()
     goal.add_argument(
@@ -203,7 +211,9 @@ def _positive(text: str) -> float:
 
 def _size(text: str) -> tuple[int, int]:
     width, cross, height = text.lower().partition("x")
-    if not (cross and width.isdecimal() and height.isdecimal() and 0 < int(width) <= 16384 and 0 < int(height) <= 16384):
+    if not (
+        cross and width.isdecimal() and height.isdecimal() and 0 < int(width) <= 16384 and 0 < int(height) <= 16384
+    ):
         raise argparse.ArgumentTypeError(f"'{text}' is no size like 640x480")
     return int(width), int(height)
 

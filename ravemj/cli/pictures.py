@@ -113,6 +113,8 @@ def doctor(options: argparse.Namespace) -> int:
     print(f"display: {'yes' if has_display() else 'none, so viewers have no window'}\n")
     rows = table("Rendering", "backend", "works", "why", "to install")
     for report in probe_backends():
-        rows.add_row(report.name, "yes" if report.works else "no", report.detail, "" if report.works else report.install)
+        rows.add_row(
+            report.name, "yes" if report.works else "no", report.detail, "" if report.works else report.install
+        )
     console().print(rows)
     return 0

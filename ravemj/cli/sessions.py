@@ -5,6 +5,7 @@ import os
 import runpy
 import sys
 import traceback
+from collections.abc import Mapping
 from types import TracebackType
 
 import numpy as np
@@ -27,7 +28,7 @@ def run(options: argparse.Namespace) -> int:
     sys.path.insert(0, os.path.dirname(os.path.abspath(script)))
     try:
         runpy.run_path(script, run_name="__main__")
-    except Exception as error:  # noqa: BLE001 - whatever the user's script raises
+    except Exception as error:  # whatever the user's script raises
         traceback.print_exception(type(error), error, _from_script(error.__traceback__, script))
         return 1
     return 0
@@ -54,10 +55,10 @@ def shell(options: argparse.Namespace) -> int:
     return status
 
 
-def _start_ipython(arguments: list[str], names: dict[str, object] | None = None) -> int:
+def _start_ipython(arguments: list[str], names: Mapping[str, object] | None = None) -> int:
     from IPython import start_ipython  # noqa: PLC0415 - slow to import  # pyright: ignore[reportUnknownVariableType]
 
-    status: object = start_ipython(argv=arguments, user_ns=names or {})
+    status: object = start_ipython(argv=arguments, user_ns=dict(names or {}))
     return status if isinstance(status, int) else 0
 
 

@@ -7,7 +7,7 @@ of an element acts at its end, once, on the links that were made inside it.
 from collections.abc import Callable
 
 from ravemj.builder import BodyBuilder, LinkBuilder
-from ravemj.openrave_xml.context import IGNORED, NOT_YET, Context
+from ravemj.openrave_xml.context import IGNORED, NOT_YET, Context, reasons
 from ravemj.openrave_xml.geometry import read_geometry
 from ravemj.openrave_xml.joint import frame_of_link, read_joint
 from ravemj.openrave_xml.mass import DefaultMassReader, MassReader, MassRule, link_inertial
@@ -98,7 +98,7 @@ _ROBOT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     "robot": _Scope.nest,
     "kinbody": _Scope.nest,
 }
-ROBOT_IGNORED = dict.fromkeys(("manipulator", "attachedsensor", "controller", "jointvalues", "sendcommand"), NOT_YET)
+ROBOT_IGNORED = reasons(NOT_YET, "manipulator", "attachedsensor", "controller", "jointvalues", "sendcommand")
 _KINBODY_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     **_PLACEMENT_TAGS,
     "kinbody": _Scope.nest,
@@ -108,11 +108,11 @@ _KINBODY_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     "adjacent": _Scope.read_adjacent,
 }
 KINBODY_IGNORED = {
-    **dict.fromkeys(("diffusecolor", "ambientcolor"), "OpenRAVE overlooks it here; write it in each Geom"),
-    **dict.fromkeys(("jointvalues", "modelsdir", "transparency", "sendcommand"), NOT_YET),
+    **reasons("OpenRAVE overlooks it here; write it in each Geom", "diffusecolor", "ambientcolor"),
+    **reasons(NOT_YET, "jointvalues", "modelsdir", "transparency", "sendcommand"),
 }
 SCOPE_ATTRIBUTES = {"name", "prefix", "file"}
-SCOPE_IGNORED_ATTRIBUTES = dict.fromkeys(("type", "scalegeometry", "skipgeometry", "makejoinedlinksadjacent"), NOT_YET)
+SCOPE_IGNORED_ATTRIBUTES = reasons(NOT_YET, "type", "scalegeometry", "skipgeometry", "makejoinedlinksadjacent")
 
 
 def read_body(element: Element, context: Context) -> KinBody:

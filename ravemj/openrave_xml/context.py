@@ -14,6 +14,11 @@ IGNORED = "OpenRAVE reads it and makes nothing of it"
 NOT_YET = "this version of ravemj does not read it yet"
 
 
+def reasons(reason: str, *names: str) -> dict[str, str]:
+    """Return a table that gives one reason for each name."""
+    return dict.fromkeys(names, reason)
+
+
 class Context:
     """One reading of one file, with the files that it includes.
 

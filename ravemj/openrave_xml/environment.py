@@ -4,9 +4,9 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.errors import Diagnostics, SourceError
 from ravemj.openrave_xml.body import read_body
-from ravemj.openrave_xml.context import IGNORED, NOT_YET, Context
+from ravemj.openrave_xml.context import IGNORED, NOT_YET, Context, reasons
 from ravemj.openrave_xml.tree import Element, parse_file
 from ravemj.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.scene import KinBody, Scene, View
@@ -145,7 +145,7 @@ _ENVIRONMENT_TAGS: dict[str, Callable[[_EnvironmentScope, Element], None]] = {
 ENVIRONMENT_IGNORED = {
     "plugin": "plugins are not loaded",
     "unit": IGNORED,
-    **dict.fromkeys((*_INTERFACES, "camrotaxis", "camfocal"), NOT_YET),
+    **reasons(NOT_YET, *_INTERFACES, "camrotaxis", "camfocal"),
 }
 
 

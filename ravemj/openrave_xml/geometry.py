@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from ravemj.errors import Diagnostics
-from ravemj.openrave_xml.context import IGNORED, NOT_YET, Context
+from ravemj.openrave_xml.context import IGNORED, NOT_YET, Context, reasons
 from ravemj.openrave_xml.tree import Element
 from ravemj.openrave_xml.values import ROTATIONS, Placement, is_false, number, vector
 from ravemj.scene import Box, Capsule, Cylinder, Geometry, Rgb, Shape, Sphere
@@ -73,7 +73,7 @@ GEOM_TAGS: dict[str, Callable[[_Geom, Element], None]] = {
     "transparency": _Geom.read_transparency,
     "name": _Geom.read_name,
 }
-GEOM_IGNORED = dict.fromkeys(("data", "collision", "render", "vertices"), NOT_YET)
+GEOM_IGNORED = reasons(NOT_YET, "data", "collision", "render", "vertices")
 GEOM_ATTRIBUTES = {"type", "name", "render"}
 GEOM_IGNORED_ATTRIBUTES = {"modifiable": IGNORED, "group": NOT_YET}
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from ravemj.builder import BodyBuilder, JointBuilder
 from ravemj.errors import SourceError
-from ravemj.openrave_xml.context import IGNORED, NOT_YET, Context
+from ravemj.openrave_xml.context import IGNORED, NOT_YET, Context, reasons
 from ravemj.openrave_xml.tree import Element
 from ravemj.openrave_xml.values import is_false, leading_numbers, number, vector, word
 from ravemj.scene import UNLIMITED, Axis, JointKind
@@ -112,11 +112,11 @@ JOINT_TAGS: dict[str, Callable[[_JointReader, Element], None]] = {
     "maxtorque": _JointReader.read_max_torque,
 }
 JOINT_IGNORED = {
-    **dict.fromkeys(("maxforce", "mode", "axis3"), IGNORED),
-    **dict.fromkeys(("axis1", "axis2", "lostop", "histop", "hardmaxvel", "maxinertia", "actuator"), NOT_YET),
+    **reasons(IGNORED, "maxforce", "mode", "axis3"),
+    **reasons(NOT_YET, "axis1", "axis2", "lostop", "histop", "hardmaxvel", "maxinertia", "actuator"),
 }
 JOINT_ATTRIBUTES = {"name", "type", "enable", "circular"}
-JOINT_IGNORED_ATTRIBUTES = dict.fromkeys(("mimic_pos", "mimic_vel", "mimic_accel", "mimic", "scalegeometry"), NOT_YET)
+JOINT_IGNORED_ATTRIBUTES = reasons(NOT_YET, "mimic_pos", "mimic_vel", "mimic_accel", "mimic", "scalegeometry")
 
 
 def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:

@@ -2,10 +2,13 @@
 
 import os
 from dataclasses import dataclass
+from typing import TypeAlias, cast
 
 from lxml import etree
 
 from ravemj.errors import Source, SourceError
+
+_Node: TypeAlias = "etree._Element"  # pyright: ignore[reportPrivateUsage]
 
 
 @dataclass(slots=True)
@@ -61,17 +64,18 @@ def os_reason(error: OSError) -> str:
     return (error.strerror or os.strerror(error.errno or 0)).lower()
 
 
-def _element(node: "etree._Element", path: str, included_from: Source | None) -> Element:
+def _element(node: _Node, path: str, included_from: Source | None) -> Element:
     source = Source(path, node.sourceline or 0, included_from)
     children: list[Element] = []
     text = node.text or ""
     for child in node:
-        if isinstance(child.tag, str):
+        tag = cast(object, child.tag)  # comments and entities have a function in place of a name
+        if isinstance(tag, str):
             children.append(_element(child, path, included_from))
             text = child.tail or ""
-        elif child.tag is etree.Entity:
+        elif tag is etree.Entity:
             raise SourceError(f"the entity {child.text} is not supported", source, "write the text itself in its place")
         else:  # a comment is transparent
             text += child.tail or ""
-    attributes = {name.lower(): value for name, value in node.attrib.items()}
+    attributes = {str(name).lower(): str(value) for name, value in node.attrib.items()}
     return Element(node.tag.lower(), node.tag, attributes, text, children, source)

@@ -256,7 +256,7 @@ class Environment:
         return content.getvalue()
 
 
-def RaveGetEnvironment(id: int) -> Environment | None:  # noqa: A002 - OpenRAVE's name
+def RaveGetEnvironment(id: int) -> Environment | None:  # OpenRAVE's name of the argument
     """Return the environment of that number, as ``repr(env)`` shows it, or None."""
     return _environments.get(id)
 

@@ -128,4 +128,5 @@ class Joint:
         return f"{self._parent!r}.GetJoint('{self.GetName()}')"
 
     def __str__(self) -> str:
-        return f"<joint:{self.GetName()} ({self.GetJointIndex()}), dof={self.GetDOFIndex()}, parent={self._parent.GetName()}>"
+        place = f"({self.GetJointIndex()}), dof={self.GetDOFIndex()}"
+        return f"<joint:{self.GetName()} {place}, parent={self._parent.GetName()}>"

@@ -13,7 +13,7 @@ from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 from ravemj.simulation import BodyState
-from ravemj.transforms import Floats
+from ravemj.transforms import Floats, Ints
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -73,7 +73,7 @@ class KinBody:
         """
         return len(self._state.scene.dof_axes)
 
-    def GetDOFValues(self, indices: "ArrayLike | None | EllipsisType" = ...) -> Floats:
+    def GetDOFValues(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the joint values.
 
         Args:
@@ -168,7 +168,7 @@ class KinBody:
         diagnostic = Diagnostic("warning", "value-outside-limits", f"{message}; it stops at the limit", source)
         warnings.warn(RavemjWarning(diagnostic), stacklevel=4)
 
-    def GetDOFLimits(self, indices: "ArrayLike | None | EllipsisType" = ...) -> tuple[Floats, Floats]:
+    def GetDOFLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> tuple[Floats, Floats]:
         """Return the joint limits.
 
         Args:
@@ -241,7 +241,7 @@ class KinBody:
         return self._state
 
     @property
-    def qpos_indices(self) -> "np.ndarray[tuple[int], np.dtype[np.int_]]":
+    def qpos_indices(self) -> Ints:
         """Where each DOF is in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld."""
         return self._state.kinematics.qpos_indices.copy()
 
@@ -263,7 +263,7 @@ class Robot(KinBody):
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
 
-def _checked_indices(indices: "ArrayLike | None | EllipsisType", dof: int) -> "np.ndarray[tuple[int], np.dtype[np.int_]]":
+def _checked_indices(indices: "ArrayLike | EllipsisType | None", dof: int) -> Ints:
     """Return DOF indices as an array; None stands for none."""
     checked = np.array([] if indices is None else indices, dtype=np.int_).reshape(-1)
     if checked.size and not (checked.min() >= 0 and checked.max() < dof):

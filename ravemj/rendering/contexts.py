@@ -65,9 +65,10 @@ class OffscreenContext:
 
     def __init__(self, backend: str) -> None:
         self.backend = backend
-        _CHECKS[backend]()
         if {backend, *_used} > {"osmesa"}:
-            raise RuntimeError("OSMesa cannot share a process with another OpenGL library")
+            raise RenderingError(f"{backend} cannot draw in a process that {' and '.join(_used)} draws in already")
+        if backend not in _used:
+            _CHECKS[backend]()
         with _pyopengl_platform_restored():
             context_class: type[_GLContext] = importlib.import_module(f"mujoco.{backend}").GLContext
             self._context = _make_glfw(context_class) if backend == "glfw" else context_class(64, 64)
@@ -75,8 +76,18 @@ class OffscreenContext:
 
     @contextlib.contextmanager
     def current(self) -> Generator[None]:
-        """Make the context current in this thread, then give the thread back the one that it had."""
-        with self._context.as_current():
+        """Make the context current in this thread, then give the thread back the one that it had.
+
+        Raises:
+            RenderingError: the driver refuses, as EGL does in a thread where the context of an X11 window is
+                current; the window has to let go of it first.
+        """
+        with contextlib.ExitStack() as stack:
+            try:
+                stack.enter_context(self._context.as_current())
+            except Exception as error:
+                reason = f"{type(error).__name__}; does a window draw in this thread?"
+                raise RenderingError(f"cannot use the {self.backend} context in this thread: {reason}") from None
             yield
 
     def close(self) -> None:
@@ -126,6 +137,8 @@ def make_with_backend(backend: str, make: Callable[[OffscreenContext], _Made]) -
     """
     try:
         return attempt(backend, make)
+    except RenderingError:
+        raise
     except Exception as error:
         reason = one_line(error)
         raise RenderingError(f"cannot draw with {backend}: {reason} (install: {INSTALL[backend]})") from None

@@ -56,8 +56,11 @@ class GlRenderer:
         """Free the context and what is in it; a second call does nothing."""
         stage, self._stage = self._stage, None
         if stage is not None:
-            with self._context.current():
-                stage.close()
+            try:
+                with self._context.current():
+                    stage.close()
+            except RenderingError:
+                _never_freed.append(stage)  # freeing it here would free what the window in this thread holds
             self._context.close()
 
     def __enter__(self) -> Self:
@@ -91,3 +94,6 @@ def _offscreen_stage(model: mujoco.MjModel, quality: Quality) -> Stage:
         stage.close()
         raise RenderingError("the OpenGL driver has no offscreen framebuffers")
     return stage
+
+
+_never_freed: list[Stage] = []

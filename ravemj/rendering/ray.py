@@ -203,12 +203,13 @@ class _RayScene:
         )
 
     def _has_two_walls(self, geom_ids: NDArray[np.int32]) -> NDArray[np.bool_]:
-        return (geom_ids >= 0) & np.isin(self.model.geom_type, _TWO_WALLS)[geom_ids]
+        two_walls = np.isin([*self.model.geom_type, -1], _TWO_WALLS)  # the last stands for no geom, -1
+        return two_walls[geom_ids]
 
     def _opacity(self, geom_ids: NDArray[np.int32]) -> Floats:
         """Return how much of what is behind is covered: OpenGL draws the back wall of a shape, then the front."""
-        alpha = self.rgba[geom_ids, 3]
-        return np.where(self._has_two_walls(geom_ids), 1 - (1 - alpha) ** 2, alpha)
+        walls = 1 + self._has_two_walls(geom_ids)
+        return 1 - (1 - self.rgba[geom_ids, 3]) ** walls
 
     @contextlib.contextmanager
     def _without(self, geom: int) -> Generator[None]:

@@ -127,7 +127,7 @@ class _Window:
         self._glfw.poll_events()
 
 
-def _import_glfw() -> Any:
+def _import_glfw() -> Any:  # noqa: ANN401 - glfw has no types
     import glfw  # noqa: PLC0415 - loads the libraries of the display
 
     glfw.ERROR_REPORTING = "ignore"
