@@ -280,8 +280,8 @@ def test_what_is_hidden_is_hidden(how):
 def test_visibility_follows_mujoco():
     model, data = state_of(
         '<geom size=".1" material="red"/><geom size=".1" material="red" rgba="0 1 0 1"/>'
-        '<geom size=".1" rgba="1 1 1 0"/><geom size=".1" material="glass"/><geom size=".1" material="glass" rgba="1 1 1 0"/>'
-        '<geom size=".1" group="5"/><geom size=".1" group="2"/>',
+        '<geom size=".1" rgba="1 1 1 0"/><geom size=".1" material="glass"/>'
+        '<geom size=".1" material="glass" rgba="1 1 1 0"/><geom size=".1" group="5"/><geom size=".1" group="2"/>',
         '<asset><material name="red" rgba="1 0 0 1"/><material name="glass" rgba="1 1 1 0"/></asset>',
     )
     scene, camera = mujoco.MjvScene(model, 100), mujoco.MjvCamera()
@@ -430,10 +430,11 @@ def test_ray_bands_do_not_show():
     assert np.array_equal(ids >= 0, (picture != 255).any(axis=2))
 
 
-def test_rays_wait_for_failing_backends_only(monkeypatch):
+def test_rays_where_no_context_can_be_made(monkeypatch):
     def refuse(_):
         raise OSError("no driver")
 
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setattr("ravemj.rendering.contexts.OffscreenContext", refuse)
     assert make_with_any_backend(lambda context: context) is None
     with open_renderer(mujoco.MjModel.from_xml_string("<mujoco/>"), 8, 8) as renderer:

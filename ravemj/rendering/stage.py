@@ -19,6 +19,9 @@ from ravemj.rendering.visibility import DRAWN_GROUPS, drawn_geoms
 SHADOW_SIZE = 1024
 """Texels along one side of the shadow map: a quarter of MuJoCo's default, a seventh of its cost on a CPU."""
 
+_SLICES, _STACKS = 48, 24
+"""Facets around and along round shapes; MuJoCo's 28 and 16 show corners on close views."""
+
 _SPARE_GEOMS = 1000
 
 
@@ -190,6 +193,8 @@ def _quality_of(model: mujoco.MjModel, quality: Quality) -> Generator[None]:
         (model.vis.global_, "offheight", quality.height),
         (model.vis.quality, "offsamples", quality.samples),
         (model.vis.quality, "shadowsize", SHADOW_SIZE if quality.shadows else 0),
+        (model.vis.quality, "numslices", _SLICES),
+        (model.vis.quality, "numstacks", _STACKS),
     )
     before = [getattr(owner, name) for owner, name, _ in sizes]
     for owner, name, value in sizes:
