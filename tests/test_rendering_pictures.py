@@ -304,8 +304,8 @@ def test_edges_are_smooth_with_samples_and_identities_never(how):
 @pytest.mark.parametrize("how", [GL])
 def test_shadows(how):
     model, data = state_of(
-        '<light type="directional" dir="0 0 -1" pos="0 0 3" diffuse=".6 .6 .6" castshadow="true"/>'
-        '<geom type="box" size="1 1 .01"/><geom size=".1" pos="0 0 .5"/>',
+        '<light type="directional" dir=".1 .2 -1" pos="7 8 0" diffuse=".6 .6 .6" castshadow="true"/>'
+        '<geom type="box" size="1 1 .01"/><geom size=".1" pos="-.05 -.1 .5"/>',
         SKYBOX + '<visual><headlight active="1" ambient=".2 .2 .2" diffuse="0 0 0" specular="0 0 0"/></visual>',
     )
     T = np.eye(4)

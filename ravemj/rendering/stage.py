@@ -75,13 +75,16 @@ class Stage:
             width: Columns of the viewport.
             height: Rows of the viewport.
         """
-        aim(self.scene, camera, width / height, near_and_far(self._model, data, camera))
+        depths = near_and_far(self._model, data, camera)
+        aim(self.scene, camera, width / height, depths)
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
         user_camera = mujoco.MjvCamera()
         user_camera.type = mujoco.mjtCamera.mjCAMERA_USER
         everything = mujoco.mjtCatBit.mjCAT_ALL.value
         mujoco.mjv_updateScene(self._model, data, self._option, None, user_camera, everything, self.scene)
+        if self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW]:
+            self._cover_with_shadows(data, near=depths[0])
 
     def draw(self, viewport: mujoco.MjrRect, background: NDArray[np.uint8]) -> None:
         """Draw into the current framebuffer.
@@ -113,6 +116,17 @@ class Stage:
     def close(self) -> None:
         """Free the resources on the graphics card."""
         self.context.free()
+
+    def _cover_with_shadows(self, data: mujoco.MjData, near: float) -> None:
+        """Move directional lights back until their shadow map covers the scene, and just that.
+
+        Where they stand makes no difference to their light. MuJoCo looks from them with the camera's depths.
+        """
+        center, radius = bounding_sphere(self._model, data)
+        self.context.shadowClip = 1.05 * radius
+        for light in self.scene.lights[: self.scene.nlight]:
+            if light.type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL and light.castshadow:
+                light.pos = center - (near + 1.2 * radius) * light.dir
 
     def _paint_background(self, background: NDArray[np.uint8]) -> None:
         """Upload a new skybox where the colour changed; the model keeps its own texture."""

@@ -1157,6 +1157,7 @@ class MjrContext:
     offSamples: int
     offWidth: int
     readDepthMap: int
+    shadowClip: float
     shadowSize: int
     windowAvailable: int
     windowDoublebuffer: int
