@@ -79,7 +79,9 @@ class Camera:
     def rotation(self) -> Floats:
         """R_world_camera (3, 3), nearest to the matrix as given: what every picture and projection uses."""
         u, _, vt = np.linalg.svd(self.T_world_camera[:3, :3])
-        return np.asarray(u @ vt, dtype=np.float64)
+        rotation: Floats = u @ vt
+        rotation.flags.writeable = False
+        return rotation
 
     def focal_length(self, height: int) -> float:
         """Return the distance of the image plane in pixels, for an image of that many rows."""
