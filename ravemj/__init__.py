@@ -9,6 +9,7 @@
 ``CamelCase`` names are OpenRAVE's, with OpenRAVE's meaning; ``snake_case`` names are ravemj's own.
 """
 
+import ravemj._mujoco  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco
 from ravemj.errors import (
     ArgumentError,
     CompileError,

@@ -5,30 +5,16 @@ of a body's outermost element settles it. ``BodyBuilder.freeze`` then decides pa
 from the poses of the links, and places the links by them, as OpenRAVE does.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from ravemj import hierarchy, scene
 from ravemj.errors import Diagnostics, Source
-from ravemj.transforms import (
-    ZERO,
-    Pose,
-    Vec3,
-    add,
-    conjugate,
-    dot,
-    multiply,
-    rotate,
-    scale,
-    wxyz_from_axis_angle,
-)
+from ravemj.joints import measured_value, place_links
+from ravemj.transforms import ZERO, Pose, Vec3, rotate, scale
 
 DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 0.4)))
 """A link without mass properties weighs 1 kg, like a unit sphere."""
-
-ROUNDING = 1e-12
-"""A measured joint value [rad or m] below this is rounding of the poses, not a displacement."""
 
 
 @dataclass(slots=True)
@@ -111,34 +97,6 @@ class BodyBuilder:
         )
 
 
-def place_links(poses: list[Pose], joints: Sequence[scene.Joint]) -> None:
-    """Place the child link of each joint, in order, by the joint's value: forward kinematics in place.
-
-    Args:
-        poses: World poses of all links.
-        joints: The joints that place a link, parents before children.
-    """
-    for joint in joints:
-        poses[joint.child] = poses[joint.parent] @ relative_pose(joint, [axis.value for axis in joint.axes])
-
-
-def relative_pose(joint: scene.Joint, values: Sequence[float]) -> Pose:
-    """Return the pose of a joint's child in its parent at the given values [rad or m]."""
-    if joint.static:
-        return joint.T_parent_child
-    motion = Pose()
-    for axis, value in zip(joint.axes, values, strict=True):
-        motion = motion @ _axis_motion(joint, axis, value - axis.reference)
-    return motion @ joint.T_parent_child
-
-
-def _axis_motion(joint: scene.Joint, axis: scene.Axis, displacement: float) -> Pose:
-    if joint.kind == "slider":
-        return Pose(scale(axis.direction, displacement))
-    wxyz = wxyz_from_axis_angle(axis.direction, displacement)
-    return Pose(add(joint.anchor, scale(rotate(wxyz, joint.anchor), -1.0)), wxyz)
-
-
 def _directed(joint: JointBuilder, swap: bool, places_child: bool) -> scene.Joint:
     """Return the joint with parent and child decided; swapping turns its axes round."""
     parent, child = joint.links
@@ -171,16 +129,7 @@ def _measured(joint: scene.Joint, poses: Sequence[Pose], diagnostics: Diagnostic
 def _measured_axis(joint: scene.Joint, axis: scene.Axis, now: Pose, diagnostics: Diagnostics) -> scene.Axis:
     if joint.static:
         return replace(axis, value=0.0)
-    rest = joint.T_parent_child
-    if joint.kind == "slider":
-        moved = dot(axis.direction, add(now.position, scale(rest.position, -1.0)))
-    else:
-        w, *turn = multiply(now.wxyz, conjugate(rest.wxyz))
-        moved = 2 * math.atan2(dot(axis.direction, (turn[0], turn[1], turn[2])), w)
-        beyond = axis.lower < -math.pi or axis.upper > math.pi
-        middle = (axis.lower + axis.upper) / 2 if beyond else 0.0
-        moved -= math.tau * round((axis.reference + moved - middle) / math.tau)
-    measured = axis.reference + (moved if abs(moved) > ROUNDING else 0.0)
+    measured = measured_value(joint, axis, now)
     value = min(max(measured, axis.lower), axis.upper)
     if value != measured:
         diagnostics.warn(

@@ -8,9 +8,10 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
+from ravemj.joints import measured_value
 from ravemj.mjcf import BodyNames
 from ravemj.scene import KinBody
-from ravemj.transforms import Floats, Ints
+from ravemj.transforms import Floats, Ints, Pose, wxyz_from_rows
 
 LARGEST = float(np.finfo(np.float64).max)
 
@@ -24,7 +25,7 @@ class BodyKinematics:
         upper: Upper limits, shape (dof,).
         circular: For each DOF, whether it turns without end, shape (dof,).
         body_ids: MuJoCo's index of each link, shape (links,).
-        qpos_indices: Where each DOF is in ``qpos``, shape (dof,); -1 for the DOF of a weld, which is always 0.
+        qpos_indices: Where each DOF is in ``qpos``, shape (dof,); -1 for that of a joint that moves no link.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, body: KinBody, names: BodyNames) -> None:
@@ -44,15 +45,28 @@ class BodyKinematics:
         self._to_qpos = _index_range(self.qpos_indices[self._free])
         self._all_free = bool(self._free.all())
         self._links = _index_range(self.body_ids)
+        self._loose = [(dof, joint) for dof, joint in enumerate(body.joints) if names.joints[dof] is None]
         self._homogeneous = np.tile(np.eye(4), (len(self.body_ids), 1, 1))
 
     def values(self) -> Floats:
-        """Return the joint values [rad or m], shape (dof,); a copy."""
+        """Return the joint values [rad or m], shape (dof,); a copy.
+
+        A weld's is 0; a joint that closes a loop has the value that the poses of its links show.
+        """
         if self._all_free:
             return self._qpos[self._to_qpos].copy()
         values = np.zeros(self.dof)
         values[self._free] = self._qpos[self._to_qpos]
+        for dof, joint in self._loose:
+            if not joint.static:
+                T_parent_child = self._pose(joint.parent).inverse() @ self._pose(joint.child)
+                values[dof] = measured_value(joint, joint.axes[0], T_parent_child)
         return values
+
+    def _pose(self, link: int) -> Pose:
+        body_id = self.body_ids[link]
+        x, y, z = self._xpos[body_id].tolist()
+        return Pose((x, y, z), wxyz_from_rows(self._xmat[body_id].reshape(3, 3).tolist()))
 
     def set_values(self, values: Floats) -> None:
         """Set the joint values and place the links: forward kinematics, no limits checked.

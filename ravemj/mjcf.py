@@ -12,10 +12,10 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from ravemj.adjacency import adjacent_pairs
-from ravemj.builder import relative_pose
 from ravemj.errors import Diagnostics, Source
+from ravemj.joints import relative_pose
 from ravemj.scene import Box, Capsule, Cylinder, Geometry, Inertial, Joint, KinBody, Rgb, Scene, Shape, Sphere, View
-from ravemj.transforms import Pose, Vec3, conjugate, rotate
+from ravemj.transforms import ZERO, Pose, Vec3, conjugate, rotate
 
 Attribute = str | float | bool | tuple[float, ...]
 
@@ -29,7 +29,8 @@ class BodyNames:
 
     Attributes:
         links: Name of the MuJoCo body of each link.
-        joints: For each active joint the name of the MuJoCo joint of its axis, or None for a weld.
+        joints: For each active joint the name of the MuJoCo joint of its axis; None where it moves no link: for a weld,
+            and for a joint that closes a loop.
     """
 
     links: tuple[str, ...]
@@ -117,10 +118,13 @@ class _Writer:
         self.element("texture", name="background", type="skybox", builtin="flat", width=8, height=48, **_flat(view))
         self.close("asset")
         self.open("worldbody")
+        self.element("light", type="directional", dir=(-0.55, 0.2, -1.0), diffuse=(0.25, 0.25, 0.25), specular=ZERO)
 
     def _begin_visual(self) -> None:
         self.open("visual")
-        self.element("headlight", ambient=(0.4, 0.4, 0.4), diffuse=(0.6, 0.6, 0.6), specular=(0.1, 0.1, 0.1))
+        self.element(
+            "headlight", active=1, ambient=(0.35, 0.35, 0.35), diffuse=(0.5, 0.5, 0.5), specular=(0.05, 0.05, 0.05)
+        )
         self.close("visual")
 
     def end(self, scene: Scene) -> None:
@@ -143,7 +147,9 @@ class _Writer:
         names = BodyNames(
             links=tuple(self._name("body", body, link.name or f"link{i}") for i, link in enumerate(body.links)),
             joints=tuple(
-                None if joint.static else self._name("joint", body, joint.name or f"joint{i}")
+                self._name("joint", body, joint.name or f"joint{i}")
+                if joint.places_child and not joint.static
+                else None
                 for i, joint in enumerate(body.joints)
             ),
         )
@@ -152,7 +158,7 @@ class _Writer:
         children: dict[int, list[int]] = {}
         for child, joint in placing.items():
             children.setdefault(joint.parent, []).append(child)
-        joint_names = {body.joints[i].child: name for i, name in enumerate(names.joints) if body.joints[i].places_child}
+        joint_names = {joint.child: name for joint, name in zip(body.joints, names.joints, strict=True) if name}
         pending = [(link, False) for link in reversed(range(len(body.links))) if link not in placing]
         while pending:
             link, is_done = pending.pop()

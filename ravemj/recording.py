@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning
 from ravemj.motion import Motion
 from ravemj.rave import CheckLimitsAction, Environment, KinBody
-from ravemj.rendering import Camera, three_quarter_view
-from ravemj.studio import Format, Frame, checked_colour
+from ravemj.rendering import Camera
+from ravemj.studio import Format, Frame, checked_colour, fitting_view
 from ravemj.video import write_frames
 
 _POSES_FOR_THE_VIEW = 17
@@ -79,7 +79,7 @@ def record(  # noqa: PLR0913 - keyword arguments
     body = moving_body(env) if robot is None else robot
     allowed = within_limits(body, motion)
     shot = Shot(
-        camera_for_motion(env, body, allowed) if camera is None else Camera.from_matrix(camera),
+        camera_for_motion(env, body, allowed, width / height) if camera is None else Camera.from_matrix(camera),
         env.background if background is None else checked_colour(background),
         Format(width, height),
         fps,
@@ -133,8 +133,15 @@ def within_limits(body: KinBody, motion: Motion) -> Motion:
     return Motion(motion.times, values)
 
 
-def camera_for_motion(env: Environment, body: KinBody, motion: Motion) -> Camera:
-    """Return the viewer's camera, else the file's, else a view of everything that the motion sweeps over."""
+def camera_for_motion(env: Environment, body: KinBody, motion: Motion, aspect: float) -> Camera:
+    """Return the viewer's camera, else the file's, else a view of everything that the motion sweeps over.
+
+    Args:
+        env: The environment.
+        body: The body that moves; it is where it was afterwards.
+        motion: Its motion.
+        aspect: Width of the picture divided by its height.
+    """
     chosen = env.studio.file_camera() if env.GetViewer() is None else env.default_camera()
     if chosen is not None:
         return chosen
@@ -148,4 +155,5 @@ def camera_for_motion(env: Environment, body: KinBody, motion: Motion) -> Camera
     lowest = np.min([center - radius for center, radius in spheres], axis=0)
     highest = np.max([center + radius for center, radius in spheres], axis=0)
     center = (lowest + highest) / 2
-    return three_quarter_view(center, max(float(np.linalg.norm(c - center)) + radius for c, radius in spheres))
+    reach = max(float(np.linalg.norm(part - center)) + radius for part, radius in spheres)
+    return fitting_view(center, reach, aspect)

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from ravemj import mjcf
-from ravemj.errors import CompileError, Diagnostics, ErrorCode, RavemjError, Source
+from ravemj.errors import CompileError, Diagnostics, ErrorCode, RavemjError, Source, send_warnings
 from ravemj.kinematics import BodyKinematics
 from ravemj.scene import KinBody, Scene, View
 from ravemj.transforms import wxyz_from_rows
@@ -119,6 +119,7 @@ class Simulation:
                 body.enter(BodyKinematics(compiled.model, compiled.data, body.scene, names))
             self._compiled = compiled
             self.version += 1
+            send_warnings(self.diagnostics)
             return compiled
 
 

@@ -82,15 +82,30 @@ class Studio:
         """Return OpenRAVE's first view: along -z, with +y up, of the whole scene."""
         return view_from_above(*self.bounding_sphere())
 
-    def camera_for_stills(self) -> Camera:
-        """Return the file's camera, else a view of the whole scene from the front left and above."""
-        return self.file_camera() or three_quarter_view(*self.bounding_sphere())
+    def camera_for_stills(self, aspect: float) -> Camera:
+        """Return the file's camera, else a view of the whole scene from the front left and above.
+
+        Args:
+            aspect: Width of the picture divided by its height.
+        """
+        return self.file_camera() or fitting_view(*self.bounding_sphere(), aspect)
 
     def bounding_sphere(self) -> tuple[NDArray[np.float64], float]:
         """Return centre (3,) and radius [m] of a sphere around all that is drawn."""
         with self._simulation.lock:
             compiled = self._simulation.compile()
             return bounding_sphere(compiled.model, compiled.data)
+
+
+def fitting_view(center: NDArray[np.float64], radius: float, aspect: float) -> Camera:
+    """Return a view from the front left and above in which a sphere fits.
+
+    Args:
+        center: Centre of the sphere, shape (3,) [m].
+        radius: Its radius [m].
+        aspect: Width of the picture divided by its height.
+    """
+    return three_quarter_view(center, radius / min(1.0, aspect))
 
 
 def checked_colour(colour: ArrayLike) -> tuple[float, float, float]:

@@ -15,9 +15,10 @@ MP4 and PNG take the same memory for any number of frames; GIF and WebP hold all
 A target appears whole or not at all; see ``ravemj.output``.
 """
 
-# PyAV leaves the types of its packets open.
+# PyAV and imageio leave some types open.
 # pyright: reportUnknownMemberType=false
 
+import io
 import itertools
 import logging
 import math
@@ -28,7 +29,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,7 +99,18 @@ def write_frames(
     return Path(path)
 
 
-def write_png(path: AnyPath, frame: Frame) -> Path:
+def check_picture(path: AnyPath) -> None:
+    """Check that a single picture can be written to a path, without touching anything.
+
+    Raises:
+        ArgumentError: The suffix is none of ``.png``, ``.jpg``, ``.jpeg`` and ``.webp``.
+        OutputError: The folder around it is missing or cannot be written, or something is in the way.
+    """
+    _known_suffix(path, _STILL_FORMATS)
+    check_file(path)
+
+
+def write_picture(path: AnyPath, frame: Frame) -> Path:
     """Write a single picture as ``.png``, ``.jpg``, ``.jpeg`` or ``.webp``.
 
     Args:
@@ -112,16 +124,27 @@ def write_png(path: AnyPath, frame: Frame) -> Path:
         ArgumentError: Unknown suffix, or the frame has a wrong type or shape.
         OutputError: The target cannot be written.
     """
-    from PIL import Image  # noqa: PLC0415 - slow to import
-
     suffix = _known_suffix(path, _STILL_FORMATS)
     (picture,) = _checked([frame])
     with new_file(path) as temporary:
         try:
-            Image.fromarray(picture).save(temporary, format=_STILL_FORMATS[suffix], quality=95)
+            _imwrite(temporary, picture, extension=suffix, **_STILL_FORMATS[suffix])
         except Exception as error:
             raise output_error(path, error) from error
     return Path(path)
+
+
+def png_bytes(frame: Frame) -> bytes:
+    """Return the content of a PNG file with a frame, uint8 of shape (height, width, 3)."""
+    content = io.BytesIO()
+    _imwrite(content, frame, extension=".png")
+    return content.getvalue()
+
+
+def _imwrite(target: Path | io.BytesIO, frame: Frame, **options: Any) -> None:  # noqa: ANN401 - the encoder decides
+    import imageio.v3  # noqa: PLC0415 - slow to import
+
+    imageio.v3.imwrite(target, frame, plugin="pillow", **options)
 
 
 def _write_mp4(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
@@ -176,10 +199,8 @@ def _images(frames: Iterator[Frame], rate: Fraction, grain: int) -> "Iterator[Im
 
 
 def _write_png_folder(frames: Iterator[Frame], temporary: Path, _: Fraction) -> None:
-    from PIL import Image  # noqa: PLC0415 - slow to import
-
     for number, frame in enumerate(frames):
-        Image.fromarray(frame).save(temporary / f"frame_{number:05d}.png", compress_level=1)
+        _imwrite(temporary / f"frame_{number:05d}.png", frame, compress_level=1)
 
 
 _Encoder = Callable[[Iterator[Frame], Path, Fraction], None]
@@ -189,7 +210,12 @@ _VIDEO_FORMATS: dict[str, tuple[_Encoder, int]] = {  # with the highest fps
     ".webp": (_write_webp, 90),
     _FOLDER: (_write_png_folder, 1000),
 }
-_STILL_FORMATS = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".webp": "WEBP"}
+_STILL_FORMATS: dict[str, dict[str, str | int]] = {  # with the encoder's options
+    ".png": {},
+    ".jpg": {"quality": 95},
+    ".jpeg": {"quality": 95},
+    ".webp": {"quality": 95},
+}
 
 
 class _Stopped(Exception):  # noqa: N818 - no error of its own: it ends an encoder that nobody needs any more

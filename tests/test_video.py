@@ -12,6 +12,7 @@ import threading
 import time
 from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 
 import av
 import numpy as np
@@ -22,7 +23,7 @@ from PIL import Image
 
 import ravemj.video
 from ravemj.errors import ArgumentError, OutputError
-from ravemj.video import check_target, write_frames, write_png
+from ravemj.video import check_target, write_frames, write_picture
 
 TARGETS = ["video.mp4", "video.gif", "video.webp", "video"]
 SKY = (204, 217, 230)
@@ -39,7 +40,10 @@ def shades(count, size=(48, 64)):
 
 def decode(path):
     with av.open(str(path)) as container:
-        return container.streams.video[0], list(container.decode(video=0))
+        pictures = list(container.decode(video=0))
+        stream = container.streams.video[0]  # a closed one says nothing in newer versions of PyAV
+        names = ("width", "height", "average_rate", "codec_context")
+        return SimpleNamespace(**{name: getattr(stream, name) for name in names}), pictures
 
 
 def rgb(picture):
@@ -211,26 +215,26 @@ def test_the_old_folder_comes_back_if_the_new_one_cannot_take_its_place(tmp_path
 
 
 @pytest.mark.parametrize(("suffix", "error"), [(".png", 0), (".PNG", 0), (".jpg", 3), (".jpeg", 3), (".webp", 3)])
-def test_write_png(tmp_path, suffix, error):
+def test_write_picture(tmp_path, suffix, error):
     path = tmp_path / f"still{suffix}"
     path.write_bytes(b"old")
     frame = flat()[::-1]
-    assert write_png(str(path), frame) == path
+    assert write_picture(str(path), frame) == path
     with Image.open(path) as image:
         assert image.format == {".png": "PNG", ".webp": "WEBP"}.get(suffix.lower(), "JPEG")
         np.testing.assert_allclose(np.asarray(image).astype(int), frame, atol=error)
 
 
-def test_write_png_refuses(tmp_path):
+def test_write_picture_refuses(tmp_path):
     with pytest.raises(ArgumentError, match=r"'.bmp' is none of .png, .jpg, .jpeg, .webp"):
-        write_png(tmp_path / "a.bmp", flat())
+        write_picture(tmp_path / "a.bmp", flat())
     with pytest.raises(ArgumentError, match=r"frame 0: expected uint8 .*, found float64 of shape \(2, 2, 3\)"):
-        write_png(tmp_path / "a.png", np.zeros((2, 2, 3)))
+        write_picture(tmp_path / "a.png", np.zeros((2, 2, 3)))
     with pytest.raises(OutputError, match="no folder"):
-        write_png(tmp_path / "missing" / "a.png", flat())
+        write_picture(tmp_path / "missing" / "a.png", flat())
     (tmp_path / "a.webp").write_bytes(b"old")
     with pytest.raises(OutputError, match=r"^cannot write .*a\.webp: .+$"):
-        write_png(tmp_path / "a.webp", flat(size=(1, 17_000)))  # WebP ends at 16383 pixels
+        write_picture(tmp_path / "a.webp", flat(size=(1, 17_000)))  # WebP ends at 16383 pixels
     assert content(tmp_path) == {"a.webp": b"old"}
 
 

@@ -20,7 +20,7 @@ from ravemj.recording import Shot, camera_for_motion, draw_frames, moving_body, 
 from ravemj.rendering import probe_backends, read_camera
 from ravemj.rendering.contexts import INSTALL, RAY, requested_backend
 from ravemj.studio import Format
-from ravemj.video import check_target, write_frames, write_png
+from ravemj.video import check_picture, check_target, write_frames, write_picture
 from ravemj.viewers import WindowViewer, has_display
 
 
@@ -32,7 +32,7 @@ def play(options: argparse.Namespace) -> int:
     env = load_model(options)
     body = moving_body(env)
     motion = within_limits(body, _motion(options, body))
-    camera = camera or camera_for_motion(env, body, motion)
+    camera = camera or camera_for_motion(env, body, motion, options.size[0] / options.size[1])
     background = env.background if options.background is None else tuple(options.background)
     shot = Shot(camera, background, Format(*options.size), options.fps)
     if options.output is None and _play_in_window(env, body, motion, shot):
@@ -88,13 +88,14 @@ def _write_video(path: str, env: Environment, body: KinBody, motion: Motion, sho
 
 def render(options: argparse.Namespace) -> int:
     """Draw a picture of a model."""
+    check_picture(options.output)
     camera = None if options.camera is None else read_camera(options.camera)
     env = load_model(options)
     if options.q is not None:
         moving_body(env).SetDOFValues(options.q)
     width, height = options.size
     matrix = None if camera is None else camera.T_world_camera
-    write_png(options.output, env.render(width, height, camera=matrix, background=options.background))
+    write_picture(options.output, env.render(width, height, camera=matrix, background=options.background))
     _explain_rays(env.studio.backend(Format(width, height, shadows=True)))
     print(f"wrote {options.output}")
     return 0

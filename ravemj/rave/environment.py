@@ -1,6 +1,5 @@
 """The environment: what scripts load models into and get robots from."""
 
-import io
 import itertools
 import logging
 import os
@@ -18,6 +17,7 @@ from ravemj.readers import read_file
 from ravemj.rendering import Camera
 from ravemj.simulation import BodyState, Simulation
 from ravemj.studio import Format, Frame, Studio, checked_colour
+from ravemj.video import png_bytes
 from ravemj.viewers import Viewer, open_viewer
 
 _LOG = logging.getLogger("ravemj")
@@ -181,13 +181,17 @@ class Environment:
             >>> import imageio.v3
             >>> imageio.v3.imwrite("pendulum.png", env.render(640, 480))
         """
-        view = self.default_camera() if camera is None else Camera.from_matrix(camera)
+        view = self.default_camera(width / height) if camera is None else Camera.from_matrix(camera)
         colour = self.background if background is None else checked_colour(background)
         return self._studio.picture(view, colour, Format(width, height, shadows=True))
 
-    def default_camera(self) -> Camera:
-        """Return the camera of pictures that name none: the viewer's, else the file's, else one that shows all."""
-        return self._studio.camera_for_stills() if self._viewer is None else self._viewer.camera
+    def default_camera(self, aspect: float = 4 / 3) -> Camera:
+        """Return the camera of pictures that name none: the viewer's, else the file's, else one that shows all.
+
+        Args:
+            aspect: Width of the picture divided by its height.
+        """
+        return self._studio.camera_for_stills(aspect) if self._viewer is None else self._viewer.camera
 
     @property
     def background(self) -> tuple[float, float, float]:
@@ -249,11 +253,7 @@ class Environment:
 
     def _repr_png_(self) -> bytes:
         """Return the picture that notebooks show for an environment."""
-        import imageio.v3  # noqa: PLC0415 - only notebooks need it
-
-        content = io.BytesIO()
-        imageio.v3.imwrite(content, self.render(480, 360), extension=".png")
-        return content.getvalue()
+        return png_bytes(self.render(480, 360))
 
 
 def RaveGetEnvironment(id: int) -> Environment | None:  # OpenRAVE's name of the argument

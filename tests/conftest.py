@@ -1,0 +1,34 @@
+"""What all tests share."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+import ravemj
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+MODELS = REPOSITORY / "models"
+
+
+@pytest.fixture
+def models() -> Path:
+    return MODELS
+
+
+@pytest.fixture
+def env() -> ravemj.Environment:
+    """The tutorial's double pendulum."""
+    return ravemj.load(MODELS / "env.xml")
+
+
+@pytest.fixture
+def robot(env) -> ravemj.Robot:
+    return env.GetRobots()[0]
+
+
+@pytest.fixture(autouse=True)
+def _no_data_folder(monkeypatch):
+    """Models are found by their paths, whatever this machine has in OPENRAVE_DATA."""
+    monkeypatch.delenv("OPENRAVE_DATA", raising=False)
+    assert "OPENRAVE_DATA" not in os.environ

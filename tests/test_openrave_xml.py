@@ -1,0 +1,453 @@
+"""The reader of OpenRAVE XML: what it reads, and what it says of what it does not."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ravemj import scene
+from ravemj.openrave_xml import Reading, read
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write(content: str, name: str = "model.xml") -> str:
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(content)
+        return str(path)
+
+    return write
+
+
+@pytest.fixture
+def read_text(write):
+    def read_text(content: str) -> Reading:
+        return read(write(content))
+
+    return read_text
+
+
+@pytest.fixture
+def link(read_text):
+    """The only link of a KinBody with the given content, without a finding."""
+
+    def link(content: str) -> scene.Link:
+        reading = read_text(f'<KinBody name="b">{content}</KinBody>')
+        assert reading.failure is None
+        assert codes(reading) == []
+        (only,) = reading.scene.bodies[0].links
+        return only
+
+    return link
+
+
+def codes(reading: Reading) -> list[str]:
+    return [finding.code for finding in reading.diagnostics]
+
+
+def rotation(pose):
+    return pose.matrix()[:3, :3]
+
+
+class TestDocument:
+    def test_the_tutorial(self, models):
+        reading = read(models / "env.xml")
+        assert reading.failure is None
+        assert len(reading.diagnostics) == 0
+        (pendulum,) = reading.scene.bodies
+        assert pendulum.is_robot
+        assert [link.name for link in pendulum.links] == ["Base", "Arm0", "Arm1"]
+        assert reading.scene.view == scene.View()
+
+    def test_letter_case_of_names_does_not_matter(self, link):
+        shouted = link('<BODY NAME="a"><GEOM TYPE="Box"><EXTENTS>1 2 3</EXTENTS></GEOM></BODY>')
+        assert shouted.name == "a"
+        assert shouted.geometries[0].shape == scene.Box((1, 2, 3))
+
+    def test_bodies_in_document_order(self, read_text):
+        reading = read_text(
+            '<Environment><Robot name="r"/><KinBody name="k"/>'
+            '<Environment><Robot name="s"/></Environment></Environment>'
+        )
+        assert [(body.name, body.is_robot) for body in reading.scene.bodies] == [("r", True), ("k", False), ("s", True)]
+
+    @pytest.mark.parametrize("root", ["Robot", "KinBody"])
+    def test_a_body_as_root(self, read_text, root):
+        reading = read_text(f'<{root} name="x"/>')
+        assert [body.name for body in reading.scene.bodies] == ["x"]
+        assert reading.scene.view is None
+
+    def test_comments_are_transparent(self, link):
+        assert link('<Body name="a"><Translation>1 <!-- and --> 2 3</Translation></Body>').T_world_link.position == (
+            1,
+            2,
+            3,
+        )
+
+    def test_text_before_a_child_is_dropped(self, read_text):
+        reading = read_text(
+            '<KinBody name="b"><Body name="a"><Translation>1 2 3 <b/> 4 5 6</Translation></Body></KinBody>'
+        )
+        assert reading.scene.bodies[0].links[0].T_world_link.position == (4, 5, 6)
+
+    def test_background_and_camera(self, read_text):
+        reading = read_text(
+            "<Environment><bkgndcolor>.1 .2 .3</bkgndcolor><camtrans>1 2 3</camtrans>"
+            "<camrotationaxis>0 0 1 90</camrotationaxis></Environment>"
+        )
+        view = reading.scene.view
+        assert view.background == (0.1, 0.2, 0.3)
+        assert view.T_world_camera.position == (1, 2, 3)
+        np.testing.assert_allclose(rotation(view.T_world_camera), [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
+
+
+class TestPlacement:
+    def test_translations_add_and_are_not_rotated(self, link):
+        pose = link(
+            '<Body name="a"><RotationAxis>0 0 1 90</RotationAxis><Translation>1 0 0</Translation>'
+            "<RotationAxis>1 0 0 90</RotationAxis><Translation>0 2 0</Translation></Body>"
+        ).T_world_link
+        assert pose.position == (1, 2, 0)
+        np.testing.assert_allclose(rotation(pose), [[0, -1, 0], [0, 0, -1], [1, 0, 0]], atol=1e-15)
+
+    @pytest.mark.parametrize(
+        "spelling",
+        [
+            "<RotationAxis>0 0 5 90</RotationAxis>",
+            "<Quat>2 0 0 2</Quat>",
+            "<RotationMat>0 -1 0  1 0 0  0 0 1</RotationMat>",
+        ],
+    )
+    def test_spellings_of_a_rotation(self, link, spelling):
+        pose = link(f'<Body name="a">{spelling}</Body>').T_world_link
+        np.testing.assert_allclose(rotation(pose), [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
+
+    def test_scopes(self, read_text):
+        """Robot and KinBody act once on all links made inside; offsetfrom refers to the scope frame."""
+        reading = read_text("""
+            <Robot name="r">
+              <Translation>100 0 0</Translation><RotationAxis>0 0 1 90</RotationAxis><Translation>0 0 3</Translation>
+              <KinBody>
+                <Translation>10 0 0</Translation><RotationAxis>1 0 0 90</RotationAxis>
+                <Body name="a">
+                  <RotationAxis>0 0 1 90</RotationAxis><Translation>1 0 0</Translation>
+                  <RotationAxis>1 0 0 90</RotationAxis>
+                  <Geom type="box">
+                    <RotationAxis>0 0 1 90</RotationAxis><Translation>.5 0 0</Translation>
+                    <RotationAxis>1 0 0 90</RotationAxis>
+                  </Geom>
+                </Body>
+                <Body name="c"><offsetfrom>a</offsetfrom><Translation>0 1 0</Translation></Body>
+              </KinBody>
+            </Robot>""")
+        a, c = reading.scene.bodies[0].links
+        np.testing.assert_allclose(a.T_world_link.position, (100, 11, 3), atol=1e-13)
+        np.testing.assert_allclose(rotation(a.T_world_link), np.diag([1, -1, -1]), atol=1e-15)
+        np.testing.assert_allclose(c.T_world_link.position, (100, 10, 3), atol=1e-13)
+        in_link = a.geometries[0].T_link_geometry
+        assert in_link.position == (0.5, 0, 0)
+        np.testing.assert_allclose(rotation(in_link), [[0, -1, 0], [0, 0, -1], [1, 0, 0]], atol=1e-15)
+
+    def test_a_body_of_the_same_name_is_re_opened(self, link):
+        again = link(
+            '<Body name="a"><Translation>1 0 0</Translation><Mass type="custom"><total>3</total></Mass></Body>'
+            '<Body name="a"><Translation>0 1 0</Translation><RotationAxis>0 0 1 90</RotationAxis></Body>'
+        )
+        assert again.T_world_link.position == (1, 1, 0)
+        assert again.inertial.mass == 1  # the second element has no Mass
+
+
+class TestGeometry:
+    @pytest.mark.parametrize(
+        ("content", "shape"),
+        [
+            ('type="box"><Extents>.1 .2 .3</Extents>', scene.Box((0.1, 0.2, 0.3))),
+            ('type="box"><FullExtents>.2 .4 .6</FullExtents>', scene.Box((0.1, 0.2, 0.3))),
+            ('type="sphere"><Radius>.5</Radius>', scene.Sphere(0.5)),
+            ('type="cylinder"><Radius>.5</Radius><Height>2</Height>', scene.Cylinder(0.5, 2)),
+            ('type="capsule"><Radius>.5</Radius><Height>2</Height>', scene.Capsule(0.5, 2)),
+            ("><Extents>1 1 1</Extents>", scene.Box((1, 1, 1))),
+        ],
+    )
+    def test_shapes(self, link, content, shape):
+        assert link(f'<Body name="a"><Geom {content}</Geom></Body>').geometries[0].shape == shape
+
+    def test_a_cylinder_lies_along_y(self, link):
+        pose = link('<Body name="a"><Geom type="cylinder"/></Body>').geometries[0].T_link_geometry
+        np.testing.assert_allclose(rotation(pose) @ [0, 0, 1], [0, -1, 0], atol=1e-15)
+
+    def test_colours(self, link):
+        geometry = link(
+            '<Body name="a"><Geom render="false">'
+            "<diffuseColor>.1 .2 .3</diffuseColor><ambientColor>1 0 0</ambientColor>"
+            "<transparency>.25</transparency><name>lid</name></Geom></Body>"
+        ).geometries[0]
+        assert geometry.diffuse == (0.1, 0.2, 0.3)
+        assert geometry.ambient == (1, 0, 0)
+        assert (geometry.transparency, geometry.visible, geometry.name) == (0.25, False, "lid")
+
+
+BOX = '<Geom type="box"><Extents>.1 .2 .3</Extents><Translation>1 0 0</Translation></Geom>'
+TWO_BOXES = BOX + BOX.replace(">1 0 0<", ">-1 0 0<")
+
+
+class TestMass:
+    @pytest.mark.parametrize(
+        ("content", "mass", "moments"),
+        [
+            (BOX, 1, (0.4, 0.4, 0.4)),
+            (TWO_BOXES + '<Mass type="mimicgeom"><density>1000</density></Mass>', 96, (4.16, 99.2, 97.6)),
+            (TWO_BOXES + '<Mass type="mimicgeom"><total>10</total></Mass>', 10, (4.16, 13.2, 11.6)),
+            (BOX + '<Mass type="mimicgeom"><total>10</total></Mass>', 10, (2.08, 1.6, 0.8)),
+            ('<Mass type="sphere"></Mass>', 4.1887902, (1.6755161,) * 3),
+            ('<Mass type="sphere"><radius>.5</radius><total>2</total></Mass>', 2, (0.2,) * 3),
+            ('<Mass type="box"><total>10</total></Mass>', 10, (20 / 3,) * 3),
+            ('<Mass type="custom"><total>3</total><com>1 2 3</com></Mass>', 3, (0.4,) * 3),
+            (
+                '<Geom type="cylinder"><radius>.1</radius><height>.5</height></Geom>'
+                '<Mass type="mimicgeom"><density>1000</density></Mass>',
+                15.707963,
+                (0.36651914, 0.078539816, 0.36651914),
+            ),
+        ],
+    )
+    def test_of_a_body(self, link, content, mass, moments):
+        inertial = link(f'<Body name="a">{content}</Body>').inertial
+        assert inertial.mass == pytest.approx(mass, rel=1e-7)
+        np.testing.assert_allclose(inertial.inertia, np.diag(moments), rtol=1e-7, atol=1e-12)
+
+    def test_centre_of_mass(self, link):
+        assert link('<Body name="a"><Mass type="custom"><com>1 2 3</com></Mass></Body>').inertial.com == (1, 2, 3)
+        mimic = link(f'<Body name="a">{BOX}<Mass type="mimicgeom"><total>10</total></Mass></Body>')
+        assert mimic.inertial.com == pytest.approx((1, 0, 0))
+
+    def test_only_the_upper_triangle_of_an_inertia_counts(self, link):
+        numbers = "374 -1.3 63  1.3 845 -3  63 3 698"
+        inertial = link(f'<Body name="a"><Mass type="custom"><inertia>{numbers}</inertia></Mass></Body>').inertial
+        assert inertial.inertia == ((374, -1.3, 63), (-1.3, 845, -3), (63, -3, 698))
+
+    def test_of_a_kinbody_is_the_default_of_later_bodies(self, read_text):
+        reading = read_text(f"""
+            <KinBody name="b">
+              <Body name="before">{BOX}</Body>
+              <Mass type="box"><extents>.1 .2 .3</extents><density>50</density></Mass>
+              <Body name="after"/>
+              <Body name="own"><Mass type="custom"><total>7</total></Mass></Body>
+              <KinBody><Body name="nested"/></KinBody>
+            </KinBody>""")
+        before, after, own, nested = reading.scene.bodies[0].links
+        assert before.inertial.mass == nested.inertial.mass == 1
+        assert after.inertial.mass == pytest.approx(2.4, rel=1e-6)
+        np.testing.assert_allclose(after.inertial.inertia, np.diag([0.104, 0.08, 0.04]), rtol=1e-6)
+        assert own.inertial.mass == 7
+
+    def test_a_total_of_a_kinbody_is_taken_for_a_density(self, read_text):
+        reading = read_text(
+            f'<KinBody name="b"><Mass type="mimicgeom"><total>10</total></Mass><Body name="a">{BOX}</Body></KinBody>'
+        )
+        assert codes(reading) == ["openrave-bug"]
+        assert reading.scene.bodies[0].links[0].inertial.mass == pytest.approx(0.48)
+
+    def test_box_extents_in_a_body_have_no_effect(self, read_text):
+        mass = '<Mass type="box"><extents>.1 .2 .3</extents><total>10</total></Mass>'
+        reading = read_text(f'<KinBody name="b"><Body name="a">{mass}</Body></KinBody>')
+        assert codes(reading) == ["openrave-bug"]
+        np.testing.assert_allclose(reading.scene.bodies[0].links[0].inertial.inertia, np.diag([20 / 3] * 3))
+
+
+BODIES = '<Body name="A"/><Body name="B"><Translation>1 0 0</Translation></Body>'
+
+
+class TestJoint:
+    @pytest.fixture
+    def axis(self, read_text):
+        def axis(content: str, attributes: str = 'type="hinge"') -> scene.Axis:
+            reading = read_text(
+                f'<KinBody name="b">{BODIES}<Joint name="j" {attributes}><Body>A</Body><Body>B</Body>'
+                f"<axis>0 0 1</axis>{content}</Joint></KinBody>"
+            )
+            assert reading.failure is None
+            return (*reading.scene.bodies[0].joints, *reading.scene.bodies[0].passive_joints)[0].axes[0]
+
+        return axis
+
+    def test_defaults(self, axis):
+        hinge = axis("")
+        assert (hinge.lower, hinge.upper, hinge.circular) == (-math.pi, math.pi, False)
+        assert (hinge.weight, hinge.resolution) == (1, 0.02)
+        assert (hinge.max_velocity, hinge.max_acceleration, hinge.max_torque) == (10, 50, 0)
+        slider = axis("", 'type="slider"')
+        assert (slider.lower, slider.upper) == (-10, 10)
+
+    @pytest.mark.parametrize(
+        ("content", "attributes", "limits"),
+        [
+            ("<limits>-1 2</limits>", "", (-1, 2)),
+            ("<limitsrad>2 -1</limitsrad>", "", (-1, 2)),
+            ("<limitsdeg>-90 180</limitsdeg>", "", (-math.pi / 2, math.pi)),
+            ("<limitsdeg>-90 180</limitsdeg>", 'type="slider"', (-90, 180)),
+            ("", 'circular="true"', (-10000, 10000)),
+            ("", 'circular="yes"', (-10000, 10000)),
+            ("", 'circular="0"', (-math.pi, math.pi)),
+        ],
+    )
+    def test_limits(self, axis, content, attributes, limits):
+        read_axis = axis(content, attributes)
+        assert (read_axis.lower, read_axis.upper) == pytest.approx(limits)
+
+    def test_scalars(self, axis):
+        hinge = axis(
+            "<weight>4</weight><resolution>1</resolution><maxvel>3.42</maxvel><maxaccel>5</maxaccel><maxtorque>9</maxtorque>"
+        )
+        assert (hinge.weight, hinge.max_velocity, hinge.max_acceleration, hinge.max_torque) == (4, 3.42, 5, 9)
+        assert hinge.resolution == pytest.approx(math.radians(1))
+        assert axis("<maxveldeg>180</maxveldeg>").max_velocity == pytest.approx(math.pi)
+
+    def test_names_of_bodies_in_any_letter_case(self, read_text):
+        reading = read_text(
+            f'<KinBody name="b">{BODIES}<Joint name="j">'
+            "<Body>a</Body><Body>b</Body><axis>0 0 1</axis></Joint></KinBody>"
+        )
+        assert reading.failure is None
+        assert len(reading.scene.bodies[0].joints) == 1
+
+
+class TestIncludes:
+    def test_path_is_relative_to_the_file_that_names_it(self, write):
+        write('<KinBody name="inner"><Body name="A"/></KinBody>', "deep.xml")
+        write('<Robot><KinBody file="../deep.xml"/></Robot>', "sub/robot.xml")
+        reading = read(write('<Environment><Robot file="sub/robot.xml" name="r"/></Environment>'))
+        assert reading.failure is None
+        (robot,) = reading.scene.bodies
+        assert robot.name == "r"
+        assert [link.name for link in robot.links] == ["A"]
+
+    def test_data_folders(self, write, monkeypatch, tmp_path):
+        write('<KinBody><Body name="A"/></KinBody>', "data/shared.xml")
+        monkeypatch.setenv("OPENRAVE_DATA", f"/nowhere:{tmp_path / 'data'}")
+        reading = read(write('<KinBody name="b" file="shared.xml"/>'))
+        assert [link.name for link in reading.scene.bodies[0].links] == ["A"]
+
+    def test_children_come_after_the_file(self, write):
+        write(
+            '<Robot name="x"><Translation>1 0 0</Translation><KinBody><Body name="A"/></KinBody></Robot>', "robot.xml"
+        )
+        reading = read(
+            write(
+                '<Robot name="r" file="robot.xml"><Translation>0 1 0</Translation>'
+                '<KinBody><Body name="B"/></KinBody></Robot>'
+            )
+        )
+        a, b = reading.scene.bodies[0].links
+        assert a.T_world_link.position == (1, 1, 0)
+        assert b.T_world_link.position == (0, 1, 0)
+
+    def test_prefix(self, write):
+        write(
+            f'<Robot><KinBody>{BODIES}<Joint name="j"><Body>A</Body><Body>B</Body></Joint></KinBody></Robot>', "arm.xml"
+        )
+        reading = read(
+            write('<Robot name="r"><Robot file="arm.xml" prefix="l_"/><Robot file="arm.xml" prefix="r_"/></Robot>')
+        )
+        (robot,) = reading.scene.bodies
+        assert [link.name for link in robot.links] == ["l_A", "l_B", "r_A", "r_B"]
+        assert [joint.name for joint in robot.joints] == ["l_j", "r_j"]
+
+    def test_missing_file_is_a_warning(self, write):
+        reading = read(write('<Environment>\n<Robot name="r" file="gone.xml"/></Environment>'))
+        assert reading.failure is None
+        (finding,) = reading.diagnostics
+        assert (finding.code, finding.source.line) == ("missing-file", 2)
+        assert "gone.xml" in finding.message
+
+    def test_a_file_that_includes_itself(self, write):
+        path = write('<Environment>\n  <Environment file="model.xml"/>\n</Environment>')
+        assert str(read(path).failure) == f"{path}:2: error: the file includes itself through model.xml"
+
+    def test_sources_tell_the_chain(self, write):
+        inner = write('<Robot name="r">\n<KinBody>\n<Bodi/></KinBody></Robot>', "robot.xml")
+        outer = write('<Environment>\n<Robot file="robot.xml"/></Environment>')
+        (finding,) = read(outer).diagnostics
+        assert str(finding).startswith(f"{inner}:3: warning[unknown-tag]: ")
+        assert str(finding).endswith(f"(included from {outer}:2)")
+
+
+class TestFindings:
+    @pytest.mark.parametrize(
+        ("content", "code", "words"),
+        [
+            ("<Body name='a'><Trnslation>1 2 3</Trnslation></Body>", "unknown-tag", "did you mean 'translation'?"),
+            ("<Body name='a' typ='static'/>", "unknown-attribute", "did you mean 'type'?"),
+            ("<Body name='a'><Translation>1,2,3</Translation></Body>", "bad-number", "OpenRAVE reads 1 0 0"),
+            ("<Body name='a'><Translation>a b c</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
+            ("<Body name='a'><Translation>1 2</Translation></Body>", "number-count", "OpenRAVE reads 1 2 0"),
+            ("<Body name='a'><Translation>1 2 3 4</Translation></Body>", "number-count", "OpenRAVE reads 1 2 3"),
+            ("<Body name='a'><Translation>nan inf 1e999</Translation></Body>", "bad-number", "OpenRAVE reads 0 0 0"),
+            ("<diffuseColor>1 0 0</diffuseColor>", "ignored-tag", "write it in each Geom"),
+            ("<Body name='a'><offsetfrom>b</offsetfrom></Body>", "unknown-body", "no Body 'b'"),
+            ("<adjacent>a b</adjacent>", "unknown-body", "two Bodies"),
+            ("<Body name='a'><Geom type='teapot'/></Body>", "unsupported-geometry", "teapot"),
+            ("<Body name='a'><Mass type='heavy'/></Body>", "unknown-type", "heavy"),
+        ],
+    )
+    def test_are_reported_with_their_place(self, read_text, content, code, words):
+        reading = read_text(f'<KinBody name="b">\n\n{content}</KinBody>')
+        assert reading.failure is None
+        (finding,) = reading.diagnostics
+        assert finding.code == code
+        assert finding.source.line == 3
+        assert words in str(finding)
+
+    def test_unknown_offset_is_an_error_that_leaves_the_body(self, read_text):
+        reading = read_text('<KinBody name="b"><Body name="a"><offsetfrom>b</offsetfrom></Body></KinBody>')
+        assert [finding.severity for finding in reading.diagnostics] == ["error"]
+        assert len(reading.scene.bodies[0].links) == 1
+
+
+class TestFailures:
+    @pytest.mark.parametrize(
+        ("content", "line", "words"),
+        [
+            ("<Environment>\n<Robot>\n</Environment>", 3, "not well-formed XML"),
+            ("", 1, "the file is empty"),
+            ("<Nonsense/>", 1, "the root element is <Nonsense>"),
+            ('<KinBody name="b"><Body name="A"/>\n<Joint>\n<Body>nope</Body></Joint></KinBody>', 3, "there are: A"),
+            ('<KinBody name="b"><Body name="A"/>\n<Joint><Body>A</Body></Joint></KinBody>', 2, "names 1 bodies"),
+            (f'<KinBody name="b">{BODIES}\n<Joint><axis>0 0 0</axis></Joint></KinBody>', 2, "cannot be 0 0 0"),
+            (f'<KinBody name="b">{BODIES}\n<Joint><maxvel>-1</maxvel></Joint></KinBody>', 2, "cannot be negative"),
+            ('<KinBody name="b">\n<Body><Quat>0 0 0 0</Quat></Body></KinBody>', 2, "no rotation"),
+            ("<Environment>\n<Robot/></Environment>", 2, "has no name"),
+            ('<Environment>\n<Robot name="a b"/></Environment>', 2, "spaces"),
+            ('<Environment><Robot name="a"/>\n<KinBody name="a"/></Environment>', 2, "already is a body 'a'"),
+            ('<!DOCTYPE r [<!ENTITY e "1">]>\n<KinBody name="b"><Body name="a">&e;</Body></KinBody>', 2, "entity"),
+        ],
+    )
+    def test_name_the_line(self, read_text, content, line, words):
+        failure = read_text(content).failure
+        assert failure is not None
+        assert failure.source.line == line
+        assert words in str(failure)
+
+    def test_bodies_before_stay(self, read_text):
+        reading = read_text('<Environment><KinBody name="a"/><KinBody name="a"/><KinBody name="c"/></Environment>')
+        assert [body.name for body in reading.scene.bodies] == ["a"]
+
+    def test_entities_from_outside_are_not_read(self, write):
+        secret = write("secret", "secret.txt")
+        reading = read(
+            write(
+                f'<!DOCTYPE r [<!ENTITY e SYSTEM "file://{secret}">]>'
+                '<KinBody name="b"><Body name="a">&e;</Body></KinBody>'
+            )
+        )
+        assert reading.failure is not None
+
+    def test_entity_bomb(self, write):
+        entities = '<!ENTITY a0 "ha">' + "".join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 20}">' for i in range(1, 10))
+        reading = read(write(f'<!DOCTYPE r [{entities}]><KinBody name="b"><Body name="x">&a9;</Body></KinBody>'))
+        assert reading.failure is not None
+
+    def test_unreadable(self, tmp_path):
+        path = tmp_path / "nowhere.xml"
+        assert str(read(path).failure) == f"{path}: error: cannot read the file: no such file or directory"

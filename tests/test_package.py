@@ -1,0 +1,157 @@
+"""The package itself: what may import what, what is exported, what an import costs."""
+
+import ast
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import ravemj
+
+PACKAGE = Path(ravemj.__file__).parent
+
+LEVELS: list[set[str]] = [
+    {"_mujoco", "errors", "transforms"},
+    {"alias", "output", "scene", "motion"},
+    {"joints", "hierarchy", "adjacency", "expressions", "meshes"},
+    {"builder", "mjcf", "video"},
+    {"openrave_xml", "kinematics"},
+    {"readers", "simulation", "rendering"},
+    {"studio"},
+    {"viewers"},
+    {"rave", "extension"},
+    {"recording"},
+    {"cli", "__init__"},
+    {"__main__"},
+]
+"""Rooms from the ground up: each may import those of lower levels only, within its own package what it likes."""
+
+ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
+
+WITHOUT_MUJOCO = {
+        "errors", "transforms", "output", "alias", "scene", "motion", "joints", "hierarchy", "adjacency", "expressions",
+    "meshes", "builder", "mjcf", "video", "openrave_xml", "readers",
+}  # fmt: skip
+
+
+def modules():
+    return sorted(path for path in PACKAGE.rglob("*.py"))
+
+
+def room(path: Path) -> str:
+    first = path.relative_to(PACKAGE).parts[0]
+    return first.removesuffix(".py")
+
+
+def imports(path: Path):
+    """Names of all modules that a file imports, anywhere in it."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (name.name for name in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: imports are absolute"
+            names = [f"{node.module}.{name.name}" for name in node.names]
+            yield from names if node.module == "ravemj" else [node.module]
+
+
+def level(name: str) -> int:
+    return next(number for number, names in enumerate(LEVELS) if name in names)
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_imports_go_down(path):
+    here = room(path)
+    for name in imports(path):
+        parts = name.split(".")
+        if parts[0] != "ravemj":
+            continue
+        known = len(parts) > 1 and any(parts[1] in names for names in LEVELS)
+        there = parts[1] if known else "__init__"
+        if there != here and (here, there) not in ALLOWED_UPWARD:
+            assert level(there) < level(here), f"{here} imports {there}"
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_mujoco_is_imported_above_the_scene_only(path):
+    if room(path) in WITHOUT_MUJOCO:
+        assert not any(name.split(".")[0] == "mujoco" for name in imports(path))
+
+
+def test_every_room_has_a_level():
+    assert {room(path) for path in modules()} <= set().union(*LEVELS)
+
+
+@pytest.mark.parametrize("name", ["ravemj", "ravemj.rendering", "ravemj.rave", "ravemj.viewers", "ravemj.openrave_xml"])
+def test_all_is_what_is_exported(name):
+    module = __import__(name, fromlist=["x"])
+    assert module.__all__ == sorted(module.__all__, key=module.__all__.index)
+    assert len(set(module.__all__)) == len(module.__all__)
+    for exported in module.__all__:
+        assert hasattr(module, exported)
+
+
+def test_everything_imported_into_the_package_is_exported():
+    tree = ast.parse((PACKAGE / "__init__.py").read_text())
+    imported = {
+        alias.asname or alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names
+    }
+    assigned = {
+        target.id
+        for node in tree.body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if target.id != "__all__"
+    }
+    assert imported | assigned == set(ravemj.__all__)
+    assert ravemj.__all__ == sorted(ravemj.__all__)
+
+
+def run(code: str) -> str:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=PACKAGE.parent)
+    assert done.stderr == ""
+    return done.stdout
+
+
+def test_import_loads_no_slow_or_optional_package():
+    slow = {"IPython", "imageio", "av", "PIL", "rich", "trimesh", "coacd", "scipy"}
+    loaded = set(run("import ravemj, sys; print(*{name.split('.')[0] for name in sys.modules})").split())
+    assert not slow & loaded
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_import_loads_no_gl():
+    maps = run("import ravemj; print(open('/proc/self/maps').read())")
+    assert not re.findall(r"lib(?:EGL|OSMesa)\S*", maps)
+
+
+def test_import_shadows_nothing():
+    code = (
+        "import ravemj, importlib.util as util, sys; "
+        "print('openravepy' in sys.modules, util.find_spec('openravepy') is None)"
+    )
+    assert run(code).split() == ["False", "True"]
+
+
+def test_import_after_a_missing_gl_library_was_asked_for():
+    """MuJoCo itself cannot be imported then; those who want no picture, or rays, still can use ravemj."""
+    code = (
+        "import os, ctypes, ctypes.util; os.environ['MUJOCO_GL'] = 'egl'; os.environ['PYOPENGL_PLATFORM'] = 'egl'; "
+        "load = ctypes.CDLL.__init__\n"
+        "def refuse(self, name, *rest, **more):\n"
+        "    if name and 'EGL' in str(name): raise OSError(name)\n"
+        "    load(self, name, *rest, **more)\n"
+        "ctypes.CDLL.__init__ = refuse; ctypes.util.find_library = lambda name: None\n"
+        "import ravemj; print(ravemj.load('models/env.xml').GetRobots()[0].GetDOF())"
+    )
+    assert run(code) == "2\n"
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_modules_are_rooms_of_readable_size(path):
+    assert len(path.read_text().splitlines()) <= 400
+
+
+def test_typed():
+    assert (PACKAGE / "py.typed").is_file()
