@@ -1,0 +1,52 @@
+"""What the documents show works, and the files that they point at are there."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+import ravemj
+from ravemj.cli.parser import make_parser
+
+ROOT = Path(ravemj.__file__).parent.parent
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_python_runs(page, tmp_path, monkeypatch, capsys):
+    (tmp_path / "models").symlink_to(ROOT / "models")
+    monkeypatch.chdir(tmp_path)
+    for block in blocks(page, "python"):
+        exec(compile(block, str(page), "exec"), {"__name__": "__main__"})
+    if page.name == "README.md":
+        assert capsys.readouterr().out.startswith("2 [0. 0.]\n[[")
+        assert (tmp_path / "swing.mp4").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_are_understood(page):
+    for block in blocks(page, "sh"):
+        for line in block.splitlines():
+            words = shlex.split(line, comments=True)
+            if words[:1] == ["ravemj"]:
+                make_parser().parse_args(words[1:])
+            elif words and words[0].startswith("./"):
+                assert (ROOT / words[0]).is_file()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#]+)", page.read_text()):
+        if "://" not in target:
+            assert (page.parent / target).exists(), target
+
+
+def test_the_first_screen_has_the_picture_and_the_commands():
+    first_screen = "\n".join((ROOT / "README.md").read_text().splitlines()[:30])
+    for piece in ("swing.webp", "./scripts/play", "./scripts/test", "import ravemj"):
+        assert piece in first_screen
