@@ -118,12 +118,12 @@ class _Writer:
         self.element("texture", name="background", type="skybox", builtin="flat", width=8, height=48, **_flat(view))
         self.close("asset")
         self.open("worldbody")
-        self.element("light", type="directional", dir=(-0.55, 0.2, -1.0), diffuse=(0.25, 0.25, 0.25), specular=ZERO)
+        self.element("light", type="directional", dir=(-0.4, 0.4, -1.0), diffuse=(0.4, 0.4, 0.4), specular=ZERO)
 
     def _begin_visual(self) -> None:
         self.open("visual")
         self.element(
-            "headlight", active=1, ambient=(0.35, 0.35, 0.35), diffuse=(0.5, 0.5, 0.5), specular=(0.05, 0.05, 0.05)
+            "headlight", active=1, ambient=(0.35, 0.35, 0.35), diffuse=(0.4, 0.4, 0.4), specular=(0.05, 0.05, 0.05)
         )
         self.close("visual")
 
