@@ -1,0 +1,127 @@
+"""Files of meshes and the files that they name: read whole, bounded, and remembered for the cache."""
+
+import hashlib
+import os
+import zlib
+from dataclasses import dataclass, field
+from urllib.parse import unquote
+
+from ravemj.errors import Source, SourceError
+
+MAX_BYTES = 256 << 20
+"""Larger files are refused, and so are compressed ones that unpack to more."""
+
+_MAX_REFERENCES = 1000
+
+
+@dataclass(slots=True)
+class References:
+    """The files that a mesh file and its references name.
+
+    Attributes:
+        digests: SHA-256 of each as it lies on the disk, by path; empty for those that cannot be read.
+    """
+
+    digests: dict[str, str] = field(default_factory=dict[str, str])
+    _contents: dict[str, bytes] = field(default_factory=dict[str, bytes])
+    _bytes_left: int = MAX_BYTES
+
+    def read(self, path: str) -> bytes | None:
+        """Return a file's unpacked content, or None if it cannot be read or goes beyond the bounds of all together."""
+        if path not in self.digests and len(self.digests) < _MAX_REFERENCES:
+            self.digests[path] = digest_of(path)
+            try:
+                data = unpacked(read_bytes(path), path)
+            except SourceError:
+                return None
+            self._bytes_left -= len(data)
+            if self._bytes_left >= 0:
+                self._contents[path] = data
+        return self._contents.get(path)
+
+
+@dataclass(frozen=True, slots=True)
+class MeshFile:
+    """A file in memory.
+
+    Attributes:
+        path: Where it lies.
+        data: Its bytes, unpacked if it was compressed with gzip.
+        references: The files that it names; shared by all of them.
+        parents: Absolute paths of the files that led here.
+    """
+
+    path: str
+    data: bytes
+    references: References = field(default_factory=References)
+    parents: tuple[str, ...] = ()
+
+    @property
+    def source(self) -> Source:
+        """The file as a whole, for messages."""
+        return Source(self.path)
+
+    def refer(self, name: str) -> "MeshFile | None":
+        """Read a file that this one names.
+
+        Args:
+            name: Path relative to this file's folder, or a URL of that kind.
+
+        Returns:
+            The file, or None if it cannot be read, is on the network, or is one of those that led here.
+        """
+        here = os.path.abspath(self.path)
+        path = os.path.normpath(os.path.join(os.path.dirname(here), unquote(name.partition("#")[0])))
+        parents = (*self.parents, here)
+        data = None if "://" in name or path in parents else self.references.read(path)
+        return None if data is None else MeshFile(path, data, self.references, parents)
+
+
+def digest_of(path: str) -> str:
+    """Return the SHA-256 of a file as it lies on the disk, or the empty string if it cannot be read."""
+    try:
+        return hashlib.sha256(read_bytes(path)).hexdigest()
+    except SourceError:
+        return ""
+
+
+def read_bytes(path: str) -> bytes:
+    """Read a whole file.
+
+    Raises:
+        SourceError: It is missing, unreadable, no regular file, empty, or larger than ``MAX_BYTES``.
+    """
+    source = Source(path)
+    try:
+        if not os.path.isfile(path):
+            raise SourceError("no such mesh file", source)
+        if os.path.getsize(path) > MAX_BYTES:
+            raise SourceError(f"the file is larger than {MAX_BYTES >> 20} MiB", source)
+        with open(path, "rb") as file:
+            data = file.read(MAX_BYTES)
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise SourceError(f"cannot read the file: {reason}", source) from error
+    if not data:
+        raise SourceError("the file is empty", source)
+    return data
+
+
+def unpacked(data: bytes, path: str) -> bytes:
+    """Undo gzip, within bounds; other data comes back as it is.
+
+    Raises:
+        SourceError: The data is damaged or unpacks to more than ``MAX_BYTES``.
+    """
+    if not data.startswith(b"\x1f\x8b"):
+        return data
+    stream = zlib.decompressobj(wbits=31)
+    try:
+        plain = stream.decompress(data, MAX_BYTES)
+    except zlib.error as error:
+        raise SourceError(f"the compressed file is damaged: {error}", Source(path)) from error
+    if stream.unconsumed_tail:
+        raise SourceError(f"the compressed file unpacks to more than {MAX_BYTES >> 20} MiB", Source(path))
+    if not stream.eof:
+        raise SourceError("the compressed file is cut short", Source(path))
+    return plain
