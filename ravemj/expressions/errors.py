@@ -15,7 +15,8 @@ class ExpressionError(ArgumentError):
 
     def __init__(self, problem: str, text: str, position: int, expected: str = "") -> None:
         before, after = text[max(0, position - EXCERPT) : position], text[position : position + EXCERPT]
-        wanted = f", expected {expected}" if expected else ""
-        super().__init__(f"{problem} at character {position}, after {before!r} and before {after!r}{wanted}")
+        where = " and".join(f" {side} {part!r}" for side, part in (("after", before), ("before", after)) if part)
+        wanted = f"; expected {expected}" if expected else ""
+        super().__init__(f"{problem} at character {position}{where}{wanted}")
         self.position = position
         self.expected = expected

@@ -57,10 +57,10 @@ def partials(text: str) -> dict[str, str]:
     found: dict[str, str] = {}
     position = len(text) - sum(len(part) + 1 for part in parts)
     for part in parts:
-        name, _, expression = part.strip().partition(" ")
-        if not expression.strip():
+        words = part.split(maxsplit=1)
+        if len(words) < 2:
             raise ExpressionError("a partial derivative is not complete", text, position + 1, "'name expression'")
-        found[name] = shared + expression.strip()
+        found[words[0]] = shared + words[1].strip()
         position += len(part) + 1
     return found
 

@@ -69,7 +69,10 @@ def parse_nodes(text: str, variables: Collection[str]) -> Node:
     """
     if len(text) > MAX_LENGTH:
         raise ExpressionError(f"the equation has {len(text)} characters, more than {MAX_LENGTH}", text, MAX_LENGTH)
-    root = _Parser(text, variables).equation()
+    try:
+        root = _Parser(text, variables).equation()
+    except RecursionError:  # the caller is itself deep in its stack
+        raise ExpressionError("the equation is nested too deep", text, 0) from None
     candidates = 1
     for node in ordered(root):
         candidates *= FUNCTIONS[node.function].most_roots if isinstance(node, Call) else 1

@@ -38,12 +38,13 @@ def coefficients(nodes: list[Node], variable: str, max_degree: int) -> Coefficie
 
 def _combine(function: str, known: list[Coefficients]) -> Coefficients | None:
     """Return the polynomial that a function makes of polynomials; None if it makes none, or some are missing."""
-    if len(known) < FUNCTIONS[function].arity:
+    definition = FUNCTIONS[function]
+    if len(known) < definition.arity or definition.roots is not None:
         return None
     if function in _RULES:
         return _RULES[function](*known)
     if all(len(polynomial) == 1 for polynomial in known):
-        return (FUNCTIONS[function].scalar(*(value for (value,) in known)),)
+        return (definition.scalar(*(value for (value,) in known)),)
     return None
 
 
@@ -135,7 +136,8 @@ def fit_polynomial(
         fitted = np.array([constant] + [0.0] * degree)
     else:
         basis = np.polynomial.Chebyshev.fit(points[usable], values[usable], degree, domain=[lower, upper])
-        fitted = np.resize(basis.convert(kind=np.polynomial.Polynomial).coef, degree + 1)
+        found = basis.convert(kind=np.polynomial.Polynomial).coef  # without zeros at its end
+        fitted = np.pad(found, (0, degree + 1 - len(found)))
     checks = np.linspace(lower, upper, CHECK_POINTS)
     errors = np.abs(np.polynomial.polynomial.polyval(checks, fitted) - expression.evaluate_many({variable: checks}))
     largest = float(errors.max()) if np.isfinite(errors).all() else math.inf
