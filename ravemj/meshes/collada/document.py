@@ -1,0 +1,99 @@
+"""A COLLADA file as a tree in which elements are found by their kind and id."""
+
+import re
+from collections.abc import Iterator
+
+import numpy as np
+from lxml import etree
+
+from ravemj.errors import Source, SourceError
+from ravemj.transforms import Floats
+
+Element = etree._Element  # pyright: ignore[reportPrivateUsage] - lxml's name for the type
+
+
+class ColladaDocument:
+    """A parsed file; namespaces do not count.
+
+    Attributes:
+        path: Where the file lies.
+        root: The outermost element.
+    """
+
+    def __init__(self, data: bytes, path: str) -> None:
+        """Parse a file.
+
+        Raises:
+            SourceError: It is not well-formed XML, or its root is not COLLADA.
+        """
+        self.path = path
+        parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
+        try:
+            root = etree.fromstring(data, parser)
+        except etree.XMLSyntaxError as error:
+            raise SourceError(f"not well-formed XML: {error.msg}", Source(path, error.lineno or 0)) from error
+        if root is None or local_name(root) != "COLLADA":
+            raise SourceError("the root element is not COLLADA", Source(path, 1))
+        self.root = root
+        self._by_id: dict[tuple[str, str], Element] = {}
+        for element in root.iter(etree.Element):
+            name = element.get("id")
+            if name is not None:
+                self._by_id.setdefault((local_name(element), name), element)
+
+    def source(self, element: Element) -> Source:
+        """Return the place of an element, for messages."""
+        return Source(self.path, element.sourceline or 0)
+
+    def find(self, kind: str, url: str | None) -> Element | None:
+        """Return the element of a kind that a URL such as ``#id`` names.
+
+        One id may belong to elements of several kinds: some writers give a geometry and an effect the same one.
+        """
+        return self._by_id.get((kind, (url or "").strip().removeprefix("#")))
+
+
+def local_name(element: Element) -> str:
+    """Return an element's tag without its namespace; empty for comments."""
+    tag = element.tag
+    return tag.rpartition("}")[2] if isinstance(tag, str) else ""
+
+
+def children(element: Element, *kinds: str) -> Iterator[Element]:
+    """Yield the children of some kinds, or all elements if none is named."""
+    for child in element.iterchildren(etree.Element):
+        if not kinds or local_name(child) in kinds:
+            yield child
+
+
+def child(element: Element | None, *path: str) -> Element | None:
+    """Return the first child, grandchild, … along a path of kinds, or None."""
+    for kind in path:
+        element = None if element is None else next(children(element, kind), None)
+    return element
+
+
+def words(element: Element | None) -> list[str]:
+    """Return the words of an element's text."""
+    return [] if element is None else (element.text or "").split()
+
+
+_LEADING_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+
+
+def numbers(element: Element | None) -> Floats:
+    """Return the numbers in an element's text; what is no number is 0, as OpenRAVE's reader has it."""
+    text = words(element)
+    try:
+        return np.array(list(map(float, text)))
+    except ValueError:
+        found = (_LEADING_NUMBER.match(word) for word in text)
+        return np.array([float(match[0]) if match else 0.0 for match in found])
+
+
+def attribute_number(element: Element | None, name: str, default: float) -> float:
+    """Return a number in an attribute, or ``default`` where there is none."""
+    try:
+        return float((None if element is None else element.get(name)) or default)
+    except ValueError:
+        return default

@@ -1,0 +1,87 @@
+"""Formats that are rare with OpenRAVE, through trimesh: PLY, OFF, GLB and glTF."""
+
+import io
+from typing import Any
+
+import numpy as np
+
+from ravemj.errors import RavemjError, SourceError
+from ravemj.meshes.files import MeshFile
+from ravemj.meshes.obj import GRAY, transparency
+from ravemj.meshes.parts import BLACK, WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
+from ravemj.scene import Rgb
+from ravemj.transforms import Floats
+
+_COLOURS: dict[str, tuple[Rgb, Rgb]] = {
+    "off": (GRAY, BLACK),
+    "ply": (WHITE, WHITE),
+    "glb": (WHITE, BLACK),
+    "gltf": (WHITE, BLACK),
+}
+"""Diffuse and ambient colours that OpenRAVE's importer gives to files without materials."""
+
+SUFFIXES = tuple(f".{kind}" for kind in _COLOURS)
+
+
+def read_exchange(file: MeshFile) -> tuple[MeshPart, ...]:
+    """Read a PLY, OFF, GLB or glTF file: one part for each colour, in the order of the file.
+
+    Raises:
+        SourceError: The file is malformed.
+        RavemjError: trimesh is not installed.
+    """
+    kind = file.path.lower().rpartition(".")[2]
+    pieces: dict[tuple[Rgb, float], list[Floats]] = {}
+    for corners, rgba in _geometries(file, kind):
+        colour = (_COLOURS[kind][0], 0.0) if rgba is None else (rgb(rgba), transparency(float(rgba[3])))
+        pieces.setdefault(colour, []).append(corners)
+    parts: list[MeshPart] = []
+    for (diffuse, clear), some in pieces.items():
+        corners = np.concatenate(some)
+        check_size(len(corners), file.source)
+        check_finite(corners, file.source)
+        corners = without_degenerate(corners)
+        if len(corners):
+            parts.append(MeshPart(weld(corners), diffuse, _COLOURS[kind][1], clear))
+    return tuple(parts)
+
+
+class _Resolver:
+    """Gives trimesh the files that a file names."""
+
+    def __init__(self, file: MeshFile) -> None:
+        self._file = file
+
+    def get(self, name: str) -> bytes:
+        """Return a file's content."""
+        found = self._file.refer(name)
+        if found is None:
+            raise FileNotFoundError(name)
+        return found.data
+
+
+def _geometries(file: MeshFile, kind: str) -> list[tuple[Floats, Floats | None]]:
+    """Return corners and, where there is a material, its red, green, blue and opacity."""
+    try:
+        import trimesh  # noqa: PLC0415 - an extra
+    except ImportError as error:
+        raise RavemjError(f'.{kind} meshes need trimesh: pip install "ravemj[meshes]"') from error
+    try:
+        loaded: Any = trimesh.load_scene(  # pyright: ignore[reportUnknownMemberType]
+            io.BytesIO(file.data), file_type=kind, resolver=_Resolver(file), process=False
+        )
+        return [_placed(loaded, name) for name in loaded.graph.nodes_geometry if _is_mesh(loaded, name)]
+    except Exception as error:  # trimesh raises all kinds at malformed files
+        raise SourceError(f"trimesh cannot read it: {type(error).__name__}: {error}", file.source) from error
+
+
+def _is_mesh(scene: Any, node: str) -> bool:
+    return hasattr(scene.geometry[scene.graph[node][1]], "faces")
+
+
+def _placed(scene: Any, node: str) -> tuple[Floats, Floats | None]:
+    matrix, name = scene.graph[node]
+    geometry = scene.geometry[name]
+    placed = np.asarray(geometry.vertices) @ matrix[:3, :3].T + matrix[:3, 3]
+    factor = getattr(getattr(geometry.visual, "material", None), "baseColorFactor", None)
+    return placed[np.asarray(geometry.faces)], None if factor is None else np.asarray(factor) / 255
