@@ -1,0 +1,17 @@
+"""What ``scripts/bench`` measures: one module for each area, with a function that returns rows.
+
+A new area is a module with such a function, and a line in ``AREAS``.
+"""
+
+from collections.abc import Callable
+
+from benchmarks import imports, kinematics, loading, memory, video
+from benchmarks.measure import Row
+
+AREAS: dict[str, Callable[[], list[Row]]] = {
+    "kinematics": kinematics.rows,
+    "loading": loading.rows,
+    "imports": imports.rows,
+    "video": video.rows,
+    "memory": memory.rows,
+}

@@ -1,0 +1,36 @@
+"""From a model file to a compiled model."""
+
+import mujoco
+
+import ravemj
+from benchmarks.measure import MODEL, Row, microseconds, take_turns
+from ravemj import mjcf
+from ravemj.errors import Diagnostics
+from ravemj.readers import read_file
+from ravemj.simulation import Compiled
+
+
+def rows() -> list[Row]:
+    """Compare ``ravemj.load``, which compiles as well, with MuJoCo on the MJCF that it makes."""
+    text = ravemj.load(MODEL).mjcf
+    model = mujoco.MjModel.from_xml_string(text)
+    scene = read_file(MODEL).scene
+    floor = microseconds(lambda: mujoco.MjModel.from_xml_string(text))
+    whole, bare = take_turns([microseconds(lambda: ravemj.load(MODEL)), floor], 500)
+    read, write, compiled, make_data, bare_again = take_turns(
+        [
+            microseconds(lambda: read_file(MODEL)),
+            microseconds(lambda: mjcf.write(scene, Diagnostics())),
+            microseconds(lambda: Compiled(scene, Diagnostics())),
+            microseconds(lambda: mujoco.MjData(model)),
+            floor,
+        ],
+        200,
+    )
+    return [
+        Row("load, translate, compile env.xml : MjModel.from_xml_string", "µs", whole, bare, 3.5),
+        Row("  reading alone", "µs", read, bare_again),
+        Row("  writing MJCF alone", "µs", write, bare_again),
+        Row("  writing MJCF, MjSpec, MjModel, MjData", "µs", compiled, bare_again),
+        Row("  MjData alone, which the floor does not make", "µs", make_data, bare_again),
+    ]
