@@ -30,7 +30,7 @@ def decompose(mesh: Mesh, threshold: float = 0.15, max_pieces: int = 8) -> tuple
     Raises:
         RavemjError: CoACD is not installed or refuses the mesh.
     """
-    if collision_form(mesh) == "visual":
+    if collision_form(mesh) != "hull":
         return (mesh,)
 
     def read() -> tuple[tuple[MeshPart, ...], dict[str, str]]:

@@ -1,6 +1,8 @@
 """Formats that are rare with OpenRAVE, through trimesh: PLY, OFF, GLB and glTF."""
 
+import importlib
 import io
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -46,42 +48,44 @@ def read_exchange(file: MeshFile) -> tuple[MeshPart, ...]:
     return tuple(parts)
 
 
-class _Resolver:
+class _References(Mapping[str, bytes]):
     """Gives trimesh the files that a file names."""
 
     def __init__(self, file: MeshFile) -> None:
         self._file = file
 
-    def get(self, name: str) -> bytes:
-        """Return a file's content."""
+    def __getitem__(self, name: str) -> bytes:
         found = self._file.refer(name)
         if found is None:
-            raise FileNotFoundError(name)
+            raise KeyError(name)
         return found.data
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(())
+
+    def __len__(self) -> int:
+        return 0
 
 
 def _geometries(file: MeshFile, kind: str) -> list[tuple[Floats, Floats | None]]:
     """Return corners and, where there is a material, its red, green, blue and opacity."""
     try:
-        import trimesh  # noqa: PLC0415 - an extra
+        trimesh: Any = importlib.import_module("trimesh")
     except ImportError as error:
         raise RavemjError(f'.{kind} meshes need trimesh: pip install "ravemj[meshes]"') from error
     try:
-        loaded: Any = trimesh.load_scene(  # pyright: ignore[reportUnknownMemberType]
-            io.BytesIO(file.data), file_type=kind, resolver=_Resolver(file), process=False
+        scene: Any = trimesh.load_scene(
+            io.BytesIO(file.data), file_type=kind, resolver=_References(file), process=False
         )
-        return [_placed(loaded, name) for name in loaded.graph.nodes_geometry if _is_mesh(loaded, name)]
+        order = {name: number for number, name in enumerate(scene.geometry)}
+        nodes: list[Any] = sorted(map(scene.graph.get, scene.graph.nodes_geometry), key=lambda node: order[node[1]])
+        placed = [(scene.geometry[name], matrix) for matrix, name in nodes]
+        return [_placed(geometry, matrix) for geometry, matrix in placed if hasattr(geometry, "faces")]
     except Exception as error:  # trimesh raises all kinds at malformed files
         raise SourceError(f"trimesh cannot read it: {type(error).__name__}: {error}", file.source) from error
 
 
-def _is_mesh(scene: Any, node: str) -> bool:
-    return hasattr(scene.geometry[scene.graph[node][1]], "faces")
-
-
-def _placed(scene: Any, node: str) -> tuple[Floats, Floats | None]:
-    matrix, name = scene.graph[node]
-    geometry = scene.geometry[name]
+def _placed(geometry: Any, matrix: Floats) -> tuple[Floats, Floats | None]:  # noqa: ANN401 - trimesh is an extra
     placed = np.asarray(geometry.vertices) @ matrix[:3, :3].T + matrix[:3, 3]
     factor = getattr(getattr(geometry.visual, "material", None), "baseColorFactor", None)
     return placed[np.asarray(geometry.faces)], None if factor is None else np.asarray(factor) / 255

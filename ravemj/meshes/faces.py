@@ -1,12 +1,13 @@
 """Polygons to triangles."""
 
-from collections.abc import Iterator
-
 import numpy as np
+from numpy.typing import NDArray
 
 from ravemj.transforms import Floats, Ints
 
-_MAX_CLIPPED = 1000  # corners of a polygon; larger ones become fans, whatever their shape
+_MAX_CLIPPED = 500  # corners of a polygon; larger ones become fans, whatever their shape
+_TESTS_PER_CORNER = 10  # so that the work stays proportional to the size of the file
+_STRAIGHT = 1e-7
 
 
 def fans(starts: Ints, sizes: Ints) -> Ints:
@@ -36,60 +37,75 @@ def clipped(points: Floats, starts: Ints, sizes: Ints) -> Ints:
     Returns:
         As ``fans``.
     """
-    simple = (sizes <= 3) | (sizes > _MAX_CLIPPED)
-    pieces = [fans(starts[simple], sizes[simple])]
-    for start, size in zip(starts[~simple].tolist(), sizes[~simple].tolist(), strict=True):
+    concave = _concave(points, starts, sizes)
+    pieces = [fans(starts[~concave], sizes[~concave])]
+    for start, size in zip(starts[concave].tolist(), sizes[concave].tolist(), strict=True):
         pieces.append(start + clip_ears(points[start : start + size]))
     return np.concatenate(pieces)
 
 
 def clip_ears(polygon: Floats) -> Ints:
-    """Cut one polygon into triangles, ear by ear.
+    """Cut one polygon into triangles, ear by ear; a corner that repeats the one before it is left out.
 
     Args:
         polygon: Its corners in order, shape (n, 3).
 
     Returns:
-        Positions of corners, shape (n - 2, 3), in the polygon's direction of turning.
+        Positions of corners, shape (m, 3), in the polygon's direction of turning.
     """
+    left: list[int] = np.flatnonzero((polygon != np.roll(polygon, 1, axis=0)).any(1)).tolist()
     flat = _flattened(polygon)
-    if _convex(flat):
-        return fans(np.array([0]), np.array([len(flat)]))
-    left = list(range(len(flat)))
+    tests = _TESTS_PER_CORNER * len(left)
     triangles: list[tuple[int, int, int]] = []
-    while len(left) > 3:
-        position = next(_ears(flat, left), 1)
+    while len(left) > 3 and tests > 0:
+        position, needed = _ear(flat[left])
+        tests -= needed
         triangles.append((left[position - 1], left[position], left[(position + 1) % len(left)]))
         del left[position]
-    triangles.append((left[0], left[1], left[2]))
-    return np.array(triangles)
+    triangles += [(left[0], left[i], left[i + 1]) for i in range(1, len(left) - 1)]
+    return np.array(triangles, np.int_).reshape(-1, 3)
+
+
+def _concave(points: Floats, starts: Ints, sizes: Ints) -> NDArray[np.bool_]:
+    """Return for each polygon whether it turns the wrong way at some corner, and is small enough to be clipped."""
+    found = np.zeros(len(sizes), np.bool_)
+    for size in np.unique(sizes[(sizes > 3) & (sizes <= _MAX_CLIPPED)]).tolist():
+        same = np.flatnonzero(sizes == size)
+        corners = points[starts[same, np.newaxis] + np.arange(size)]
+        corners = corners - corners[:, :1]
+        normals = np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1)
+        edges = np.roll(corners, -1, axis=1) - corners
+        turns = np.einsum("ijk,ik->ij", np.cross(edges, np.roll(edges, -1, axis=1)), normals)
+        found[same] = turns.min(axis=1) < -_STRAIGHT * (normals**2).sum(axis=1)
+    return found
 
 
 def _flattened(polygon: Floats) -> Floats:
     """Return the corners in the polygon's plane, turning counter-clockwise."""
-    following = np.roll(polygon, -1, axis=0)
-    normal = np.cross(polygon, following).sum(axis=0)
+    corners = polygon - polygon[0]
+    normal = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
     drop = int(np.argmax(np.abs(normal)))
     keep = [(drop + 1) % 3, (drop + 2) % 3]
-    return polygon[:, keep] * np.array([1.0, -1.0 if normal[drop] < 0 else 1.0])
+    return corners[:, keep] * np.array([1.0, -1.0 if normal[drop] < 0 else 1.0])
+
+
+def _ear(points: Floats) -> tuple[int, int]:
+    """Find a corner that can be cut off: convex, and no other corner inside its triangle.
+
+    Returns:
+        Its position, and how many corners had to be looked at; some position if there is none.
+    """
+    before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
+    convex: list[int] = np.flatnonzero(_turn(before, points, after) > 0).tolist()
+    for count, position in enumerate(convex, start=1):
+        a, b, c = before[position], points[position], after[position]
+        inside = (_turn(a, b, points) >= 0) & (_turn(b, c, points) >= 0) & (_turn(c, a, points) >= 0)
+        own = (points == a).all(1) | (points == b).all(1) | (points == c).all(1)
+        if not (inside & ~own).any():
+            return position, count
+    return 1, max(len(convex), 1)
 
 
 def _turn(a: Floats, b: Floats, c: Floats) -> Floats:
     """Return twice the signed areas of triangles, positive where they turn counter-clockwise."""
     return (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])
-
-
-def _convex(flat: Floats) -> bool:
-    return bool((_turn(np.roll(flat, 1, axis=0), flat, np.roll(flat, -1, axis=0)) >= 0).all())
-
-
-def _ears(flat: Floats, left: list[int]) -> Iterator[int]:
-    """Yield positions in ``left`` whose corner can be cut off: convex, and no other corner inside the triangle."""
-    points = flat[left]
-    before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
-    for position in np.flatnonzero(_turn(before, points, after) > 0).tolist():
-        a, b, c = before[position], points[position], after[position]
-        inside = (_turn(a, b, points) >= 0) & (_turn(b, c, points) >= 0) & (_turn(c, a, points) >= 0)
-        own = (points == a).all(1) | (points == b).all(1) | (points == c).all(1)
-        if not (inside & ~own).any():
-            yield position

@@ -7,25 +7,28 @@ import numpy as np
 from ravemj.meshes.parts import corners_of
 from ravemj.scene import Mesh
 
-CollisionForm = Literal["hull", "visual"]
+CollisionForm = Literal["hull", "visual", "none"]
 
-_FLAT = 1e-4
+_FLAT = 1e-6  # thickness by width; paper is 100 times thicker
+_ROUNDING = 4 * float(np.finfo(np.float32).eps)
+_MIN_AREA = 1e-12  # m^2
 
 
 def collision_form(mesh: Mesh) -> CollisionForm:
-    """Say whether MuJoCo can let a mesh collide.
+    """Say what MuJoCo can make of a mesh.
 
     Returns:
-        ``hull`` if the mesh has a convex hull with volume; ``visual`` if it is flat, a line or a point, or has fewer
-        than four vertices, so that it can only be seen.
+        ``hull`` if the mesh has a convex hull with volume, and so can collide; ``visual`` if it is flat, so that it
+        can only be seen; ``none`` if it has no area either, and MuJoCo would not load it. With ``inertia="shell"``
+        MuJoCo loads the first two, with other settings not all of them.
     """
-    used = np.unique(mesh.triangles)
-    if len(used) < 4:
-        return "visual"
-    points = mesh.vertices[used]
+    if area(mesh) <= _MIN_AREA:
+        return "none"
+    points = mesh.vertices[np.unique(mesh.triangles)]
     _, axes = np.linalg.eigh(np.cov((points - points[0]).T))
     extents = np.ptp(points @ axes, axis=0)
-    return "hull" if extents.min() > _FLAT * extents.max() else "visual"
+    noise = _ROUNDING * float(np.abs(points).max())
+    return "hull" if len(points) >= 4 and extents.min() > max(_FLAT * extents.max(), noise) else "visual"
 
 
 def volume(mesh: Mesh) -> float:

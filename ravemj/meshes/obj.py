@@ -43,7 +43,7 @@ class _Reading:
                 self.current = self.materials.setdefault(" ".join(rest), _Material())
             case ["mtllib", *names]:
                 self._library(" ".join(names))
-            case ["v" | "f", *_] if words[0] == "v":
+            case ["v", *_]:
                 raise ValueError("a vertex needs three coordinates")
             case _:
                 pass
@@ -94,7 +94,9 @@ def write_obj(mesh: Mesh) -> str:
     OBJ, not STL, because it keeps vertices shared, may have as many faces as one likes and can be read by people;
     nine digits keep every single-precision coordinate, and MuJoCo stores no finer ones.
     """
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.vertices.tolist()]
+    missing = max(4 - len(mesh.vertices), 0)  # MuJoCo wants four vertices, used or not
+    vertices = [*mesh.vertices.tolist(), *[mesh.vertices.mean(axis=0).tolist()] * missing]
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices]
     lines += [f"f {a} {b} {c}" for a, b, c in (mesh.triangles + 1).tolist()]
     return "\n".join(lines) + "\n"
 

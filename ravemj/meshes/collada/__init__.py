@@ -8,13 +8,13 @@ reader of robots, which does neither.
 import numpy as np
 
 from ravemj.errors import SourceError
-from ravemj.meshes.collada.document import ColladaDocument, Element, attribute_number, child, children, local_name, words
+from ravemj.meshes.collada.document import ColladaDocument, Element, attribute_number, child, children, local_name
 from ravemj.meshes.collada.geometry import PrimitiveGroup, primitive_groups
 from ravemj.meshes.collada.materials import ColladaMaterial, bindings, read_material
 from ravemj.meshes.collada.placement import local_transform
 from ravemj.meshes.files import MeshFile
 from ravemj.meshes.obj import GRAY, transparency
-from ravemj.meshes.parts import MeshPart, check_finite, check_size, rgb, weld, without_degenerate
+from ravemj.meshes.parts import WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
 from ravemj.transforms import Floats
 
 _AMBIENT = rgb((0.1, 0.1, 0.1))  # where the file gives none, in OpenRAVE's importer
@@ -50,7 +50,8 @@ def read_collada(file: MeshFile) -> tuple[MeshPart, ...]:
 
 
 def _part(corners: Floats, material: ColladaMaterial) -> MeshPart:
-    diffuse, ambient = material.diffuse or GRAY, material.ambient or _AMBIENT
+    diffuse = WHITE if material.textured else material.diffuse or GRAY
+    ambient = material.ambient or _AMBIENT
     return MeshPart(weld(corners), diffuse, ambient, transparency(material.opacity))
 
 
@@ -58,8 +59,10 @@ def _root_transform(document: ColladaDocument) -> Floats:
     """Return the matrix from the file's units and axes to metres and y up."""
     asset = child(document.root, "asset")
     metres = attribute_number(child(asset, "unit"), "meter", 1.0)
+    up = child(asset, "up_axis")
+    name = "" if up is None else up.text or ""  # with blanks around it OpenRAVE's importer does not know it
     matrix = np.eye(4)
-    matrix[:3, :3] = metres * _Y_UP_FROM.get("".join(words(child(asset, "up_axis"))), np.eye(3))
+    matrix[:3, :3] = metres * _Y_UP_FROM.get(name, np.eye(3))
     return matrix
 
 

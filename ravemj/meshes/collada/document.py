@@ -54,22 +54,23 @@ class ColladaDocument:
 
 
 def local_name(element: Element) -> str:
-    """Return an element's tag without its namespace; empty for comments."""
-    tag = element.tag
-    return tag.rpartition("}")[2] if isinstance(tag, str) else ""
+    """Return an element's tag without its namespace."""
+    return element.tag.rpartition("}")[2]
 
 
-def children(element: Element, *kinds: str) -> Iterator[Element]:
-    """Yield the children of some kinds, or all elements if none is named."""
-    for child in element.iterchildren(etree.Element):
-        if not kinds or local_name(child) in kinds:
-            yield child
+def children(element: Element | None, *kinds: str) -> Iterator[Element]:
+    """Yield the children of some kinds, or all elements if none is named; nothing for no element."""
+    if element is None:
+        return
+    for item in element.iterchildren(etree.Element):
+        if not kinds or local_name(item) in kinds:
+            yield item
 
 
 def child(element: Element | None, *path: str) -> Element | None:
     """Return the first child, grandchild, … along a path of kinds, or None."""
     for kind in path:
-        element = None if element is None else next(children(element, kind), None)
+        element = next(children(element, kind), None)
     return element
 
 

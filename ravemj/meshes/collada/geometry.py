@@ -6,7 +6,15 @@ import numpy as np
 
 from ravemj.errors import SourceError
 from ravemj.meshes import faces
-from ravemj.meshes.collada.document import ColladaDocument, Element, attribute_number, child, children, local_name, words
+from ravemj.meshes.collada.document import (
+    ColladaDocument,
+    Element,
+    attribute_number,
+    child,
+    children,
+    local_name,
+    words,
+)
 from ravemj.meshes.collada.document import numbers as numbers_of
 from ravemj.meshes.inventor.old import strips
 from ravemj.meshes.parts import MAX_TRIANGLES
@@ -64,8 +72,7 @@ def primitive_groups(document: ColladaDocument, geometry: Element, concave: bool
 
 def _positions(document: ColladaDocument, mesh: Element) -> Floats:
     """Return the points that VERTEX inputs mean: those of the mesh's own ``<vertices>``, whatever its id."""
-    vertices = child(mesh, "vertices")
-    inputs = [] if vertices is None else children(vertices, "input")
+    inputs = children(child(mesh, "vertices"), "input")
     url = next((item.get("source", "") for item in inputs if item.get("semantic") == "POSITION"), "")
     wanted = url.strip().removeprefix("#")
     source = next((item for item in children(mesh, "source") if item.get("id") == wanted), None)
@@ -87,7 +94,7 @@ def _source_rows(document: ColladaDocument, source: Element) -> Floats:
 
 def _columns(accessor: Element | None, stride: int) -> list[int]:
     """Return where x, y and z stand in a row; a ``<param>`` without a name is skipped."""
-    names = [] if accessor is None else [param.get("name", "") for param in children(accessor, "param")]
+    names = [param.get("name", "") for param in children(accessor, "param")]
     if {"X", "Y", "Z"} <= set(names[:stride]):
         return [names.index(axis) for axis in "XYZ"]
     return [0, 1, 2]
@@ -95,7 +102,9 @@ def _columns(accessor: Element | None, stride: int) -> list[int]:
 
 def _polygons(element: Element, kind: str) -> tuple[Ints, Ints]:
     """Return the number of corners of each polygon, and the position index of each corner."""
-    offsets = [(item.get("semantic"), int(max(attribute_number(item, "offset", 0), 0))) for item in children(element, "input")]
+    offsets = [
+        (item.get("semantic"), int(max(attribute_number(item, "offset", 0), 0))) for item in children(element, "input")
+    ]
     offset = next((number for semantic, number in offsets if semantic in ("VERTEX", "POSITION")), 0)
     width = min(max((number for _, number in offsets), default=0), 1000) + 1
     lists = [_indices(item, width, offset) for item in _index_lists(element)]

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ravemj.meshes.collada.document import ColladaDocument, Element, child, children, local_name, numbers
+from ravemj.meshes.collada.document import ColladaDocument, Element, child, children, numbers
 from ravemj.meshes.parts import rgb
 from ravemj.scene import Rgb
 
@@ -15,8 +15,9 @@ class ColladaMaterial:
     """A material's colours as far as the file gives them.
 
     Attributes:
-        diffuse: Colour; None where the file has none or a texture.
-        ambient: Colour in the shade; None where the file has none or a texture.
+        diffuse: Colour; None where the file has none.
+        ambient: Colour in the shade; None where the file has none.
+        textured: True where the diffuse colour comes from a picture.
         transparency: The number in ``<transparency>``, which writers mean in opposite ways; None without one.
         transparent: The red, green, blue and alpha that it multiplies; None where the file has none.
         opaque: Which of them counts, and in which sense: ``A_ONE`` unless the file says otherwise.
@@ -24,6 +25,7 @@ class ColladaMaterial:
 
     diffuse: Rgb | None = None
     ambient: Rgb | None = None
+    textured: bool = False
     transparency: float | None = None
     transparent: tuple[float, ...] | None = None
     opaque: str = "A_ONE"
@@ -50,13 +52,14 @@ def read_material(document: ColladaDocument, material: Element) -> ColladaMateri
     if effect is None:
         return None
     technique = child(effect, "profile_COMMON", "technique")
-    shader = None if technique is None else next(children(technique, *_SHADERS), None)
+    shader = next(children(technique, *_SHADERS), None)
     if shader is None:
         return ColladaMaterial()
     transparent = child(shader, "transparent")
     return ColladaMaterial(
         _rgb(shader, "diffuse"),
         _rgb(shader, "ambient"),
+        child(shader, "diffuse", "texture") is not None,
         _float(effect, child(shader, "transparency")),
         _rgba(child(transparent, "color")),
         "A_ONE" if transparent is None else transparent.get("opaque", "A_ONE"),
@@ -66,8 +69,7 @@ def read_material(document: ColladaDocument, material: Element) -> ColladaMateri
 def bindings(instance: Element) -> dict[str, str]:
     """Return the URLs of the materials that an ``<instance_geometry>`` binds, by symbol."""
     common = child(instance, "bind_material", "technique_common")
-    bound = [] if common is None else children(common, "instance_material")
-    return {item.get("symbol", ""): item.get("target", "") for item in bound}
+    return {item.get("symbol", ""): item.get("target", "") for item in children(common, "instance_material")}
 
 
 def _rgb(shader: Element, name: str) -> Rgb | None:
@@ -86,6 +88,6 @@ def _float(effect: Element, element: Element | None) -> float | None:
     reference = child(element, "param")
     if not len(values) and reference is not None:
         sid = reference.get("ref")
-        found = (item for item in effect.iter() if local_name(item) == "newparam" and item.get("sid") == sid)
+        found = (item for item in effect.iter("{*}newparam") if item.get("sid") == sid)
         values = numbers(child(next(found, None), "float"))
     return float(values[0]) if len(values) else None

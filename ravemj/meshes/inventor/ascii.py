@@ -81,7 +81,9 @@ class _Parser:
     def _expect(self, wanted: str) -> None:
         token = self._next()
         if token != wanted:
-            self._fail(f"found {token[:40]!r} where {wanted!r} belongs" if token else f"the file ends before {wanted!r}")
+            self._fail(
+                f"found {token[:40]!r} where {wanted!r} belongs" if token else f"the file ends before {wanted!r}"
+            )
 
     def _node(self, token: str) -> Node:
         """Read a node whose first token is read already."""

@@ -64,7 +64,7 @@ class Drawing:
     """
 
     def __init__(self, file: MeshFile, opener: Opener) -> None:
-        self.file = file
+        self.file: MeshFile = file
         self.finish: Finish | None = None
         self._opener = opener
         self._handlers: dict[str, Handler] = {}

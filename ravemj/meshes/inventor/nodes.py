@@ -147,9 +147,9 @@ class Node:
                 self.fail(f"{self.kind}.{name} holds something that is no number")
         if isinstance(value, np.ndarray):
             return value
-        if value == []:
-            return np.zeros(0)
-        self.fail(f"{self.kind}.{name} holds something that is no number")
+        if value != []:
+            self.fail(f"{self.kind}.{name} holds something that is no number")
+        return np.zeros(0)
 
 
 def parse_numbers(text: str) -> Floats:

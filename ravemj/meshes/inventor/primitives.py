@@ -3,6 +3,8 @@
 Directions of the round ones start at -z; their axis is y.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from ravemj.transforms import Floats
@@ -28,7 +30,7 @@ def cylinder(radius: float, height: float, parts: set[str], complexity: float = 
         complexity: Fineness from 0 to 1.
     """
     low = _circle(_sides(complexity)) * [radius, 0.0, radius] - [0.0, height / 2, 0.0]
-    high = low + [0.0, height, 0.0]
+    high = low + np.array([0.0, height, 0.0])
     pieces = [np.zeros((0, 3, 3))]
     if "SIDES" in parts:
         pieces.append(_band(high, low))
@@ -75,7 +77,7 @@ def sphere(radius: float, complexity: float = DEFAULT_COMPLEXITY) -> Floats:
         np.stack([top, rings[0], np.roll(rings[0], -1, axis=0)], axis=1),
         np.stack([bottom, np.roll(rings[-1], -1, axis=0), rings[-1]], axis=1),
     ]
-    bands = [_band(high, low) for high, low in zip(rings[:-1], rings[1:], strict=True)]
+    bands = [_band(high, low) for high, low in pairwise(rings)]
     return np.concatenate(caps + bands)
 
 
