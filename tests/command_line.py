@@ -1,0 +1,116 @@
+"""Runs the commands as users do: in processes of their own, on pipes and on terminals."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pexpect
+
+import ravemj
+from ravemj.rendering import Camera
+
+PACKAGE_ROOT = Path(ravemj.__file__).resolve().parent.parent
+TUTORIAL = Path(__file__).resolve().parent / "data" / "tutorial"
+TUTORIAL_CAMERA = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+PRINTED_BY_THE_SCRIPT = "2\n[0. 0.]\n[[ 0.  0. -1.  1.]\n [ 1.  0.  0.  0.]\n [ 0. -1.  0.  0.]\n [ 0.  0.  0.  1.]]\n"
+PATIENCE = 60
+
+
+def environment(folder: Path, **changes: str) -> dict[str, str]:
+    """The variables of a command: this ravemj, no display, and a fresh IPython."""
+    dropped = {"DISPLAY", "WAYLAND_DISPLAY", "OPENRAVE_DATA", "PYTHONUNBUFFERED", "PYTHONPATH"}
+    inherited = {name: value for name, value in os.environ.items() if name not in dropped}
+    of_ipython = {"IPYTHONDIR": str(folder / ".ipython"), "IPY_TEST_SIMPLE_PROMPT": "1", "TERM": "xterm"}
+    return {**inherited, "PYTHONPATH": str(PACKAGE_ROOT), "PYTHONDONTWRITEBYTECODE": "1", **of_ipython, **changes}
+
+
+def run(
+    folder: Path, *arguments: str | Path, variables: Mapping[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run Python on some arguments and return what came of it."""
+    return subprocess.run(
+        [sys.executable, *map(str, arguments)],
+        cwd=folder,
+        env=environment(folder, **(variables or {})),
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        stdin=subprocess.DEVNULL,
+        check=False,
+    )
+
+
+def ravemj_command(folder: Path, *arguments: str | Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run ``ravemj ARGUMENTS`` in a folder."""
+    return run(folder, "-m", "ravemj", *arguments, variables=variables)
+
+
+def on_terminal(folder: Path, *arguments: str, simple: bool = True, **variables: str) -> pexpect.spawn:
+    """Start Python on a terminal of its own; simple: where IPython prompts, it does so without colours."""
+    changed = environment(folder, **variables)
+    if not simple:
+        del changed["IPY_TEST_SIMPLE_PROMPT"]
+    return pexpect.spawn(
+        sys.executable,
+        list(arguments),
+        cwd=str(folder),
+        env=changed,
+        encoding="utf-8",
+        timeout=PATIENCE,
+        dimensions=(50, 160),
+        echo=False,
+    )
+
+
+def heed_interrupts() -> None:
+    """Let the processes that we start hear Ctrl-C, also where these tests run in the background of a shell."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def finish(terminal: pexpect.spawn) -> tuple[str, int | None]:
+    """Wait for the end; return what was printed since the last expectation, and the exit code."""
+    terminal.expect(pexpect.EOF)
+    terminal.close()
+    return plain(terminal.before), terminal.exitstatus
+
+
+def plain(text: str) -> str:
+    """Return text without what steers terminals."""
+    return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]|\x1b[=>]|\r", "", text)
+
+
+def colour_of(pixels: np.ndarray) -> str:
+    """Name the colour of most of some pixels."""
+    red, green, blue = np.median(np.asarray(pixels, dtype=float).reshape(-1, 3), axis=0)
+    names = {"red": red - max(green, blue), "green": green - max(red, blue), "blue": blue - max(red, green)}
+    name = max(names, key=names.__getitem__)
+    return name if names[name] > 40 else "none"
+
+
+def colour_at(frame: np.ndarray, point: tuple[float, float, float], size: tuple[int, int] | None = None) -> str:
+    """Name the colour where a point of the world is seen from the tutorial's camera.
+
+    Args:
+        frame: The picture, (height, width, 3).
+        point: World coordinates [m].
+        size: Width and height that the camera had, where the picture was padded.
+    """
+    width, height = size or (frame.shape[1], frame.shape[0])
+    ((x, y),), _ = Camera(TUTORIAL_CAMERA).project([point], width, height)
+    return colour_of(frame[int(y) - 1 : int(y) + 2, int(x) - 1 : int(x) + 2])
+
+
+def pose(frame: np.ndarray, size: tuple[int, int] | None = None) -> str:
+    """Say how the tutorial's pendulum hangs or stands, by the colours half along its red and its blue arm."""
+    for name, direction in {"hanging": (0, 0, -1), "upright": (0, 0, 1), "level": (0, 1, 0)}.items():
+        y, z = direction[1:]
+        seen = [colour_at(frame, (0, along * y, along * z), size) for along in (0.1, 0.3)]
+        if seen == ["red", "blue"]:
+            return name
+    return "otherwise"

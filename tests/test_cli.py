@@ -1,0 +1,468 @@
+"""The commands as users run them: what they print, what they write, how they fail."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import av
+import mujoco
+import numpy as np
+import pytest
+from command_line import (
+    TUTORIAL_CAMERA,
+    colour_at,
+    environment,
+    finish,
+    heed_interrupts,
+    on_terminal,
+    plain,
+    pose,
+    ravemj_command,
+)
+from PIL import Image, ImageSequence
+
+from ravemj.cli import main
+
+DATA = Path(__file__).resolve().parent / "data"
+MODELS = DATA.parent.parent / "models"
+COMMANDS = ["play", "render", "convert", "info", "run", "shell", "alias", "doctor"]
+SMALL = ("--size", "96x72")
+CSV = "time,Joint1,Joint0\n0,0,0\n0.5,0,1.5707963267948966\n1,0,3.141592653589793\n"
+
+
+@pytest.fixture
+def folder(tmp_path) -> Path:
+    """A folder with the tutorial's model and camera, and motions."""
+    for name in ("env.xml", "double-pendulum.xml"):
+        (tmp_path / name).write_bytes((DATA / "tutorial" / name).read_bytes())
+    (tmp_path / "camera.json").write_text(json.dumps(TUTORIAL_CAMERA.tolist()))
+    (tmp_path / "swing.csv").write_text(CSV)
+    return tmp_path
+
+
+def listing(folder: Path) -> dict[str, bytes]:
+    """Return the files of a folder with their content."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def said(done: subprocess.CompletedProcess[str], code: int = 0) -> str:
+    """Check the exit code and return standard output."""
+    assert (done.returncode, done.stderr) == (code, "")
+    return done.stdout
+
+
+def frames_of(folder: Path) -> list[np.ndarray]:
+    return [np.asarray(Image.open(path)) for path in sorted(folder.glob("frame_*.png"))]
+
+
+# Videos
+
+
+def test_play_writes_an_mp4_of_the_swing_for_every_player(folder):
+    size = (321, 241)
+    words = (
+        "-o",
+        "swing.mp4",
+        "--camera",
+        "camera.json",
+        "--size",
+        "321x241",
+        "--fps",
+        "10",
+        "--background",
+        "1,1,0.8",
+    )
+    printed = said(ravemj_command(folder, "play", "env.xml", *words))
+    assert re.fullmatch(r"wrote .*/swing\.mp4 \(1 s, 11 frames of 321x241 by \w+\)\n", printed)
+    with av.open(str(folder / "swing.mp4")) as video:
+        stream = video.streams.video[0]
+        assert (stream.codec_context.name, stream.codec_context.pix_fmt) == ("h264", "yuv420p")
+        assert (stream.width, stream.height) == (322, 242), "odd sizes are padded"
+        assert stream.average_rate == 10
+        frames = [frame.to_ndarray(format="rgb24") for frame in video.decode(stream)]
+    assert len(frames) == 11
+    assert pose(frames[0], size) == "hanging"
+    assert pose(frames[-1], size) == "upright"
+    assert pose(frames[5], size) == "level", "half of the way to pi"
+    assert np.abs(frames[0][3, 3].astype(int) - [255, 255, 204]).max() <= 4
+    assert sorted(listing(folder)) == ["camera.json", "double-pendulum.xml", "env.xml", "swing.csv", "swing.mp4"]
+
+
+@pytest.mark.parametrize("name", ["swing.gif", "swing.webp"])
+def test_play_writes_animations_that_keep_the_time(folder, name):
+    words = ("-o", name, "--camera", "camera.json", "--size", "160x120", "--fps", "8")
+    said(ravemj_command(folder, "play", "env.xml", *words))
+    with Image.open(folder / name) as animation:
+        frames = [
+            (np.asarray(frame.convert("RGB")), frame.info["duration"]) for frame in ImageSequence.Iterator(animation)
+        ]
+        assert animation.info["loop"] == 0
+    pictures, delays = zip(*frames, strict=True)
+    assert sum(delays) == pytest.approx(9 / 8 * 1000, abs=10)
+    assert {picture.shape for picture in pictures} == {(120, 160, 3)}
+    assert (pose(pictures[0]), pose(pictures[-1])) == ("hanging", "upright")
+
+
+def test_play_writes_a_folder_to_the_goal_and_replaces_its_own_kind_only(folder):
+    words = ("--camera", "camera.json", "--size", "160x120", "--fps", "4", "--to", "1.5707963,0")
+    said(ravemj_command(folder, "play", "env.xml", "-o", "frames/", *words))
+    pictures = frames_of(folder / "frames")
+    assert len(pictures) == 5
+    assert (pose(pictures[0]), pose(pictures[-1])) == ("hanging", "level")
+    said(ravemj_command(folder, "play", "env.xml", "-o", "frames", *words, "--duration", "0.5"))
+    assert len(list((folder / "frames").iterdir())) == 3
+    (folder / "frames" / "notes.txt").write_text("mine")
+    before = listing(folder)
+    failed = ravemj_command(folder, "play", "env.xml", "-o", "frames", *words)
+    assert failed.returncode == 1
+    assert "notes.txt" in failed.stderr
+    assert listing(folder) == before
+
+
+def test_play_without_output_and_display_writes_beside_the_user(folder):
+    printed = said(ravemj_command(folder, "play", "env.xml", *SMALL, "--fps", "5"))
+    assert printed.startswith(f"wrote {folder.resolve()}/env.mp4 ")
+    with av.open(str(folder / "env.mp4")) as video:
+        assert sum(1 for _ in video.decode(video=0)) == 6
+
+
+@pytest.mark.parametrize("kind", ["csv", "npz"])
+def test_play_follows_a_file_in_the_time_that_is_asked_for(folder, kind):
+    times, angles = [0, 0.5, 1], [[0, 0], [np.pi / 2, 0], [np.pi, 0]]
+    np.savez(folder / "swing.npz", time=times, values=angles)
+    words = ("--camera", "camera.json", "--size", "160x120", "--fps", "2", "--duration", "4")
+    said(ravemj_command(folder, "play", "env.xml", "-o", "frames", "--trajectory", f"swing.{kind}", *words))
+    pictures = frames_of(folder / "frames")
+    assert len(pictures) == 9
+    assert [pose(pictures[index]) for index in (0, 4, 8)] == ["hanging", "level", "upright"]
+
+
+def test_the_default_goal_is_moved_into_the_limits_and_a_goal_outside_is_said(folder):
+    words = ("--camera", "camera.json", "--size", "240x180", "--fps", "1")
+    # Both joints turn about +x of the world: at pi/2 each, the red arm is level and the blue one stands up.
+    done = ravemj_command(folder, "play", DATA / "limited.xml", "-o", "a", *words)
+    assert (done.returncode, done.stderr.count("\n")) == (0, 1)
+    assert "'Elbow' loads at 1.5708, not at 0" in done.stderr
+    last = frames_of(folder / "a")[-1]
+    assert colour_at(last, (0, 0.1, 0)) == "red"
+    assert colour_at(last, (0, 0.2, 0.1)) == "blue"
+    done = ravemj_command(folder, "play", DATA / "limited.xml", "-o", "b", "--to", "3.14,1.5707963267948966", *words)
+    assert done.returncode == 0
+    _, warning = done.stderr.splitlines()
+    assert re.match(r".*/limited\.xml:\d+: warning\[value-outside-limits\]: .*'Shoulder'.*1\.57", warning)
+    assert np.array_equal(frames_of(folder / "b")[-1], last)
+
+
+def test_negative_numbers_need_no_equals_sign(folder):
+    words = ("--camera", "camera.json", "--size", "160x120")
+    said(ravemj_command(folder, "render", "env.xml", "-o", "a.png", "--q", "-1.5707963,0", *words))
+    picture = np.asarray(Image.open(folder / "a.png"))
+    assert [colour_at(picture, (0, -along, 0)) for along in (0.1, 0.3)] == ["red", "blue"]
+
+
+def test_interrupting_a_long_play_leaves_nothing(folder):
+    heed_interrupts()
+    before = listing(folder)
+    for name in ("long.mp4", "long.gif", "long"):
+        command = [sys.executable, "-m", "ravemj", "play", "env.xml", "-o", name, *SMALL, "--duration", "1000"]
+        with subprocess.Popen(command, cwd=folder, env=environment(folder), stdout=-1, stderr=-1, text=True) as process:
+            _wait_for(lambda: list(folder.glob(".ravemj-*")))
+            time.sleep(0.3)
+            process.send_signal(signal.SIGINT)
+            printed = process.communicate(timeout=30)
+        assert (process.returncode, *printed) == (130, "", "ravemj: interrupted\n")
+        assert listing(folder) == before
+        assert not list(folder.glob(".ravemj-*"))
+        assert not (folder / name).exists()
+
+
+def _wait_for(condition) -> None:
+    end = time.monotonic() + 30
+    while not condition():
+        assert time.monotonic() < end, "it did not come"
+        time.sleep(0.02)
+
+
+def test_progress_is_shown_on_a_terminal_until_ctrl_c(folder):
+    heed_interrupts()
+    terminal = on_terminal(folder, "-m", "ravemj", "play", "env.xml", "-o", "long.mp4", *SMALL, "--duration", "1000")
+    terminal.expect("drawing long.mp4")
+    terminal.expect(r"\d+/30001")
+    terminal.expect("frames")
+    terminal.expect(r"0:\d\d:\d\d")
+    terminal.sendintr()
+    printed, code = finish(terminal)
+    assert code == 130
+    assert "ravemj: interrupted" in printed
+    assert "Traceback" not in printed
+    assert not list(folder.glob("*.mp4"))
+    assert not list(folder.glob(".ravemj-*"))
+
+
+def test_progress_makes_room_for_the_result(folder):
+    terminal = on_terminal(folder, "-m", "ravemj", "play", "env.xml", "-o", "short.mp4", *SMALL, "--fps", "5")
+    terminal.expect("wrote ")
+    printed, code = finish(terminal)
+    assert code == 0
+    assert printed.strip().endswith("frames of 96x72 by " + printed.split()[-1])
+
+
+# Pictures, tables and translations
+
+
+def test_render_draws_the_pose_from_the_camera(folder):
+    words = (
+        "-o",
+        "frame.png",
+        "--q",
+        "0.785,0.785",
+        "--size",
+        "320x240",
+        "--camera",
+        "camera.json",
+        "--background",
+        "0,1,0",
+    )
+    assert said(ravemj_command(folder, "render", "env.xml", *words)) == "wrote frame.png\n"
+    picture = np.asarray(Image.open(folder / "frame.png"))
+    assert picture.shape == (240, 320, 3)
+    assert np.abs(picture[2, 2].astype(int) - [0, 255, 0]).max() <= 1
+    q = 0.785
+    elbow = 0.2 * np.array([0, np.sin(q), -np.cos(q)])
+    assert colour_at(picture, tuple(elbow / 2)) == "red"
+    assert colour_at(picture, tuple(elbow + 0.1 * np.array([0, np.sin(2 * q), -np.cos(2 * q)]))) == "blue"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        json.dumps({"camera": TUTORIAL_CAMERA.tolist()}),
+        "0 0 -1 1\n1 0 0 0\n0 -1 0 0\n0 0 0 1\n",
+        "array([[ 0.,  0., -1.,  1.],\n       [ 1.,  0.,  0.,  0.],\n [ 0., -1., -0.,  0.],\n [ 0.,  0.,  0.,  1.]])\n",
+    ],
+    ids=["json", "text", "as-printed"],
+)
+def test_cameras_are_read_as_people_keep_them(folder, text):
+    (folder / "kept.txt").write_text(text)
+    said(ravemj_command(folder, "render", "env.xml", "-o", "a.jpg", "--size", "160x120", "--camera", "kept.txt"))
+    assert pose(np.asarray(Image.open(folder / "a.jpg"))) == "hanging"
+
+
+def test_info_lists_what_the_model_has(folder):
+    printed = said(ravemj_command(folder, "info", "env.xml"))
+    assert printed.startswith("robot Pendulum: 3 links, 2 DOFs, 21.6549 kg\n")
+    cells = [line.split() for line in printed.splitlines()]
+    assert ["1", "Arm0", "8", "0.1", "0", "0", "box", "Joint0"] in cells
+    assert ["1", "Joint1", "hinge", "Arm0", "Arm1", "circular", "5.42", "rad/s", "3"] in cells
+    limited = ravemj_command(folder, "info", DATA / "limited.xml")
+    assert "-1.571 to 1.571 rad" in limited.stdout
+
+
+def test_convert_writes_what_mujoco_loads(folder):
+    assert said(ravemj_command(folder, "convert", "env.xml", "-o", "out.xml")) == "wrote out.xml\n"
+    text = (folder / "out.xml").read_text()
+    assert said(ravemj_command(folder, "convert", "env.xml")) == text
+    model = mujoco.MjModel.from_xml_string(text)
+    assert model.nq == 2
+    assert [model.joint(index).name for index in range(2)] == ["Joint0", "Joint1"]
+
+
+def test_doctor_says_what_draws_here(folder):
+    printed = said(ravemj_command(folder, "doctor"))
+    assert "display: none" in printed
+    assert {"egl", "osmesa", "glfw", "ray"} <= {line.split()[0] for line in printed.splitlines() if line.strip()}
+    assert mujoco.mj_versionString() in printed
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_has_examples(capsys, command):
+    with pytest.raises(SystemExit) as end:
+        main([command, "--help"])
+    assert end.value.code == 0
+    assert f"\nexamples:\n  ravemj {command}" in capsys.readouterr().out
+
+
+def test_help_names_every_command(folder):
+    printed = said(ravemj_command(folder, "--help"))
+    assert all(re.search(rf"^    {command} +\w", printed, re.MULTILINE) for command in COMMANDS)
+    assert re.fullmatch(r"ravemj \d+\.\d+\.\d+\n", said(ravemj_command(folder, "--version")))
+
+
+# What goes wrong
+
+JOINT = """<Robot name="r"><KinBody><Body name="a"/>
+<Body name="b"/>
+<Joint name="j" type="hinge">
+{}</Joint></KinBody></Robot>"""
+BAD_MODELS = {
+    "missing.xml": (None, "missing.xml: error: "),
+    "words.txt": ("no XML at all\n", "words.txt:1: error: not well-formed XML"),
+    "empty.xml": ("", "empty.xml:1: error: "),
+    "root.xml": ("<!-- -->\n<Foo/>\n", "root.xml:2: error: .*<Foo>"),
+    "open.xml": ("<Robot>\n<KinBody>\n</Robot>\n", "open.xml:3: error: "),
+    "body.xml": (JOINT.format("<Body>a</Body><Body>c</Body>"), r"body.xml:\d: error: .*'c'"),
+    "include.xml": ('<Environment>\n<Robot file="gone.xml"/>\n</Environment>', r"include.xml:2: error: .*gone\.xml"),
+    "inside.xml": (
+        '<Environment>\n<Robot file="open.xml"/>\n</Environment>',
+        r"open.xml:3: error: .*included from inside\.xml:2",
+    ),
+    "number.xml": (
+        JOINT.format("<Body>a</Body><Body>b</Body>\n<axis>0 zero 1</axis>\n"),
+        r"number.xml:5: error: <axis>.*0 zero 1",
+    ),
+    "extents.xml": (
+        '<KinBody name="r"><Body name="a"><Geom type="box">\n<Extents>1 one 1</Extents></Geom></Body></KinBody>',
+        r"extents.xml:2: error: .*1 one 1",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BAD_MODELS)
+def test_a_bad_model_is_one_line_with_file_and_line(folder, name):
+    for file, (text, _) in BAD_MODELS.items():
+        if text is not None:
+            (folder / file).write_text(text)
+    (folder / "a.png").write_text("kept")
+    before = listing(folder)
+    done = ravemj_command(folder, "render", name, "-o", "a.png")
+    _check_failure(done, 1, BAD_MODELS[name][1])
+    assert listing(folder) == before
+
+
+def _check_failure(done: subprocess.CompletedProcess[str], code: int, pattern: str) -> None:
+    assert done.returncode == code, done.stderr
+    assert done.stdout == ""
+    assert "Traceback" not in done.stderr
+    assert len(done.stderr.splitlines()) == 1, f"more than one line: {done.stderr}"
+    assert re.match(pattern, done.stderr), done.stderr
+
+
+BAD_FILES = {
+    "scaled.json": "[[1,0,0,0],[0,2,0,0],[0,0,1,0],[0,0,0,1]]",
+    "mirror.json": "[[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]",
+    "words.txt": "1 0 0 0\n0 1 0 0\n0 0 one 0\n0 0 0 1\n",
+    "three.json": "[1, 2, 3]",
+    "column.csv": "time,Joint0,Elbow\n0,0,0\n",
+    "notime.csv": "Joint0,Joint1\n0,0\n",
+    "nan.csv": "time,Joint0,Joint1\n0,0,0\n1,nan,0\n",
+    "short.csv": "time,Joint0,Joint1\n0,0\n",
+    "back.csv": "time,Joint0,Joint1\n1,0,0\n0,0,0\n",
+    "one.csv": "time,Joint0\n0,0\n",
+    "junk.npz": "junk",
+}
+TO_A = "play env.xml -o a.mp4 "
+BAD_WORDS = [
+    ("", 2, "ravemj: error: .*COMMAND"),
+    ("dance env.xml", 2, "ravemj: error: .*'dance'"),
+    ("play", 2, "ravemj play: error: .*MODEL"),
+    ("render env.xml", 2, "ravemj render: error: .*-o"),
+    ("alias", 2, "ravemj alias: error: .*--install"),
+    (TO_A + "--to nan,0", 2, "ravemj play: error: .*'nan' is no finite number"),
+    (TO_A + "--to up,0", 2, "ravemj play: error: .*'up' is no finite number"),
+    (TO_A + "--to -inf,0", 2, "ravemj play: error: .*'-inf' is no finite number"),
+    (TO_A + "--to 1", 1, "ravemj: error: --to has 1 .*2 DOFs"),
+    (TO_A + "--to 1,0 --trajectory swing.csv", 2, "ravemj play: error: .*--trajectory"),
+    (TO_A + "--size 0x9", 2, "ravemj play: error: .*640x480"),
+    (TO_A + "--fps 0", 2, "ravemj play: error: .*--fps"),
+    (TO_A + "--duration -1", 2, "ravemj play: error: .*--duration"),
+    (TO_A + "--background 1,2,3", 2, "ravemj play: error: .*'1,2,3' is no colour"),
+    (TO_A + "--camera scaled.json", 1, "scaled.json: error: .*rotation"),
+    (TO_A + "--camera mirror.json", 1, "mirror.json: error: .*reflection"),
+    (TO_A + "--camera words.txt", 1, "words.txt:3: error: .*'one'"),
+    (TO_A + "--camera three.json", 1, "three.json: error: "),
+    (TO_A + "--camera gone.json", 1, "gone.json: error: "),
+    (TO_A + "--trajectory column.csv", 1, "column.csv:1: error: .*'Elbow'.*Joint0, Joint1"),
+    (TO_A + "--trajectory notime.csv", 1, "notime.csv:1: error: .*'time'"),
+    (TO_A + "--trajectory nan.csv", 1, "nan.csv:3: error: "),
+    (TO_A + "--trajectory short.csv", 1, "short.csv:2: error: "),
+    (TO_A + "--trajectory back.csv", 1, "back.csv:3: error: "),
+    (TO_A + "--trajectory one.csv --duration 2", 1, ".*error: .*one row"),
+    (TO_A + "--trajectory junk.npz", 1, "junk.npz: error: "),
+    (TO_A + "--trajectory gone.csv", 1, "gone.csv: error: "),
+    (TO_A + "--trajectory env.xml", 1, "env.xml: error: "),
+    ("play env.xml -o a.avi", 1, "ravemj: error: .*a.avi.*mp4"),
+    ("play env.xml -o gone/a.mp4", 1, "ravemj: error: .*gone"),
+    ("play env.xml -o env.xml/a.mp4", 1, "ravemj: error: .*env.xml"),
+    ("play env.xml -o .", 1, "ravemj: error: "),
+    ("play env.xml -o a.gif --fps 100", 1, "ravemj: error: .*50 frames"),
+    ("render env.xml -o a.bmp", 1, "ravemj: error: .*a.bmp.*png"),
+    ("render env.xml -o gone/a.png", 1, "ravemj: error: .*gone"),
+    ("render env.xml -o a.png --q 1,2,3", 1, "ravemj: error: .*2 DOFs"),
+    ("convert env.xml -o gone/a.xml", 1, "ravemj: error: .*gone"),
+    ("convert env.xml -o .", 1, "ravemj: error: "),
+    ("run gone.py", 1, "gone.py: error: "),
+]
+
+
+@pytest.mark.parametrize(("words", "code", "pattern"), BAD_WORDS, ids=[words for words, _, _ in BAD_WORDS])
+def test_a_bad_argument_is_one_line_and_touches_nothing(folder, words, code, pattern):
+    for file, text in BAD_FILES.items():
+        (folder / file).write_text(text)
+    for file in ("a.mp4", "a.gif", "a.png"):
+        (folder / file).write_text("kept")
+    before = listing(folder)
+    _check_failure(ravemj_command(folder, *words.split()), code, pattern)
+    assert listing(folder) == before
+
+
+def test_an_unwritable_folder_is_said_before_anything_is_drawn(folder):
+    target = folder / "locked"
+    target.mkdir()
+    target.chmod(0o555)
+    where = "/proc" if os.access(target, os.W_OK) else "locked"  # root may write anywhere but in /proc
+    for words in (("play", "env.xml", "-o", f"{where}/a.mp4"), ("convert", "env.xml", "-o", f"{where}/a.xml")):
+        _check_failure(ravemj_command(folder, *words), 1, f"ravemj: error: cannot write {where}/a")
+    target.chmod(0o755)
+    assert not list(target.iterdir())
+
+
+def test_a_model_is_not_overwritten_by_its_translation(folder):
+    before = listing(folder)
+    for target in ("env.xml", "./double-pendulum.xml"):
+        _check_failure(ravemj_command(folder, "convert", "env.xml", "-o", target), 1, "ravemj: error: ")
+        assert listing(folder) == before
+
+
+@pytest.mark.parametrize(
+    ("words", "unbuffered"), [("convert env.xml", ""), ("convert env.xml", "1"), ("info env.xml", "")]
+)
+def test_a_full_disk_under_standard_output_is_one_line(folder, words, unbuffered):
+    if not os.path.exists("/dev/full"):
+        pytest.skip("there is no /dev/full here")
+    command = f"{sys.executable} -m ravemj {words} > /dev/full"
+    variables = environment(folder, PYTHONUNBUFFERED=unbuffered)
+    done = subprocess.run(command, shell=True, cwd=folder, env=variables, capture_output=True, text=True, check=False)
+    _check_failure(done, 1, "ravemj: error: .*[Nn]o space left")
+
+
+@pytest.mark.parametrize("words", ["convert env.xml", "info env.xml"])
+def test_a_reader_that_goes_away_is_no_error_to_talk_about(folder, words):
+    command = f"{sys.executable} -m ravemj {words} | true"
+    done = subprocess.run(
+        command, shell=True, cwd=folder, env=environment(folder), capture_output=True, text=True, check=False
+    )
+    assert (done.stdout, done.stderr) == ("", "")
+
+
+def test_warnings_of_a_model_are_said_and_strict_makes_them_errors(folder):
+    text = (folder / "double-pendulum.xml").read_text().replace("<Body name=", "<Nonsense/><Body name=", 1)
+    (folder / "odd.xml").write_text(text)
+    line = text[: text.index("<Nonsense/>")].count("\n") + 1
+    done = ravemj_command(folder, "info", "odd.xml")
+    assert done.returncode == 0
+    assert re.fullmatch(rf"odd.xml:{line}: warning\[[\w-]+\]: .*Nonsense.*\n", done.stderr, re.IGNORECASE)
+    _check_failure(ravemj_command(folder, "info", "odd.xml", "--strict"), 1, f"odd.xml:{line}: error: ")
+
+
+def test_commands_raise_no_warnings_of_python(folder):
+    words = ("play", "env.xml", "-o", "a.mp4", *SMALL, "--fps", "3")
+    said(ravemj_command(folder, *words, PYTHONWARNINGS="error", PYTHONDEVMODE="1"))
+
+
+def test_plain_removes_what_steers_terminals():
+    assert plain("\x1b[?25l\x1b[32mgreen\x1b[0m\r\n") == "green\n"

@@ -1,0 +1,290 @@
+"""Windows on a virtual display: what they show, that they move, and how they close."""
+
+import ctypes
+import ctypes.util
+import json
+import os
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Generator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import (
+    PRINTED_BY_THE_SCRIPT,
+    TUTORIAL,
+    TUTORIAL_CAMERA,
+    colour_of,
+    environment,
+    finish,
+    heed_interrupts,
+    on_terminal,
+    pose,
+    ravemj_command,
+)
+from PIL import Image, ImageGrab, features
+
+pytestmark = [
+    pytest.mark.gui,
+    pytest.mark.skipif(shutil.which("Xvfb") is None, reason="there is no Xvfb: apt-get install xvfb"),
+    pytest.mark.skipif(shutil.which("xdotool") is None, reason="there is no xdotool: apt-get install xdotool"),
+    pytest.mark.skipif(not features.check("xcb"), reason="this Pillow cannot read an X screen"),
+]
+PLAY = ("-m", "ravemj", "play", "env.xml", "--camera", "camera.json", "--background", "1,1,0")
+BACKGROUND = (255, 255, 0)
+
+
+class Display:
+    """A virtual screen, and the window on it."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def tool(self, *words: str) -> str:
+        variables = {**os.environ, "DISPLAY": self.name}
+        return subprocess.run(["xdotool", *words], env=variables, capture_output=True, text=True, check=False).stdout
+
+    def windows(self) -> list[int]:
+        return [int(word) for word in self.tool("search", "--onlyvisible", "--name", "ravemj").split()]
+
+    def picture(self, window: int) -> np.ndarray:
+        """Return the pixels of a window, (height, width, 3)."""
+        pairs = [line.split("=") for line in self.tool("getwindowgeometry", "--shell", str(window)).split()]
+        place = {name: int(value) for name, value in pairs}
+        box = (place["X"], place["Y"], place["X"] + place["WIDTH"], place["Y"] + place["HEIGHT"])
+        screen: Image.Image = ImageGrab.grab(xdisplay=self.name)
+        return np.asarray(screen.convert("RGB").crop(box))
+
+    def close(self, window: int) -> None:
+        """Ask a window to close as window managers do."""
+        _send_close(self.name, window)
+
+    def await_window(self) -> int:
+        await_that(self.windows, "no window came")
+        return self.windows()[0]
+
+    def await_pose(self, window: int, name: str) -> np.ndarray:
+        await_that(lambda: pose(self.picture(window)) == name, f"the pendulum never was {name}")
+        return self.picture(window)
+
+
+def await_that(condition: Callable[[], object], otherwise: str, seconds: float = 30) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, otherwise
+        time.sleep(0.05)
+
+
+class _ClientMessage(ctypes.Structure):
+    _fields_ = (
+        ("type", ctypes.c_int),
+        ("serial", ctypes.c_ulong),
+        ("send_event", ctypes.c_int),
+        ("display", ctypes.c_void_p),
+        ("window", ctypes.c_ulong),
+        ("message_type", ctypes.c_ulong),
+        ("format", ctypes.c_int),
+        ("data", ctypes.c_long * 5),
+        ("rest_of_xevent", ctypes.c_long * 24),
+    )
+
+
+def _send_close(display_name: str, window: int) -> None:
+    xlib = ctypes.CDLL(ctypes.util.find_library("X11") or "libX11.so.6")
+    xlib.XOpenDisplay.restype = ctypes.c_void_p
+    xlib.XInternAtom.restype = ctypes.c_ulong
+    xlib.XInternAtom.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int]
+    xlib.XSendEvent.argtypes = [ctypes.c_void_p, ctypes.c_ulong, ctypes.c_int, ctypes.c_long, ctypes.c_void_p]
+    xlib.XCloseDisplay.argtypes = [ctypes.c_void_p]
+    display = xlib.XOpenDisplay(display_name.encode())
+    protocols, delete = (xlib.XInternAtom(display, name, 0) for name in (b"WM_PROTOCOLS", b"WM_DELETE_WINDOW"))
+    client_message = 33
+    message = _ClientMessage(client_message, 0, 1, display, window, protocols, 32, (ctypes.c_long * 5)(delete))
+    assert xlib.XSendEvent(display, window, 0, 0, ctypes.byref(message))
+    xlib.XCloseDisplay(display)
+
+
+@pytest.fixture(scope="module")
+def display() -> Generator[Display]:
+    """A virtual screen of our own, on a number that nobody has."""
+    reading, writing = os.pipe()
+    command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"]
+    server = subprocess.Popen(command, pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    os.close(writing)
+    try:
+        ready, _, _ = select.select([reading], [], [], 30)
+        number = os.read(reading, 16).decode().strip() if ready else ""
+        if not number:
+            pytest.skip("Xvfb does not start here")
+        yield Display(f":{number}")
+    finally:
+        os.close(reading)
+        server.terminate()
+        server.wait(10)
+
+
+@pytest.fixture
+def folder(tmp_path) -> Path:
+    """The tutorial's folder, with its camera."""
+    for path in TUTORIAL.iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    (tmp_path / "camera.json").write_text(json.dumps(TUTORIAL_CAMERA.tolist()))
+    return tmp_path
+
+
+class Started:
+    """A command under way on a display."""
+
+    def __init__(self, display: Display, folder: Path, *words: str) -> None:
+        heed_interrupts()
+        variables = environment(folder, DISPLAY=display.name)
+        self.process = subprocess.Popen(
+            [sys.executable, *words], cwd=folder, env=variables, stdout=-1, stderr=-1, stdin=-3, text=True
+        )
+
+    def __enter__(self) -> "Started":
+        return self
+
+    def __exit__(self, *reason: object) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.communicate()
+
+    @property
+    def runs(self) -> bool:
+        return self.process.poll() is None
+
+    def end(self, seconds: float = 15) -> tuple[int, str, str]:
+        printed = self.process.communicate(timeout=seconds)
+        return (self.process.returncode, *printed)
+
+
+def test_play_opens_a_window_moves_and_stays_until_it_is_closed(display, folder):
+    rests = [(0, 0), (1, 0), (1.5, np.pi / 2), (2, np.pi / 2), (2.5, np.pi)]
+    (folder / "rests.csv").write_text("time,Joint0\n" + "\n".join(f"{time},{angle}" for time, angle in rests))
+    with Started(display, folder, *PLAY, "--trajectory", "rests.csv") as command:
+        window = display.await_window()
+        opened = time.monotonic()
+        first = display.await_pose(window, "hanging")
+        assert np.abs(np.median(first[:20, :20], axis=(0, 1)) - BACKGROUND).max() <= 1
+        display.await_pose(window, "level")
+        last = display.await_pose(window, "upright")
+        assert 1.5 <= time.monotonic() - opened <= 10, "2.5 s of motion are played in real time"
+        time.sleep(1)
+        assert command.runs
+        assert np.array_equal(display.picture(window), last)
+        display.close(window)
+        assert command.end() == (0, "", "")
+    assert not list(folder.glob("*.mp4"))
+
+
+def test_play_ends_by_ctrl_c_and_by_closing_while_it_moves(display, folder):
+    with Started(display, folder, *PLAY, "--duration", "60") as command:
+        display.await_pose(display.await_window(), "hanging")
+        command.process.send_signal(signal.SIGINT)
+        assert command.end() == (130, "", "ravemj: interrupted\n")
+    await_that(lambda: not display.windows(), "the window stays")
+    with Started(display, folder, *PLAY, "--duration", "60") as command:
+        display.close(display.await_window())
+        assert command.end() == (0, "", "")
+    await_that(lambda: not display.windows(), "the window stays")
+
+
+def test_play_with_an_output_opens_no_window(display, folder):
+    words = ("play", "env.xml", "-o", "frames", "--size", "96x72", "--fps", "2")
+    seen = []
+    with Started(display, folder, "-m", "ravemj", *words) as command:
+        while command.runs:
+            seen += display.windows()
+        assert command.end()[0] == 0
+    assert not seen
+    assert len(list((folder / "frames").iterdir())) == 3
+
+
+def test_the_tutorials_script_shows_a_window_and_finishes(display, folder):
+    with Started(display, folder, "-m", "ravemj", "run", "myscript.py") as command:
+        window = display.await_window()
+        colours = set()
+        while command.runs and display.windows():
+            try:
+                picture = display.picture(window)
+            except (KeyError, ValueError):  # the window is gone
+                break
+            rows = picture.reshape(-1, 3)[::7]
+            colours |= {colour_of(row) for row in np.unique(rows, axis=0)}
+        assert command.end() == (0, PRINTED_BY_THE_SCRIPT, "")
+    assert {"red", "blue"} <= colours
+    await_that(lambda: not display.windows(), "the window stays")
+
+
+def test_the_prompt_and_the_window_do_not_wait_for_each_other(display, folder):
+    (folder / "still.py").write_text((folder / "myscript.py").read_text().rpartition("    play_trajectory")[0])
+    terminal = on_terminal(folder, "-m", "ravemj", "run", "-i", "still.py", DISPLAY=display.name)
+    terminal.expect(r"In \[1\]: ")
+    window = display.await_window()
+    for number, (values, name) in enumerate([("0, 0", "hanging"), ("pi, 0", "upright"), ("pi/2, 0", "level")], 1):
+        terminal.sendline(f"robot.SetDOFValues([{values}])")
+        terminal.expect(rf"In \[{number + 1}\]: ")
+        display.await_pose(window, name)
+    display.close(window)
+    await_that(lambda: not display.windows(), "the window stays")
+    terminal.sendline("viewer.is_open, robot.SetDOFValues([0, 0]), env.SetViewer('qtcoin')")
+    terminal.expect(r"\(False, None, True\)")
+    display.await_window()
+    terminal.sendline("exit()")
+    assert finish(terminal)[1] == 0
+    await_that(lambda: not display.windows(), "the window stays")
+
+
+def test_viewers_replace_each_other_and_two_environments_have_two_windows(display, folder):
+    (folder / "two.py").write_text("""
+import time, openravepy
+envs = [openravepy.Environment(), openravepy.Environment()]
+for env in envs:
+    env.Load('env.xml')
+    env.SetViewer('qtcoin')
+first = envs[0].GetViewer()
+envs[0].SetViewer('qtosg')
+print(first.is_open, [env.GetViewer().is_open for env in envs], first is envs[0].GetViewer())
+start = time.monotonic()
+for step in range(50):
+    for env in envs:
+        env.GetRobots()[0].SetDOFValues([step / 25, 0])
+    time.sleep(0.01)
+print(time.monotonic() - start < 5)
+for env in envs:  # beside its window, each draws pictures
+    print(env.render(64, 48).std() > 1, env.GetViewer().render(64, 48).std() > 1)
+input()
+envs[0].SetViewer('')
+input()
+envs[1].Destroy()
+input()
+""")
+    terminal = on_terminal(folder, "-m", "ravemj", "run", "two.py", DISPLAY=display.name)
+    terminal.expect(r"False \[True, True\] False\r?\nTrue\r?\nTrue True\r?\nTrue True")
+    for count in (2, 1, 0):
+        await_that(lambda count=count: len(display.windows()) == count, f"there are not {count} windows")
+        terminal.sendline("")
+    assert finish(terminal)[1] == 0
+
+
+def test_a_script_that_fails_or_exits_shows_its_own_end(display, folder):
+    start = "import openravepy, sys\nenv = openravepy.Environment()\nenv.Load('env.xml')\nenv.SetViewer('qtcoin')\n"
+    for end, code, message in (("sys.exit(3)", 3, ""), ("raise ValueError('mine')", 1, "ValueError: mine\n")):
+        (folder / "ends.py").write_text(start + end)
+        done = ravemj_command(folder, "run", "ends.py", DISPLAY=display.name)
+        assert (done.returncode, done.stdout) == (code, "")
+        assert done.stderr.endswith(message)
+        assert "ravemj/" not in done.stderr
+
+
+def test_a_display_that_is_not_there_is_said_and_the_script_goes_on(folder):
+    done = ravemj_command(folder, "run", "myscript.py", DISPLAY=":9999")
+    assert (done.returncode, done.stdout) == (0, PRINTED_BY_THE_SCRIPT)
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("ravemj: no window can be opened")
