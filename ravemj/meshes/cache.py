@@ -103,7 +103,7 @@ def _unpacked(arrays: Arrays) -> Parts | None:
 
 def _load(entry: Path) -> Parts | None:
     try:
-        with np.load(entry, allow_pickle=False) as stored:
+        with open(entry, "rb") as file, np.load(file, allow_pickle=False) as stored:
             parts = _unpacked({name: stored[name] for name in stored.files})
         os.utime(entry)  # used just now
     except FileNotFoundError:

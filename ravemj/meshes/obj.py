@@ -94,9 +94,8 @@ def write_obj(mesh: Mesh) -> str:
     OBJ, not STL, because it keeps vertices shared, may have as many faces as one likes and can be read by people;
     nine digits keep every single-precision coordinate, and MuJoCo stores no finer ones.
     """
-    missing = max(4 - len(mesh.vertices), 0)  # MuJoCo wants four vertices, used or not
-    vertices = [*mesh.vertices.tolist(), *[mesh.vertices.mean(axis=0).tolist()] * missing]
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices]
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.vertices.tolist()]
+    lines += lines[-1:] * (4 - len(lines))  # MuJoCo wants four vertices, used or not
     lines += [f"f {a} {b} {c}" for a, b, c in (mesh.triangles + 1).tolist()]
     return "\n".join(lines) + "\n"
 
