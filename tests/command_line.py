@@ -23,10 +23,11 @@ PATIENCE = 60
 
 def environment(folder: Path, **changes: str) -> dict[str, str]:
     """The variables of a command: this ravemj, no display, and a fresh IPython."""
-    dropped = {"DISPLAY", "WAYLAND_DISPLAY", "OPENRAVE_DATA", "PYTHONUNBUFFERED", "PYTHONPATH"}
+    dropped = {"DISPLAY", "WAYLAND_DISPLAY", "OPENRAVE_DATA", "PYTHONUNBUFFERED", "PYTHONPATH", "LINES", "COLUMNS"}
     inherited = {name: value for name, value in os.environ.items() if name not in dropped}
-    of_ipython = {"IPYTHONDIR": str(folder / ".ipython"), "IPY_TEST_SIMPLE_PROMPT": "1", "TERM": "xterm"}
-    return {**inherited, "PYTHONPATH": str(PACKAGE_ROOT), "PYTHONDONTWRITEBYTECODE": "1", **of_ipython, **changes}
+    of_python = {"PYTHONPATH": str(PACKAGE_ROOT), "PYTHONDONTWRITEBYTECODE": "1", "TERM": "xterm", "PAGER": "cat"}
+    of_ipython = {"IPYTHONDIR": str(folder / ".ipython"), "IPY_TEST_SIMPLE_PROMPT": "1"}
+    return {**inherited, **of_python, **of_ipython, **changes}
 
 
 def run(
