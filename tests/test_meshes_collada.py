@@ -34,6 +34,10 @@ def phong(inner):
     return f"<phong>{inner}</phong>"
 
 
+def amount(transparency):
+    return f"<transparency><float>{transparency}</float></transparency>"
+
+
 def effects(shaders):
     """Return libraries of materials and their effects."""
     fx = "".join(
@@ -49,7 +53,8 @@ COLOURED = effects({name: phong(f"<diffuse><color>{colour} 1</color></diffuse>")
 
 def bound(*pairs):
     items = "".join(f'<instance_material symbol="{symbol}" target="#{target}"/>' for symbol, target in pairs)
-    return f'<node><instance_geometry url="#g"><bind_material><technique_common>{items}</technique_common></bind_material></instance_geometry></node>'
+    binding = f"<bind_material><technique_common>{items}</technique_common></bind_material>"
+    return f'<node><instance_geometry url="#g">{binding}</instance_geometry></node>'
 
 
 @pytest.fixture
@@ -122,14 +127,14 @@ def test_materials_that_are_not_bound(read):
 @pytest.mark.parametrize(
     ("shader", "transparency"),
     [
-        (phong("<transparency><float>0.3</float></transparency>"), 0.7),
-        (phong("<transparency><float>1</float></transparency>"), 0),
-        (phong("<transparency><float>0</float></transparency>"), 0),
+        (phong(amount(0.3)), 0.7),
+        (phong(amount(1)), 0),
+        (phong(amount(0)), 0),
         (phong("<transparent><color>1 1 1 0.5</color></transparent>"), 0.5),
-        (phong('<transparent opaque="A_ZERO"><color>1 1 1 0.5</color></transparent><transparency><float>0.2</float></transparency>'), 0.1),
-        (phong('<transparent opaque="RGB_ZERO"><color>1 0 0 1</color></transparent><transparency><float>0.5</float></transparency>'), 0.1063355),
+        (phong('<transparent opaque="A_ZERO"><color>1 1 1 0.5</color></transparent>' + amount(0.2)), 0.1),
+        (phong('<transparent opaque="RGB_ZERO"><color>1 0 0 1</color></transparent>' + amount(0.5)), 0.1063355),
         (phong('<transparent opaque="RGB_ONE"><color>.5 .5 .5 1</color></transparent>'), 0.5),
-        (phong("<transparency><float>7</float></transparency>"), 0),
+        (phong(amount(7)), 0),
         (phong("<transparency><param ref='t'/></transparency>"), 0),
         ("<constant><emission><color>1 0 0 1</color></emission></constant>", 0),
         ("", 0),
@@ -152,7 +157,9 @@ def test_raw_materials_keep_what_the_file_says():
     document = ColladaDocument(f"<COLLADA>{text}</COLLADA>".encode(), "x.dae")
     material = read_material(document, document.find("material", "#m"))
     assert (material.transparency, material.diffuse, material.opacity) == (0, None, 0)
-    text = text.replace("<float>0</float>", '<param ref="t"/>').replace("<technique>", '<newparam sid="t"><float>0.5</float></newparam><technique>')
+    text = text.replace("<float>0</float>", '<param ref="t"/>').replace(
+        "<technique>", '<newparam sid="t"><float>0.5</float></newparam><technique>'
+    )
     document = ColladaDocument(f"<COLLADA>{text}</COLLADA>".encode(), "x.dae")
     assert read_material(document, document.find("material", "#m")).transparency == 0.5
 
@@ -164,10 +171,11 @@ def test_raw_materials_keep_what_the_file_says():
          "<node><matrix>1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1</matrix>%s</node></node>", [-5, 10, 7, -5, 12, 8]),
         ("<node><lookat>0 0 0 0 0 -1 0 1 0</lookat>%s</node>", [0, 0, 0, 1, 0, 1]),
         ("<node><lookat>0 0 0 0 0 1 0 1 0</lookat>%s</node>", [-1, 0, -1, 0, 0, 0]),
-        ("<node><translate>1 2</translate><skew>1 1 1 1 1 1 1</skew><translate>0 0 3</translate>%s</node>", [0, 0, 3, 1, 0, 4]),
-        ("<node id='n'><translate>0 0 5</translate>%s</node><node><translate>1 0 0</translate><instance_node url='#n'/></node>",
-         [0, 0, 5, 2, 0, 6]),
-        ("<node><scale>-1 1 1</scale>%s<instance_geometry url='#none'/><instance_node url='#none'/><instance_camera url='#c'/></node>",
+        ("<node><translate>1 2</translate><skew>1 1 1 1 1 1 1</skew><translate>0 0 3</translate>%s</node>",
+         [0, 0, 3, 1, 0, 4]),
+        ("<node id='n'><translate>0 0 5</translate>%s</node>"
+         "<node><translate>1 0 0</translate><instance_node url='#n'/></node>", [0, 0, 5, 2, 0, 6]),
+        ("<node><scale>-1 1 1</scale>%s<instance_geometry url='#none'/><instance_node url='#none'/></node>",
          [-1, 0, 0, 0, 0, 1]),
     ],
 )  # fmt: skip
@@ -177,15 +185,16 @@ def test_nodes(read, nodes, expected):
 
 
 def test_a_controller_shows_the_shape_that_it_deforms(read):
-    extra = '<library_controllers><controller id="c"><skin source="#g"><bind_shape_matrix/></skin></controller></library_controllers>'
-    assert box(read(nodes='<node><instance_controller url="#c"/></node>', extra=extra)) == pytest.approx([0, 0, 0, 1, 0, 1])
+    controller = '<controller id="c"><skin source="#g"><bind_shape_matrix/></skin></controller>'
+    parts = read(nodes='<node><instance_controller url="#c"/></node>', extra=controller)
+    assert box(parts) == pytest.approx([0, 0, 0, 1, 0, 1])
 
 
 @pytest.mark.parametrize(
     ("primitives", "count", "surface"),
     [
-        (f"<polylist><input semantic='NORMAL' source='#p' offset='0'/><input semantic='VERTEX' source='#v' offset='1'/>"
-         f"<vcount>4 3</vcount><p>0 0 0 1 0 2 0 3 0 0 0 1 0 4</p></polylist>", 3, 1.5),
+        ("<polylist><input semantic='NORMAL' source='#p' offset='0'/><input semantic='VERTEX' source='#v' offset='1'/>"
+         "<vcount>4 3</vcount><p>0 0 0 1 0 2 0 3 0 0 0 1 0 4</p></polylist>", 3, 1.5),
         (f"<polygons>{INPUT}<p>0 1 2 3</p><ph><p>0 1 4</p><h>0 1 2</h></ph></polygons>", 3, 1.5),
         (f"<tristrips>{INPUT}<p>0 1 3 2</p><p>0 1 4</p></tristrips>", 3, 1.5),
         (f"<trifans>{INPUT}<p>0 1 2 3</p></trifans>", 2, 1),

@@ -43,7 +43,8 @@ FACE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 
 
 @pytest.mark.parametrize(
-    "name", ["wedge.stl", pytest.param("wedge.off", marks=needs_trimesh), pytest.param("wedge.ply", marks=needs_trimesh)]
+    "name",
+    ["wedge.stl", pytest.param("wedge.off", marks=needs_trimesh), pytest.param("wedge.ply", marks=needs_trimesh)],
 )
 def test_a_wedge(name):
     (part,) = read_mesh(str(FILES / name))
@@ -55,7 +56,11 @@ def test_a_wedge(name):
 
 @pytest.mark.parametrize(
     ("name", "diffuse", "ambient"),
-    [("wedge.stl", 1, 0.05), pytest.param("wedge.off", 0.6, 0, marks=needs_trimesh), pytest.param("wedge.ply", 1, 1, marks=needs_trimesh)],
+    [
+        ("wedge.stl", 1, 0.05),
+        pytest.param("wedge.off", 0.6, 0, marks=needs_trimesh),
+        pytest.param("wedge.ply", 1, 1, marks=needs_trimesh),
+    ],
 )
 def test_default_colours_are_those_of_openraves_importer(name, diffuse, ambient):
     (part,) = read_mesh(str(FILES / name))
@@ -120,7 +125,9 @@ def test_obj_without_usemtl_takes_the_last_material_as_openrave_does(read, tmp_p
 
 
 def test_obj_polygons(read):
-    (quad,) = read("mesh.obj", BOX + "f 1 2 3 4\nf -1/1/1 -2//2 -3\nf 1 1 2\nf 1 2\np 1\nl 1 2\nvn 0 0 1\nvt 0 0\ng x\n")
+    (quad,) = read(
+        "mesh.obj", BOX + "f 1 2 3 4\nf -1/1/1 -2//2 -3\nf 1 1 2\nf 1 2\np 1\nl 1 2\nvn 0 0 1\nvt 0 0\ng x\n"
+    )
     assert (quad.diffuse, len(quad.mesh.triangles)) == (GRAY, 3)
     (dented,) = read("mesh.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nf 1 2 3 4 5\nf 5 1 2 3 4\n")
     assert area(dented.mesh) == pytest.approx(5)
@@ -180,5 +187,5 @@ def test_unknown_kinds(read, name):
 def test_paths_that_are_no_files(tmp_path):
     (tmp_path / "folder.stl").mkdir()
     for path in (tmp_path / "folder.stl", tmp_path / "none.obj", f"{tmp_path}/\0.stl", tmp_path / ("x" * 300 + ".iv")):
-        with pytest.raises(SourceError, match="no such mesh file|cannot read"):
+        with pytest.raises(SourceError, match=r"no such mesh file|cannot read"):
             read_mesh(str(path))

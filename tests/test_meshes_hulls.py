@@ -54,7 +54,7 @@ def compiled(mesh, collides):
         (turned(box(1, 2, 1e-3)), "hull"),
         (SQUARE, "visual"),
         (turned(SQUARE), "visual"),
-        (Mesh(SQUARE.vertices + [0, 0, 500], SQUARE.triangles), "visual"),
+        (Mesh(SQUARE.vertices + np.array([0, 0, 500]), SQUARE.triangles), "visual"),
         (TRIANGLE, "visual"),
         (LINE, "none"),
         (EMPTY, "none"),
@@ -103,12 +103,17 @@ def test_welding_joins_equal_corners_only():
     mesh = weld(corners)
     assert len(mesh.vertices) == 8
     assert (corners_of(mesh) == corners).all()
-    assert (corners_of(weld(np.array([[[0.0, 0, 0], [-0.0, 0, 0], [1e-30, 0, 0]]])))[0, :, 0] == [0, 0, np.float32(1e-30)]).all()
+    assert (
+        corners_of(weld(np.array([[[0.0, 0, 0], [-0.0, 0, 0], [1e-30, 0, 0]]])))[0, :, 0] == [0, 0, np.float32(1e-30)]
+    ).all()
     assert len(weld(np.zeros((0, 3, 3))).vertices) == 0
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.lists(st.floats(0.2, 1), min_size=4, max_size=40), st.sampled_from([np.eye(3), np.eye(3)[[1, 2, 0]], -np.eye(3)[[0, 2, 1]]]))
+@given(
+    st.lists(st.floats(0.2, 1), min_size=4, max_size=40),
+    st.sampled_from([np.eye(3), np.eye(3)[[1, 2, 0]], -np.eye(3)[[0, 2, 1]]]),
+)
 def test_ears_of_star_shaped_polygons(radii, axes):
     angles = 2 * np.pi * np.arange(len(radii)) / len(radii)
     polygon = np.stack([radii * np.cos(angles), radii * np.sin(angles), np.full(len(radii), 3.0)], axis=1) @ axes
@@ -116,7 +121,9 @@ def test_ears_of_star_shaped_polygons(radii, axes):
     assert len(cut) == len(polygon) - 2
     normals = np.cross(cut[:, 1] - cut[:, 0], cut[:, 2] - cut[:, 0])
     whole = np.cross(polygon, np.roll(polygon, -1, axis=0)).sum(axis=0)
-    assert np.allclose(normals.sum(axis=0), np.cross(polygon - polygon[0], np.roll(polygon, -1, axis=0) - polygon[0]).sum(axis=0))
+    assert np.allclose(
+        normals.sum(axis=0), np.cross(polygon - polygon[0], np.roll(polygon, -1, axis=0) - polygon[0]).sum(axis=0)
+    )
     assert np.linalg.norm(normals, axis=1).sum() == pytest.approx(np.linalg.norm(normals.sum(axis=0)))
     assert whole.shape == (3,)
 
@@ -136,7 +143,11 @@ needs_coacd = pytest.mark.skipif(importlib.util.find_spec("coacd") is None, reas
 @needs_coacd
 def test_a_concave_mesh_becomes_convex_pieces(tmp_path, monkeypatch):
     monkeypatch.setenv("RAVEMJ_CACHE", str(tmp_path))
-    ell = weld(np.concatenate([primitives.box(np.array([3.0, 1, 1])), primitives.box(np.array([1.0, 1, 3])) + [1.0, 0, 2]]))
+    ell = weld(
+        np.concatenate(
+            [primitives.box(np.array([3.0, 1, 1])), primitives.box(np.array([1.0, 1, 3])) + np.array([1.0, 0, 2])]
+        )
+    )
     pieces = decompose(ell, max_pieces=2)
     assert len(pieces) == 2
     assert all(collision_form(piece) == "hull" for piece in pieces)

@@ -48,7 +48,8 @@ def count(parts):
 
 
 @pytest.mark.parametrize(
-    ("name", "ambient"), [("prism_1.0.iv", (0.1, 0.2, 0.3)), ("prism_vrml1.wrl", (0.1, 0.2, 0.3)), ("prism_vrml97.wrl", 0.5)]
+    ("name", "ambient"),
+    [("prism_1.0.iv", (0.1, 0.2, 0.3)), ("prism_vrml1.wrl", (0.1, 0.2, 0.3)), ("prism_vrml97.wrl", 0.5)],
 )
 def test_the_same_prism_in_every_dialect(name, ambient):
     parts = read_mesh(str(FILES / name))
@@ -112,12 +113,13 @@ def test_a_sphere_starts_at_minus_z(read):
 @pytest.mark.parametrize(
     ("text", "box"),
     [
-        ("Units { units MILLIMETERS } Separator { Units { units METERS } Cube { } } Translation { translation 5 0 0 } Cube { }",
-         [-1, -1, -1, 1, 1, 1]),
+        ("Units { units MILLIMETERS } Separator { Units { units METERS } Cube { } } Cube { }", [-1, -1, -1, 1, 1, 1]),
         ("Units { units MILLIMETERS } Cube { } Units { units INCHES } Cube { }", np.repeat([-0.0254, 0.0254], 3)),
         ("MatrixTransform { matrix 1 0 0 0 0 2 0 0 0 0 3 0 4 5 6 1 } Cube { }", [3, 3, 3, 5, 7, 9]),
-        ("RotationXYZ { axis Z angle 0.5 } Cube { width 1 }", [-0.91821682, -1.11729527, -1, 0.91821682, 1.11729527, 1]),
-        ("Transform { translation 1 2 3 rotation 0 0 1 0.5 scaleFactor 1 2 3 scaleOrientation 1 0 0 0.3 center 1 1 1 } Cube { }",
+        ("RotationXYZ { axis Z angle 0.5 } Cube { width 1 }",
+         [-0.91821682, -1.11729527, -1, 0.91821682, 1.11729527, 1]),
+        ("Transform { translation 1 2 3 rotation 0 0 1 0.5 scaleFactor 1 2 3 scaleOrientation 1 0 0 0.3 "
+         "center 1 1 1 } Cube { }",
          [-0.02586889, -1.62246323, -1.82533526, 4.00144053, 3.49552011, 4.56464195]),
         ("Rotation { rotation 0 0 2 1.5707963267948966 } Scale { scaleFactor 3 1 1 } Cube { }", [-1, -3, -1, 1, 3, 1]),
         ("Group { Translation { translation 5 0 0 } } Cube { }", [4, -1, -1, 6, 1, 1]),
@@ -125,7 +127,8 @@ def test_a_sphere_starts_at_minus_z(read):
         ("Translation { translation 5 0 0 } ResetTransform { } Cube { }", [-1, -1, -1, 1, 1, 1]),
         ("Switch { whichChild -3 Cube { } Cube { height 6 } }", [-1, -3, -1, 1, 3, 1]),
         ("Switch { whichChild 1 Cube { height 9 } Cube { height 6 } }", [-1, -3, -1, 1, 3, 1]),
-        ("LOD { range [ 5 ] Cube { } Cube { height 6 } } LevelOfDetail { Cube { } Cube { height 6 } }", [-1, -1, -1, 1, 1, 1]),
+        ("LOD { range [ 5 ] Cube { } Cube { height 6 } } LevelOfDetail { Cube { } Cube { height 6 } }",
+         [-1, -1, -1, 1, 1, 1]),
         ("Unheard { of TRUE other [ 1 2 ] Cube { } }", [-1, -1, -1, 1, 1, 1]),
         ("Translation { translation 1,0,0 ~ } DirectionalLight { on 0 } Cube { }", [0, -1, -1, 2, 1, 1]),
     ],
@@ -185,7 +188,9 @@ def test_vrml97_groups(vrml97):
 
 
 def test_the_last_material_of_vrml97(vrml97):
-    material = "appearance Appearance { material Material { diffuseColor 1 0 0 ambientIntensity 0.5 transparency 0.25 } }"
+    material = (
+        "appearance Appearance { material Material { diffuseColor 1 0 0 ambientIntensity 0.5 transparency 0.25 } }"
+    )
     (part,) = vrml97(f"Shape {{ {material} geometry Box {{ }} }} Shape {{ geometry Box {{ }} }}")
     assert (part.diffuse, part.ambient, part.transparency) == ((1, 0, 0), (0.5, 0.5, 0.5), 0.25)
 
@@ -193,8 +198,9 @@ def test_the_last_material_of_vrml97(vrml97):
 def test_prototypes_are_filled_in_anew_for_each_use(vrml97):
     parts = vrml97(
         "PROTO Inner [ field SFVec3f size 1 1 1 ] { Shape { geometry Box { size IS size } } }"
-        "PROTO Outer [ field SFVec3f s 2 2 2 field MFNode more [ ] ] { Group { children [ Inner { size IS s } Group { children IS more } ] } }"
-        "EXTERNPROTO Far [ field SFVec3f size ] [ \"far.wrl\" ]"
+        "PROTO Outer [ field SFVec3f s 2 2 2 field MFNode more [ ] ] {"
+        "  Group { children [ Inner { size IS s } Group { children IS more } ] } }"
+        'EXTERNPROTO Far [ field SFVec3f size ] [ "far.wrl" ]'
         "Outer { } Transform { translation 5 0 0 children Outer { s 4 1 1 more [ Inner { } ] } } Far { size 1 1 1 }"
     )
     assert count(parts) == 36
@@ -212,7 +218,9 @@ def test_included_files(read, node):
 
 def test_included_vrml97_takes_the_first_url_that_works(read, vrml97, caplog):
     read("Cube { }", "my part.iv")
-    parts = vrml97('Inline { url [ "http://example.org/x.wrl", "none.wrl", "my%20part.iv#x" ] } Inline { url "none.wrl" }')
+    parts = vrml97(
+        'Inline { url [ "http://example.org/x.wrl", "none.wrl", "my%20part.iv#x" ] } Inline { url "none.wrl" }'
+    )
     assert count(parts) == 12
     assert "nothing to include" in caplog.text
 
@@ -223,9 +231,9 @@ def test_files_that_include_each_other_end(read):
 
 
 def test_compressed_files(read):
-    text = b'#VRML V2.0 utf8\nShape { geometry Box { } }'
+    text = b"#VRML V2.0 utf8\nShape { geometry Box { } }"
     assert count(read(gzip.compress(text), "box.wrl")) == 12
-    with pytest.raises(SourceError, match="damaged|cut short"):
+    with pytest.raises(SourceError, match=r"damaged|cut short"):
         read(gzip.compress(text)[:-9], "box.wrl")
 
 
@@ -246,12 +254,16 @@ def test_binary(read, version):
 
     floats = lambda *numbers: struct.pack(f">{len(numbers)}f", *numbers)  # noqa: E731
     integers = lambda *numbers: struct.pack(f">{len(numbers)}i", *numbers)  # noqa: E731
-    material = node("Material", ("diffuseColor", integers(1) + floats(*BROWN)), ("transparency", integers(1) + floats(0.5)))
+    material = node(
+        "Material", ("diffuseColor", integers(1) + floats(*BROWN)), ("transparency", integers(1) + floats(0.5))
+    )
     points = node("VertexProperty", ("vertex", integers(4) + floats(0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0)))
     strip = node("IndexedTriangleStripSet", ("vertexProperty", points), ("coordIndex", integers(5, 0, 1, 2, 3, -1)))
     cylinder = node("Cylinder", ("parts", word("SIDES") + word("TOP") + word("")), ("radius", floats(3)))
     texture = node("Texture2", ("filename", word("a.png")), ("image", integers(1, 1, 3) + b"abc\0"))
-    group = node("Separator", children=[material, word("DEF") + word("S") + strip, texture, word("USE") + word("S"), cylinder])
+    group = node(
+        "Separator", children=[material, word("DEF") + word("S") + strip, texture, word("USE") + word("S"), cylinder]
+    )
     data = f"#Inventor V{version} binary  \n".encode() + group
     (part,) = read(data)
     assert len(part.mesh.triangles) == 2 + 2 + 58

@@ -86,6 +86,7 @@ def _geometries(file: MeshFile, kind: str) -> list[tuple[Floats, Floats | None]]
 
 
 def _placed(geometry: Any, matrix: Floats) -> tuple[Floats, Floats | None]:  # noqa: ANN401 - trimesh is an extra
-    placed = np.asarray(geometry.vertices) @ matrix[:3, :3].T + matrix[:3, 3]
+    placed = np.asarray(geometry.vertices, np.float64).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+    corners = placed[np.asarray(geometry.faces, np.int_).reshape(-1, 3)]
     factor = getattr(getattr(geometry.visual, "material", None), "baseColorFactor", None)
-    return placed[np.asarray(geometry.faces)], None if factor is None else np.asarray(factor) / 255
+    return corners, None if factor is None else np.asarray(factor, np.float64).reshape(4) / 255

@@ -65,7 +65,7 @@ def without_degenerate(corners: Floats) -> Floats:
 
 def rgb(numbers: ArrayLike) -> Rgb:
     """Return a colour in the single precision that OpenRAVE's importers work in."""
-    red, green, blue = (float(part) for part in np.asarray(numbers, np.float32)[:3])
+    red, green, blue = (float(part) for part in np.nan_to_num(np.asarray(numbers, np.float32)[:3]))
     return red, green, blue
 
 

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 
+import numpy as np
+
 from ravemj.errors import Source, SourceError
 from ravemj.meshes import cache
 from ravemj.meshes.collada import read_collada
@@ -55,6 +57,7 @@ def read_mesh(path: str) -> tuple[MeshPart, ...]:
 def _read(file: MeshFile, reader: _Reader) -> tuple[tuple[MeshPart, ...], dict[str, str]]:
     """Return the parts, and the digests of the files that they come from besides ``file``."""
     try:
-        return reader(file), file.references.digests
+        with np.errstate(all="ignore"):  # what is not finite in the end is refused
+            return reader(file), file.references.digests
     except (RecursionError, MemoryError, OverflowError) as error:
         raise SourceError(f"the file is too large or nested too deep ({type(error).__name__})", file.source) from error

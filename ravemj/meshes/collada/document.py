@@ -1,5 +1,6 @@
 """A COLLADA file as a tree in which elements are found by their kind and id."""
 
+import math
 import re
 from collections.abc import Iterator
 
@@ -95,6 +96,7 @@ def numbers(element: Element | None) -> Floats:
 def attribute_number(element: Element | None, name: str, default: float) -> float:
     """Return a number in an attribute, or ``default`` where there is none."""
     try:
-        return float((None if element is None else element.get(name)) or default)
+        value = float((None if element is None else element.get(name)) or default)
     except ValueError:
         return default
+    return value if math.isfinite(value) else default

@@ -114,7 +114,7 @@ def _polygons(element: Element, kind: str) -> tuple[Ints, Ints]:
         case "triangles":
             return np.full(len(index) // 3, 3), index
         case "polylist":
-            counts = numbers_of(child(element, "vcount")).clip(0, len(index) + 1).astype(np.int_)
+            counts = np.nan_to_num(numbers_of(child(element, "vcount"))).clip(0, len(index) + 1).astype(np.int_)
             return counts[np.cumsum(counts) <= len(index)], index
         case "tristrips":
             triangles = strips(lengths, index)
@@ -133,7 +133,7 @@ def _indices(element: Element, width: int, offset: int) -> Ints:
     try:
         every = np.array(list(map(int, words(element))), np.int_)
     except (ValueError, OverflowError):
-        every = numbers_of(element).clip(-1, 2**53).astype(np.int_)
+        every = np.nan_to_num(numbers_of(element), nan=-1).clip(-1, 2**53).astype(np.int_)
     return every[: len(every) // width * width][offset::width]
 
 

@@ -70,6 +70,7 @@ class Drawing:
         self._handlers: dict[str, Handler] = {}
         self._pieces: list[Floats] = []
         self._count = 0
+        self._corners_left = 5 * MAX_TRIANGLES
         self._visits = 0
         self._levels = 0
         self._including = False
@@ -112,6 +113,9 @@ class Drawing:
             node: The shape.
             state: What is in force.
         """
+        self._corners_left -= len(index)
+        if self._corners_left < 0:
+            node.fail("the mesh has too many corners of polygons")
         ends = np.cumsum(sizes)
         starts = ends - sizes
         bad = np.concatenate([[0], np.cumsum((index < 0) | (index >= len(state.points)))])
@@ -129,7 +133,7 @@ class Drawing:
         found = (self.file.refer(name) for name in names)
         file = next((candidate for candidate in found if candidate is not None), None)
         if file is None:
-            _log.warning("%s: %s: nothing to include", node.document.source(node.offset), node.kind)
+            _log.warning("%s: %s: nothing to include", node.document.path, node.kind)
             return state
         before = self.file, self._handlers, self._including, self._levels
         self.file, self._including, self._levels = file, True, self._levels + 1

@@ -11,7 +11,7 @@ from ravemj.transforms import Floats, Ints
 MAX_DEPTH = 100
 """Nodes nested deeper are refused."""
 
-MAX_NODES = 1_000_000
+MAX_NODES = 200_000
 """More nodes, counting those that USE repeats, are refused."""
 
 
@@ -84,13 +84,17 @@ class Node:
         """
         value = self.fields.get(name)
         numbers = np.array(default) if value is None else self._numbers(name, value)[:width]
-        if len(numbers) < width:
+        if len(numbers) < width or not np.isfinite(numbers).all():
             self.fail(f"{self.kind}.{name} needs {width} numbers")
         return numbers
 
     def number(self, name: str, default: float) -> float:
         """Return a field of one number."""
         return float(self.floats(name, 1, (default,))[0])
+
+    def integer(self, name: str, default: int) -> int:
+        """Return a field of one integer."""
+        return int(self.integers(name, (default,))[:1].sum())
 
     def vectors(self, name: str) -> Floats:
         """Return a field of many points, shape (n, 3); an incomplete last one is left out."""
@@ -142,7 +146,7 @@ class Node:
     def _numbers(self, name: str, value: Value) -> Floats:
         if isinstance(value, Numbers):
             try:
-                return parse_numbers(value.text)
+                value = self.fields[name] = parse_numbers(value.text)  # a node may be used many times
             except ValueError:
                 self.fail(f"{self.kind}.{name} holds something that is no number")
         if isinstance(value, np.ndarray):

@@ -42,7 +42,7 @@ def _transform_separator(drawing: Drawing, node: Node, state: State) -> State:
 
 
 def _switch(drawing: Drawing, node: Node, state: State) -> State:
-    which = int(node.number("whichChild", -1))
+    which = node.integer("whichChild", -1)
     if which == -3:  # all
         return drawing.visit(node.children, state)
     which = max(which, -1)  # -2 is that of an outer switch, which nobody writes into files
@@ -150,8 +150,8 @@ def _indexed_triangle_strips(drawing: Drawing, node: Node, state: State) -> Stat
 
 def _quad_mesh(drawing: Drawing, node: Node, state: State) -> State:
     state_of_shape = _with_own_points(drawing, node, state)
-    rows, columns = (int(node.number(name, 1)) for name in ("verticesPerColumn", "verticesPerRow"))
-    start = int(node.number("startIndex", 0))
+    rows, columns = (node.integer(name, 1) for name in ("verticesPerColumn", "verticesPerRow"))
+    start = node.integer("startIndex", 0)
     if rows < 1 or columns < 1 or start < 0 or start + rows * columns > len(state_of_shape.points):
         node.fail("a QuadMesh with fewer points than it says")
     grid = start + np.arange(rows * columns).reshape(rows, columns)
@@ -168,14 +168,13 @@ def _with_own_points(drawing: Drawing, node: Node, state: State) -> State:
 
 def _runs(node: Node, state: State) -> tuple[Ints, Ints]:
     """Return sizes and corners of a shape that uses points in their order; a size of -1 takes all that are left."""
-    start = int(node.number("startIndex", 0))
-    sizes = node.integers("numVertices", (-1,))
-    left = max(len(state.points) - start - int(sizes[:-1].clip(0).sum()), 0)
+    start = node.integer("startIndex", 0)
+    there = max(len(state.points) - start, 0) if start >= 0 else 0
+    sizes = node.integers("numVertices", (-1,)).clip(-1, there + 1)
     if len(sizes) and sizes[-1] < 0:
-        sizes = np.append(sizes[:-1], left)
+        sizes[-1] = max(there - int(sizes[:-1].clip(0).sum()), 0)
     sizes = sizes.clip(0)
-    fits = np.cumsum(sizes) <= max(len(state.points) - start, 0)
-    sizes = sizes[fits] if start >= 0 else sizes[:0]
+    sizes = sizes[np.cumsum(sizes) <= there]
     return sizes, start + np.arange(int(sizes.sum()))
 
 

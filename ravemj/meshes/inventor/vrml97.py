@@ -20,7 +20,7 @@ def _transform(drawing: Drawing, node: Node, state: State) -> State:
 
 
 def _switch(drawing: Drawing, node: Node, state: State) -> State:
-    which = int(node.number("whichChoice", -1))
+    which = node.integer("whichChoice", -1)
     choice = node.nodes("choice") or node.nodes("children")  # the latter is X3D's name
     drawing.visit(choice[which : which + 1] if which >= 0 else [], state)
     return state
