@@ -111,9 +111,9 @@ def _send_close(display_name: str, window: int) -> None:
 
 @pytest.fixture(scope="module")
 def display() -> Generator[Display]:
-    """A virtual screen of our own, on a number that nobody has."""
+    """A virtual screen of our own, on a number that nobody has; it does not restart whenever its last client leaves."""
     reading, writing = os.pipe()
-    command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"]
+    command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x1024x24", "-noreset"]
     server = subprocess.Popen(command, pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(writing)
     try:
