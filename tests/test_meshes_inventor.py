@@ -78,6 +78,17 @@ def test_last_material_colours_everything_and_hidden_ones_do_not_count(read):
     assert part.ambient == pytest.approx((0.2, 0.2, 0.2))
 
 
+@pytest.mark.parametrize("node", ["LOD", "LevelOfDetail"])
+def test_materials_of_other_levels_of_detail_count(read, vrml97, node):
+    (part,) = read(f"Material {{ diffuseColor 1 0 0 }} {node} {{ Cube {{ }} Group {{ Material {{ }} Sphere {{ }} }} }}")
+    assert part.diffuse == pytest.approx((0.8, 0.8, 0.8))
+    assert len(part.mesh.triangles) == 12
+    (part,) = vrml97(
+        "LOD { level [ Shape { geometry Box { } } Shape { appearance Appearance { material Material { } } } ] }"
+    )
+    assert part.diffuse == pytest.approx((0.8, 0.8, 0.8))
+
+
 def test_without_material_a_mesh_is_white(read):
     (part,) = read("Cube { }")
     assert (part.diffuse, part.ambient, part.transparency) == ((1, 1, 1), (0, 0, 0), 0)
@@ -123,6 +134,7 @@ def test_a_sphere_starts_at_minus_z(read):
          [-0.02586889, -1.62246323, -1.82533526, 4.00144053, 3.49552011, 4.56464195]),
         ("Rotation { rotation 0 0 2 1.5707963267948966 } Scale { scaleFactor 3 1 1 } Cube { }", [-1, -3, -1, 1, 3, 1]),
         ("Group { Translation { translation 5 0 0 } } Cube { }", [4, -1, -1, 6, 1, 1]),
+        ("LOD { Translation { translation 5 0 0 } } Cube { }", [4, -1, -1, 6, 1, 1]),
         ("TransformSeparator { Translation { translation 5 0 0 } } Cube { }", [-1, -1, -1, 1, 1, 1]),
         ("Translation { translation 5 0 0 } ResetTransform { } Cube { }", [-1, -1, -1, 1, 1, 1]),
         ("Switch { whichChild -3 Cube { } Cube { height 6 } }", [-1, -3, -1, 1, 3, 1]),
@@ -216,6 +228,12 @@ def test_included_files(read, node):
     assert part.diffuse == (1, 1, 1)  # colours of included files do not count
 
 
+def test_an_included_file_changes_the_state(read):
+    read("Translation { translation 5 0 0 }", "part.iv")
+    assert bounds(read('File { name "part.iv" } Cube { }')) == pytest.approx([4, -1, -1, 6, 1, 1])
+    assert bounds(read('Separator { File { name "part.iv" } } Cube { }')) == pytest.approx([-1, -1, -1, 1, 1, 1])
+
+
 def test_included_vrml97_takes_the_first_url_that_works(read, vrml97, caplog):
     read("Cube { }", "my part.iv")
     parts = vrml97(
@@ -223,6 +241,9 @@ def test_included_vrml97_takes_the_first_url_that_works(read, vrml97, caplog):
     )
     assert count(parts) == 12
     assert "nothing to include" in caplog.text
+    vrml97("Shape { appearance Appearance { material Material { diffuseColor 1 0 0 } } geometry Box { } }", "red.wrl")
+    (part,) = vrml97('Inline { url "red.wrl" }')
+    assert part.diffuse == (1, 0, 0)  # unlike those of a File node
 
 
 def test_files_that_include_each_other_end(read):

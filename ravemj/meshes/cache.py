@@ -1,7 +1,7 @@
 """Parsed meshes kept on disk, by the content of their files.
 
-An entry is a ``.npz`` of plain arrays, named after the hash of the file, the end of its name and the version of the
-readers. It lists the files that the mesh refers to with their hashes, and counts only while they are the same.
+An entry is a ``.npz`` of plain arrays, named after the hash of the file, the end of its name and the source of the
+readers, so that no entry outlives a change of them. It lists the files that the mesh refers to with their hashes, and counts only while they are the same.
 Whatever goes wrong here is logged at debug level and never stops a mesh from being read.
 
 ``RAVEMJ_CACHE`` names the folder, or ``off`` for none; otherwise it is ``$XDG_CACHE_HOME/ravemj`` or
@@ -9,6 +9,7 @@ Whatever goes wrong here is logged at debug level and never stops a mesh from be
 """
 
 import contextlib
+import functools
 import hashlib
 import json
 import logging
@@ -26,9 +27,6 @@ from ravemj.meshes.parts import MeshPart
 from ravemj.scene import Mesh
 
 _log = logging.getLogger(__name__)
-
-_VERSION = 1
-"""To be raised whenever a reader gives something else for the same file."""
 
 MAX_BYTES = 1 << 30
 """The cache is pruned to this size, those entries first that were used least recently."""
@@ -53,13 +51,23 @@ def remembered(content: bytes, kind: str, read: Callable[[], tuple[Parts, dict[s
     if folder is None:
         return read()[0]
     key = hashlib.sha256(content)
-    key.update(f"\0{kind}\0{_VERSION}".encode())
+    key.update(f"\0{kind}\0{_readers()}".encode())
     entry = folder / f"{key.hexdigest()}.npz"
     parts = _load(entry)
     if parts is None:
         parts, references = read()
         _store(entry, _packed(parts, references))
     return parts
+
+
+@functools.cache
+def _readers() -> str:
+    """Return a hash of the modules beside this one, which make what is kept."""
+    digest = hashlib.sha256()
+    with contextlib.suppress(OSError):
+        for path in sorted(Path(__file__).parent.rglob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def cache_folder() -> Path | None:

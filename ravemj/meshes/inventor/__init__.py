@@ -23,11 +23,11 @@ def read_inventor(file: MeshFile) -> tuple[MeshPart, ...]:
     """
     trees: dict[str, list[Node]] = {}
 
-    def draw(drawing: Drawing, opened: MeshFile, state: State) -> None:
+    def draw(drawing: Drawing, opened: MeshFile, state: State) -> State:
         if opened.path not in trees:
             trees[opened.path] = _nodes(opened)
         handlers = vrml97.HANDLERS if opened.data.startswith(b"#VRML V2") else old.HANDLERS
-        drawing.nodes(trees[opened.path], handlers, state)
+        return drawing.nodes(trees[opened.path], handlers, state)
 
     drawing = Drawing(file, draw)
     draw(drawing, file, State())

@@ -51,8 +51,8 @@ class Finish:
 Handler = Callable[["Drawing", Node, State], State]
 """Draws a node; the state that it returns is that of the nodes after it."""
 
-Opener = Callable[["Drawing", MeshFile, State], None]
-"""Draws a file that another one includes."""
+Opener = Callable[["Drawing", MeshFile, State], State]
+"""Draws a file that another one includes; returns the state at its end."""
 
 
 class Drawing:
@@ -60,7 +60,7 @@ class Drawing:
 
     Attributes:
         file: The file being drawn.
-        finish: The last material so far; those of included files do not count.
+        finish: The last material so far.
     """
 
     def __init__(self, file: MeshFile, opener: Opener) -> None:
@@ -73,16 +73,17 @@ class Drawing:
         self._corners_left = 5 * MAX_TRIANGLES
         self._visits = 0
         self._levels = 0
-        self._including = False
+        self._painting = True
+        self._showing = True
 
     def corners(self) -> Floats:
         """Return all triangles, shape (n, 3, 3)."""
         return np.concatenate([np.zeros((0, 3, 3)), *self._pieces])
 
-    def nodes(self, nodes: Iterable[Node], handlers: dict[str, Handler], state: State) -> None:
+    def nodes(self, nodes: Iterable[Node], handlers: dict[str, Handler], state: State) -> State:
         """Draw the nodes of a file, in the dialect of ``handlers``."""
         self._handlers = handlers
-        self.visit(nodes, state)
+        return self.visit(nodes, state)
 
     def visit(self, nodes: Iterable[Node], state: State) -> State:
         """Draw nodes one after the other; what is unknown is passed over, but not its children."""
@@ -96,8 +97,16 @@ class Drawing:
         self._levels -= 1
         return state
 
+    def look(self, nodes: Iterable[Node], state: State) -> None:
+        """Go through nodes for their materials alone: those of hidden levels of detail count in OpenRAVE."""
+        before, self._showing = self._showing, False
+        self.visit(nodes, state)
+        self._showing = before
+
     def add(self, corners: Floats, node: Node, state: State) -> State:
         """Keep triangles given in the shape's frame."""
+        if not self._showing:
+            return state
         self._count += len(corners)
         if self._count > MAX_TRIANGLES:
             node.fail(f"the mesh has more than {MAX_TRIANGLES} triangles")
@@ -128,25 +137,35 @@ class Drawing:
             triangles = faces.fans(starts, sizes)
         return self.add(state.points[index[triangles]], node, state)
 
-    def include(self, names: Iterable[str], node: Node, state: State) -> State:
-        """Draw the first of the named files that can be read; none is no error, as in OpenRAVE."""
+    def include(self, names: Iterable[str], node: Node, state: State, painting: bool) -> State:
+        """Draw the first of the named files that can be read; none is no error, as in OpenRAVE.
+
+        Args:
+            names: The files.
+            node: The node that names them.
+            state: What is in force.
+            painting: Whether the materials of the file count.
+
+        Returns:
+            The state at the end of the file.
+        """
         found = (self.file.refer(name) for name in names)
         file = next((candidate for candidate in found if candidate is not None), None)
         if file is None:
             _log.warning("%s: %s: nothing to include", node.document.path, node.kind)
             return state
-        before = self.file, self._handlers, self._including, self._levels
-        self.file, self._including, self._levels = file, True, self._levels + 1
+        before = self.file, self._handlers, self._painting, self._showing, self._levels
+        self.file, self._painting, self._levels = file, self._painting and painting, self._levels + 1
         try:
-            self._opener(self, file, state)
+            state = self._opener(self, file, state)
         except SourceError as error:
             _log.warning("%s", error)
-        self.file, self._handlers, self._including, self._levels = before
+        self.file, self._handlers, self._painting, self._showing, self._levels = before
         return state
 
     def paint(self, finish: Finish) -> None:
         """Remember the last material."""
-        if not self._including:
+        if self._painting:
             self.finish = finish
 
 

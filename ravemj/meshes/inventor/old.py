@@ -50,12 +50,13 @@ def _switch(drawing: Drawing, node: Node, state: State) -> State:
 
 
 def _first_child(drawing: Drawing, node: Node, state: State) -> State:
-    drawing.visit(node.children[:1], state)
-    return state
+    after = drawing.visit(node.children[:1], state)
+    drawing.look(node.children[1:], state)
+    return after
 
 
 def _include(drawing: Drawing, node: Node, state: State) -> State:
-    return drawing.include(node.words("name", ()), node, state)
+    return drawing.include(node.words("name", ()), node, state, painting=False)
 
 
 def _translation(_drawing: Drawing, node: Node, state: State) -> State:

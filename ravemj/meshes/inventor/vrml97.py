@@ -27,12 +27,15 @@ def _switch(drawing: Drawing, node: Node, state: State) -> State:
 
 
 def _level_of_detail(drawing: Drawing, node: Node, state: State) -> State:
-    drawing.visit((node.nodes("level") or node.nodes("children"))[:1], state)
+    levels = node.nodes("level") or node.nodes("children")
+    drawing.visit(levels[:1], state)
+    drawing.look(levels[1:], state)
     return state
 
 
 def _inline(drawing: Drawing, node: Node, state: State) -> State:
-    return drawing.include(node.words("url", ()), node, state)
+    drawing.include(node.words("url", ()), node, state, painting=True)
+    return state
 
 
 def _shape(drawing: Drawing, node: Node, state: State) -> State:
