@@ -24,7 +24,24 @@ from ravemj.errors import (
 )
 from ravemj.extension import load_ipython_extension
 from ravemj.motion import Motion, read_motion
-from ravemj.rave import CheckLimitsAction, Environment, Joint, KinBody, Link, RaveGetEnvironment, Robot, load
+from ravemj.rave import (
+    AttachedSensor,
+    CheckLimitsAction,
+    Environment,
+    Geometry,
+    GeometryType,
+    Joint,
+    JointType,
+    KinBody,
+    Link,
+    Manipulator,
+    PhysicsEngine,
+    RaveGetEnvironment,
+    Robot,
+    Sensor,
+    TriMesh,
+    load,
+)
 from ravemj.recording import record
 from ravemj.viewers import Viewer
 
@@ -34,24 +51,32 @@ OpenRAVEException = openrave_exception = RavemjError
 
 __all__ = [
     "ArgumentError",
+    "AttachedSensor",
     "CheckLimitsAction",
     "CompileError",
     "Diagnostic",
     "Environment",
     "ErrorCode",
+    "Geometry",
+    "GeometryType",
     "Joint",
+    "JointType",
     "KinBody",
     "Link",
+    "Manipulator",
     "Motion",
     "OpenRAVEException",
     "OutputError",
+    "PhysicsEngine",
     "RaveGetEnvironment",
     "RavemjError",
     "RavemjWarning",
     "RenderingError",
     "Robot",
+    "Sensor",
     "Source",
     "SourceError",
+    "TriMesh",
     "Viewer",
     "__version__",
     "load",

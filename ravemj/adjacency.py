@@ -24,9 +24,9 @@ def adjacent_pairs(body: KinBody) -> set[Pair]:
 
     def adjacent(first: int, second: int) -> bool:
         parts = _ordered(rigid[first], rigid[second])
+        joined = parts[0] == parts[1] or parts in one_joint
         return (
-            parts[0] == parts[1]
-            or parts in one_joint
+            (joined and body.joined_links_adjacent)
             or connected[first] != connected[second]
             or first in shapeless
             or second in shapeless

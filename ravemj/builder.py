@@ -9,8 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from ravemj import hierarchy, scene
-from ravemj.errors import Diagnostics, Source
-from ravemj.joints import measured_value, place_links
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.following import Equations, Follower, evaluation_order, leaders, resolve
+from ravemj.joints import measured_values, place_links
+from ravemj.manipulators import ManipulatorBuilder, freeze_manipulator
 from ravemj.transforms import ZERO, Pose, Vec3, rotate, scale
 
 DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 0.4)))
@@ -40,18 +42,30 @@ class JointBuilder:
     T_first_second: Pose
     anchor: Vec3
     axes: tuple[scene.Axis, ...]
-    active: bool
+    enabled: bool
+    equations: Equations | None = None
     source: Source
+
+    @property
+    def active(self) -> bool:
+        """True where it has DOFs."""
+        return self.enabled and self.equations is None
 
     @property
     def fixed(self) -> bool:
         """True for a weld."""
-        return all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
+        moves = self.equations is not None and self.equations.position
+        return not moves and all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
 
 
 @dataclass(slots=True)
 class BodyBuilder:
-    """A body in the making."""
+    """A body in the making.
+
+    Attributes:
+        joint_values: Values of all DOFs that the file asks for, or None.
+        refusal: Why OpenRAVE ends its reading behind this body, though the body is there; or None.
+    """
 
     is_robot: bool
     source: Source
@@ -59,6 +73,11 @@ class BodyBuilder:
     links: list[LinkBuilder] = field(default_factory=list[LinkBuilder])
     joints: list[JointBuilder] = field(default_factory=list[JointBuilder])
     adjacent: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
+    joined_links_adjacent: bool = True
+    manipulators: list[ManipulatorBuilder] = field(default_factory=list[ManipulatorBuilder])
+    sensors: list[scene.AttachedSensor] = field(default_factory=list[scene.AttachedSensor])
+    joint_values: list[float] | None = None
+    refusal: SourceError | None = None
 
     def find_link(self, name: str) -> int | None:
         """Return the index of the first link of that name, or None."""
@@ -74,30 +93,116 @@ class BodyBuilder:
 
         Args:
             diagnostics: Takes a warning for every value that is moved into its limits.
+
+        Raises:
+            SourceError: a manipulator is impossible.
         """
-        active = [joint for joint in self.joints if joint.active]
-        listed = active + [joint for joint in self.joints if not joint.active]
-        edges = [hierarchy.Edge(joint.links, joint.fixed, joint.active) for joint in listed]
-        decided = hierarchy.decide([link.static for link in self.links], edges)
+        listed = self._in_order()
+        has_dofs = bool(listed and listed[0].active)
+        mimics = resolve(_followers(listed), diagnostics)
+        decided = self._decide(listed, mimics)
         poses = [link.pose for link in self.links]
         joints = [
-            _measured(_directed(joint, swap, index in decided.order), poses, diagnostics)
+            _directed(joint, mimics.get(index), swap=swap, places_child=index in decided.order, has_dofs=has_dofs)
             for index, (joint, swap) in enumerate(zip(listed, decided.swapped, strict=True))
         ]
-        if active:
-            place_links(poses, [joints[index] for index in decided.order])
-        return scene.KinBody(
+        if has_dofs:
+            joints = self._settled(joints, poses, diagnostics)
+            placing = [joints[index] for index in decided.order]
+            place_links(poses, placing, [[axis.value for axis in joint.axes] for joint in placing])
+        active = tuple(joint for joint, built in zip(joints, listed, strict=True) if built.active)
+        passive = tuple(joint for joint, built in zip(joints, listed, strict=True) if not built.active)
+        body = scene.KinBody(
             name=self.name,
             is_robot=self.is_robot,
             links=tuple(_frozen_link(link, pose) for link, pose in zip(self.links, poses, strict=True)),
-            joints=tuple(joints[: len(active)]),
-            passive_joints=tuple(joints[len(active) :]),
+            joints=active,
+            passive_joints=passive,
             adjacent=tuple(self.adjacent),
+            joined_links_adjacent=self.joined_links_adjacent,
+            sensors=tuple(self.sensors),
             source=self.source,
         )
+        manipulators = tuple(freeze_manipulator(built, body, diagnostics) for built in self.manipulators)
+        return replace(body, manipulators=manipulators)
+
+    def _in_order(self) -> list[JointBuilder]:
+        """Return the active joints, then the disabled ones, then the followers."""
+        active = [joint for joint in self.joints if joint.active]
+        disabled = [joint for joint in self.joints if not joint.enabled]
+        return active + disabled + [joint for joint in self.joints if joint.enabled and not joint.active]
+
+    def _decide(self, listed: Sequence[JointBuilder], mimics: dict[int, scene.Mimic]) -> hierarchy.Hierarchy:
+        edges: list[hierarchy.Edge] = []
+        for index, joint in enumerate(listed):
+            mimic = mimics.get(index)
+            follows = leaders(mimic.expression) if mimic is not None and mimic.expression is not None else ()
+            passive = tuple(leader for leader in follows if not listed[leader].active)
+            edges.append(hierarchy.Edge(joint.links, joint.fixed and index not in mimics, joint.active, passive))
+        return hierarchy.decide([link.static for link in self.links], edges)
+
+    def _settled(
+        self, joints: Sequence[scene.Joint], poses: Sequence[Pose], diagnostics: Diagnostics
+    ) -> list[scene.Joint]:
+        """Return the joints with their values: measured, or as the file asks, moved into the limits."""
+        values = [list(measured_values(joint, poses[joint.parent].inverse() @ poses[joint.child])) for joint in joints]
+        values = _limited(joints, values, diagnostics)
+        active = sum(1 for joint in self.joints if joint.active)
+        values = self._asked(joints[:active], values, diagnostics)
+        follow(joints, values)
+        return [
+            replace(
+                joint,
+                axes=tuple(replace(axis, value=v) for axis, v in zip(joint.axes, joint_values, strict=True)),
+            )
+            for joint, joint_values in zip(joints, values, strict=True)
+        ]
+
+    def _asked(
+        self, active: Sequence[scene.Joint], values: list[list[float]], diagnostics: Diagnostics
+    ) -> list[list[float]]:
+        """Put the values that ``<jointvalues>`` asks for in place of the measured ones."""
+        if self.joint_values is None:
+            return values
+        dof = sum(len(joint.axes) for joint in active)
+        if len(self.joint_values) != dof:
+            message = f"<jointvalues> has {len(self.joint_values)} values, and '{self.name}' has {dof} DOFs; no effect"
+            diagnostics.warn("number-count", message, self.source)
+            return values
+        asked = iter(self.joint_values)
+        chosen = [[next(asked) for _ in joint.axes] for joint in active]
+        still = [[0.0] * len(axes) if joint.static else axes for joint, axes in zip(active, chosen, strict=True)]
+        return _limited(active, still, diagnostics) + values[len(active) :]
 
 
-def _directed(joint: JointBuilder, swap: bool, places_child: bool) -> scene.Joint:
+def follow(joints: Sequence[scene.Joint], values: list[list[float]]) -> None:
+    """Compute the values of the followers from those of the others, in place, inside their limits."""
+    mimics = {index: joint.mimic for index, joint in enumerate(joints) if joint.mimic is not None}
+    for index in evaluation_order(mimics):
+        expression = mimics[index].expression
+        axis = joints[index].axes[0]
+        if expression is not None:
+            named = {f"joint{leader}": values[leader][0] for leader in leaders(expression)}
+            values[index][0] = _inside(axis, expression.evaluate(named))
+
+
+def _inside(axis: scene.Axis, value: float) -> float:
+    return value if axis.circular else min(max(value, axis.lower), axis.upper)
+
+
+def _followers(listed: Sequence[JointBuilder]) -> list[Follower]:
+    followers: list[Follower] = []
+    dof = 0
+    for joint in listed:
+        count = len(joint.axes) if joint.active else 0
+        followers.append(Follower(joint.name, tuple(range(dof, dof + count)), joint.equations, joint.source))
+        dof += count
+    return followers
+
+
+def _directed(
+    joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, places_child: bool, has_dofs: bool
+) -> scene.Joint:
     """Return the joint with parent and child decided; swapping turns its axes round."""
     parent, child = joint.links
     T_parent_child, anchor, axes = joint.T_first_second, joint.anchor, joint.axes
@@ -106,6 +211,9 @@ def _directed(joint: JointBuilder, swap: bool, places_child: bool) -> scene.Join
         T_parent_child = T_parent_child.inverse()
         anchor = T_parent_child.apply(anchor)
         axes = tuple(replace(axis, direction=scale(rotate(T_parent_child.wxyz, axis.direction), -1.0)) for axis in axes)
+    if joint.fixed and has_dofs:  # OpenRAVE moves the frame of a weld to its child
+        anchor = T_parent_child.position
+        axes = tuple(replace(axis, direction=rotate(T_parent_child.wxyz, axis.direction)) for axis in axes)
     return scene.Joint(
         name=joint.name,
         kind=joint.kind,
@@ -115,30 +223,30 @@ def _directed(joint: JointBuilder, swap: bool, places_child: bool) -> scene.Join
         anchor=anchor,
         axes=axes,
         places_child=places_child,
+        mimic=mimic,
         source=joint.source,
     )
 
 
-def _measured(joint: scene.Joint, poses: Sequence[Pose], diagnostics: Diagnostics) -> scene.Joint:
-    """Return the joint with the values that the poses of its links show, moved into its limits."""
-    T_parent_child = poses[joint.parent].inverse() @ poses[joint.child]
-    axes = tuple(_measured_axis(joint, axis, T_parent_child, diagnostics) for axis in joint.axes)
-    return replace(joint, axes=axes)
-
-
-def _measured_axis(joint: scene.Joint, axis: scene.Axis, now: Pose, diagnostics: Diagnostics) -> scene.Axis:
-    if joint.static:
-        return replace(axis, value=0.0)
-    measured = measured_value(joint, axis, now)
-    value = min(max(measured, axis.lower), axis.upper)
-    if value != measured:
-        diagnostics.warn(
-            "value-outside-limits",
-            f"joint '{joint.name}' loads at {value:.6g}, not at {measured:.6g}, which its limits "
-            f"[{axis.lower:.6g}, {axis.upper:.6g}] exclude",
-            joint.source,
-        )
-    return replace(axis, value=value)
+def _limited(
+    joints: Sequence[scene.Joint], values: Sequence[list[float]], diagnostics: Diagnostics
+) -> list[list[float]]:
+    """Return the values moved into the joints' limits, with a warning for each that moves."""
+    limited: list[list[float]] = []
+    for joint, joint_values in zip(joints, values, strict=True):
+        if joint.mimic is not None:  # its value will be computed
+            limited.append(joint_values)
+            continue
+        limited.append([_inside(axis, value) for axis, value in zip(joint.axes, joint_values, strict=True)])
+        for axis, value, inside in zip(joint.axes, joint_values, limited[-1], strict=True):
+            if value != inside:
+                diagnostics.warn(
+                    "value-outside-limits",
+                    f"joint '{joint.name}' loads at {inside:.6g}, not at {value:.6g}, which its limits "
+                    f"[{axis.lower:.6g}, {axis.upper:.6g}] exclude",
+                    joint.source,
+                )
+    return limited
 
 
 def _frozen_link(link: LinkBuilder, pose: Pose) -> scene.Link:

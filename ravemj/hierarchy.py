@@ -19,11 +19,13 @@ class Edge:
         links: Indices of its two links, in the order in which the file lists them.
         fixed: True for a weld.
         active: True where it has a DOF.
+        follows: Indices of the passive joints that it follows.
     """
 
     links: tuple[int, int]
     fixed: bool
     active: bool
+    follows: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +49,8 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
         edges: The joints: active ones in DOF order, then passive ones.
     """
     depths = _depths(static_links, edges)
-    swapped = tuple(_is_swapped(edge.links, static_links, depths) for edge in edges)
+    has_dofs = any(edge.active for edge in edges)  # without any, OpenRAVE directs nothing
+    swapped = tuple(has_dofs and _is_swapped(edge.links, static_links, depths) for edge in edges)
     ends = [tuple(reversed(edge.links)) if swap else edge.links for edge, swap in zip(edges, swapped, strict=True)]
     unreached = len(static_links)
 
@@ -56,12 +59,45 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
         return first, second, not edges[index].active, index
 
     placed_by: dict[int, int] = {}
-    for index in sorted(range(len(edges)), key=key):
+    order = _leaders_first(sorted(range(len(edges)), key=key), edges)
+    for index in order:
         parent, child = ends[index]
         free = child != 0 and child not in placed_by
         if (free or edges[index].fixed) and child not in _ancestors(parent, placed_by, ends):
             placed_by[child] = index
-    return Hierarchy(swapped, tuple(sorted(placed_by.values(), key=key)))
+    return Hierarchy(swapped, _parents_first(set(placed_by.values()), ends, order))
+
+
+def _leaders_first(order: Sequence[int], edges: Sequence[Edge]) -> list[int]:
+    """Move each joint behind the passive joints that it follows."""
+    moved: dict[int, None] = {}
+
+    def visit(index: int, waiting: frozenset[int]) -> None:
+        for leader in edges[index].follows:
+            if leader not in waiting:
+                visit(leader, waiting | {index})
+        moved.setdefault(index)
+
+    for index in order:
+        visit(index, frozenset({index}))
+    return list(moved)
+
+
+def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Sequence[int]) -> tuple[int, ...]:
+    """Sort the joints that place a link so that each comes behind the one that places its parent."""
+    placed_by = {ends[index][1]: index for index in placing}
+    done: dict[int, None] = {}
+
+    def visit(index: int) -> None:
+        parent = ends[index][0]
+        if parent in placed_by and placed_by[parent] not in done:
+            visit(placed_by[parent])
+        done.setdefault(index)
+
+    for index in order:
+        if index in placing:
+            visit(index)
+    return tuple(done)
 
 
 def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int | None]:

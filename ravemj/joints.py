@@ -4,58 +4,93 @@ import math
 from collections.abc import Sequence
 
 from ravemj.scene import Axis, Joint
-from ravemj.transforms import Pose, add, conjugate, dot, multiply, rotate, scale, wxyz_from_axis_angle
+from ravemj.transforms import Pose, Vec3, Wxyz, add, conjugate, dot, multiply, rotate, scale, wxyz_from_axis_angle
 
 ROUNDING = 1e-12
 """A measured joint value [rad or m] below this is rounding of the poses, not a displacement."""
 
 
-def place_links(poses: list[Pose], joints: Sequence[Joint]) -> None:
-    """Place the child link of each joint, in order, by the joint's value: forward kinematics in place.
+def place_links(poses: list[Pose], joints: Sequence[Joint], values: Sequence[Sequence[float]]) -> None:
+    """Place the child link of each joint, in order: forward kinematics in place.
 
     Args:
         poses: World poses of all links.
         joints: The joints that place a link, parents before children.
+        values: The values of each joint's axes [rad or m].
     """
-    for joint in joints:
-        poses[joint.child] = poses[joint.parent] @ relative_pose(joint, [axis.value for axis in joint.axes])
+    for joint, joint_values in zip(joints, values, strict=True):
+        poses[joint.child] = poses[joint.parent] @ relative_pose(joint, joint_values)
 
 
 def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
     """Return the pose of a joint's child in its parent at the given values [rad or m]."""
     if joint.static:
         return joint.T_parent_child
-    motion = Pose()
-    for axis, value in zip(joint.axes, values, strict=True):
-        motion = motion @ _axis_motion(joint, axis, value - axis.reference)
+    if joint.kind == "slider":
+        (axis,), (value,) = joint.axes, values
+        motion = Pose(scale(axis.direction, value - axis.reference))
+    else:
+        motion = _about(joint.anchor, rotation(joint, values))
     return motion @ joint.T_parent_child
 
 
-def _axis_motion(joint: Joint, axis: Axis, displacement: float) -> Pose:
-    if joint.kind == "slider":
-        return Pose(scale(axis.direction, displacement))
-    wxyz = wxyz_from_axis_angle(axis.direction, displacement)
-    return Pose(add(joint.anchor, scale(rotate(wxyz, joint.anchor), -1.0)), wxyz)
+def rotation(joint: Joint, values: Sequence[float]) -> Wxyz:
+    """Return how far a joint has turned from ``T_parent_child``, in the parent's axes."""
+    if joint.kind == "spherical":
+        return wxyz_from_rotation_vector((values[0], values[1], values[2]))
+    turned: Wxyz = (1.0, 0.0, 0.0, 0.0)
+    for axis, value in zip(joint.axes, values, strict=True):
+        turned = multiply(turned, wxyz_from_axis_angle(axis.direction, value - axis.reference))
+    return turned
 
 
-def measured_value(joint: Joint, axis: Axis, now: Pose) -> float:
-    """Return the value of a joint that the poses of its links show.
+def _about(anchor: Vec3, wxyz: Wxyz) -> Pose:
+    """Return the motion that turns about a point."""
+    return Pose(add(anchor, scale(rotate(wxyz, anchor), -1.0)), wxyz)
+
+
+def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
+    """Return the values of a joint that the poses of its links show.
 
     Args:
         joint: The joint.
-        axis: One of its axes.
         now: ``T_parent_child`` as it is.
 
     Returns:
-        The value [rad or m]; an angle lies in (-pi, pi], or in the turn around the middle of limits beyond that.
+        A value [rad or m] for each axis. An angle lies in (-pi, pi], or in the turn around the middle of limits beyond
+        that; a joint with two axes counts as unmoved.
     """
+    if joint.static:
+        return tuple(0.0 for _ in joint.axes)
     rest = joint.T_parent_child
+    turned = multiply(now.wxyz, conjugate(rest.wxyz))
+    if joint.kind == "spherical":
+        return tuple(part if abs(part) > ROUNDING else 0.0 for part in rotation_vector(turned))
+    if joint.kind == "hinge2":
+        return tuple(axis.reference for axis in joint.axes)
+    (axis,) = joint.axes
     if joint.kind == "slider":
         moved = dot(axis.direction, add(now.position, scale(rest.position, -1.0)))
     else:
-        w, x, y, z = multiply(now.wxyz, conjugate(rest.wxyz))
-        moved = 2 * math.atan2(dot(axis.direction, (x, y, z)), w)
-        beyond = axis.lower < -math.pi or axis.upper > math.pi
-        middle = (axis.lower + axis.upper) / 2 if beyond else 0.0
-        moved -= math.tau * round((axis.reference + moved - middle) / math.tau)
-    return axis.reference + (moved if abs(moved) > ROUNDING else 0.0)
+        moved = _nearest_turn(axis, 2 * math.atan2(dot(axis.direction, turned[1:]), turned[0]))
+    return (axis.reference + (moved if abs(moved) > ROUNDING else 0.0),)
+
+
+def _nearest_turn(axis: Axis, moved: float) -> float:
+    """Add full turns to an angle so that the joint's value comes near the middle of its range."""
+    beyond = axis.lower < -math.pi or axis.upper > math.pi
+    middle = (axis.lower + axis.upper) / 2 if beyond else 0.0
+    return moved - math.tau * round((axis.reference + moved - middle) / math.tau)
+
+
+def wxyz_from_rotation_vector(vector: Vec3) -> Wxyz:
+    """Return the rotation about a vector by its length [rad]."""
+    return wxyz_from_axis_angle(vector, math.sqrt(dot(vector, vector)))
+
+
+def rotation_vector(wxyz: Wxyz) -> Vec3:
+    """Return the axis of a rotation times its angle, which is at most pi [rad]."""
+    w, x, y, z = wxyz if wxyz[0] >= 0 else (-wxyz[0], -wxyz[1], -wxyz[2], -wxyz[3])
+    sine = math.sqrt(x * x + y * y + z * z)
+    factor = 2.0 if sine < 1e-12 else 2 * math.atan2(sine, w) / sine
+    return (factor * x, factor * y, factor * z)

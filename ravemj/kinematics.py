@@ -1,81 +1,194 @@
 """Joint values and link poses of one body: the map between OpenRAVE's DOFs and MuJoCo's ``qpos``.
 
-Functions over ``(MjModel, MjData)`` with the index maps made once. Nothing here recompiles a model.
+The index maps are made once for a compiled model. Nothing here recompiles it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
-from ravemj.joints import measured_value
+from ravemj.following import evaluation_order
+from ravemj.joints import measured_values, rotation_vector, wxyz_from_rotation_vector
 from ravemj.mjcf import BodyNames
-from ravemj.scene import KinBody
-from ravemj.transforms import Floats, Ints, Pose, wxyz_from_rows
+from ravemj.scene import Axis, Joint, KinBody
+from ravemj.transforms import Floats, Ints, Pose, conjugate, multiply, wxyz_from_rows
 
 LARGEST = float(np.finfo(np.float64).max)
+WELDED = -1
+
+
+@dataclass(frozen=True, slots=True)
+class Ball:
+    """A spherical joint: three DOFs that are a rotation vector, and a quaternion in ``qpos``."""
+
+    joint: Joint
+    dofs: slice
+    qpos: slice
+
+    def to_qpos(self, vector: Sequence[float]) -> tuple[float, float, float, float]:
+        """Return MuJoCo's quaternion; it turns in the child's axes, the rotation vector in the parent's."""
+        rest = self.joint.T_parent_child.wxyz
+        turned = wxyz_from_rotation_vector((vector[0], vector[1], vector[2]))
+        return multiply(conjugate(rest), multiply(turned, rest))
+
+    def to_values(self, wxyz: Sequence[float]) -> tuple[float, float, float]:
+        """Return the rotation vector of MuJoCo's quaternion."""
+        rest = self.joint.T_parent_child.wxyz
+        w, x, y, z = wxyz
+        return rotation_vector(multiply(rest, multiply((w, x, y, z), conjugate(rest))))
+
+
+@dataclass(frozen=True, slots=True)
+class Follower:
+    """A mimic joint: its value is a function of the values of all joints.
+
+    Attributes:
+        joint: Its index among the active joints followed by the passive ones.
+        qpos: Where its value is in ``qpos``, or ``WELDED`` where it moves no link.
+        axis: Its limits.
+        evaluate: The function of the first values of all joints.
+    """
+
+    joint: int
+    qpos: int
+    axis: Axis
+    evaluate: Callable[[Sequence[float]], float]
 
 
 class BodyKinematics:
     """Reads and writes the configuration of one body in a compiled model.
 
     Attributes:
+        body: What the file says.
+        model: The model.
+        data: Its state.
         dof: Number of degrees of freedom.
         lower: Lower limits, shape (dof,); of circular joints the limits that OpenRAVE reports.
         upper: Upper limits, shape (dof,).
         circular: For each DOF, whether it turns without end, shape (dof,).
         body_ids: MuJoCo's index of each link, shape (links,).
-        qpos_indices: Where each DOF is in ``qpos``, shape (dof,); -1 for that of a joint that moves no link.
+        qpos_indices: Where each DOF is in ``qpos``, shape (dof,); -1 for that of a joint that moves no link, and for
+            those of a spherical joint.
+        first_dofs: First DOF of each active joint.
+        followers: The mimic joints, each behind those that it depends on.
+        balls: The spherical joints.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, body: KinBody, names: BodyNames) -> None:
-        self._model, self._data = model, data
+        self.body = body
+        self.model, self.data = model, data
         self._qpos, self._xpos, self._xmat = data.qpos, data.xpos, data.xmat
         axes = body.dof_axes
         self.dof = len(axes)
         self.lower = np.array([axis.lower for axis in axes])
         self.upper = np.array([axis.upper for axis in axes])
         self.circular = np.array([axis.circular for axis in axes], dtype=bool)
-        self.body_ids = np.array([_index(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in names.links], dtype=int)
-        self.qpos_indices = np.array([_qpos_index(model, name) for name in names.joints], dtype=int)
         self._bounds = [
             (-LARGEST, LARGEST) if axis.circular else (axis.lower, axis.upper) for axis in axes
         ]  # plain floats: for few joints a loop over them is faster than numpy
+        self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
+        self._joints = (*body.joints, *body.passive_joints)
+        self.first_dofs: list[int] = np.cumsum([0, *(len(joint.axes) for joint in body.joints)]).tolist()[:-1]
+        self.balls = self._find_balls(names)
+        self.qpos_indices = self._find_qpos(names)
+        self.followers = self._find_followers(names)
         self._free = self.qpos_indices >= 0
         self._to_qpos = _index_range(self.qpos_indices[self._free])
-        self._all_free = bool(self._free.all())
+        self._plain = bool(self._free.all()) and not self.followers
+        self._loose = self._find_loose(names)
         self._links = _index_range(self.body_ids)
-        self._loose = [(dof, joint) for dof, joint in enumerate(body.joints) if names.joints[dof] is None]
         self._homogeneous = np.tile(np.eye(4), (len(self.body_ids), 1, 1))
+        self._passive_values = [[axis.value for axis in joint.axes] for joint in body.passive_joints]
+
+    def _find_balls(self, names: BodyNames) -> list[Ball]:
+        balls: list[Ball] = []
+        for joint, first, joint_names in zip(self.body.joints, self.first_dofs, names.joints, strict=False):
+            if joint.kind == "spherical" and joint_names:
+                address = _qpos_index(self.model, joint_names[0])
+                balls.append(Ball(joint, slice(first, first + 3), slice(address, address + 4)))
+        return balls
+
+    def _find_qpos(self, names: BodyNames) -> Ints:
+        indices: list[int] = []
+        for joint, joint_names in zip(self.body.joints, names.joints, strict=False):
+            if joint.kind == "spherical" or not joint_names:
+                indices += [WELDED] * len(joint.axes)
+            else:
+                indices += [_qpos_index(self.model, name) for name in joint_names]
+        return np.array(indices, dtype=int)
+
+    def _find_followers(self, names: BodyNames) -> list[Follower]:
+        mimics = {index: joint.mimic for index, joint in enumerate(self._joints) if joint.mimic is not None}
+        variables = [f"joint{index}" for index in range(len(self._joints))]
+        followers: list[Follower] = []
+        for index in evaluation_order(mimics):
+            expression = mimics[index].expression
+            if expression is not None:
+                joint_names = names.joints[index]
+                qpos = _qpos_index(self.model, joint_names[0]) if joint_names else WELDED
+                axis = self._joints[index].axes[0]
+                followers.append(Follower(index, qpos, axis, expression.compiled(variables)))
+        return followers
+
+    def _find_loose(self, names: BodyNames) -> list[tuple[int, Joint]]:
+        """Return the joints that close a loop, with their first DOF."""
+        joints = zip(self.first_dofs, self.body.joints, names.joints, strict=False)
+        return [(first, joint) for first, joint, found in joints if not found and not joint.static]
 
     def values(self) -> Floats:
         """Return the joint values [rad or m], shape (dof,); a copy.
 
         A weld's is 0; a joint that closes a loop has the value that the poses of its links show.
         """
-        if self._all_free:
+        if self._plain:
             return self._qpos[self._to_qpos].copy()
         values = np.zeros(self.dof)
         values[self._free] = self._qpos[self._to_qpos]
+        for ball in self.balls:
+            values[ball.dofs] = ball.to_values(self._qpos[ball.qpos].tolist())
         for dof, joint in self._loose:
-            if not joint.static:
-                T_parent_child = self._pose(joint.parent).inverse() @ self._pose(joint.child)
-                values[dof] = measured_value(joint, joint.axes[0], T_parent_child)
+            T_parent_child = self._pose(joint.parent).inverse() @ self._pose(joint.child)
+            values[dof : dof + len(joint.axes)] = measured_values(joint, T_parent_child)
         return values
 
-    def _pose(self, link: int) -> Pose:
-        body_id = self.body_ids[link]
-        x, y, z = self._xpos[body_id].tolist()
-        return Pose((x, y, z), wxyz_from_rows(self._xmat[body_id].reshape(3, 3).tolist()))
-
-    def set_values(self, values: Floats) -> None:
-        """Set the joint values and place the links: forward kinematics, no limits checked.
+    def set_values(self, values: Floats, *, limit_followers: bool = True) -> None:
+        """Set the joint values and place the links: forward kinematics, no limits of DOFs checked.
 
         Args:
             values: Joint values [rad or m], shape (dof,).
+            limit_followers: Whether mimic joints stop at their limits.
         """
-        self._qpos[self._to_qpos] = values if self._all_free else values[self._free]
-        mujoco.mj_kinematics(self._model, self._data)
+        if self._plain:
+            self._qpos[self._to_qpos] = values
+        else:
+            self._qpos[self._to_qpos] = values[self._free]
+            for ball in self.balls:
+                self._qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
+            if self.followers:
+                self._follow(values, limit_followers=limit_followers)
+        mujoco.mj_kinematics(self.model, self.data)
+
+    def _follow(self, values: Floats, *, limit_followers: bool) -> None:
+        known = self.first_values(values)
+        for follower in self.followers:
+            value = follower.evaluate(known)
+            if limit_followers and not follower.axis.circular:
+                value = min(max(value, follower.axis.lower), follower.axis.upper)
+            known[follower.joint] = value
+            self._passive_values[follower.joint - len(self.body.joints)][0] = value
+            if follower.qpos != WELDED:
+                self._qpos[follower.qpos] = value
+
+    def first_values(self, values: Floats) -> list[float]:
+        """Return the first value of each joint, active ones and then passive ones, for given DOF values."""
+        plain = values.tolist()
+        return [plain[first] for first in self.first_dofs] + [passive[0] for passive in self._passive_values]
+
+    def passive_values(self, index: int) -> Floats:
+        """Return the values of a passive joint [rad or m], shape (axes,); a copy."""
+        return np.array(self._passive_values[index])
 
     def within_limits(self, values: Sequence[float]) -> bool:
         """Return whether all values are finite numbers inside the limits; circular joints have none."""
@@ -96,20 +209,20 @@ class BodyKinematics:
         transform[:3, :3] = self._xmat[body_id].reshape(3, 3)
         return transform
 
-
-def _index(model: mujoco.MjModel, kind: mujoco.mjtObj, name: str) -> int:
-    return mujoco.mj_name2id(model, kind, name)
-
-
-def _qpos_index(model: mujoco.MjModel, joint_name: str | None) -> int:
-    if joint_name is None:
-        return -1
-    return int(model.jnt_qposadr[_index(model, mujoco.mjtObj.mjOBJ_JOINT, joint_name)])
+    def _pose(self, link: int) -> Pose:
+        body_id = self.body_ids[link]
+        x, y, z = self._xpos[body_id].tolist()
+        return Pose((x, y, z), wxyz_from_rows(self._xmat[body_id].reshape(3, 3).tolist()))
 
 
-def _index_range(
-    indices: Ints,
-) -> slice | Ints:
+_BODY = mujoco.mjtObj.mjOBJ_BODY
+
+
+def _qpos_index(model: mujoco.MjModel, joint_name: str) -> int:
+    return int(model.jnt_qposadr[mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, joint_name)])
+
+
+def _index_range(indices: Ints) -> slice | Ints:
     """Return the indices as a slice if they follow one another, since slices are faster."""
     first = int(indices[0]) if len(indices) else 0
     if np.array_equal(indices, np.arange(first, first + len(indices))):

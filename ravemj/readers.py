@@ -2,18 +2,19 @@
 
 import os
 
+from ravemj.builder import BodyBuilder
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.openrave_xml import Reading, read
+from ravemj.openrave_xml.context import COLLADA_SUFFIXES, Context
+from ravemj.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.scene import Scene
-
-_COLLADA = (".dae", ".zae")
 
 
 def read_file(path: str | os.PathLike[str]) -> Reading:
     """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
 
     Args:
-        path: An OpenRAVE XML file.
+        path: An OpenRAVE XML file, or a mesh file, which becomes a static body.
 
     Returns:
         What was read; its ``failure`` says what ended the reading.
@@ -23,10 +24,10 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
         failure = SourceError("there is no such file", Source(os.fspath(path)), "check the path, or set OPENRAVE_DATA")
     elif os.path.isdir(found):
         failure = SourceError("this is a folder, not a model file", Source(found))
-    elif found.lower().endswith(_COLLADA):
+    elif found.lower().endswith(COLLADA_SUFFIXES):
         failure = SourceError("this version of ravemj does not read COLLADA yet", Source(found))
     else:
-        return read(found)
+        return read_mesh_file(found) if is_mesh(found) else read(found)
     return Reading(Scene(), Diagnostics(), failure)
 
 
@@ -35,3 +36,12 @@ def find(name: str) -> str | None:
     folders = ["", *filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep))]
     candidates = (os.path.join(folder, name) for folder in folders)
     return next((path for path in candidates if os.path.exists(path)), None)
+
+
+def read_mesh_file(path: str) -> Reading:
+    """Read a mesh file as a static body with the file's name."""
+    context = Context()
+    source = Source(path)
+    body = BodyBuilder(is_robot=False, source=source)
+    add_mesh(body, path, (1.0, 1.0, 1.0), source, context)
+    return Reading(Scene((body.freeze(context.diagnostics),)), context.diagnostics, None)

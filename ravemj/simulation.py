@@ -7,10 +7,15 @@ import mujoco
 import numpy as np
 
 from ravemj import mjcf
+from ravemj.dynamics import BodyDynamics
 from ravemj.errors import CompileError, Diagnostics, ErrorCode, RavemjError, Source, send_warnings
 from ravemj.kinematics import BodyKinematics
+from ravemj.mjcf.document import ASSETS
 from ravemj.scene import KinBody, Scene, View
-from ravemj.transforms import wxyz_from_rows
+from ravemj.transforms import Vec3, wxyz_from_rows
+
+DEFAULT_GRAVITY: Vec3 = (0.0, 0.0, -9.797930195020351)
+"""OpenRAVE's, where a file has no physics engine."""
 
 _LINE = re.compile(r"line (\d+)", re.IGNORECASE)
 
@@ -27,7 +32,17 @@ class BodyState:
         self.scene = scene
         self.simulation = simulation
         self._values = np.array([axis.value for axis in scene.dof_axes])
+        self._velocities = np.zeros(len(scene.dof_axes))
         self._kinematics: BodyKinematics | None = None
+        self._dynamics: BodyDynamics | None = None
+
+    @property
+    def dynamics(self) -> BodyDynamics:
+        """Velocities, Jacobians and inverse dynamics in the present model."""
+        if self._dynamics is None:
+            self._dynamics = BodyDynamics(self.kinematics)
+            self._dynamics.velocities = self._velocities
+        return self._dynamics
 
     @property
     def kinematics(self) -> BodyKinematics:
@@ -47,6 +62,9 @@ class BodyState:
         if self._kinematics is not None:
             self._values = self._kinematics.values()
             self._kinematics = None
+        if self._dynamics is not None:
+            self._velocities = self._dynamics.velocities
+            self._dynamics = None
 
 
 class Simulation:
@@ -59,6 +77,7 @@ class Simulation:
         view: Background and camera that the loaded files ask for.
         diagnostics: What the last translation to MJCF found.
         version: Grows by one with each compiled model.
+        gravity: Acceleration of free fall in the world [m/s^2].
     """
 
     def __init__(self) -> None:
@@ -66,6 +85,7 @@ class Simulation:
         self.view = View()
         self.diagnostics = Diagnostics()
         self.version = 0
+        self.gravity = DEFAULT_GRAVITY
         self._bodies: dict[str, BodyState] = {}
         self._compiled: Compiled | None = None
 
@@ -98,6 +118,13 @@ class Simulation:
             self._forget_model()
             self._bodies.clear()
 
+    def set_gravity(self, gravity: Vec3) -> None:
+        """Set the acceleration of free fall [m/s^2]."""
+        with self.lock:
+            self.gravity = gravity
+            if self._compiled is not None:
+                self._compiled.model.opt.gravity[:] = gravity
+
     def _forget_model(self) -> None:
         self._compiled = None
         for body in self._bodies.values():
@@ -115,6 +142,7 @@ class Simulation:
             self.diagnostics = Diagnostics()
             scene = Scene(tuple(body.scene for body in self._bodies.values()), self.view)
             compiled = Compiled(scene, self.diagnostics)
+            compiled.model.opt.gravity[:] = self.gravity
             for body, names in zip(self._bodies.values(), compiled.mjcf.names, strict=True):
                 body.enter(BodyKinematics(compiled.model, compiled.data, body.scene, names))
             self._compiled = compiled
@@ -136,8 +164,11 @@ class Compiled:
     def __init__(self, scene: Scene, diagnostics: Diagnostics) -> None:
         self.mjcf = mjcf.write(scene, diagnostics)
         try:
-            self.spec = mujoco.MjSpec.from_string(self.mjcf.text)
-            self.model = self.spec.compile()
+            with mujoco.MjVfs() as files:
+                for name, content in self.mjcf.assets.items():
+                    files[f"{ASSETS}/{name}"] = content.encode()
+                self.spec = mujoco.MjSpec.from_string(self.mjcf.text, vfs=files)
+                self.model = self.spec.compile(vfs=files)
         except ValueError as error:
             raise _compile_error(str(error), self.mjcf) from None
         self._write_true_inertias(scene)

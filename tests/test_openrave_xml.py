@@ -410,7 +410,7 @@ class TestFailures:
         ("content", "line", "words"),
         [
             ("<Environment>\n<Robot>\n</Environment>", 3, "not well-formed XML"),
-            ("", 1, "the file is empty"),
+            ("", 0, "the file is empty"),
             ("<Nonsense/>", 1, "the root element is <Nonsense>"),
             ('<KinBody name="b"><Body name="A"/>\n<Joint>\n<Body>nope</Body></Joint></KinBody>', 3, "there are: A"),
             ('<KinBody name="b"><Body name="A"/>\n<Joint><Body>A</Body></Joint></KinBody>', 2, "names 1 bodies"),

@@ -14,14 +14,16 @@ PACKAGE = Path(ravemj.__file__).parent
 
 LEVELS: list[set[str]] = [
     {"_mujoco", "errors", "transforms"},
-    {"alias", "output", "scene", "motion"},
-    {"joints", "hierarchy", "adjacency", "expressions", "meshes"},
-    {"builder", "mjcf", "video"},
-    {"openrave_xml", "kinematics"},
-    {"readers", "simulation", "rendering"},
+    {"alias", "arrays", "expressions", "motion", "output"},
+    {"scene", "video"},
+    {"adjacency", "following", "hierarchy", "joints", "manipulators", "meshes"},
+    {"builder", "mjcf"},
+    {"kinematics", "openrave_xml"},
+    {"dynamics", "readers", "rendering"},
+    {"simulation"},
     {"studio"},
     {"viewers"},
-    {"rave", "extension"},
+    {"extension", "rave"},
     {"recording"},
     {"cli", "__init__"},
     {"__main__"},
@@ -31,8 +33,8 @@ LEVELS: list[set[str]] = [
 ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
-        "errors", "transforms", "output", "alias", "scene", "motion", "joints", "hierarchy", "adjacency", "expressions",
-    "meshes", "builder", "mjcf", "video", "openrave_xml", "readers",
+    "adjacency", "alias", "arrays", "builder", "errors", "expressions", "following", "hierarchy", "joints",
+    "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "output", "readers", "scene", "transforms", "video",
 }  # fmt: skip
 
 

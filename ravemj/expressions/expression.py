@@ -179,6 +179,19 @@ class Expression:
         """
         return Expression(derivative(self.nodes, variable))
 
+    def with_values(self, values: Mapping[str, float]) -> "Expression":
+        """Return the expression with numbers in place of some variables."""
+        replaced: dict[Node, Node] = {}
+        for node in self.nodes:
+            match node:
+                case Variable(name) if name in values:
+                    replaced[node] = Number(values[name])
+                case Call(function, arguments):
+                    replaced[node] = Call(function, tuple(replaced[argument] for argument in arguments))
+                case _:
+                    replaced[node] = node
+        return Expression(replaced[self.root])
+
     def polynomial(self, variable: str, max_degree: int = 4) -> tuple[float, ...] | None:
         """Return the coefficients, in ascending order, if this is a polynomial in one variable, else None.
 

@@ -6,12 +6,15 @@ from collections.abc import Callable, Collection, Mapping
 from typing import TypeVar
 
 from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.meshes import MeshPart, read_mesh
 from ravemj.openrave_xml.tree import Element, parse_file
 
 Target = TypeVar("Target")
 
 IGNORED = "OpenRAVE reads it and makes nothing of it"
+COLLADA_SUFFIXES = (".dae", ".zae")
 NOT_YET = "this version of ravemj does not read it yet"
+NO_EFFECT_HERE = "it has no effect on the model"
 
 
 def reasons(reason: str, *names: str) -> dict[str, str]:
@@ -28,6 +31,7 @@ class Context:
 
     def __init__(self) -> None:
         self.diagnostics = Diagnostics()
+        self._meshes: dict[str, tuple[MeshPart, ...]] = {}
 
     def walk(
         self,
@@ -47,11 +51,11 @@ class Context:
         for child in element.children:
             handler = handlers.get(child.tag)
             if handler is not None:
-                handler(target, child)
+                if child.complete:
+                    handler(target, child)
             elif child.tag in ignored:
-                self.diagnostics.warn(
-                    "ignored-tag", f"<{child.spelled}> is left out: {ignored[child.tag]}", child.source
-                )
+                message = f"<{child.spelled}> is left out: {ignored[child.tag]}"
+                self.diagnostics.warn("ignored-tag", message, child.source)
             else:
                 self.diagnostics.warn(
                     "unknown-tag",
@@ -68,43 +72,75 @@ class Context:
             if name in ignored:
                 message = f"the attribute '{name}' of <{element.spelled}> is left out: {ignored[name]}"
                 self.diagnostics.warn("ignored-attribute", message, element.source)
-            else:
+            elif not name.startswith("xmlns"):
                 message = f"OpenRAVE knows no attribute '{name}' of <{element.spelled}> and skips it"
                 self.diagnostics.warn("unknown-attribute", message, element.source, did_you_mean(name, known))
 
     def include(self, element: Element) -> Element | None:
         """Return the root of the file that an element's ``file`` attribute names.
 
-        Returns:
-            None without the attribute, and where the file is missing (OpenRAVE goes on in silence).
+        A file that is missing is passed over, as in OpenRAVE, with a warning; one that cannot be parsed is an error,
+        and what stands before the mistake is read.
 
         Raises:
-            SourceError: the file includes itself, or cannot be parsed.
+            SourceError: the file includes itself.
         """
         name = element.attributes.get("file")
         if name is None:
             return None
-        path = self._find(name, element.source)
+        path = self.find(name, element.source)
         if path is None:
+            return None
+        if path.lower().endswith(COLLADA_SUFFIXES):
+            message = f"{name} is left out: this version of ravemj does not read COLLADA yet"
+            self.diagnostics.error("unsupported-file", message, element.source)
             return None
         chain: Source | None = element.source
         while chain is not None:
             if os.path.realpath(chain.file) == os.path.realpath(path):
                 raise SourceError(f"the file includes itself through {name}", element.source)
             chain = chain.included_from
-        return parse_file(path, element.source)
+        try:
+            document = parse_file(path, element.source)
+        except SourceError as error:
+            self.diagnostics.error("broken-file", error.message, error.source)
+            return None
+        if document.error is not None:
+            self.diagnostics.error("broken-file", document.error.message, document.error.source)
+        return document.root
 
-    def _find(self, name: str, source: Source) -> str | None:
-        """Look a file up beside the file that names it, then in ``OPENRAVE_DATA``."""
+    def find(self, name: str, source: Source, *folders: str) -> str | None:
+        """Look a file up in some folders, beside the file that names it, then in those of ``OPENRAVE_DATA``.
+
+        Args:
+            name: The file.
+            source: Where it is named.
+            folders: Where to look first.
+
+        Returns:
+            Its path, or None, with a warning, where it is in none of them.
+        """
         data_folders = filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep))
-        folders = [os.path.dirname(source.file), *data_folders]
-        candidates = [os.path.join(folder, name) for folder in dict.fromkeys(folders)]
+        places = [*folders, os.path.dirname(source.file), *data_folders]
+        candidates = list(dict.fromkeys(os.path.join(folder, name) for folder in places))
         for candidate in candidates:
             if os.path.isfile(candidate):
                 return candidate
-        looked = ", ".join(dict.fromkeys(candidates))
-        self.diagnostics.warn("missing-file", f"there is no file {name}; looked at {looked}", source)
+        self.diagnostics.warn("missing-file", f"there is no file {name}; looked at {', '.join(candidates)}", source)
         return None
+
+    def mesh(self, name: str, source: Source, *folders: str) -> tuple[MeshPart, ...]:
+        """Return the triangles of a mesh file; none, with a warning, where it is missing or broken."""
+        path = self.find(name, source, *folders)
+        if path is None:
+            return ()
+        if path not in self._meshes:
+            try:
+                self._meshes[path] = read_mesh(path)
+            except SourceError as error:
+                self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
+                self._meshes[path] = ()
+        return self._meshes[path]
 
 
 def did_you_mean(name: str, known: Collection[str]) -> str:

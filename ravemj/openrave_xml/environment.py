@@ -1,22 +1,24 @@
 """``<Environment>`` and the other roots: bodies in document order, background and camera."""
 
+import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from ravemj.errors import Diagnostics, SourceError
+from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.openrave_xml.body import read_body
-from ravemj.openrave_xml.context import IGNORED, NOT_YET, Context, reasons
+from ravemj.openrave_xml.context import IGNORED, NO_EFFECT_HERE, Context
 from ravemj.openrave_xml.tree import Element, parse_file
 from ravemj.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.scene import KinBody, Scene, View
-from ravemj.transforms import Pose, Vec3, Wxyz, wxyz_from_axis_angle
+from ravemj.transforms import ZERO, Pose, Vec3, Wxyz, multiply, wxyz_from_axis_angle
 
 _DEFAULT_CAMERA_POSITION: Vec3 = (0.0, 1.5, 0.8)
 _DEFAULT_CAMERA_WXYZ: Wxyz = wxyz_from_axis_angle((1.0, 0.0, 0.0), -0.5)
 
+_HALF_TURN_X: Wxyz = wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi)
+
 _INTERFACES = (
-    "physicsengine",
     "collisionchecker",
     "sensor",
     "module",
@@ -28,6 +30,16 @@ _INTERFACES = (
     "viewer",
     "spacesampler",
 )
+
+_KNOWN_CLASSES = {
+    "ode", "bullet", "pqp", "fcl_", "fcl", "genericcollisionchecker",
+    "idealcontroller", "idealvelocitycontroller", "redirectcontroller", "odevelocity",
+    "basecamera", "baselaser2d", "basespinninglaser2d", "baseflashlidar3d", "baseforce6d",
+    "qtcoin", "qtosg", "generictrajectory", "mt19937", "halton", "robotconfiguration",
+    "basemanipulation", "taskmanipulation", "taskcaging", "visualfeedback", "logging", "ikfast", "grasper",
+    "birrt", "basicrrt", "rastar", "workspacetrajectorytracker", "linearsmoother", "parabolicsmoother",
+}  # fmt: skip
+"""Classes of interfaces, other than bodies, that every installation of OpenRAVE has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,10 +63,15 @@ def read(path: str | os.PathLike[str]) -> Reading:
     document = _Document(context)
     failure = None
     try:
-        document.read(parse_file(os.fspath(path)))
+        parsed = parse_file(os.fspath(path))
+        failure = parsed.error
+        document.read(parsed.root)
     except SourceError as error:
         failure = error
-    return Reading(Scene(tuple(document.bodies), document.view), context.diagnostics, failure)
+    except RecursionError:
+        failure = SourceError("the elements are nested too deeply", Source(os.fspath(path)))
+    scene = Scene(tuple(document.bodies), document.view, document.gravity)
+    return Reading(scene, context.diagnostics, failure)
 
 
 class _Document:
@@ -64,14 +81,16 @@ class _Document:
         self.context = context
         self.bodies: list[KinBody] = []
         self.view: View | None = None
+        self.gravity: Vec3 | None = None
 
     def read(self, root: Element) -> None:
         """Read a root element."""
         if root.tag == "environment":
             self.read_environment(root)
         elif root.tag in {"robot", "kinbody"}:
-            self.read_body(root)
-        else:
+            if root.complete:
+                self.read_body(root)
+        elif root.tag not in _INTERFACES:
             raise SourceError(
                 f"the root element is <{root.spelled}>, and OpenRAVE expects <Environment>, <Robot> or <KinBody>",
                 root.source,
@@ -86,14 +105,19 @@ class _Document:
         environment = _EnvironmentScope(self)
         self.context.walk(element, _ENVIRONMENT_TAGS, ENVIRONMENT_IGNORED, environment)
         self.view = environment.view
+        for child in element.children:
+            if not child.complete and child.tag == "environment":
+                self.read_environment(child)
 
     def read_body(self, element: Element) -> None:
         """Read a body and give it its place among the others."""
-        body = read_body(element, self.context)
+        body, refusal = read_body(element, self.context)
         check_name(body.name, element)
         if any(body.name == other.name for other in self.bodies):
             raise SourceError(f"there already is a body '{body.name}'", element.source, "give it another name")
         self.bodies.append(body)
+        if refusal is not None:
+            raise refusal
 
 
 class _EnvironmentScope:
@@ -129,6 +153,35 @@ class _EnvironmentScope:
         camera = self._camera()._replace(wxyz=ROTATIONS["rotationmat"](element, self._diagnostics))
         self.view = replace(self.view, T_world_camera=camera)
 
+    def read_old_camera_rotation(self, element: Element) -> None:
+        """Read the deprecated spelling: a half turn about x comes first."""
+        turned = multiply(axis_angle(element, self._diagnostics), _HALF_TURN_X)
+        self.view = replace(self.view, T_world_camera=self._camera()._replace(wxyz=turned))
+
+    def read_physics(self, element: Element) -> None:
+        """Read the gravity of a physics engine; ODE without one has none."""
+        kind = element.attributes.get("type", "").lower()
+        if kind not in {"ode", "bullet", "genericphysicsengine", ""}:
+            message = f"there is no physics engine '{kind}' here"
+            self._diagnostics.error("unknown-interface", message, element.source)
+            return
+        if kind == "ode":
+            self.document.gravity = ZERO
+        for properties in element.children:
+            for child in properties.children if properties.tag == "odeproperties" else ():
+                if child.tag == "gravity":
+                    self.document.gravity = vector(child, self._diagnostics)
+
+    def read_interface(self, element: Element) -> None:
+        """Report an interface that belongs to no model; of an unknown class OpenRAVE makes an error."""
+        kind = element.attributes.get("type", "")
+        name = kind.split()[0].lower() if kind.split() else ""
+        if name and name not in _KNOWN_CLASSES:
+            message = f"there is no {element.tag} of type '{kind}' here"
+            self._diagnostics.error("unknown-interface", message, element.source)
+        else:
+            self._diagnostics.warn("ignored-tag", f"<{element.spelled}> is left out: {NO_EFFECT_HERE}", element.source)
+
     def _camera(self) -> Pose:
         return self.view.T_world_camera or Pose(_DEFAULT_CAMERA_POSITION, _DEFAULT_CAMERA_WXYZ)
 
@@ -141,11 +194,14 @@ _ENVIRONMENT_TAGS: dict[str, Callable[[_EnvironmentScope, Element], None]] = {
     "camtrans": _EnvironmentScope.read_camera_position,
     "camrotationaxis": _EnvironmentScope.read_camera_rotation,
     "camrotmat": _EnvironmentScope.read_camera_matrix,
+    "camrotaxis": _EnvironmentScope.read_old_camera_rotation,
+    "physicsengine": _EnvironmentScope.read_physics,
+    **dict.fromkeys(_INTERFACES, _EnvironmentScope.read_interface),
 }
 ENVIRONMENT_IGNORED = {
     "plugin": "plugins are not loaded",
     "unit": IGNORED,
-    **reasons(NOT_YET, *_INTERFACES, "camrotaxis", "camfocal"),
+    "camfocal": "no viewer turns about a point yet",
 }
 
 

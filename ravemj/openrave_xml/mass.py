@@ -1,7 +1,7 @@
 """``<Mass>`` in a Body and in a KinBody: from densities, totals and shapes to the inertia of a link.
 
-OpenRAVE's rules, quirks included: old models were tuned on them. Densities, totals and all masses of a KinBody
-are kept in single precision there, so they are rounded to it here.
+OpenRAVE's rules, quirks included: old models were tuned on them. Densities and totals are kept in single precision
+there, so they are rounded to it here.
 """
 
 import math
@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from ravemj.builder import DEFAULT_INERTIAL
 from ravemj.openrave_xml.context import Context
 from ravemj.openrave_xml.tree import Element
-from ravemj.openrave_xml.values import number, numbers, vector
-from ravemj.scene import Box, Capsule, Cylinder, Geometry, Inertial, Shape, Sphere
+from ravemj.openrave_xml.values import hadamard, number, numbers, vector
+from ravemj.scene import Box, Container, Cylinder, Geometry, Inertial, Shape, Sphere
 from ravemj.transforms import ZERO, Rows, Vec3, Wxyz, add, dot, rows_from_wxyz, scale
 
 NO_INERTIA: Rows = (ZERO, ZERO, ZERO)
@@ -48,8 +48,9 @@ class MassReader:
         rule: The rule so far, or None before the first ``<Mass>``.
     """
 
-    def __init__(self, context: Context, default: MassRule | None) -> None:
+    def __init__(self, context: Context, default: MassRule | None, scale: Vec3) -> None:
         self._context = context
+        self._scale = scale
         self._start = default or MassRule()
         self.rule: MassRule | None = None
 
@@ -89,11 +90,12 @@ class MassReader:
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
         extents = (self.rule or self._start).half_extents
-        self._update(half_extents=(number(element, self._context.diagnostics), *extents[1:]))
+        radius = number(element, self._context.diagnostics) * self._scale[0]
+        self._update(half_extents=(radius, *extents[1:]))
 
     def com(self, element: Element) -> None:
         """Read the centre of mass of a custom mass."""
-        self._update(com=vector(element, self._context.diagnostics))
+        self._update(com=hadamard(self._scale, vector(element, self._context.diagnostics)))
 
     def inertia(self, element: Element) -> None:
         """Read the inertia of a custom mass; only its upper triangle counts."""
@@ -159,14 +161,14 @@ class DefaultMassReader:
 
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
-        radius = _single(number(element, self._context.diagnostics))
+        radius = number(element, self._context.diagnostics)
         self._half_extents = (radius, *self._half_extents[1:])
 
     def extents(self, element: Element) -> None:
         """Read the half sizes of a box; behind a total they have no effect."""
-        x, y, z = vector(element, self._context.diagnostics)
+        half_extents = vector(element, self._context.diagnostics)
         if not self._is_total:
-            self._half_extents = (_single(x), _single(y), _single(z))
+            self._half_extents = half_extents
 
 
 _DEFAULT_MASS_TAGS = {
@@ -216,7 +218,7 @@ def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
 
 
 def _solid(shape: Shape, density: float) -> tuple[float, Vec3]:
-    """Return mass and principal moments about the centre; OpenRAVE gives a capsule no mass."""
+    """Return mass and principal moments about the centre; other shapes have no mass in OpenRAVE."""
     match shape:
         case Box((a, b, c)):
             mass = 8 * a * b * c * density
@@ -229,7 +231,9 @@ def _solid(shape: Shape, density: float) -> tuple[float, Vec3]:
             mass = math.pi * radius**2 * height * density
             across = mass * (radius**2 / 4 + height**2 / 12)
             return mass, (across, across, mass * radius**2 / 2)
-        case Capsule():
+        case Container((x, y, z)):  # as if it were solid, about its origin
+            return _solid(Box((x / 2, y / 2, z / 2)), density)
+        case _:
             return 0.0, ZERO
 
 

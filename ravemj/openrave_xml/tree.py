@@ -1,14 +1,18 @@
-"""Syntax: a file becomes a tree of elements with lower-case names and the line that each stands on."""
+"""Syntax: a file becomes a tree of elements with lower-case names and the line that each starts on.
+
+OpenRAVE's parser knows no namespaces, stops at the end tag of the root, and has handed out everything before a syntax
+error by the time it meets it. Expat shows all of that as it is, and where a tag starts.
+"""
 
 import os
-from dataclasses import dataclass
-from typing import TypeAlias, cast
-
-from lxml import etree
+from dataclasses import dataclass, field
+from typing import NoReturn
+from xml.parsers import expat
 
 from ravemj.errors import Source, SourceError
 
-_Node: TypeAlias = "etree._Element"  # pyright: ignore[reportPrivateUsage]
+DEEPEST = 200
+"""More elements inside one another are no model."""
 
 
 @dataclass(slots=True)
@@ -19,28 +23,43 @@ class Element:
         tag: Name in lower case; OpenRAVE ignores the letter case of names.
         spelled: The name as the author wrote it.
         attributes: Values by lower-case name.
+        source: Where its start tag begins.
         text: The text behind the last child element; what stands before a child is discarded.
         children: Child elements in document order.
-        source: Where it stands.
+        complete: False where the file breaks off before its end tag.
     """
 
     tag: str
     spelled: str
     attributes: dict[str, str]
-    text: str
-    children: list["Element"]
     source: Source
+    text: str = ""
+    children: list["Element"] = field(default_factory=list["Element"])
+    complete: bool = False
 
 
-def parse_file(path: str, included_from: Source | None = None) -> Element:
-    """Read a file and return its root element.
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A parsed file.
+
+    Attributes:
+        root: The root element.
+        error: What ended the parsing before the root's end tag, or None.
+    """
+
+    root: Element
+    error: SourceError | None
+
+
+def parse_file(path: str, included_from: Source | None = None) -> Document:
+    """Read a file.
 
     Args:
         path: The file.
         included_from: The element that includes it, for messages.
 
     Raises:
-        SourceError: the file cannot be read, or is not well-formed XML.
+        SourceError: the file cannot be read, or has no root element.
     """
     whole_file = Source(path, 0, included_from)
     try:
@@ -48,15 +67,27 @@ def parse_file(path: str, included_from: Source | None = None) -> Element:
             content = file.read()
     except OSError as error:
         raise SourceError(f"cannot read the file: {os_reason(error)}", whole_file) from None
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, remove_pis=True)
-    try:
-        root = etree.fromstring(content, parser)
-    except etree.XMLSyntaxError as error:
-        line = error.lineno or 0
-        reason = str(error.msg).rsplit(", line ", 1)[0]
-        message = f"not well-formed XML: {reason}" if content.strip() else "the file is empty"
-        raise SourceError(message, Source(path, line, included_from)) from None
-    return _element(root, path, included_from)
+    return parse(content, path, included_from)
+
+
+def parse(content: bytes, path: str, included_from: Source | None = None) -> Document:
+    """Parse the content of a file.
+
+    Args:
+        content: The bytes.
+        path: What to call it in messages.
+        included_from: The element that includes it, for messages.
+
+    Raises:
+        SourceError: there is no root element.
+    """
+    if not content.strip():
+        raise SourceError("the file is empty", Source(path, 0, included_from))
+    parser = _Parser(path, included_from)
+    error = parser.parse(content)
+    if parser.root is None:
+        raise error or SourceError("there is no element in it", Source(path, 0, included_from))
+    return Document(parser.root, None if parser.root.complete else error)
 
 
 def os_reason(error: OSError) -> str:
@@ -64,18 +95,64 @@ def os_reason(error: OSError) -> str:
     return (error.strerror or os.strerror(error.errno or 0)).lower()
 
 
-def _element(node: _Node, path: str, included_from: Source | None) -> Element:
-    source = Source(path, node.sourceline or 0, included_from)
-    children: list[Element] = []
-    text = node.text or ""
-    for child in node:
-        tag = cast(object, child.tag)  # comments and entities have a function in place of a name
-        if isinstance(tag, str):
-            children.append(_element(child, path, included_from))
-            text = child.tail or ""
-        elif tag is etree.Entity:
-            raise SourceError(f"the entity {child.text} is not supported", source, "write the text itself in its place")
-        else:  # a comment is transparent
-            text += child.tail or ""
-    attributes = {str(name).lower(): str(value) for name, value in node.attrib.items()}
-    return Element(node.tag.lower(), node.tag, attributes, text, children, source)
+class _Parser:
+    """Builds the tree from expat's events."""
+
+    def __init__(self, path: str, included_from: Source | None) -> None:
+        self.root: Element | None = None
+        self._path = path
+        self._included_from = included_from
+        self._open: list[Element] = []
+        self._text: list[list[str]] = []
+        self._expat = expat.ParserCreate()
+        self._expat.buffer_text = True
+        self._expat.StartElementHandler = self._start
+        self._expat.EndElementHandler = self._end
+        self._expat.CharacterDataHandler = self._characters
+        self._expat.DefaultHandler = self._other
+
+    def parse(self, content: bytes) -> SourceError | None:
+        """Parse the content; return what is wrong with it, if anything."""
+        try:
+            self._expat.Parse(content, True)
+        except expat.ExpatError as error:
+            reason = expat.ErrorString(error.code) or "syntax error"
+            source = Source(self._path, error.lineno, self._included_from)
+            return SourceError(f"not well-formed XML: {reason}", source)
+        except (LookupError, ValueError) as error:  # an encoding that Python does not know
+            return SourceError(f"not readable as XML: {error}", self._here())
+        except SourceError as error:
+            return error
+        return None
+
+    def _here(self) -> Source:
+        return Source(self._path, self._expat.CurrentLineNumber, self._included_from)
+
+    def _start(self, name: str, attributes: dict[str, str]) -> None:
+        if len(self._open) >= DEEPEST:
+            self._refuse(f"more than {DEEPEST} elements inside one another")
+        lowered = {key.lower(): value for key, value in attributes.items()}
+        element = Element(name.lower(), name, lowered, self._here())
+        if self._open:
+            self._open[-1].children.append(element)
+            self._text[-1].clear()
+        else:
+            self.root = element
+        self._open.append(element)
+        self._text.append([])
+
+    def _end(self, name: str) -> None:
+        del name
+        element = self._open.pop()
+        element.text = "".join(self._text.pop())
+        element.complete = True
+
+    def _characters(self, data: str) -> None:
+        self._text[-1].append(data)
+
+    def _other(self, data: str) -> None:
+        if self._open and data.startswith("&"):
+            self._refuse(f"the entity {data} is not supported; write the text itself in its place")
+
+    def _refuse(self, reason: str) -> NoReturn:
+        raise SourceError(reason, self._here())

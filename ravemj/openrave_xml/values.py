@@ -20,7 +20,7 @@ from ravemj.transforms import (
     wxyz_from_rows,
 )
 
-_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)")
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))")
 
 
 class Numbers(NamedTuple):
@@ -79,14 +79,33 @@ def vector(element: Element, diagnostics: Diagnostics) -> Vec3:
     return (x, y, z)
 
 
+def scale_attribute(element: Element) -> Vec3:
+    """Return the ``scalegeometry`` of an element: one number for all axes, or three."""
+    values, _ = leading_numbers(element.attributes.get("scalegeometry", ""))
+    if len(values) == 3:
+        return (values[0], values[1], values[2])
+    uniform = values[0] if values else 1.0
+    return (uniform, uniform, uniform)
+
+
 def word(element: Element) -> str:
     """Return the first word of an element's text; names cannot hold spaces."""
     return next(iter(element.text.split()), "")
 
 
+def is_true(value: str) -> bool:
+    """Return True for the two spellings that OpenRAVE takes for true, where only those count."""
+    return value.lower() in {"true", "1"}
+
+
 def is_false(value: str) -> bool:
     """Return True for the two spellings that OpenRAVE takes for false."""
     return value.lower() in {"false", "0"}
+
+
+def hadamard(a: Vec3, b: Vec3) -> Vec3:
+    """Return the products of the parts of two vectors."""
+    return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
 
 
 class Placement:
@@ -96,8 +115,9 @@ class Placement:
     kinds does not matter.
     """
 
-    def __init__(self, start: Pose | None = None) -> None:
+    def __init__(self, start: Pose | None = None, scale: Vec3 = (1.0, 1.0, 1.0)) -> None:
         self._position, self._wxyz = start or Pose()
+        self._scale = scale
 
     @property
     def pose(self) -> Pose:
@@ -111,7 +131,7 @@ class Placement:
 
     def translate(self, element: Element, diagnostics: Diagnostics) -> None:
         """Apply a ``<Translation>``: x y z [m]."""
-        self._position = add(self._position, vector(element, diagnostics))
+        self._position = add(self._position, hadamard(self._scale, vector(element, diagnostics)))
 
     def turn(self, element: Element, diagnostics: Diagnostics) -> None:
         """Apply one of the rotation elements."""

@@ -4,9 +4,35 @@
 objects is ravemj's own.
 """
 
+from ravemj.rave.enums import CheckLimitsAction, GeometryType, JointType, SensorType
 from ravemj.rave.environment import Environment, RaveGetEnvironment, load
+from ravemj.rave.geometry import Geometry, TriMesh
 from ravemj.rave.joint import Joint
-from ravemj.rave.kinbody import CheckLimitsAction, KinBody, Robot
+from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
+from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.physics import PhysicsEngine
+from ravemj.rave.robot import Robot
+from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
 
-__all__ = ["CheckLimitsAction", "Environment", "Joint", "KinBody", "Link", "RaveGetEnvironment", "Robot", "load"]
+__all__ = [
+    "AttachedSensor",
+    "CameraGeomData",
+    "CameraIntrinsics",
+    "CheckLimitsAction",
+    "Environment",
+    "Geometry",
+    "GeometryType",
+    "Joint",
+    "JointType",
+    "KinBody",
+    "Link",
+    "Manipulator",
+    "PhysicsEngine",
+    "RaveGetEnvironment",
+    "Robot",
+    "Sensor",
+    "SensorType",
+    "TriMesh",
+    "load",
+]

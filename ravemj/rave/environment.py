@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike
 
 from ravemj.errors import Diagnostic, Diagnostics, send_warnings
 from ravemj.openrave_xml import Reading
-from ravemj.rave.kinbody import KinBody, Robot
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.physics import PhysicsEngine
+from ravemj.rave.robot import Robot
 from ravemj.readers import read_file
 from ravemj.rendering import Camera
 from ravemj.simulation import BodyState, Simulation
@@ -78,6 +80,8 @@ class Environment:
             self._simulation.add(body)
         if reading.scene.view is not None:
             self._simulation.view = reading.scene.view
+        if reading.scene.gravity is not None:
+            self._simulation.set_gravity(reading.scene.gravity)
         send_warnings(reading.diagnostics)
 
     def GetBodies(self) -> list[KinBody]:
@@ -142,6 +146,10 @@ class Environment:
     def GetViewer(self) -> Viewer | None:
         """Return the viewer, or None before ``SetViewer``."""
         return self._viewer
+
+    def GetPhysicsEngine(self) -> PhysicsEngine:
+        """Return what holds gravity; never None."""
+        return PhysicsEngine(self._simulation)
 
     def Reset(self) -> None:
         """Remove all bodies."""

@@ -5,9 +5,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ravemj import scene
+from ravemj.following import leaders
+from ravemj.manipulators import joint_dofs
+from ravemj.rave.enums import JointType
 from ravemj.rave.link import Link
 from ravemj.simulation import BodyState
-from ravemj.transforms import Floats
+from ravemj.transforms import Floats, Ints, add, rotate, scale, wxyz_from_axis_angle
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -15,6 +18,8 @@ if TYPE_CHECKING:
 
 class Joint:
     """A joint between two links; ``body.GetJoints()`` makes it."""
+
+    Type = JointType
 
     def __init__(self, parent: "KinBody", state: BodyState, index: int) -> None:
         self._parent = parent
@@ -38,6 +43,40 @@ class Joint:
         """Return the body that the joint belongs to."""
         return self._parent
 
+    def GetType(self) -> JointType:
+        """Return the kind of joint."""
+        return JointType[self._scene.kind.capitalize()]
+
+    def IsMimic(self, axis: int = 0) -> bool:
+        """Return whether an axis follows other joints."""
+        return self._scene.mimic is not None and axis == 0
+
+    def GetMimicEquation(self, axis: int = 0, itype: int = 0, format: str = "") -> str:  # OpenRAVE's names
+        """Return how the joint follows others, as the file has it.
+
+        Args:
+            axis: Which axis; only the first one can follow.
+            itype: 0 the position, 1 the partial derivatives for velocities, 2 those for accelerations.
+            format: OpenRAVE's choice of notation; only the plain one is known here.
+
+        Returns:
+            The equation, with the names of joints; empty for a joint that follows none.
+        """
+        del format
+        mimic = self._scene.mimic
+        if mimic is None or axis != 0:
+            return ""
+        return (mimic.position, mimic.velocity, mimic.acceleration)[itype]
+
+    def GetMimicDOFIndices(self, axis: int = 0) -> Ints:
+        """Return the DOFs in the joint's own equation; as in OpenRAVE, not those of other followers in it."""
+        mimic = self._scene.mimic
+        if mimic is None or axis or mimic.expression is None:
+            return np.array([], dtype=np.int_)
+        active = [leader for leader in leaders(mimic.expression) if leader < len(self._state.scene.joints)]
+        dofs = {dof for leader in active for dof in joint_dofs(self._state.scene, leader)}
+        return np.array(sorted(dofs), dtype=np.int_)
+
     def GetJointIndex(self) -> int:
         """Return the joint's position in ``body.GetJoints()``; -1 for a passive joint."""
         return self._index if self._is_active else -1
@@ -54,10 +93,10 @@ class Joint:
 
     def GetValues(self) -> Floats:
         """Return the joint's values [rad or m], shape (axes,)."""
-        if not self._is_active:
-            return np.array([axis.value for axis in self._scene.axes])
-        first = self.GetDOFIndex()
         with self._state.simulation.lock:
+            if not self._is_active:
+                return self._state.kinematics.passive_values(self._index - len(self._state.scene.joints))
+            first = self.GetDOFIndex()
             return self._state.kinematics.values()[first : first + self.GetDOF()]
 
     def GetValue(self, axis: int = 0) -> float:
@@ -99,11 +138,23 @@ class Joint:
 
     def GetAnchor(self) -> Floats:
         """Return a point on the axis in the world, as the links stand now [m], shape (3,)."""
-        return self._T_world_parent() @ (*self._scene.anchor, 1.0)
+        anchor = self._scene.anchor
+        if self._scene.kind == "slider":  # OpenRAVE's is that of the value 0
+            axis = self._scene.axes[0]
+            anchor = add(anchor, scale(axis.direction, -axis.reference))
+        return self._T_world_parent() @ (*anchor, 1.0)
 
     def GetAxis(self, axis: int = 0) -> Floats:
-        """Return the direction of an axis in the world, as the links stand now, shape (3,)."""
-        return self._T_world_parent()[:, :3] @ self._scene.axes[axis].direction
+        """Return the direction of an axis in the world, as the links stand now, shape (3,).
+
+        The second axis of a ``Hinge2`` turns with the first.
+        """
+        direction = self._scene.axes[axis].direction
+        if axis and self._scene.kind == "hinge2":
+            first = self._scene.axes[0]
+            turned = self.GetValues()[0] - first.reference
+            direction = rotate(wxyz_from_axis_angle(first.direction, turned), direction)
+        return self._T_world_parent()[:, :3] @ direction
 
     def _T_world_parent(self) -> Floats:
         """Return the parent link's pose in the world, shape (3, 4)."""

@@ -2,14 +2,17 @@
 
 import warnings
 from collections.abc import Sequence
-from enum import IntEnum
 from types import EllipsisType
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.adjacency import adjacent_pairs
+from ravemj.arrays import checked_numbers, checked_vector
 from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning
+from ravemj.rave.enums import CheckLimitsAction, JointType
+from ravemj.rave.geometry import Geometry
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 from ravemj.simulation import BodyState
@@ -20,19 +23,6 @@ if TYPE_CHECKING:
 
 ROUNDING = 2e-10
 """How far outside its limits [rad or m] OpenRAVE moves a value without a warning."""
-
-
-class CheckLimitsAction(IntEnum):
-    """What ``SetDOFValues`` does with values outside the limits."""
-
-    Nothing = 0
-    """Set them as they are."""
-    CheckLimits = 1
-    """Move them to the limit, with a warning."""
-    CheckLimitsSilent = 2
-    """Move them to the limit."""
-    CheckLimitsThrow = 3
-    """Raise, and change nothing."""
 
 
 class KinBody:
@@ -46,7 +36,9 @@ class KinBody:
     """
 
     CheckLimitsAction = CheckLimitsAction
+    Geometry = Geometry
     Joint = Joint
+    JointType = JointType
     Link = Link
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
@@ -120,14 +112,11 @@ class KinBody:
             target = self._full_values(values, dofindices)
             if not kinematics.within_limits(target.tolist()):
                 target = self._settled(target, checklimits)
-            kinematics.set_values(target)
+            kinematics.set_values(target, limit_followers=checklimits != CheckLimitsAction.Nothing)
 
     def _full_values(self, values: ArrayLike, dofindices: "ArrayLike | None") -> Floats:
         """Return one value for each DOF, in DOF order."""
-        try:
-            given = np.array(values, dtype=np.float64, ndmin=1)
-        except (TypeError, ValueError):
-            raise ArgumentError(f"SetDOFValues: values are {values!r}, and should be numbers") from None
+        given = checked_numbers(values, "SetDOFValues")
         dof = self._state.kinematics.dof
         if dofindices is None:
             if given.shape != (dof,) and dof:
@@ -159,7 +148,7 @@ class KinBody:
 
     def _report_limits(self, target: Floats, dof: np.intp, checklimits: int) -> None:
         kinematics = self._state.kinematics
-        joint = next(joint for joint in reversed(self.GetJoints()) if joint.GetDOFIndex() <= dof)
+        joint = self.GetJointFromDOFIndex(int(dof))
         source = self._state.scene.joints[joint.GetJointIndex()].source
         limits = f"[{kinematics.lower[dof]:.6g}, {kinematics.upper[dof]:.6g}]"
         message = f"joint '{joint.GetName()}' is set to {target[dof]:.6g}, outside its limits {limits}"
@@ -235,6 +224,122 @@ class KinBody:
         joints = (*self.GetJoints(), *self.GetPassiveJoints())
         return next((joint for joint in joints if joint.GetName() == name), None)
 
+    def GetJointFromDOFIndex(self, dofindex: int) -> Joint:
+        """Return the joint that a DOF belongs to.
+
+        Args:
+            dofindex: Position in the vectors of DOF values.
+
+        Raises:
+            IndexError: there is no such DOF.
+        """
+        _checked_indices(dofindex, self.GetDOF())
+        return next(joint for joint in reversed(self.GetJoints()) if joint.GetDOFIndex() <= dofindex)
+
+    def GetAdjacentLinks(self) -> set[tuple[int, int]]:
+        """Return the pairs of links, by index, that self-collision leaves out."""
+        return adjacent_pairs(self._state.scene)
+
+    def GetCenterOfMass(self) -> Floats:
+        """Return the body's centre of mass in the world [m], shape (3,)."""
+        links = self._state.scene.links
+        masses = np.array([link.inertial.mass for link in links])
+        local = np.array([(*link.inertial.com, 1.0) for link in links])
+        with self._simulation.lock:
+            transforms = self._state.kinematics.link_transforms()
+        return masses @ np.einsum("nij,nj->ni", transforms, local)[:, :3] / masses.sum()
+
+    def GetDOFVelocities(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the joint velocities.
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+
+        Returns:
+            Velocities [rad/s, for sliders m/s], shape (dof,); a copy.
+        """
+        velocities = self._state.dynamics.velocities.copy()
+        return velocities if indices is ... else velocities[_checked_indices(indices, len(velocities))]
+
+    def SetDOFVelocities(
+        self,
+        dofvelocities: ArrayLike,
+        linear: "ArrayLike | int" = 0,
+        angular: "ArrayLike | None" = None,
+        checklimits: int = CheckLimitsAction.CheckLimits,
+    ) -> None:
+        """Set the joint velocities. Nothing moves by it; ``ComputeInverseDynamics`` uses them.
+
+        Args:
+            dofvelocities: Velocities [rad/s, for sliders m/s], shape (dof,).
+            linear: Velocity of the base [m/s], which has to be zero; as in OpenRAVE, a number here is ``checklimits``.
+            angular: Angular velocity of the base [rad/s], which has to be zero.
+            checklimits: What to do with values outside the velocity limits, a ``CheckLimitsAction``.
+
+        Raises:
+            ArgumentError: the number of velocities is wrong, one is infinite, or the base should move.
+        """
+        velocities = checked_vector(dofvelocities, self.GetDOF(), "SetDOFVelocities")
+        if angular is None:
+            checklimits = int(np.asarray(linear).reshape(-1)[0]) if np.ndim(linear) == 0 else checklimits
+        elif np.any(linear) or np.any(angular):
+            raise ArgumentError("SetDOFVelocities: the base cannot move here; give zeros")
+        if checklimits != CheckLimitsAction.Nothing:
+            limits = np.array([axis.max_velocity for axis in self._state.scene.dof_axes])
+            if checklimits == CheckLimitsAction.CheckLimitsThrow and np.any(np.abs(velocities) > limits):
+                raise ArgumentError(f"SetDOFVelocities: {velocities} are outside the limits {limits}")
+            velocities = np.clip(velocities, -limits, limits)
+        with self._simulation.lock:
+            self._state.dynamics.velocities = velocities
+
+    def ComputeJacobianTranslation(self, linkindex: int, position: ArrayLike) -> Floats:
+        """Return how a point of a link moves with the joint values.
+
+        Args:
+            linkindex: Index of the link.
+            position: The point, in world coordinates [m], shape (3,).
+
+        Returns:
+            Derivative of the point's position in the world by the DOF values, shape (3, dof).
+        """
+        return self._jacobian(linkindex, position)[0]
+
+    def ComputeJacobianAxisAngle(self, linkindex: int) -> Floats:
+        """Return how a link turns with the joint values.
+
+        Args:
+            linkindex: Index of the link.
+
+        Returns:
+            Angular velocity of the link, in world axes, per unit of DOF velocity, shape (3, dof).
+        """
+        return self._jacobian(linkindex, np.zeros(3))[1]
+
+    def _jacobian(self, link: int, point: ArrayLike) -> tuple[Floats, Floats]:
+        count = len(self._state.scene.links)
+        if not 0 <= link < count:
+            raise ArgumentError(f"linkindex is {link}, and should be from 0 to {count - 1}")
+        with self._simulation.lock:
+            return self._state.dynamics.jacobian(link, checked_vector(point, 3, "position"))
+
+    def ComputeInverseDynamics(self, dofaccelerations: "ArrayLike | None") -> Floats:
+        """Return the joint torques that accelerate the body as wanted, with its base at rest.
+
+        At the present values and velocities, against the environment's gravity. Sliders give forces, and joints that
+        others follow carry these too: where OpenRAVE errs about both, this is right.
+
+        Args:
+            dofaccelerations: Accelerations [rad/s^2, for sliders m/s^2], shape (dof,); None: none.
+
+        Returns:
+            Torques [N m, for sliders N], shape (dof,).
+        """
+        dof = self.GetDOF()
+        wanted = np.zeros(dof) if dofaccelerations is None else dofaccelerations
+        accelerations = checked_vector(wanted, dof, "ComputeInverseDynamics")
+        with self._simulation.lock:
+            return self._state.dynamics.inverse(accelerations)
+
     @property
     def simulation_state(self) -> BodyState:
         """The body below the OpenRAVE API: its scene and its kinematics."""
@@ -257,10 +362,6 @@ class KinBody:
     def __str__(self) -> str:
         kind = "robot" if self.IsRobot() else "body"
         return f"<{kind}:{self.GetName()}, dof={self.GetDOF()}, links={len(self._state.scene.links)}>"
-
-
-class Robot(KinBody):
-    """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
 
 def _checked_indices(indices: "ArrayLike | EllipsisType | None", dof: int) -> Ints:

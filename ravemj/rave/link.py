@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ravemj import scene
+from ravemj.rave.geometry import Geometry
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats
 
@@ -60,6 +61,14 @@ class Link:
     def IsStatic(self) -> bool:
         """Return whether the file calls the link static."""
         return self._scene.static
+
+    def IsEnabled(self) -> bool:
+        """Return whether collision checking looks at the link."""
+        return self._scene.enabled
+
+    def GetGeometries(self) -> list[Geometry]:
+        """Return the link's shapes, in the order of the file."""
+        return [Geometry(geometry) for geometry in self._scene.geometries]
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Link) and self._state is other._state and self._index == other._index

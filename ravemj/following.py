@@ -1,0 +1,102 @@
+"""Mimic joints: from the equations of a file to expressions over the joints of a body."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ravemj.errors import Diagnostics, Source
+from ravemj.expressions import Expression, ExpressionError, joint_variables, parse, substitute
+from ravemj.scene import Mimic
+
+
+@dataclass(frozen=True, slots=True)
+class Equations:
+    """The equations of a mimic joint as written, with the names of other joints; ``position`` may be empty."""
+
+    position: str = ""
+    velocity: str = ""
+    acceleration: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Follower:
+    """A joint as its leaders and followers see it.
+
+    Attributes:
+        name: Its name.
+        dofs: Its DOFs; none for a passive joint.
+        equations: How it follows others, or None.
+        source: Where it stands.
+    """
+
+    name: str
+    dofs: tuple[int, ...]
+    equations: Equations | None
+    source: Source
+
+
+def resolve(joints: Sequence[Follower], diagnostics: Diagnostics) -> dict[int, Mimic]:
+    """Return how each mimic joint follows the others.
+
+    Args:
+        joints: Active joints in DOF order, then passive ones.
+        diagnostics: Takes an error text for every equation that cannot be used.
+
+    Returns:
+        By index of the joint; empty where any equation is wrong: OpenRAVE then drops all of them.
+    """
+    mimics: dict[int, Expression] = {}
+    variables = joint_variables([joint.name for joint in joints])
+    known = {f"joint{index}" for index, joint in enumerate(joints) if len(joint.dofs) <= 1}
+    for index, joint in enumerate(joints):
+        if joint.equations is None or not joint.equations.position:
+            continue
+        try:
+            mimics[index] = parse(substitute(joint.equations.position, variables), known)
+        except ExpressionError as error:
+            hint = "without it, no joint of this body follows another"
+            diagnostics.warn("bad-mimic", f"joint '{joint.name}' cannot follow: {error.message}", joint.source, hint)
+    if len(mimics) < sum(1 for joint in joints if joint.equations and joint.equations.position):
+        return {}
+    return {index: _mimic(index, joints, mimics, diagnostics) for index in mimics}
+
+
+def leaders(expression: Expression) -> tuple[int, ...]:
+    """Return the indices of the joints that an expression depends on."""
+    return tuple(int(name.removeprefix("joint")) for name in expression.variables)
+
+
+def _mimic(index: int, joints: Sequence[Follower], mimics: dict[int, Expression], diagnostics: Diagnostics) -> Mimic:
+    joint = joints[index]
+    equations = joint.equations or Equations()
+    dofs: set[int] = set()
+    pending, seen = [index], set[int]()
+    while pending:
+        current = pending.pop()
+        for leader in leaders(mimics[current]) if current in mimics else ():
+            if leader == index:
+                message = f"joint '{joint.name}' follows itself through others; none of them moves"
+                diagnostics.warn("bad-mimic", message, joint.source)
+                return Mimic(equations.position, equations.velocity, equations.acceleration, None, ())
+            dofs.update(joints[leader].dofs)
+            if leader not in seen:
+                seen.add(leader)
+                pending.append(leader)
+    texts = (equations.position, equations.velocity, equations.acceleration)
+    return Mimic(*texts, mimics[index], tuple(sorted(dofs)))
+
+
+def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
+    """Return the followers, each behind the followers that it depends on."""
+    order: dict[int, None] = {}
+
+    def visit(index: int) -> None:
+        mimic = mimics.get(index)
+        if mimic is None or mimic.expression is None or index in order:
+            return
+        for leader in leaders(mimic.expression):
+            visit(leader)
+        order.setdefault(index)
+
+    for index in mimics:
+        visit(index)
+    return list(order)

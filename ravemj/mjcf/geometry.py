@@ -1,0 +1,158 @@
+"""Shapes: which geoms and meshes a geometry becomes."""
+
+from ravemj.errors import Diagnostics
+from ravemj.meshes import collision_form, decompose, write_obj
+from ravemj.mjcf.lines import Attribute, Lines, attribute_text, pose_attributes
+from ravemj.scene import (
+    Box,
+    Capsule,
+    Container,
+    Cylinder,
+    Geometry,
+    Mesh,
+    NoShape,
+    Rgb,
+    Shape,
+    Sphere,
+    Surface,
+    TriMesh,
+)
+from ravemj.transforms import Pose, Vec3, add, scale
+
+SMALLEST_SIZE = 1e-10
+"""The least size [m] that is written; MuJoCo wants it positive."""
+
+_FEWEST_VERTICES = 4
+
+Solid = tuple[str, tuple[float, ...], Vec3]
+"""MuJoCo's type and size of a solid, and where its centre is in the geometry."""
+
+
+class GeometryWriter:
+    """Writes geoms and collects the meshes that they need.
+
+    Attributes:
+        assets: Content of the mesh files, by file name.
+        lines: The elements that declare them.
+    """
+
+    def __init__(self, diagnostics: Diagnostics, *, decomposed: bool) -> None:
+        self.diagnostics = diagnostics
+        self.assets: dict[str, str] = {}
+        self.lines = Lines(2)
+        self._decomposed = decomposed
+
+    def write(self, geometry: Geometry, out: Lines) -> None:
+        """Write the geoms of a geometry."""
+        seen = geometry.visible and geometry.display is None
+        if isinstance(geometry.shape, TriMesh):
+            self._write_mesh(geometry, geometry.shape.mesh, out, seen=seen)
+        else:
+            for solid in solids(geometry.shape):
+                self._write_solid(geometry, solid, out, seen=seen)
+        for surface in geometry.display or () if geometry.visible else ():
+            self._write_surface(geometry, surface, out)
+
+    def _write_solid(self, geometry: Geometry, solid: Solid, out: Lines, *, seen: bool) -> None:
+        kind, size, centre = solid
+        legal = tuple(max(part, SMALLEST_SIZE) for part in size)
+        if legal != size:
+            message = f"MuJoCo refuses a {kind} of size {attribute_text(size)}; the MJCF has {attribute_text(legal)}"
+            self.diagnostics.warn("raised-size", message, geometry.source)
+        pose = geometry.T_link_geometry @ Pose(centre) if any(centre) else geometry.T_link_geometry
+        colour = _rgba(geometry.diffuse, geometry.transparency)
+        out.element(
+            "geom",
+            geometry.source,
+            **{"class": None if seen else "collision"},
+            type=kind,
+            size=legal,
+            **pose_attributes(pose),
+            rgba=colour,
+        )
+
+    def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: Lines, *, seen: bool) -> None:
+        """Write a mesh that is seen and collides: once for both, where one geom can do both."""
+        hulls = self._hulls(geometry, mesh)
+        both = seen and hulls == (mesh,)
+        if seen:
+            self._write_mesh_geom(geometry, mesh, None if both else "visual", out)
+        if not both:
+            for hull in hulls:
+                self._write_mesh_geom(geometry, hull, "collision", out)
+
+    def _hulls(self, geometry: Geometry, mesh: Mesh) -> tuple[Mesh, ...]:
+        """Return the meshes whose convex hulls collide in place of a mesh."""
+        if collision_form(mesh) == "visual":
+            if len(mesh.triangles):
+                message = "the mesh is flat and has no convex hull; it is drawn and does not collide"
+                self.diagnostics.warn("flat-mesh", message, geometry.source)
+            return ()
+        return decompose(mesh) if self._decomposed else (mesh,)
+
+    def _write_surface(self, geometry: Geometry, surface: Surface, out: Lines) -> None:
+        name = self._mesh_name(surface.mesh)
+        if name is not None:
+            colour = _rgba(surface.diffuse, surface.transparency)
+            self._write_geom(geometry, name, "visual", colour, out)
+
+    def _write_mesh_geom(self, geometry: Geometry, mesh: Mesh, role: str | None, out: Lines) -> None:
+        name = self._mesh_name(mesh)
+        if name is not None:
+            self._write_geom(geometry, name, role, _rgba(geometry.diffuse, geometry.transparency), out)
+
+    def _write_geom(
+        self, geometry: Geometry, mesh_name: str, role: str | None, colour: tuple[float, ...], out: Lines
+    ) -> None:
+        attributes: dict[str, Attribute | None] = {"class": role, "type": "mesh", "mesh": mesh_name}
+        out.element("geom", geometry.source, **attributes, **pose_attributes(geometry.T_link_geometry), rgba=colour)
+
+    def _mesh_name(self, mesh: Mesh) -> str | None:
+        """Return the name of a mesh, declared when it is met first; None for one that MuJoCo cannot load."""
+        if len(mesh.vertices) < _FEWEST_VERTICES or not len(mesh.triangles):
+            return None
+        name = f"mesh-{mesh.digest[:16]}"
+        file = f"{name}.obj"
+        if file not in self.assets:
+            self.assets[file] = write_obj(mesh)
+            self.lines.element("mesh", name=name, file=file, inertia="shell")
+        return name
+
+
+def solids(shape: Shape) -> list[Solid]:
+    """Return the solids that a shape consists of."""
+    match shape:
+        case Box(half_extents):
+            return [("box", half_extents, (0.0, 0.0, 0.0))]
+        case Sphere(radius):
+            return [("sphere", (radius,), (0.0, 0.0, 0.0))]
+        case Cylinder(radius, height):
+            return [("cylinder", (radius, height / 2), (0.0, 0.0, 0.0))]
+        case Capsule(radius, height):
+            return [("capsule", (radius, height / 2), (0.0, 0.0, 0.0))]
+        case Container():
+            return _container(shape)
+        case TriMesh() | NoShape():
+            return []
+
+
+def _container(shape: Container) -> list[Solid]:
+    """Return floor, four walls, and what stands on the floor; the origin is the middle of the outer bottom."""
+    outer, inner = shape.outer_extents, shape.inner_extents
+    wall_x, wall_y, floor = ((o - i) / 2 for o, i in zip(outer, inner, strict=True))
+    floor *= 2
+    solids: list[Solid] = [("box", (outer[0] / 2, outer[1] / 2, floor / 2), (0.0, 0.0, floor / 2))]
+    middle: Vec3 = (0.0, 0.0, outer[2] / 2)
+    for sign in (-1.0, 1.0):
+        across: Vec3 = ((outer[0] - wall_x) / 2, 0.0, 0.0)
+        along: Vec3 = (0.0, (outer[1] - wall_y) / 2, 0.0)
+        solids.append(("box", (wall_x / 2, outer[1] / 2, outer[2] / 2), add(middle, scale(across, sign))))
+        solids.append(("box", (outer[0] / 2, wall_y / 2, outer[2] / 2), add(middle, scale(along, sign))))
+    for size in (shape.bottom_cross, shape.bottom):
+        if all(size):
+            solids.append(("box", scale(size, 0.5), (0.0, 0.0, floor + size[2] / 2)))
+    return solids
+
+
+def _rgba(colour: Rgb, transparency: float) -> tuple[float, ...]:
+    return (*colour, 1.0 - transparency)

@@ -1,0 +1,78 @@
+"""Lines of XML, each with the place in the user's file that it comes from."""
+
+from xml.sax.saxutils import quoteattr
+
+from ravemj.errors import Source
+from ravemj.transforms import Pose
+
+Attribute = str | float | bool | tuple[float, ...]
+
+
+class Lines:
+    """XML in the making, one element a line.
+
+    Attributes:
+        text: The lines.
+        sources: For each line where it comes from, or None.
+    """
+
+    def __init__(self, indent: int = 0) -> None:
+        self.text: list[str] = []
+        self.sources: list[Source | None] = []
+        self._indent = indent
+
+    def element(self, tag: str, source: Source | None = None, /, **attributes: Attribute | None) -> None:
+        """Write an element without children; attributes that are None are left out."""
+        self._line(f"<{tag}{_attributes(attributes)}/>", source)
+
+    def open(self, tag: str, source: Source | None = None, /, **attributes: Attribute | None) -> None:
+        """Write a start tag."""
+        self._line(f"<{tag}{_attributes(attributes)}>", source)
+        self._indent += 1
+
+    def close(self, tag: str) -> None:
+        """Write an end tag."""
+        self._indent -= 1
+        self._line(f"</{tag}>", None)
+
+    def comment(self, text: str, source: Source | None) -> None:
+        """Write a comment."""
+        self._line(f"<!-- {text.replace('--', '- -')} -->", source)
+
+    def section(self, tag: str, content: "Lines") -> None:
+        """Write a section with lines that were made apart, unless there are none."""
+        if content.text:
+            self.open(tag)
+            self.text += content.text
+            self.sources += content.sources
+            self.close(tag)
+
+    def _line(self, text: str, source: Source | None) -> None:
+        self.text.append("  " * self._indent + text)
+        self.sources.append(source)
+
+
+def pose_attributes(pose: Pose) -> dict[str, Attribute]:
+    """Return ``pos`` and ``quat`` of a pose; a part that does nothing is left out."""
+    attributes: dict[str, Attribute] = {}
+    if any(pose.position):
+        attributes["pos"] = pose.position
+    if any(pose.wxyz[1:]):
+        attributes["quat"] = pose.wxyz
+    return attributes
+
+
+def attribute_text(value: Attribute) -> str:
+    """Return an attribute's text; numbers keep all their digits."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, tuple):
+        return " ".join(attribute_text(part) for part in value)
+    return repr(int(value) if abs(value) < 1e15 and value == int(value) else value)
+
+
+def _attributes(attributes: dict[str, Attribute | None]) -> str:
+    found = ((name, value) for name, value in attributes.items() if value is not None)
+    return "".join(f" {name}={quoteattr(attribute_text(value))}" for name, value in found)

@@ -1,0 +1,45 @@
+"""A mesh file in place of a body: one static link with the shapes of the file."""
+
+import os
+from pathlib import Path
+
+from ravemj.builder import BodyBuilder, LinkBuilder
+from ravemj.errors import Source
+from ravemj.meshes import MESH_SUFFIXES
+from ravemj.openrave_xml.context import Context
+from ravemj.scene import Geometry, Inertial, Mesh, TriMesh
+from ravemj.transforms import ZERO, Pose, Vec3
+
+_MASSLESS = Inertial(1e-10, ZERO, (ZERO, ZERO, ZERO))
+
+
+def is_mesh(name: str) -> bool:
+    """Return whether a file name is that of a mesh."""
+    return name.lower().endswith(tuple(MESH_SUFFIXES))
+
+
+def add_mesh(body: BodyBuilder, path: str, scale: Vec3, source: Source, context: Context) -> None:
+    """Fill a body with the link that OpenRAVE makes of a mesh file; it has the name of the file.
+
+    Args:
+        body: The body.
+        path: The file.
+        scale: Factors along x, y and z.
+        source: Where the file is named.
+        context: Takes findings.
+    """
+    geometries = [
+        Geometry(
+            shape=TriMesh(Mesh(part.mesh.vertices * scale, part.mesh.triangles)),
+            T_link_geometry=Pose(),
+            name="",
+            diffuse=part.diffuse,
+            ambient=part.ambient,
+            transparency=part.transparency,
+            visible=True,
+            source=source,
+        )
+        for part in context.mesh(os.path.abspath(path), source)
+    ]
+    body.links.append(LinkBuilder("base", source, geometries=geometries, inertial=_MASSLESS, static=True))
+    body.name = Path(path).stem

@@ -1,0 +1,51 @@
+"""What OpenRAVE has in memory after loading: frozen, resolved, nothing of XML and nothing of MuJoCo.
+
+Readers make a ``Scene`` (through ``ravemj.builder``), writers and the runtime read it. Lengths are metres,
+angles radians, masses kilograms. Links are referred to by their index in ``KinBody.links``.
+"""
+
+from ravemj.scene.body import AttachedSensor, Intrinsics, KinBody, Manipulator
+from ravemj.scene.mechanism import UNLIMITED, Axis, Inertial, Joint, JointKind, Link, Mimic
+from ravemj.scene.shapes import (
+    Box,
+    Capsule,
+    Container,
+    Cylinder,
+    Geometry,
+    Mesh,
+    NoShape,
+    Rgb,
+    Shape,
+    Sphere,
+    Surface,
+    TriMesh,
+)
+from ravemj.scene.world import Scene, View
+
+__all__ = [
+    "UNLIMITED",
+    "AttachedSensor",
+    "Axis",
+    "Box",
+    "Capsule",
+    "Container",
+    "Cylinder",
+    "Geometry",
+    "Inertial",
+    "Intrinsics",
+    "Joint",
+    "JointKind",
+    "KinBody",
+    "Link",
+    "Manipulator",
+    "Mesh",
+    "Mimic",
+    "NoShape",
+    "Rgb",
+    "Scene",
+    "Shape",
+    "Sphere",
+    "Surface",
+    "TriMesh",
+    "View",
+]

@@ -1,0 +1,146 @@
+"""Shapes, colours and triangles."""
+
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ravemj.errors import Source
+from ravemj.transforms import Floats, Ints, Pose, Vec3
+
+Rgb = tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles; two meshes are equal if their numbers are.
+
+    Attributes:
+        vertices: Shape (n, 3) [m]; read-only.
+        triangles: Indices of the corners of each triangle, counter-clockwise seen from outside, shape (m, 3);
+            read-only.
+    """
+
+    vertices: Floats
+    triangles: Ints
+
+    def __post_init__(self) -> None:
+        vertices = np.array(self.vertices, dtype=np.float64).reshape(-1, 3)
+        triangles = np.array(self.triangles, dtype=np.int_).reshape(-1, 3)
+        for name, numbers in (("vertices", vertices), ("triangles", triangles)):
+            numbers.flags.writeable = False
+            object.__setattr__(self, name, numbers)
+
+    @cached_property
+    def digest(self) -> str:
+        """A name for the content: the same for the same numbers."""
+        content = hashlib.sha256(self.vertices.tobytes())
+        content.update(self.triangles.tobytes())
+        return content.hexdigest()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Mesh) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A box; ``half_extents`` are half its edge lengths."""
+
+    half_extents: Vec3
+
+
+@dataclass(frozen=True, slots=True)
+class Sphere:
+    """A sphere."""
+
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Cylinder:
+    """A cylinder along z, centred; ``height`` is the full height."""
+
+    radius: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class Capsule:
+    """A capsule along z, centred; ``height`` is that of the cylindrical part."""
+
+    radius: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class Container:
+    """An open box that stands on the origin and opens along z; all sizes are full edge lengths.
+
+    Attributes:
+        outer_extents: Its outer size.
+        inner_extents: The size of its interior.
+        bottom_cross: Size of a cross on the bottom.
+        bottom: Size of a plate on the bottom.
+    """
+
+    outer_extents: Vec3
+    inner_extents: Vec3
+    bottom_cross: Vec3
+    bottom: Vec3
+
+
+@dataclass(frozen=True, slots=True)
+class TriMesh:
+    """Triangles; none where their file is missing."""
+
+    mesh: Mesh
+
+
+@dataclass(frozen=True, slots=True)
+class NoShape:
+    """A geometry without a shape."""
+
+
+Shape = Box | Sphere | Cylinder | Capsule | Container | TriMesh | NoShape
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """Triangles that are only drawn, in the frame of their geometry."""
+
+    mesh: Mesh
+    diffuse: Rgb
+    transparency: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Geometry:
+    """A shape fixed to a link.
+
+    Attributes:
+        shape: Its kind and sizes.
+        T_link_geometry: Its pose in the link.
+        name: Its name; often empty.
+        diffuse: Colour, each part from 0 to 1.
+        ambient: Colour in the shade, each part from 0 to 1.
+        transparency: 0 is opaque, 1 invisible.
+        visible: False where it only collides.
+        modifiable: Whether planners may change it.
+        display: What is drawn in place of the shape; None: the shape itself.
+        source: The element that it comes from.
+    """
+
+    shape: Shape
+    T_link_geometry: Pose
+    name: str
+    diffuse: Rgb
+    ambient: Rgb
+    transparency: float
+    visible: bool
+    modifiable: bool = True
+    display: tuple[Surface, ...] | None = None
+    source: Source
