@@ -1,8 +1,9 @@
 """Parsed meshes kept on disk, by the content of their files.
 
 An entry is a ``.npz`` of plain arrays, named after the hash of the file, the end of its name and the source of the
-readers, so that no entry outlives a change of them. It lists the files that the mesh refers to with their hashes, and counts only while they are the same.
-Whatever goes wrong here is logged at debug level and never stops a mesh from being read.
+readers, so that no entry outlives a change of them. It lists the files that the mesh refers to with their hashes, and
+counts only while they are the same. Whatever goes wrong here is logged at debug level and never stops a mesh from
+being read.
 
 ``RAVEMJ_CACHE`` names the folder, or ``off`` for none; otherwise it is ``$XDG_CACHE_HOME/ravemj`` or
 ``~/.cache/ravemj``. Meshes are in ``meshes`` below it.

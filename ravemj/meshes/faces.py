@@ -66,6 +66,27 @@ def clip_ears(polygon: Floats) -> Ints:
     return np.array(triangles, np.int_).reshape(-1, 3)
 
 
+def split(index: Ints) -> tuple[Ints, Ints]:
+    """Cut a list of indices at its negative ones.
+
+    Returns:
+        The lengths of the pieces, and the indices without the negative ones.
+    """
+    ends = np.append(np.flatnonzero(index < 0), len(index))
+    sizes = np.diff(ends, prepend=-1) - 1
+    return sizes, index[index >= 0]
+
+
+def strips(sizes: Ints, index: Ints) -> Ints:
+    """Return the triangles of strips, every second one turned round so that all have the same side outside."""
+    starts = np.cumsum(sizes) - sizes
+    counts = np.maximum(sizes - 2, 0)
+    step = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
+    first = np.repeat(starts, counts) + step
+    odd = step % 2
+    return index[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
+
+
 def _concave(points: Floats, starts: Ints, sizes: Ints) -> NDArray[np.bool_]:
     """Return for each polygon whether it turns the wrong way at some corner, and is small enough to be clipped."""
     found = np.zeros(len(sizes), np.bool_)

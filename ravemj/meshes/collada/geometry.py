@@ -16,7 +16,6 @@ from ravemj.meshes.collada.document import (
     words,
 )
 from ravemj.meshes.collada.document import numbers as numbers_of
-from ravemj.meshes.inventor.old import strips
 from ravemj.meshes.parts import MAX_TRIANGLES
 from ravemj.transforms import Floats, Ints
 
@@ -117,7 +116,7 @@ def _polygons(element: Element, kind: str) -> tuple[Ints, Ints]:
             counts = np.nan_to_num(numbers_of(child(element, "vcount"))).clip(0, len(index) + 1).astype(np.int_)
             return counts[np.cumsum(counts) <= len(index)], index
         case "tristrips":
-            triangles = strips(lengths, index)
+            triangles = faces.strips(lengths, index)
             return np.full(len(triangles), 3), triangles.ravel()
         case _:
             return lengths, index

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ravemj.meshes.collada.document import Element, local_name, numbers
-from ravemj.meshes.inventor.drawing import rotation, translation
+from ravemj.meshes.matrices import rotation, translation
 from ravemj.transforms import Floats
 
 _LENGTHS = {"translate": 3, "rotate": 4, "scale": 3, "matrix": 16, "lookat": 9}

@@ -11,6 +11,7 @@ from ravemj.meshes import faces
 from ravemj.meshes.files import MeshFile
 from ravemj.meshes.inventor import primitives
 from ravemj.meshes.inventor.nodes import MAX_NODES, Node
+from ravemj.meshes.matrices import rotation, translation
 from ravemj.meshes.parts import MAX_TRIANGLES
 from ravemj.scene import Rgb
 from ravemj.transforms import Floats, Ints
@@ -189,22 +190,3 @@ def transform(node: Node, scale_field: str) -> Floats:
     stretch = np.diag([*node.floats(scale_field, 3, (1.0, 1.0, 1.0)), 1.0])
     start = translation(node.floats("translation", 3, zero) + center)
     return start @ turn @ slant @ stretch @ slant.T @ translation(-center)
-
-
-def translation(offset: Floats) -> Floats:
-    """Return a 4x4 matrix that moves by ``offset``."""
-    matrix = np.eye(4)
-    matrix[:3, 3] = offset
-    return matrix
-
-
-def rotation(axis_angle: Floats) -> Floats:
-    """Return a 4x4 matrix that turns about an axis (x, y, z) by an angle [rad]; a zero axis turns nothing."""
-    axis, angle = axis_angle[:3], float(axis_angle[3])
-    length = float(np.linalg.norm(axis))
-    matrix = np.eye(4)
-    if length > 0 and np.isfinite([length, angle]).all():
-        x, y, z = axis / length
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        matrix[:3, :3] += np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
-    return matrix

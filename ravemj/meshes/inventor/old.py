@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from ravemj.meshes import faces
 from ravemj.meshes.inventor import primitives
-from ravemj.meshes.inventor.drawing import Drawing, Finish, Handler, State, moved, rotation, transform, translation
+from ravemj.meshes.inventor.drawing import Drawing, Finish, Handler, State, moved, transform
 from ravemj.meshes.inventor.nodes import Node
+from ravemj.meshes.matrices import rotation, translation
 from ravemj.meshes.parts import rgb
 from ravemj.transforms import Ints
 
@@ -130,20 +132,20 @@ def _face_set(drawing: Drawing, node: Node, state: State) -> State:
 
 
 def _indexed_face_set(drawing: Drawing, node: Node, state: State) -> State:
-    drawing.add_polygons(*split(node.integers("coordIndex", (0,))), node, _with_own_points(drawing, node, state))
+    drawing.add_polygons(*faces.split(node.integers("coordIndex", (0,))), node, _with_own_points(drawing, node, state))
     return state
 
 
 def _triangle_strips(drawing: Drawing, node: Node, state: State) -> State:
     state_of_shape = _with_own_points(drawing, node, state)
     sizes, index = _runs(node, state_of_shape)
-    triangles = strips(sizes, index)
+    triangles = faces.strips(sizes, index)
     drawing.add_polygons(np.full(len(triangles), 3), triangles.ravel(), node, state_of_shape)
     return state
 
 
 def _indexed_triangle_strips(drawing: Drawing, node: Node, state: State) -> State:
-    triangles = strips(*split(node.integers("coordIndex", (0,))))
+    triangles = faces.strips(*faces.split(node.integers("coordIndex", (0,))))
     points = _with_own_points(drawing, node, state)
     drawing.add_polygons(np.full(len(triangles), 3), triangles.ravel(), node, points)
     return state
@@ -177,27 +179,6 @@ def _runs(node: Node, state: State) -> tuple[Ints, Ints]:
     sizes = sizes.clip(0)
     sizes = sizes[np.cumsum(sizes) <= there]
     return sizes, start + np.arange(int(sizes.sum()))
-
-
-def split(index: Ints) -> tuple[Ints, Ints]:
-    """Cut a list of indices at its negative ones.
-
-    Returns:
-        The lengths of the pieces, and the indices without the negative ones.
-    """
-    ends = np.append(np.flatnonzero(index < 0), len(index))
-    sizes = np.diff(ends, prepend=-1) - 1
-    return sizes, index[index >= 0]
-
-
-def strips(sizes: Ints, index: Ints) -> Ints:
-    """Return the triangles of strips, every second one turned round so that all have the same side outside."""
-    starts = np.cumsum(sizes) - sizes
-    counts = np.maximum(sizes - 2, 0)
-    step = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
-    first = np.repeat(starts, counts) + step
-    odd = step % 2
-    return index[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
 
 
 def _cube(drawing: Drawing, node: Node, state: State) -> State:

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from ravemj.meshes import faces
 from ravemj.meshes.inventor import primitives
 from ravemj.meshes.inventor.drawing import Drawing, Finish, Handler, State, moved, transform
 from ravemj.meshes.inventor.nodes import Node
-from ravemj.meshes.inventor.old import split
 from ravemj.meshes.parts import rgb
 
 
@@ -61,7 +61,7 @@ def _indexed_face_set(drawing: Drawing, node: Node, state: State) -> State:
     if coordinates is None:
         return state
     shape = State(state.matrix, coordinates.vectors("point"), concave=not node.flag("convex", True))
-    drawing.add_polygons(*split(node.integers("coordIndex")), node, shape)
+    drawing.add_polygons(*faces.split(node.integers("coordIndex")), node, shape)
     return state
 
 
