@@ -22,8 +22,6 @@ from ravemj.transforms import Pose, Vec3, add, scale
 SMALLEST_SIZE = 1e-10
 """The least size [m] that is written; MuJoCo wants it positive."""
 
-_FEWEST_VERTICES = 4
-
 Solid = tuple[str, tuple[float, ...], Vec3]
 """MuJoCo's type and size of a solid, and where its centre is in the geometry."""
 
@@ -83,10 +81,11 @@ class GeometryWriter:
 
     def _hulls(self, geometry: Geometry, mesh: Mesh) -> tuple[Mesh, ...]:
         """Return the meshes whose convex hulls collide in place of a mesh."""
-        if collision_form(mesh) == "visual":
-            if len(mesh.triangles):
-                message = "the mesh is flat and has no convex hull; it is drawn and does not collide"
-                self.diagnostics.warn("flat-mesh", message, geometry.source)
+        form = collision_form(mesh)
+        if form == "visual":
+            message = "the mesh is flat and has no convex hull; it is drawn and does not collide"
+            self.diagnostics.warn("flat-mesh", message, geometry.source)
+        if form != "hull":
             return ()
         return decompose(mesh) if self._decomposed else (mesh,)
 
@@ -109,7 +108,7 @@ class GeometryWriter:
 
     def _mesh_name(self, mesh: Mesh) -> str | None:
         """Return the name of a mesh, declared when it is met first; None for one that MuJoCo cannot load."""
-        if len(mesh.vertices) < _FEWEST_VERTICES or not len(mesh.triangles):
+        if collision_form(mesh) == "none":
             return None
         name = f"mesh-{mesh.digest[:16]}"
         file = f"{name}.obj"
