@@ -85,3 +85,8 @@ __all__ = [
     "read_motion",
     "record",
 ]
+
+
+def __dir__() -> list[str]:
+    """Return what completion shows: the names that are meant for users."""
+    return __all__

@@ -4,12 +4,16 @@ MuJoCo knows every joint that moves, followers included, and has a velocity for 
 ``qvel = P(q) dq/dt``, and by virtual work the generalised forces of the DOFs are ``P^T`` times MuJoCo's.
 """
 
+from typing import TYPE_CHECKING
+
 import mujoco
 import numpy as np
 
-from ravemj.expressions import Expression
 from ravemj.kinematics import WELDED, BodyKinematics, Follower
 from ravemj.transforms import Floats, rows_from_wxyz
+
+if TYPE_CHECKING:
+    from ravemj.expressions import Expression
 
 STEP = 1e-5
 """Step [rad or m] of the difference quotient of P, where P is no constant."""
@@ -33,7 +37,7 @@ class BodyDynamics:
             not slope.variables for slopes in self._slopes for slope in slopes.values()
         )
 
-    def _derivatives(self, follower: Follower) -> dict[int, Expression]:
+    def _derivatives(self, follower: Follower) -> "dict[int, Expression]":
         """Return the partial derivatives of a follower by the index of the joint that it follows."""
         joints = (*self._kinematics.body.joints, *self._kinematics.body.passive_joints)
         mimic = joints[follower.joint].mimic

@@ -16,7 +16,7 @@ import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Literal
+from typing import Literal, NamedTuple
 
 
 class ErrorCode(IntEnum):
@@ -40,8 +40,7 @@ class ErrorCode(IntEnum):
     BodyIdConflict = 15
 
 
-@dataclass(frozen=True, slots=True)
-class Source:
+class Source(NamedTuple):
     """A place in a file that a user wrote.
 
     Attributes:
@@ -84,21 +83,33 @@ class RavemjError(Exception):
         return self._code.name
 
 
+_CAUSES = {"missing-file", "broken-file", "unsupported-file", "bad-number"}
+
+
 class SourceError(RavemjError):
     """A file cannot be read as a model.
 
     Attributes:
         source: The place in the file.
         hint: What the author can do about it; may be empty.
+        diagnostics: What was found before, from which the failure may have come.
     """
 
     def __init__(self, message: str, source: Source, hint: str = "") -> None:
         super().__init__(message)
         self.source = source
         self.hint = hint
+        self.diagnostics: tuple[Diagnostic, ...] = ()
 
     def __str__(self) -> str:
         return describe("error", self.message, self.source, self.hint)
+
+    @property
+    def cause(self) -> "Diagnostic | None":
+        """The finding that explains the failure: of a file or a number, at the same place or in what it includes."""
+        here = self.source[:2]
+        explaining = (finding for finding in self.diagnostics if finding.code in _CAUSES)
+        return next((finding for finding in explaining if here in _places(finding.source)), None)
 
 
 class CompileError(SourceError):
@@ -181,6 +192,13 @@ class Diagnostics:
     def error(self, code: str, message: str, source: Source, hint: str = "") -> None:
         """Record something for which OpenRAVE's ``Load`` returns False though it goes on."""
         self._found.append(Diagnostic("error", code, message, source, hint))
+
+
+def _places(source: Source | None) -> Iterator[tuple[str, int]]:
+    """Yield file and line of a place and of those that included it."""
+    while source is not None:
+        yield source.file, source.line
+        source = source.included_from
 
 
 def describe(kind: str, message: str, source: Source, hint: str) -> str:

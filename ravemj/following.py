@@ -1,15 +1,16 @@
 """Mimic joints: from the equations of a file to expressions over the joints of a body."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 from ravemj.errors import Diagnostics, Source
-from ravemj.expressions import Expression, ExpressionError, joint_variables, parse, substitute
 from ravemj.scene import Mimic
 
+if TYPE_CHECKING:
+    from ravemj.expressions import Expression
 
-@dataclass(frozen=True, slots=True)
-class Equations:
+
+class Equations(NamedTuple):
     """The equations of a mimic joint as written, with the names of other joints; ``position`` may be empty."""
 
     position: str = ""
@@ -17,8 +18,7 @@ class Equations:
     acceleration: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Follower:
+class Follower(NamedTuple):
     """A joint as its leaders and followers see it.
 
     Attributes:
@@ -44,6 +44,10 @@ def resolve(joints: Sequence[Follower], diagnostics: Diagnostics) -> dict[int, M
     Returns:
         By index of the joint; empty where any equation is wrong: OpenRAVE then drops all of them.
     """
+    if not any(joint.equations for joint in joints):
+        return {}
+    from ravemj.expressions import ExpressionError, joint_variables, parse, substitute  # noqa: PLC0415 - rarely wanted
+
     mimics: dict[int, Expression] = {}
     variables = joint_variables([joint.name for joint in joints])
     known = {f"joint{index}" for index, joint in enumerate(joints) if len(joint.dofs) <= 1}
@@ -60,12 +64,12 @@ def resolve(joints: Sequence[Follower], diagnostics: Diagnostics) -> dict[int, M
     return {index: _mimic(index, joints, mimics, diagnostics) for index in mimics}
 
 
-def leaders(expression: Expression) -> tuple[int, ...]:
+def leaders(expression: "Expression") -> tuple[int, ...]:
     """Return the indices of the joints that an expression depends on."""
     return tuple(int(name.removeprefix("joint")) for name in expression.variables)
 
 
-def _mimic(index: int, joints: Sequence[Follower], mimics: dict[int, Expression], diagnostics: Diagnostics) -> Mimic:
+def _mimic(index: int, joints: Sequence[Follower], mimics: "dict[int, Expression]", diagnostics: Diagnostics) -> Mimic:
     joint = joints[index]
     equations = joint.equations or Equations()
     dofs: set[int] = set()

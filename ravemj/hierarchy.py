@@ -8,11 +8,10 @@ are not satisfied, except that a fixed joint always places its child.
 
 from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class Edge:
+class Edge(NamedTuple):
     """A joint as an edge of the graph.
 
     Attributes:
@@ -28,8 +27,7 @@ class Edge:
     follows: tuple[int, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Hierarchy:
+class Hierarchy(NamedTuple):
     """The directed joints.
 
     Attributes:

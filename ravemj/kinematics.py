@@ -3,8 +3,9 @@
 The index maps are made once for a compiled model. Nothing here recompiles it.
 """
 
+import itertools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -19,8 +20,7 @@ LARGEST = float(np.finfo(np.float64).max)
 WELDED = -1
 
 
-@dataclass(frozen=True, slots=True)
-class Ball:
+class Ball(NamedTuple):
     """A spherical joint: three DOFs that are a rotation vector, and a quaternion in ``qpos``."""
 
     joint: Joint
@@ -40,8 +40,7 @@ class Ball:
         return rotation_vector(multiply(rest, multiply((w, x, y, z), conjugate(rest))))
 
 
-@dataclass(frozen=True, slots=True)
-class Follower:
+class Follower(NamedTuple):
     """A mimic joint: its value is a function of the values of all joints.
 
     Attributes:
@@ -90,7 +89,10 @@ class BodyKinematics:
         ]  # plain floats: for few joints a loop over them is faster than numpy
         self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
         self._joints = (*body.joints, *body.passive_joints)
-        self.first_dofs: list[int] = np.cumsum([0, *(len(joint.axes) for joint in body.joints)]).tolist()[:-1]
+        sizes = (len(joint.axes) for joint in body.joints)
+        self.first_dofs = list(itertools.accumulate(sizes, initial=0))[:-1]
+            :-1
+        ]
         self.balls = self._find_balls(names)
         self.qpos_indices = self._find_qpos(names)
         self.followers = self._find_followers(names)
@@ -99,7 +101,8 @@ class BodyKinematics:
         self._plain = bool(self._free.all()) and not self.followers
         self._loose = self._find_loose(names)
         self._links = _index_range(self.body_ids)
-        self._homogeneous = np.tile(np.eye(4), (len(self.body_ids), 1, 1))
+        self._homogeneous = np.zeros((len(self.body_ids), 4, 4))
+        self._homogeneous[:, 3, 3] = 1.0
         self._passive_values = [[axis.value for axis in joint.axes] for joint in body.passive_joints]
 
     def _find_balls(self, names: BodyNames) -> list[Ball]:
@@ -224,7 +227,8 @@ def _qpos_index(model: mujoco.MjModel, joint_name: str) -> int:
 
 def _index_range(indices: Ints) -> slice | Ints:
     """Return the indices as a slice if they follow one another, since slices are faster."""
-    first = int(indices[0]) if len(indices) else 0
-    if np.array_equal(indices, np.arange(first, first + len(indices))):
-        return slice(first, first + len(indices))
+    plain = indices.tolist()
+    first = plain[0] if plain else 0
+    if plain == list(range(first, first + len(plain))):
+        return slice(first, first + len(plain))
     return indices

@@ -12,8 +12,6 @@ comments::
 As ``.npz``, it holds the arrays ``time`` of shape (N,) and ``values`` of shape (N, dof).
 """
 
-import csv
-import difflib
 import math
 import os
 import reprlib
@@ -215,6 +213,8 @@ def _read_csv(file: str, text: TextIO, joint_names: Sequence[str], rest: Floats)
 
 def _lines(file: str, text: TextIO) -> Iterator[tuple[int, list[str]]]:
     """Yield the number and the cells of each line that holds some."""
+    import csv  # noqa: PLC0415 - slow to import
+
     for number, line in enumerate(text, 1):
         content = line.strip()
         if not content or content.startswith("#"):
@@ -248,6 +248,8 @@ def _columns(header: list[str], joint_names: Sequence[str], source: Source) -> d
 
 
 def _did_you_mean(name: str, joint_names: Sequence[str]) -> str:
+    import difflib  # noqa: PLC0415 - slow to import
+
     close = difflib.get_close_matches(name[:100], joint_names, 1)
     guess = f"did you mean '{close[0]}'? " if close else ""
     return f"{guess}the joints are {', '.join(joint_names) or 'none'}"

@@ -5,7 +5,6 @@ and a target that was there before stays as it was.
 """
 
 import os
-import secrets
 import shutil
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -114,7 +113,7 @@ def _real(path: AnyPath) -> Path:
 
 
 def _temporary_name(path: AnyPath) -> Path:
-    return _real(path).with_name(f".ravemj-{secrets.token_hex(8)}.tmp")
+    return _real(path).with_name(f".ravemj-{os.urandom(8).hex()}.tmp")
 
 
 def _check_permissions(path: AnyPath, target: Path) -> None:

@@ -44,4 +44,5 @@ def read_mesh_file(path: str) -> Reading:
     source = Source(path)
     body = BodyBuilder(is_robot=False, source=source)
     add_mesh(body, path, (1.0, 1.0, 1.0), source, context)
-    return Reading(Scene((body.freeze(context.diagnostics),)), context.diagnostics, None)
+    scene = Scene((body.freeze(context.diagnostics),))
+    return Reading(scene, context.diagnostics, None, tuple(context.files))

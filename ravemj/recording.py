@@ -3,8 +3,8 @@
 import os
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,13 +14,11 @@ from ravemj.motion import Motion
 from ravemj.rave import CheckLimitsAction, Environment, KinBody
 from ravemj.rendering import Camera
 from ravemj.studio import Format, Frame, checked_colour, fitting_view
-from ravemj.video import write_frames
 
 _POSES_FOR_THE_VIEW = 17
 
 
-@dataclass(frozen=True, slots=True)
-class Shot:
+class Shot(NamedTuple):
     """How a video is taken.
 
     Attributes:
@@ -76,6 +74,8 @@ def record(  # noqa: PLR0913 - keyword arguments
         >>> swing = ravemj.Motion.line([0, 0], [3.14, 0], duration=1.0)
         >>> ravemj.record(env, "swing.mp4", swing)
     """
+    from ravemj.video import write_frames  # noqa: PLC0415 - slow to import
+
     body = moving_body(env) if robot is None else robot
     allowed = within_limits(body, motion)
     shot = Shot(

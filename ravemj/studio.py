@@ -1,7 +1,7 @@
 """Pictures of a simulation: who draws them, from where, on what background."""
 
 import threading
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,8 +13,7 @@ from ravemj.simulation import Simulation
 Frame = NDArray[np.uint8]
 
 
-@dataclass(frozen=True, slots=True)
-class Format:
+class Format(NamedTuple):
     """What a picture costs and how it looks.
 
     Attributes:

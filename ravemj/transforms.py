@@ -89,6 +89,8 @@ def conjugate(wxyz: Wxyz) -> Wxyz:
 
 def rotate(wxyz: Wxyz, vector: Vec3) -> Vec3:
     """Rotate a vector by a unit quaternion."""
+    if vector == ZERO:
+        return ZERO
     x_row, y_row, z_row = rows_from_wxyz(wxyz)
     return (dot(x_row, vector), dot(y_row, vector), dot(z_row, vector))
 
@@ -99,10 +101,10 @@ def normalize(wxyz: Wxyz) -> Wxyz:
     Raises:
         ValueError: all four numbers are zero.
     """
-    length = math.sqrt(sum(part * part for part in wxyz))
+    w, x, y, z = wxyz
+    length = math.sqrt(w * w + x * x + y * y + z * z)
     if length == 0.0:
         raise ValueError("a quaternion of zeros is no rotation")
-    w, x, y, z = wxyz
     return (w / length, x / length, y / length, z / length)
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from ravemj.errors import RenderingError
-from ravemj.rendering import open_renderer, probe_backends
+from ravemj.rendering import open_renderer
+from ravemj.rendering.doctor import probe_backends
 from ravemj.rendering.contexts import GL_BACKENDS, requested_backend
 
 ROOT = Path(__file__).parents[1]

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from ravemj.cli.console import print_error, show_warnings_in_one_line
 from ravemj.cli.parser import make_parser
-from ravemj.errors import RavemjError
+from ravemj.errors import OutputError, RavemjError
 
 __all__ = ["main"]
 
@@ -33,23 +33,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = make_parser().parse_args(_joined(sys.argv[1:] if arguments is None else arguments))
     try:
         with show_warnings_in_one_line():
-            return options.run(options)
+            status = options.run(options)
+        sys.stdout.flush()  # here, where its failure can be told
+        return status
     except RavemjError as error:
         print_error(error)
         return 1
     except KeyboardInterrupt:
         print("ravemj: interrupted", file=sys.stderr)
         return _INTERRUPTED
-    except BrokenPipeError:  # the reader of our output is gone, for instance ``head``
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        if error.filename is not None:
+            raise
+        _drop_output()
+        if not isinstance(error, BrokenPipeError):  # else the reader of our output is gone, for instance ``head``
+            print_error(OutputError(f"cannot write standard output: {(error.strerror or str(error)).lower()}"))
         return 1
+
+
+def _drop_output() -> None:
+    """Send what is left of standard output nowhere, so that Python does not complain at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _joined(words: Sequence[str]) -> list[str]:
     """Write ``--to -1,0`` as ``--to=-1,0``, since argparse takes what starts with a dash for an option."""
     joined: list[str] = []
     for word in words:
-        if joined and joined[-1] in _VECTOR_OPTIONS and re.match(r"-[\d.]", word):
+        if joined and joined[-1] in _VECTOR_OPTIONS and re.match(r"-([\d.]|inf|nan)", word, re.IGNORECASE):
             joined[-1] += f"={word}"
         else:
             joined.append(word)

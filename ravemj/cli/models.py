@@ -6,11 +6,11 @@ import warnings
 
 from ravemj import scene
 from ravemj.cli.console import console, print_findings, table
-from ravemj.errors import RavemjWarning, SourceError
+from ravemj.errors import Diagnostic, RavemjWarning, SourceError
 from ravemj.output import new_file
 from ravemj.rave import Environment, load
 
-_FATAL_HERE = {"bad-number"}
+FATAL_CODES = {"bad-number"}
 """Findings that OpenRAVE reads over, and a command does not: nobody means the number that OpenRAVE makes of it."""
 
 
@@ -22,13 +22,21 @@ def load_model(options: argparse.Namespace) -> Environment:
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)  # they are printed below, all at once
-        env = load(options.model)
-    fatal = [finding for finding in env.diagnostics if options.strict or finding.code in _FATAL_HERE]
-    print_findings(finding for finding in env.diagnostics if finding not in fatal)
+        try:
+            env = load(options.model)
+        except SourceError as error:
+            raise error if error.cause is None else _failure(error.cause) from None
+    fatal = [finding for finding in env.diagnostics if options.strict or finding.code in FATAL_CODES]
     if fatal:
-        print_findings(fatal[:-1])
-        raise SourceError(f"{fatal[-1].message} [{fatal[-1].code}]", fatal[-1].source, fatal[-1].hint)
+        raise _failure(fatal[0], len(fatal) - 1)
+    print_findings(env.diagnostics)
     return env
+
+
+def _failure(finding: Diagnostic, others: int = 0) -> SourceError:
+    """Return the error that ends a command for a finding."""
+    more = f" (and {others} more: see ravemj check)" if others else ""
+    return SourceError(f"{finding.message} [{finding.code}]{more}", finding.source, finding.hint)
 
 
 def convert(options: argparse.Namespace) -> int:

@@ -39,7 +39,7 @@ def _from_script(trace: TracebackType | None, script: str) -> TracebackType | No
     inner = trace
     while inner is not None and inner.tb_frame.f_code.co_filename != script:
         inner = inner.tb_next
-    return inner or trace
+    return inner  # None: the script could not even be parsed, and the error itself says where
 
 
 def shell(options: argparse.Namespace) -> int:

@@ -2,13 +2,20 @@
 
 ``read_mesh`` reads STL, OBJ, COLLADA, Inventor and VRML itself, PLY, OFF and glTF through trimesh, and gives what
 OpenRAVE gives: the same triangles, parts and colours. Nothing here knows of links.
+
+The readers are imported when they are asked for: most models have no meshes.
 """
 
-from ravemj.meshes.decomposition import decompose
+import importlib
+from typing import TYPE_CHECKING
+
 from ravemj.meshes.hulls import CollisionForm, area, collision_form, volume
-from ravemj.meshes.obj import write_obj
-from ravemj.meshes.parts import MeshPart
-from ravemj.meshes.reading import MESH_SUFFIXES, read_mesh
+from ravemj.meshes.parts import MESH_SUFFIXES, MeshPart
+
+if TYPE_CHECKING:
+    from ravemj.meshes.decomposition import decompose
+    from ravemj.meshes.obj import write_obj
+    from ravemj.meshes.reading import read_mesh
 
 __all__ = [
     "MESH_SUFFIXES",
@@ -21,3 +28,11 @@ __all__ = [
     "volume",
     "write_obj",
 ]
+
+_MODULES = {"decompose": "decomposition", "read_mesh": "reading", "write_obj": "obj"}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f"{__name__}.{_MODULES[name]}"), name)

@@ -9,6 +9,9 @@ from ravemj.errors import Source, SourceError
 from ravemj.scene import Mesh, Rgb
 from ravemj.transforms import Floats
 
+MESH_SUFFIXES = (".iv", ".wrl", ".vrml", ".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf")
+"""Ends of the names of files that can be read, in lower case."""
+
 MAX_TRIANGLES = 5_000_000
 """More triangles than this in one file are refused; a few hundred bytes of USE or instances can ask for billions."""
 

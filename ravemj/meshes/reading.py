@@ -11,7 +11,7 @@ from ravemj.meshes.exchange import SUFFIXES, read_exchange
 from ravemj.meshes.files import MeshFile, read_bytes, unpacked
 from ravemj.meshes.inventor import read_inventor
 from ravemj.meshes.obj import read_obj
-from ravemj.meshes.parts import MeshPart
+from ravemj.meshes.parts import MESH_SUFFIXES, MeshPart
 from ravemj.meshes.stl import read_stl
 
 _Reader = Callable[[MeshFile], tuple[MeshPart, ...]]
@@ -25,9 +25,6 @@ _READERS: dict[str, _Reader] = {
     ".dae": read_collada,
     **dict.fromkeys(SUFFIXES, read_exchange),
 }
-
-MESH_SUFFIXES = tuple(_READERS)
-"""Ends of the names of files that ``read_mesh`` reads, in lower case."""
 
 
 def read_mesh(path: str) -> tuple[MeshPart, ...]:
@@ -46,7 +43,7 @@ def read_mesh(path: str) -> tuple[MeshPart, ...]:
         SourceError: The file is missing, empty, malformed, too large, or of an unknown kind.
         RavemjError: The package for this kind of file is not installed.
     """
-    suffix = next((suffix for suffix in _READERS if path.lower().endswith(suffix)), None)
+    suffix = next((suffix for suffix in MESH_SUFFIXES if path.lower().endswith(suffix)), None)
     if suffix is None:
         known = " ".join(MESH_SUFFIXES)
         raise SourceError("no mesh format that ravemj knows", Source(path), hint=f"it reads {known}")

@@ -1,7 +1,7 @@
 """The whole MJCF document."""
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from ravemj.adjacency import adjacent_pairs
 from ravemj.errors import Diagnostics, Source
@@ -19,8 +19,7 @@ ASSETS = "assets"
 Actuators = Literal["position", "velocity", "torque"]
 
 
-@dataclass(frozen=True, slots=True)
-class Options:
+class Options(NamedTuple):
     """What a translation adds that the file does not say.
 
     Attributes:
@@ -35,8 +34,7 @@ class Options:
     decomposed: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class BodyNames:
+class BodyNames(NamedTuple):
     """What a body's parts are called in the MJCF.
 
     Attributes:
@@ -49,8 +47,7 @@ class BodyNames:
     joints: tuple[tuple[str, ...], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Mjcf:
+class Mjcf(NamedTuple):
     """A translated scene.
 
     Attributes:

@@ -6,14 +6,17 @@ several joints become a fixed tendon where they are linear.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ravemj.errors import Diagnostics
-from ravemj.expressions import Expression, fit_polynomial
 from ravemj.following import leaders
 from ravemj.mjcf.lines import Lines
 from ravemj.scene import Joint
+
+if TYPE_CHECKING:
+    from ravemj.expressions import Expression
 
 _TERMS = 5
 _EXACT = 1e-9
@@ -50,7 +53,12 @@ class EqualityWriter:
                 self._write_tendon(joint, joint_names[0], expression, joints, names)
 
     def _write_polynomial(
-        self, joint: Joint, name: str, expression: Expression, joints: Sequence[Joint], names: Sequence[tuple[str, ...]]
+        self,
+        joint: Joint,
+        name: str,
+        expression: "Expression",
+        joints: Sequence[Joint],
+        names: Sequence[tuple[str, ...]],
     ) -> None:
         moving = leaders(expression)
         if not moving:
@@ -66,7 +74,7 @@ class EqualityWriter:
         padded = tuple((coefficients + [0.0] * _TERMS)[:_TERMS])
         self.equalities.element("joint", joint.source, joint1=name, joint2=leader_name, polycoef=padded)
 
-    def _coefficients(self, joint: Joint, leader: Joint, expression: Expression) -> list[float]:
+    def _coefficients(self, joint: Joint, leader: Joint, expression: "Expression") -> list[float]:
         """Return the polynomial of a follower: its own, or one fitted over the leader's range."""
         variable = expression.variables[0]
         exact = expression.polynomial(variable)
@@ -74,6 +82,8 @@ class EqualityWriter:
             return list(exact)
         axis = leader.axes[0]
         lower, upper = (-np.pi, np.pi) if axis.circular else (axis.lower, axis.upper)
+        from ravemj.expressions import fit_polynomial  # noqa: PLC0415 - rarely wanted
+
         coefficients, error = fit_polynomial(expression, variable, lower, upper)
         if not np.isfinite(error):
             coefficients = (0.0,)
@@ -86,7 +96,12 @@ class EqualityWriter:
         return list(coefficients)
 
     def _write_tendon(
-        self, joint: Joint, name: str, expression: Expression, joints: Sequence[Joint], names: Sequence[tuple[str, ...]]
+        self,
+        joint: Joint,
+        name: str,
+        expression: "Expression",
+        joints: Sequence[Joint],
+        names: Sequence[tuple[str, ...]],
     ) -> None:
         slopes = {variable: expression.derivative(variable) for variable in expression.variables}
         if any(slope.variables for slope in slopes.values()):
@@ -108,7 +123,7 @@ class EqualityWriter:
         self.equalities.element("tendon", joint.source, tendon1=tendon, polycoef=offset)
 
 
-def _without_welds(expression: Expression, joints: Sequence[Joint], names: Sequence[tuple[str, ...]]) -> Expression:
+def _without_welds(expression: "Expression", joints: Sequence[Joint], names: Sequence[tuple[str, ...]]) -> "Expression":
     """Put the values of joints that move nothing in place of their variables."""
     fixed = {f"joint{index}": joints[index].axes[0].value for index in leaders(expression) if not names[index]}
     return expression.with_values(fixed) if fixed else expression

@@ -1,7 +1,7 @@
 """Shapes: which geoms and meshes a geometry becomes."""
 
 from ravemj.errors import Diagnostics
-from ravemj.meshes import collision_form, decompose, write_obj
+from ravemj.meshes import collision_form
 from ravemj.mjcf.lines import Attribute, Lines, attribute_text, pose_attributes
 from ravemj.scene import (
     Box,
@@ -87,7 +87,11 @@ class GeometryWriter:
             self.diagnostics.warn("flat-mesh", message, geometry.source)
         if form != "hull":
             return ()
-        return decompose(mesh) if self._decomposed else (mesh,)
+        if not self._decomposed:
+            return (mesh,)
+        from ravemj.meshes.decomposition import decompose  # noqa: PLC0415 - rarely wanted
+
+        return decompose(mesh)
 
     def _write_surface(self, geometry: Geometry, surface: Surface, out: Lines) -> None:
         name = self._mesh_name(surface.mesh)
@@ -113,6 +117,8 @@ class GeometryWriter:
         name = f"mesh-{mesh.digest[:16]}"
         file = f"{name}.obj"
         if file not in self.assets:
+            from ravemj.meshes.obj import write_obj  # noqa: PLC0415 - most models have no meshes
+
             self.assets[file] = write_obj(mesh)
             self.lines.element("mesh", name=name, file=file, inertia="shell")
         return name

@@ -1,11 +1,13 @@
 """Lines of XML, each with the place in the user's file that it comes from."""
 
-from xml.sax.saxutils import quoteattr
-
 from ravemj.errors import Source
 from ravemj.transforms import Pose
 
 Attribute = str | float | bool | tuple[float, ...]
+
+_ESCAPES = str.maketrans(
+    {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+)
 
 
 class Lines:
@@ -65,14 +67,17 @@ def pose_attributes(pose: Pose) -> dict[str, Attribute]:
 def attribute_text(value: Attribute) -> str:
     """Return an attribute's text; numbers keep all their digits."""
     if isinstance(value, str):
-        return value
+        return value.translate(_ESCAPES)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, tuple):
-        return " ".join(attribute_text(part) for part in value)
+        return " ".join([_number_text(part) for part in value])
+    return _number_text(value)
+
+
+def _number_text(value: float) -> str:
     return repr(int(value) if abs(value) < 1e15 and value == int(value) else value)
 
 
 def _attributes(attributes: dict[str, Attribute | None]) -> str:
-    found = ((name, value) for name, value in attributes.items() if value is not None)
-    return "".join(f" {name}={quoteattr(attribute_text(value))}" for name, value in found)
+    return "".join([f' {name}="{attribute_text(value)}"' for name, value in attributes.items() if value is not None])

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from ravemj.errors import SourceError
 from ravemj.openrave_xml.context import Context, reasons
@@ -42,8 +43,7 @@ ACTUATOR_IGNORED = reasons(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Motor:
+class Motor(NamedTuple):
     """A motor behind its gear.
 
     Attributes:

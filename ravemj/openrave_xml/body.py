@@ -5,11 +5,11 @@ of an element acts at its end, once, on the links that were made inside it.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 from ravemj.builder import BodyBuilder
 from ravemj.errors import SourceError
-from ravemj.expressions import substitute
 from ravemj.following import Equations
 from ravemj.manipulators import ManipulatorBuilder
 from ravemj.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
@@ -33,8 +33,7 @@ from ravemj.scene import KinBody
 from ravemj.transforms import Vec3
 
 
-@dataclass(frozen=True, slots=True)
-class _Marks:
+class _Marks(NamedTuple):
     """How many parts a body had at some moment; manipulators change their order, so they are kept themselves."""
 
     links: int
@@ -114,6 +113,8 @@ class _Scope:
             return
         for joint in joints:
             if joint.equations is not None:
+                from ravemj.expressions import substitute  # noqa: PLC0415 - rarely wanted
+
                 equations = joint.equations
                 texts = (equations.position, equations.velocity, equations.acceleration)
                 joint.equations = Equations(*(substitute(text, renamed) for text in texts))

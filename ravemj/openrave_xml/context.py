@@ -1,12 +1,11 @@
 """What every part of the reader needs: where to report, where files are, and how to walk over an element."""
 
-import difflib
 import os
 from collections.abc import Callable, Collection, Mapping
 from typing import TypeVar
 
 from ravemj.errors import Diagnostics, Source, SourceError
-from ravemj.meshes import MeshPart, read_mesh
+from ravemj.meshes import MeshPart
 from ravemj.openrave_xml.tree import Element, parse_file
 
 Target = TypeVar("Target")
@@ -27,10 +26,12 @@ class Context:
 
     Attributes:
         diagnostics: Takes every finding.
+        files: The files that were read, with their paths, in the order of reading.
     """
 
     def __init__(self) -> None:
         self.diagnostics = Diagnostics()
+        self.files: list[str] = []
         self._meshes: dict[str, tuple[MeshPart, ...]] = {}
 
     def walk(
@@ -97,9 +98,10 @@ class Context:
             return None
         chain: Source | None = element.source
         while chain is not None:
-            if os.path.realpath(chain.file) == os.path.realpath(path):
+            if _is_same_file(chain.file, path):
                 raise SourceError(f"the file includes itself through {name}", element.source)
             chain = chain.included_from
+        self.files.append(path)
         try:
             document = parse_file(path, element.source)
         except SourceError as error:
@@ -135,6 +137,9 @@ class Context:
         if path is None:
             return ()
         if path not in self._meshes:
+            self.files.append(path)
+            from ravemj.meshes.reading import read_mesh  # noqa: PLC0415 - most models have no meshes
+
             try:
                 self._meshes[path] = read_mesh(path)
             except SourceError as error:
@@ -143,7 +148,16 @@ class Context:
         return self._meshes[path]
 
 
+def _is_same_file(first: str, second: str) -> bool:
+    try:
+        return os.path.samefile(first, second)
+    except OSError:  # one is gone, or was never a file
+        return first == second
+
+
 def did_you_mean(name: str, known: Collection[str]) -> str:
     """Return a hint with the known name that looks most like the one given, or nothing."""
+    import difflib  # noqa: PLC0415 - slow to import
+
     similar = difflib.get_close_matches(name, list(known), n=1)
     return f"did you mean '{similar[0]}'?" if similar else ""

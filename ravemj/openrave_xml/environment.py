@@ -50,11 +50,13 @@ class Reading:
         scene: What was read; with a failure, what was read before it.
         diagnostics: Every finding.
         failure: What ended the reading, or None.
+        files: The files that were read, meshes included.
     """
 
     scene: Scene
     diagnostics: Diagnostics
     failure: SourceError | None
+    files: tuple[str, ...] = ()
 
 
 def read(path: str | os.PathLike[str]) -> Reading:
@@ -71,7 +73,7 @@ def read(path: str | os.PathLike[str]) -> Reading:
     except RecursionError:
         failure = SourceError("the elements are nested too deeply", Source(os.fspath(path)))
     scene = Scene(tuple(document.bodies), document.view, document.gravity)
-    return Reading(scene, context.diagnostics, failure)
+    return Reading(scene, context.diagnostics, failure, (os.fspath(path), *context.files))
 
 
 class _Document:

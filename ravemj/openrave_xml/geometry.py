@@ -4,6 +4,7 @@ import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -41,8 +42,7 @@ _CYLINDER_TURN = Pose(ZERO, wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi / 2))
 _EMPTY = Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int))
 
 
-@dataclass(frozen=True, slots=True)
-class GeometryScope:
+class GeometryScope(NamedTuple):
     """What a Geom takes over from the elements around it.
 
     Attributes:
@@ -54,8 +54,7 @@ class GeometryScope:
     scale: Vec3 = (1.0, 1.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True)
-class _MeshFile:
+class _MeshFile(NamedTuple):
     name: str
     scale: Vec3
 

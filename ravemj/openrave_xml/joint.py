@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 
 from ravemj.builder import BodyBuilder, JointBuilder
 from ravemj.errors import SourceError
-from ravemj.expressions import ExpressionError, linear_mimic
 from ravemj.following import Equations
 from ravemj.openrave_xml.actuator import Motor, read_motor
 from ravemj.openrave_xml.context import IGNORED, Context, reasons
@@ -37,7 +36,8 @@ class _JointReader:
     body: BodyBuilder
     kind: JointKind
     scale: Vec3
-    axes: list[Axis]
+    circular: bool
+    axes: list[dict[str, float]]
     links: list[int] = field(default_factory=list[int])
     T_scope_frame: Pose = field(default_factory=Pose)
     anchor: Vec3 = ZERO
@@ -86,8 +86,8 @@ class _JointReader:
         factor = math.pi / 180 if element.tag == "limitsdeg" and self.kind != "slider" else 1.0
         for index, axis in enumerate(self.axes):
             lower, upper = sorted(value * factor for value in values[2 * index : 2 * index + 2])
-            if not axis.circular:
-                self.axes[index] = replace(axis, lower=lower, upper=upper)
+            if not self.circular:
+                axis.update(lower=lower, upper=upper)
             elif (lower, upper) != (0.0, 0.0):
                 message = f"<{element.spelled}> has no effect on a circular joint"
                 self.context.diagnostics.warn("ignored-tag", message, element.source)
@@ -96,14 +96,12 @@ class _JointReader:
         """Read one of the deprecated limits, in degrees but for sliders; they also turn every axis round."""
         factor = 1.0 if self.kind == "slider" else math.pi / 180
         for index, value in enumerate(numbers(element, len(self.axes), self.context.diagnostics)):
-            key = "lower" if element.tag == "lostop" else "upper"
-            if not self.axes[index].circular:
-                self.axes[index] = replace(self.axes[index], **{key: value * factor})
+            if not self.circular:
+                self.axes[index]["lower" if element.tag == "lostop" else "upper"] = value * factor
         self.stops = True
 
     def read_initial(self, element: Element) -> None:
-        values = numbers(element, len(self.axes), self.context.diagnostics)
-        self.axes = [replace(axis, reference=value) for axis, value in zip(self.axes, values, strict=True)]
+        self._set(numbers(element, len(self.axes), self.context.diagnostics), "reference", 1.0)
 
     def read_weight(self, element: Element) -> None:
         self._set_all(element, "weight", 1.0, 1.0)
@@ -135,8 +133,11 @@ class _JointReader:
         values = numbers(element, count, self.context.diagnostics, default)
         if not_negative and min(values) < 0:
             raise SourceError(f"<{element.spelled}> is {min(values):g}, and cannot be negative", element.source)
-        values = values if len(values) == len(self.axes) else values * len(self.axes)
-        self.axes = [replace(axis, **{name: value * factor}) for axis, value in zip(self.axes, values, strict=True)]
+        self._set(values if len(values) == len(self.axes) else values * len(self.axes), name, factor)
+
+    def _set(self, values: list[float], name: str, factor: float) -> None:
+        for axis, value in zip(self.axes, values, strict=True):
+            axis[name] = value * factor
 
 
 JOINT_TAGS: dict[str, Callable[[_JointReader, Element], None]] = {
@@ -176,8 +177,8 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     kind = _read_kind(element, context)
     circular = not is_false(element.attributes.get("circular", "false"))
     limit = UNLIMITED if circular else _DEFAULT_LIMIT[kind]
-    axis = Axis(ZERO, lower=-limit, upper=limit, circular=circular)
-    reader = _JointReader(context, body, kind, scale_attribute(element), [axis] * _AXES[kind])
+    limits: list[dict[str, float]] = [{"lower": -limit, "upper": limit} for _ in range(_AXES[kind])]
+    reader = _JointReader(context, body, kind, scale_attribute(element), circular, limits)
     context.walk(element, JOINT_TAGS, JOINT_IGNORED, reader)
     if len(reader.links) != 2:
         raise SourceError(
@@ -189,7 +190,8 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     first, second = (body.links[index].pose for index in reader.links)
     T_first_frame = first.inverse() @ reader.T_scope_frame
     axes = tuple(
-        replace(axis, direction=_direction(reader, index, T_first_frame)) for index, axis in enumerate(reader.axes)
+        Axis(_direction(reader, index, T_first_frame), circular=circular, **numbers)
+        for index, numbers in enumerate(reader.axes)
     )
     if reader.motor is not None:
         axes = tuple(_driven(axis, reader.motor) for axis in axes)
@@ -263,6 +265,8 @@ def _equations(element: Element, context: Context) -> Equations | None:
         return Equations(*(attributes.get(f"mimic_{part}", "") for part in ("pos", "vel", "accel")))
     if "mimic" not in attributes:
         return None
+    from ravemj.expressions import ExpressionError, linear_mimic  # noqa: PLC0415 - deprecated, so rarely wanted
+
     try:
         return Equations(*linear_mimic(attributes["mimic"]))
     except ExpressionError as error:

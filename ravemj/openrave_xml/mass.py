@@ -239,13 +239,16 @@ def _solid(shape: Shape, density: float) -> tuple[float, Vec3]:
 
 def _rotated(moments: Vec3, wxyz: Wxyz) -> Rows:
     """Return R diag(moments) R^T."""
+    if moments[0] == moments[1] == moments[2] or not any(wxyz[1:]):
+        return ((moments[0], 0.0, 0.0), (0.0, moments[1], 0.0), (0.0, 0.0, moments[2]))
     rows = rows_from_wxyz(wxyz)
-
-    def entry(i: int, j: int) -> float:
-        return sum(rows[i][k] * moments[k] * rows[j][k] for k in range(3))
-
-    xy, xz, yz = entry(0, 1), entry(0, 2), entry(1, 2)
-    return ((entry(0, 0), xy, xz), (xy, entry(1, 1), yz), (xz, yz, entry(2, 2)))
+    weighted = [(row[0] * moments[0], row[1] * moments[1], row[2] * moments[2]) for row in rows]
+    xy, xz, yz = dot(weighted[0], rows[1]), dot(weighted[0], rows[2]), dot(weighted[1], rows[2])
+    return (
+        (dot(weighted[0], rows[0]), xy, xz),
+        (xy, dot(weighted[1], rows[1]), yz),
+        (xz, yz, dot(weighted[2], rows[2])),
+    )
 
 
 def _point_inertia(mass: float, arm: Vec3) -> Rows:
@@ -260,10 +263,10 @@ def _point_inertia(mass: float, arm: Vec3) -> Rows:
 
 
 def _add_rows(*matrices: Rows) -> Rows:
-    first, second, third = (
-        tuple(sum(entries) for entries in zip(*rows, strict=True)) for rows in zip(*matrices, strict=True)
-    )
-    return first, second, third  # pyright: ignore[reportReturnType]
+    first, second, third = ZERO, ZERO, ZERO
+    for matrix in matrices:
+        first, second, third = add(first, matrix[0]), add(second, matrix[1]), add(third, matrix[2])
+    return first, second, third
 
 
 def _single(value: float) -> float:

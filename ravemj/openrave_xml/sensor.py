@@ -1,7 +1,8 @@
 """``<Sensor>``: the kind of a sensor and, of cameras, the intrinsics."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 from ravemj.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
 from ravemj.openrave_xml.tree import Element
@@ -15,8 +16,7 @@ _KNOWN_TYPES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Device:
+class Device(NamedTuple):
     """What stands behind an attached sensor.
 
     Attributes:

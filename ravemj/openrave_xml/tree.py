@@ -6,7 +6,7 @@ error by the time it meets it. Expat shows all of that as it is, and where a tag
 
 import os
 from dataclasses import dataclass, field
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 from xml.parsers import expat
 
 from ravemj.errors import Source, SourceError
@@ -38,8 +38,7 @@ class Element:
     complete: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Document:
+class Document(NamedTuple):
     """A parsed file.
 
     Attributes:
@@ -131,7 +130,7 @@ class _Parser:
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         if len(self._open) >= DEEPEST:
             self._refuse(f"more than {DEEPEST} elements inside one another")
-        lowered = {key.lower(): value for key, value in attributes.items()}
+        lowered = {key.lower(): value for key, value in attributes.items()} if attributes else attributes
         element = Element(name.lower(), name, lowered, self._here())
         if self._open:
             self._open[-1].children.append(element)

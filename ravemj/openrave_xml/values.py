@@ -22,6 +22,9 @@ from ravemj.transforms import (
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))")
 
+_PLAIN = re.compile(r"[0-9.+\-eE\s]*", re.ASCII)
+"""Almost every text with numbers; what Python makes of their words is what C++ makes of them."""
+
 
 class Numbers(NamedTuple):
     """The leading numbers of a text.
@@ -37,6 +40,13 @@ class Numbers(NamedTuple):
 
 def leading_numbers(text: str) -> Numbers:
     """Return the numbers at the start of a text, as C++ streams would read them."""
+    if _PLAIN.fullmatch(text):
+        try:
+            plain = [float(word) for word in text.split()]
+        except ValueError:  # signs or points in odd places
+            plain = [math.inf]
+        if all(map(math.isfinite, plain)):
+            return Numbers(plain, "")
     values: list[float] = []
     position = 0
     while (match := _NUMBER.match(text, position)) and math.isfinite(value := float(match[1])):

@@ -10,7 +10,7 @@ from typing import Self
 import mujoco
 from numpy.typing import ArrayLike
 
-from ravemj.errors import Diagnostic, Diagnostics, send_warnings
+from ravemj.errors import Diagnostic, Diagnostics, SourceError, send_warnings
 from ravemj.openrave_xml import Reading
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.physics import PhysicsEngine
@@ -19,7 +19,6 @@ from ravemj.readers import read_file
 from ravemj.rendering import Camera
 from ravemj.simulation import BodyState, Simulation
 from ravemj.studio import Format, Frame, Studio, checked_colour
-from ravemj.video import png_bytes
 from ravemj.viewers import Viewer, open_viewer
 
 _LOG = logging.getLogger("ravemj")
@@ -46,6 +45,7 @@ class Environment:
         self._studio = Studio(self._simulation)
         self._viewer: Viewer | None = None
         self._found = Diagnostics()
+        self._files: list[str] = []
         _environments[self._number] = self
 
     def Load(self, filename: str | os.PathLike[str]) -> bool:
@@ -74,6 +74,7 @@ class Environment:
         return reading.failure is None and all(finding.severity != "error" for finding in reading.diagnostics)
 
     def _add(self, reading: Reading) -> None:
+        self._files.extend(reading.files)
         for finding in reading.diagnostics:
             self._found.add(finding)
         for body in reading.scene.bodies:
@@ -241,6 +242,11 @@ class Environment:
         """What was found in the loaded files and, once the model is compiled, in their translation."""
         return (*self._found, *self._simulation.diagnostics)
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Paths of all files that were read: models, what they include, and meshes."""
+        return tuple(dict.fromkeys(self._files))
+
     def __enter__(self) -> Self:
         """Hold the environment's lock: no other thread reads or changes it meanwhile."""
         self._simulation.lock.acquire()
@@ -261,6 +267,8 @@ class Environment:
 
     def _repr_png_(self) -> bytes:
         """Return the picture that notebooks show for an environment."""
+        from ravemj.video import png_bytes  # noqa: PLC0415 - only notebooks want it
+
         return png_bytes(self.render(480, 360))
 
 
@@ -279,7 +287,8 @@ def load(path: str | os.PathLike[str]) -> Environment:
         The environment; ``env.diagnostics`` has what was found on the way.
 
     Raises:
-        SourceError: the file is missing or broken; the message names file and line.
+        SourceError: the file is missing or broken; the message names file and line, and ``diagnostics`` has what was
+            found before.
 
     Example:
         >>> env = ravemj.load("models/env.xml")
@@ -287,9 +296,15 @@ def load(path: str | os.PathLike[str]) -> Environment:
         2
     """
     reading = read_file(path)
-    if reading.failure is not None:
-        raise reading.failure
     env = Environment()
-    env._add(reading)  # pyright: ignore[reportPrivateUsage]
-    env.simulation.compile()
+    try:
+        if reading.failure is not None:
+            raise reading.failure
+        env._add(reading)  # pyright: ignore[reportPrivateUsage]
+        env.simulation.compile()
+    except SourceError as error:
+        error.diagnostics = (*reading.diagnostics, *env.simulation.diagnostics)
+        if error.cause is not None:
+            error.add_note(str(error.cause))
+        raise
     return env

@@ -20,21 +20,18 @@ from ravemj.errors import ArgumentError
 from ravemj.rendering.camera import Camera, bounding_sphere, three_quarter_view, view_from_above
 from ravemj.rendering.camera_file import read_camera, write_camera
 from ravemj.rendering.contexts import GL_BACKENDS, RAY, make_with_any_backend, make_with_backend, requested_backend
-from ravemj.rendering.doctor import BackendReport, probe_backends
 from ravemj.rendering.frame import WHITE
 from ravemj.rendering.gl import GlRenderer
 from ravemj.rendering.ray import RayRenderer
 from ravemj.rendering.stage import Quality, Stage
 
 __all__ = [
-    "BackendReport",
     "Camera",
     "Quality",
     "Renderer",
     "Stage",
     "bounding_sphere",
     "open_renderer",
-    "probe_backends",
     "read_camera",
     "three_quarter_view",
     "view_from_above",

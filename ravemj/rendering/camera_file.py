@@ -35,7 +35,8 @@ def read_camera(path: str | Path) -> Camera:
     try:
         return _camera_from_document(document)
     except ArgumentError as error:
-        raise SourceError(error.message, source, _EXPECTED) from None
+        hint = "" if "expected" in error.message else _EXPECTED  # most say already what they expect
+        raise SourceError(error.message, source, hint) from None
 
 
 def write_camera(path: str | Path, camera: Camera) -> None:

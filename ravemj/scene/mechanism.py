@@ -1,12 +1,14 @@
 """Links and the joints between them."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from ravemj.errors import Source
-from ravemj.expressions import Expression
 from ravemj.scene.shapes import Geometry
 from ravemj.transforms import Pose, Rows, Vec3
+
+if TYPE_CHECKING:
+    from ravemj.expressions import Expression
 
 JointKind = Literal["hinge", "slider", "hinge2", "spherical"]
 
@@ -101,7 +103,7 @@ class Mimic:
     position: str
     velocity: str
     acceleration: str
-    expression: Expression | None
+    expression: "Expression | None"
     dofs: tuple[int, ...]
 
 

@@ -1,6 +1,5 @@
 """Shapes, colours and triangles."""
 
-import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -35,6 +34,8 @@ class Mesh:
     @cached_property
     def digest(self) -> str:
         """A name for the content: the same for the same numbers."""
+        import hashlib  # noqa: PLC0415 - slow to import
+
         content = hashlib.sha256(self.vertices.tobytes())
         content.update(self.triangles.tobytes())
         return content.hexdigest()
