@@ -302,7 +302,7 @@ JOINT = """<Robot name="r"><KinBody><Body name="a"/>
 BAD_MODELS = {
     "missing.xml": (None, "missing.xml: error: "),
     "words.txt": ("no XML at all\n", "words.txt:1: error: not well-formed XML"),
-    "empty.xml": ("", "empty.xml:1: error: "),
+    "empty.xml": ("", "empty.xml: error: the file is empty"),
     "root.xml": ("<!-- -->\n<Foo/>\n", "root.xml:2: error: .*<Foo>"),
     "open.xml": ("<Robot>\n<KinBody>\n</Robot>\n", "open.xml:3: error: "),
     "body.xml": (JOINT.format("<Body>a</Body><Body>c</Body>"), r"body.xml:\d: error: .*'c'"),

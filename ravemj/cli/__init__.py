@@ -43,17 +43,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("ravemj: interrupted", file=sys.stderr)
         return _INTERRUPTED
     except OSError as error:
-        if error.filename is not None:
-            raise
-        _drop_output()
-        if not isinstance(error, BrokenPipeError):  # else the reader of our output is gone, for instance ``head``
-            print_error(OutputError(f"cannot write standard output: {(error.strerror or str(error)).lower()}"))
+        _explain(error)
         return 1
 
 
-def _drop_output() -> None:
-    """Send what is left of standard output nowhere, so that Python does not complain at its end."""
+def _explain(error: OSError) -> None:
+    """Print an error of the operating system; one without a file is that of standard output."""
+    reason = (error.strerror or str(error)).lower()
+    if error.filename is not None:
+        print_error(RavemjError(f"{error.filename}: {reason}"))
+        return
+    # Send the rest nowhere, so that Python does not complain at its end.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if not isinstance(error, BrokenPipeError):  # else the reader of our output is gone, for instance ``head``
+        print_error(OutputError(f"cannot write standard output: {reason}"))
 
 
 def _joined(words: Sequence[str]) -> list[str]:
