@@ -91,8 +91,6 @@ class BodyKinematics:
         self._joints = (*body.joints, *body.passive_joints)
         sizes = (len(joint.axes) for joint in body.joints)
         self.first_dofs = list(itertools.accumulate(sizes, initial=0))[:-1]
-            :-1
-        ]
         self.balls = self._find_balls(names)
         self.qpos_indices = self._find_qpos(names)
         self.followers = self._find_followers(names)
