@@ -6,7 +6,7 @@ and a target that was there before stays as it was.
 
 import os
 import shutil
-from collections.abc import Generator
+from collections.abc import Collection, Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -28,12 +28,12 @@ def check_file(path: AnyPath) -> None:
             raise OutputError(f"cannot write {os.fspath(path)}: it exists and is no file")
 
 
-def check_folder(path: AnyPath, pattern: str) -> None:
+def check_folder(path: AnyPath, *patterns: str) -> None:
     """Check that a folder can be written, without touching anything.
 
     Args:
         path: The folder; what is there may only be an older one of its kind.
-        pattern: Names of the files that the folder consists of, for instance ``frame_*.png``.
+        patterns: Paths of the files that the folder consists of, for instance ``frame_*.png``.
 
     Raises:
         OutputError: The folder around it is missing or cannot be written, or something else is there.
@@ -45,9 +45,10 @@ def check_folder(path: AnyPath, pattern: str) -> None:
         _check_permissions(path, target)
         if not target.exists():
             return
-        for entry in target.iterdir():
-            if not (entry.is_file() and entry.match(pattern)):
-                raise OutputError(f"cannot replace {os.fspath(path)}: it contains {entry.name}, not only {pattern}")
+        foreign = next(_foreign_entries(target, patterns), None)
+        if foreign is not None:
+            ours = " and ".join(patterns)
+            raise OutputError(f"cannot replace {os.fspath(path)}: it contains {foreign}, not only {ours}")
 
 
 @contextmanager
@@ -71,23 +72,68 @@ def new_file(path: AnyPath) -> Generator[Path]:
 
 
 @contextmanager
-def new_folder(path: AnyPath, pattern: str) -> Generator[Path]:
+def new_folder(path: AnyPath, *patterns: str) -> Generator[Path]:
     """Make a folder of files: write them into the yielded temporary folder, and the end of the block renames it.
 
     Raises:
         OutputError: As for ``check_folder``, or the temporary folder cannot be created or renamed.
     """
-    check_folder(path, pattern)
+    check_folder(path, *patterns)
     temporary = _temporary_name(path)
     try:
         with _output_errors(path):
             temporary.mkdir()
         yield temporary
-        check_folder(path, pattern)  # while the files were written, others may have come
+        check_folder(path, *patterns)  # while the files were written, others may have come
         with _output_errors(path):
             _replace_folder(temporary, _real(path))
     except BaseException:
         shutil.rmtree(temporary, ignore_errors=True)
+        raise
+
+
+@contextmanager
+def added_files(path: AnyPath) -> Generator[Path]:
+    """Put files into a folder that may hold others: write them into the yielded temporary folder.
+
+    The end of the block moves all of them, or none; the folder is made if need be. Files of the same names are
+    replaced.
+
+    Raises:
+        OutputError: The folder around it is missing or cannot be written, or something other than a folder is there.
+    """
+    target = _real(path)
+    with _output_errors(path):
+        _check_permissions(path, target)
+        if target.exists() and not target.is_dir():
+            raise OutputError(f"cannot write {os.fspath(path)}: it exists and is no folder")
+    temporary = _temporary_name(path)
+    try:
+        with _output_errors(path):
+            temporary.mkdir()
+        yield temporary
+        with _output_errors(path):
+            _move_all(temporary, target)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _move_all(source: Path, target: Path) -> None:
+    """Move the files of a folder into another one; what fails is undone."""
+    is_new = not target.exists()
+    target.mkdir(exist_ok=True)
+    made: list[Path] = []
+    try:
+        for file in sorted(source.iterdir()):
+            place = target / file.name
+            if not place.exists():
+                made.append(place)
+            os.replace(file, place)
+    except BaseException:
+        for place in made:
+            place.unlink(missing_ok=True)
+        if is_new:
+            target.rmdir()
         raise
 
 
@@ -110,6 +156,20 @@ def _output_errors(path: AnyPath) -> Generator[None]:
 def _real(path: AnyPath) -> Path:
     """Return the absolute path; a link stays, and what it points at is replaced."""
     return Path(os.path.realpath(path))
+
+
+def _foreign_entries(folder: Path, patterns: Collection[str]) -> Iterator[str]:
+    """Yield what in a folder is neither a file that matches one of the patterns nor a folder of such files."""
+    folders = {pattern.rpartition("/")[0] for pattern in patterns}
+    for entry in folder.rglob("*"):
+        name = entry.relative_to(folder).as_posix()
+        depth = name.count("/")
+        if entry.is_dir() and not entry.is_symlink():
+            is_ours = name in folders
+        else:
+            is_ours = entry.is_file() and any(depth == p.count("/") and entry.match(p) for p in patterns)
+        if not is_ours:
+            yield name
 
 
 def _temporary_name(path: AnyPath) -> Path:

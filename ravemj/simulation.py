@@ -161,8 +161,8 @@ class Compiled:
         data: Its state.
     """
 
-    def __init__(self, scene: Scene, diagnostics: Diagnostics) -> None:
-        self.mjcf = mjcf.write(scene, diagnostics)
+    def __init__(self, scene: Scene, diagnostics: Diagnostics, options: mjcf.Options | None = None) -> None:
+        self.mjcf = mjcf.write(scene, diagnostics, options)
         try:
             with mujoco.MjVfs() as files:
                 for name, content in self.mjcf.assets.items():

@@ -148,7 +148,7 @@ def test_invisible_shapes_collide_and_are_not_drawn(load):
 
 def test_mujoco_s_complaints_name_the_user_s_line(monkeypatch, models, tmp_path):
     """Whatever MuJoCo still refuses is reported for the line of the user's file."""
-    monkeypatch.setattr(mjcf.document, "legal_inertial", lambda inertial: Inertial(-1.0, inertial.com, inertial.inertia))
+    monkeypatch.setattr(mjcf.document, "legal_inertial", lambda given: Inertial(-1.0, given.com, given.inertia))
     simulation = Simulation()
     (body,) = read(models / "double-pendulum.xml").scene.bodies
     simulation.add(body)

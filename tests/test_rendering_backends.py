@@ -9,8 +9,8 @@ import pytest
 
 from ravemj.errors import RenderingError
 from ravemj.rendering import open_renderer
-from ravemj.rendering.doctor import probe_backends
 from ravemj.rendering.contexts import GL_BACKENDS, requested_backend
+from ravemj.rendering.doctor import probe_backends
 
 ROOT = Path(__file__).parents[1]
 DRAW = """

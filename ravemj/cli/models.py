@@ -1,13 +1,12 @@
 """Commands about models: ``convert`` and ``info``, and how all commands load one."""
 
 import argparse
-import sys
 import warnings
+from collections.abc import Sequence
 
 from ravemj import scene
 from ravemj.cli.console import console, print_findings, table
 from ravemj.errors import Diagnostic, RavemjWarning, SourceError
-from ravemj.output import new_file
 from ravemj.rave import Environment, load
 
 FATAL_CODES = {"bad-number"}
@@ -25,30 +24,19 @@ def load_model(options: argparse.Namespace) -> Environment:
         try:
             env = load(options.model)
         except SourceError as error:
-            raise error if error.cause is None else _failure(error.cause) from None
+            raise error if error.cause is None else failure_of([error.cause]) from None
     fatal = [finding for finding in env.diagnostics if options.strict or finding.code in FATAL_CODES]
     if fatal:
-        raise _failure(fatal[0], len(fatal) - 1)
+        raise failure_of(fatal)
     print_findings(env.diagnostics)
     return env
 
 
-def _failure(finding: Diagnostic, others: int = 0) -> SourceError:
-    """Return the error that ends a command for a finding."""
-    more = f" (and {others} more: see ravemj check)" if others else ""
-    return SourceError(f"{finding.message} [{finding.code}]{more}", finding.source, finding.hint)
-
-
-def convert(options: argparse.Namespace) -> int:
-    """Translate a model to MJCF."""
-    env = load_model(options)
-    if options.output == "-":
-        sys.stdout.write(env.mjcf)
-        return 0
-    with new_file(options.output) as path:
-        path.write_text(env.mjcf, encoding="utf-8")
-    print(f"wrote {options.output}")
-    return 0
+def failure_of(findings: Sequence[Diagnostic]) -> SourceError:
+    """Return the error of one line that ends a command for some findings."""
+    first = findings[0]
+    more = f" (and {len(findings) - 1} more: see ravemj check)" if len(findings) > 1 else ""
+    return SourceError(f"{first.message} [{first.code}]{more}", first.source, first.hint)
 
 
 def info(options: argparse.Namespace) -> int:

@@ -4,7 +4,7 @@ import argparse
 import math
 from typing import NoReturn, TypeAlias
 
-from ravemj.cli import models, pictures, sessions
+from ravemj.cli import convert, models, pictures, sessions
 
 
 class _Parser(argparse.ArgumentParser):
@@ -83,6 +83,7 @@ def _add_play(commands: Commands) -> None:
     parser.add_argument(
         "-o",
         "--output",
+        type=_target,
         metavar="FILE",
         help=".mp4, .gif, .webp, or a folder for PNG frames; without a display: MODEL.mp4",
     )
@@ -115,7 +116,7 @@ def _add_render(commands: Commands) -> None:
         'ravemj render models/env.xml -o pendulum.png --q "0.785,0.785" --size 1280x720',
     )
     _add_model(parser)
-    parser.add_argument("-o", "--output", required=True, metavar="FILE", help=".png, .jpg or .webp")
+    parser.add_argument("-o", "--output", type=_target, required=True, metavar="FILE", help=".png, .jpg or .webp")
     parser.add_argument(
         "--q", type=_vector, metavar="Q", help="joint values of the first robot, rad or m, separated by commas"
     )
@@ -128,12 +129,35 @@ def _add_convert(commands: Commands) -> None:
         commands,
         "convert",
         "translate a model to MJCF, MuJoCo's format",
-        "ravemj convert models/env.xml -o pendulum.mjcf.xml",
+        "ravemj convert models/env.xml -o pendulum/      # pendulum/env.xml, and assets/ for meshes",
+        "ravemj convert models/env.xml -o pendulum.mjcf.xml --actuators position",
         "ravemj convert models/env.xml | less",
     )
     _add_model(parser)
-    parser.add_argument("-o", "--output", default="-", metavar="FILE", help="the MJCF file; default: standard output")
-    parser.set_defaults(run=models.convert)
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_target,
+        default=convert.TO_STANDARD_OUTPUT,
+        metavar="TARGET",
+        help="a folder (no suffix, or a final /), or the MJCF file itself, with meshes in assets/ beside it; "
+        "default: standard output, for models without meshes",
+    )
+    parser.add_argument(
+        "--base",
+        choices=["fixed", "openrave"],
+        default="fixed",
+        help="what holds the bodies: fixed hangs all on the world; openrave lets those without a static link fall",
+    )
+    parser.add_argument(
+        "--actuators", choices=["position", "velocity", "torque"], help="give each DOF an actuator; default: none"
+    )
+    parser.add_argument(
+        "--decompose",
+        action="store_true",
+        help='let meshes collide as several convex parts, not as one hull; needs pip install "ravemj[decompose]"',
+    )
+    parser.set_defaults(run=convert.convert)
 
 
 def _add_info(commands: Commands) -> None:
@@ -186,6 +210,12 @@ def _add_doctor(commands: Commands) -> None:
         commands, "doctor", "say what can draw pictures here, and how to install what cannot", "ravemj doctor"
     )
     parser.set_defaults(run=pictures.doctor)
+
+
+def _target(text: str) -> str:
+    if not text:
+        raise argparse.ArgumentTypeError("the name is empty")
+    return text
 
 
 def _vector(text: str) -> list[float]:

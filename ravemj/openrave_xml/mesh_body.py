@@ -6,7 +6,7 @@ from pathlib import Path
 from ravemj.builder import BodyBuilder, LinkBuilder
 from ravemj.errors import Source
 from ravemj.meshes import MESH_SUFFIXES
-from ravemj.openrave_xml.context import Context
+from ravemj.openrave_xml.context import COLLADA_SUFFIXES, Context
 from ravemj.scene import Geometry, Inertial, Mesh, TriMesh
 from ravemj.transforms import ZERO, Pose, Vec3
 
@@ -14,8 +14,9 @@ _MASSLESS = Inertial(1e-10, ZERO, (ZERO, ZERO, ZERO))
 
 
 def is_mesh(name: str) -> bool:
-    """Return whether a file name is that of a mesh."""
-    return name.lower().endswith(tuple(MESH_SUFFIXES))
+    """Return whether a file in place of a body is a mesh; COLLADA files are robots there."""
+    lowered = name.lower()
+    return lowered.endswith(MESH_SUFFIXES) and not lowered.endswith(COLLADA_SUFFIXES)
 
 
 def add_mesh(body: BodyBuilder, path: str, scale: Vec3, source: Source, context: Context) -> None:

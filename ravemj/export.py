@@ -1,0 +1,119 @@
+"""Models as MJCF files that need nothing else: the text, with its meshes in the folder ``assets`` beside it."""
+
+import glob
+import os
+from collections.abc import Collection
+from pathlib import Path
+
+from ravemj.errors import Diagnostics, OutputError
+from ravemj.mjcf import Mjcf, Options
+from ravemj.mjcf.document import ASSETS
+from ravemj.output import AnyPath, added_files, new_file, new_folder
+from ravemj.scene import Scene
+from ravemj.simulation import Compiled, Simulation
+
+_MARK = "<!-- made by ravemj"
+_MESHES = "mesh-*.obj"
+
+
+def translate(simulation: Simulation, diagnostics: Diagnostics, options: Options) -> Mjcf:
+    """Translate the bodies of a simulation, with its gravity, and see that MuJoCo takes the result.
+
+    Args:
+        simulation: What to translate.
+        diagnostics: Takes what the translation finds.
+        options: What to add to the model.
+
+    Raises:
+        CompileError: MuJoCo refuses the model.
+        RavemjError: meshes are to be cut, and CoACD is not installed.
+    """
+    scene = Scene(tuple(body.scene for body in simulation.bodies), simulation.view, simulation.gravity)
+    return Compiled(scene, diagnostics, options).mjcf
+
+
+def marked(text: str, model: AnyPath) -> str:
+    """Return an MJCF document with a first line that says what it was made from."""
+    name = os.path.basename(os.fspath(model)).replace("--", "- -")
+    return f"{_MARK} from {name} -->\n{text}"
+
+
+def is_folder(path: AnyPath) -> bool:
+    """Return whether a target names a folder: it is one, or it has no suffix or a final slash."""
+    text = os.fspath(path)
+    return text.endswith(("/", os.sep)) or os.path.isdir(text) or not os.path.splitext(text)[1]
+
+
+def write_folder(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str]) -> Path:
+    """Write a folder with the MJCF file and its meshes, whole or not at all.
+
+    Args:
+        path: The folder; one that is there already is empty or holds an older translation of the same file.
+        model: The file that the model was read from; its name becomes that of the MJCF file.
+        mjcf: The translated model.
+        read: Files that must stay as they are.
+
+    Returns:
+        The MJCF file.
+
+    Raises:
+        OutputError: it cannot be written, or something else is there.
+    """
+    name = f"{Path(model).stem}.xml"
+    _check_former(path, Path(path, name))
+    _check_untouched(path, [Path(path, name), *(Path(path, ASSETS, file) for file in mjcf.assets)], read)
+    with new_folder(path, glob.escape(name), f"{ASSETS}/{_MESHES}") as folder:
+        (folder / name).write_text(marked(mjcf.text, model), encoding="utf-8")
+        if mjcf.assets:
+            (folder / ASSETS).mkdir()
+            _write_meshes(folder / ASSETS, mjcf)
+    return Path(path, name)
+
+
+def write_file(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str]) -> Path:
+    """Write an MJCF file, and its meshes into ``assets`` beside it, whole or not at all.
+
+    Args:
+        path: The file.
+        model: The file that the model was read from.
+        mjcf: The translated model.
+        read: Files that must stay as they are.
+
+    Returns:
+        The MJCF file.
+
+    Raises:
+        OutputError: it cannot be written, or it is a file that was read.
+    """
+    assets = Path(path).parent / ASSETS
+    _check_untouched(path, [Path(path), *(assets / file for file in mjcf.assets)], read)
+    with new_file(path) as file:
+        file.write_text(marked(mjcf.text, model), encoding="utf-8")
+        if mjcf.assets:
+            with added_files(assets) as folder:
+                _write_meshes(folder, mjcf)
+    return Path(path)
+
+
+def _write_meshes(folder: Path, mjcf: Mjcf) -> None:
+    for name, content in mjcf.assets.items():
+        (folder / name).write_text(content, encoding="utf-8")
+
+
+def _check_former(path: AnyPath, file: Path) -> None:
+    """Check that an MJCF file that is to be replaced is one of ours."""
+    try:
+        with open(file, encoding="utf-8", errors="replace") as old:
+            is_ours = old.read(len(_MARK)) == _MARK
+    except OSError:  # nothing is there, or what comes next will say what is wrong
+        return
+    if not is_ours:
+        raise OutputError(f"cannot replace {os.fspath(path)}: ravemj did not make {file.name} in it")
+
+
+def _check_untouched(path: AnyPath, targets: Collection[Path], read: Collection[str]) -> None:
+    """Check that no file to be written is one that the model was read from."""
+    known = {os.path.realpath(file) for file in read}
+    clash = next((target for target in targets if os.path.realpath(target) in known), None)
+    if clash is not None:
+        raise OutputError(f"cannot write {os.fspath(path)}: the model was read from {clash}")
