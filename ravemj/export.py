@@ -61,7 +61,7 @@ def write_folder(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str
     """
     name = f"{Path(model).stem}.xml"
     _check_former(path, Path(path, name))
-    _check_untouched(path, [Path(path, name), *(Path(path, ASSETS, file) for file in mjcf.assets)], read)
+    _check_untouched(path, [file for file in read if Path(path).resolve() in Path(file).resolve().parents])
     with new_folder(path, glob.escape(name), f"{ASSETS}/{_MESHES}") as folder:
         (folder / name).write_text(marked(mjcf.text, model), encoding="utf-8")
         if mjcf.assets:
@@ -86,7 +86,8 @@ def write_file(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str])
         OutputError: it cannot be written, or it is a file that was read.
     """
     assets = Path(path).parent / ASSETS
-    _check_untouched(path, [Path(path), *(assets / file for file in mjcf.assets)], read)
+    targets = [Path(path), *(assets / file for file in mjcf.assets)]
+    _check_untouched(path, [file for file in read if any(_is_same(file, target) for target in targets)])
     with new_file(path) as file:
         file.write_text(marked(mjcf.text, model), encoding="utf-8")
         if mjcf.assets:
@@ -111,9 +112,12 @@ def _check_former(path: AnyPath, file: Path) -> None:
         raise OutputError(f"cannot replace {os.fspath(path)}: ravemj did not make {file.name} in it")
 
 
-def _check_untouched(path: AnyPath, targets: Collection[Path], read: Collection[str]) -> None:
-    """Check that no file to be written is one that the model was read from."""
-    known = {os.path.realpath(file) for file in read}
-    clash = next((target for target in targets if os.path.realpath(target) in known), None)
-    if clash is not None:
-        raise OutputError(f"cannot write {os.fspath(path)}: the model was read from {clash}")
+def _check_untouched(path: AnyPath, lost: Collection[AnyPath]) -> None:
+    """Check that nothing that the model was read from gets lost."""
+    if lost:
+        names = ", ".join(map(os.fspath, lost))
+        raise OutputError(f"cannot write {os.fspath(path)}: the model was read from {names}")
+
+
+def _is_same(file: AnyPath, target: Path) -> bool:
+    return target.exists() and os.path.exists(file) and os.path.samefile(file, target)

@@ -21,7 +21,7 @@ LEVELS: list[set[str]] = [
     {"kinematics", "openrave_xml"},
     {"dynamics", "readers", "rendering"},
     {"simulation"},
-    {"studio"},
+    {"export", "studio"},
     {"viewers"},
     {"extension", "rave"},
     {"recording"},

@@ -54,8 +54,8 @@ def _add_model(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--strict", action="store_true", help="take warnings about the model for errors")
 
 
-def _add_picture_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--size", type=_size, default=(640, 480), metavar="WxH", help="picture size (640x480)")
+def _add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> None:
+    parser.add_argument("--size", type=_size, default=(640, 480), metavar="WxH", help=size_help)
     parser.add_argument(
         "--camera",
         metavar="FILE",
@@ -103,7 +103,7 @@ def _add_play(commands: Commands) -> None:
         "--duration", type=_positive, metavar="S", help="seconds the motion takes; default: 1, or as the file says"
     )
     parser.add_argument("--fps", type=_positive, default=30.0, help="frames in a second (30)")
-    _add_picture_options(parser)
+    _add_picture_options(parser, "size of the video (640x480); windows have a size of their own")
     parser.set_defaults(run=pictures.play)
 
 
@@ -120,7 +120,7 @@ def _add_render(commands: Commands) -> None:
     parser.add_argument(
         "--q", type=_vector, metavar="Q", help="joint values of the first robot, rad or m, separated by commas"
     )
-    _add_picture_options(parser)
+    _add_picture_options(parser, "size of the picture (640x480)")
     parser.set_defaults(run=pictures.render)
 
 
