@@ -34,7 +34,7 @@ def translate(simulation: Simulation, diagnostics: Diagnostics, options: Options
 
 def marked(text: str, model: AnyPath) -> str:
     """Return an MJCF document with a first line that says what it was made from."""
-    name = os.path.basename(os.fspath(model)).replace("--", "- -")
+    name = Path(model).name.replace("--", "- -")
     return f"{_MARK} from {name} -->\n{text}"
 
 
@@ -115,7 +115,7 @@ def _check_former(path: AnyPath, file: Path) -> None:
 def _check_untouched(path: AnyPath, lost: Collection[AnyPath]) -> None:
     """Check that nothing that the model was read from gets lost."""
     if lost:
-        names = ", ".join(map(os.fspath, lost))
+        names = ", ".join(str(Path(file)) for file in lost)
         raise OutputError(f"cannot write {os.fspath(path)}: the model was read from {names}")
 
 

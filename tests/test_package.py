@@ -16,7 +16,7 @@ LEVELS: list[set[str]] = [
     {"_mujoco", "errors", "transforms"},
     {"alias", "arrays", "expressions", "motion", "output"},
     {"scene", "video"},
-    {"adjacency", "following", "hierarchy", "joints", "manipulators", "meshes"},
+    {"adjacency", "following", "hierarchy", "joints", "manipulators", "meshes", "summary"},
     {"builder", "mjcf"},
     {"kinematics", "openrave_xml"},
     {"dynamics", "readers", "rendering"},
@@ -24,7 +24,7 @@ LEVELS: list[set[str]] = [
     {"export", "studio"},
     {"viewers"},
     {"extension", "rave"},
-    {"recording"},
+    {"checking", "recording"},
     {"cli", "__init__"},
     {"__main__"},
 ]

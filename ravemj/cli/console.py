@@ -65,7 +65,7 @@ def console() -> "Console":
     """Return what prints tables to standard output, wide enough when it is a file or a pipe."""
     from rich.console import Console  # noqa: PLC0415 - slow to import
 
-    made = Console(highlight=False)
+    made = Console(highlight=False, markup=False)  # names may have brackets
     if not made.is_terminal:
         made.width = max(made.width, _LEAST_WIDTH)
     return made

@@ -4,7 +4,7 @@ import argparse
 import math
 from typing import NoReturn, TypeAlias
 
-from ravemj.cli import convert, models, pictures, sessions
+from ravemj.cli import check, convert, info, pictures, sessions
 
 
 class _Parser(argparse.ArgumentParser):
@@ -28,6 +28,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_play(commands)
     _add_render(commands)
     _add_convert(commands)
+    _add_check(commands)
     _add_info(commands)
     _add_run(commands)
     _add_shell(commands)
@@ -160,10 +161,32 @@ def _add_convert(commands: Commands) -> None:
     parser.set_defaults(run=convert.convert)
 
 
+def _add_check(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "check",
+        "find what is wrong in models, and what OpenRAVE passes over in silence",
+        "ravemj check models/env.xml",
+        "ravemj check --strict models/*.xml",
+        "ravemj check --json robot.xml      # a list of file, line, code, severity, message, hint, included_from",
+    )
+    parser.add_argument("models", nargs="+", metavar="FILE", help="OpenRAVE XML files")
+    parser.add_argument("--strict", action="store_true", help="exit with 1 for warnings, too")
+    parser.add_argument("--json", action="store_true", help="print the findings as JSON, each place by itself")
+    parser.set_defaults(run=check.check_models)
+
+
 def _add_info(commands: Commands) -> None:
-    parser = _command(commands, "info", "show the bodies, links and joints of a model", "ravemj info models/env.xml")
+    parser = _command(
+        commands,
+        "info",
+        "show the links, joints, manipulators and sensors of a model",
+        "ravemj info models/env.xml",
+        "ravemj info models/env.xml --json > env.json",
+    )
     _add_model(parser)
-    parser.set_defaults(run=models.info)
+    parser.add_argument("--json", action="store_true", help="print all numbers as JSON")
+    parser.set_defaults(run=info.info)
 
 
 def _add_run(commands: Commands) -> None:

@@ -1,7 +1,7 @@
 """What every part of the reader needs: where to report, where files are, and how to walk over an element."""
 
 import os
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Set
 from typing import TypeVar
 
 from ravemj.errors import Diagnostics, Source, SourceError
@@ -62,11 +62,13 @@ class Context:
                     "unknown-tag",
                     f"OpenRAVE knows no <{child.spelled}> in <{element.spelled}> and skips it with all that it holds",
                     child.source,
-                    did_you_mean(child.tag, handlers),
+                    _belongs(child) or did_you_mean(child.tag, handlers),
                 )
 
-    def check_attributes(self, element: Element, known: Collection[str], ignored: Mapping[str, str]) -> None:
+    def check_attributes(self, element: Element, known: Set[str], ignored: Mapping[str, str]) -> None:
         """Report the attributes of an element that nothing reads."""
+        if element.attributes.keys() <= known:
+            return
         for name in element.attributes:
             if name in known:
                 continue
@@ -122,13 +124,15 @@ class Context:
         Returns:
             Its path, or None, with a warning, where it is in none of them.
         """
-        data_folders = filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep))
+        data_folders = list(filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep)))
         places = [*folders, os.path.dirname(source.file), *data_folders]
         candidates = list(dict.fromkeys(os.path.join(folder, name) for folder in places))
         for candidate in candidates:
             if os.path.isfile(candidate):
                 return candidate
-        self.diagnostics.warn("missing-file", f"there is no file {name}; looked at {', '.join(candidates)}", source)
+        hint = "" if data_folders else "or set OPENRAVE_DATA to the folder that it is in"
+        message = f"there is no file {name}; looked at {', '.join(candidates)}"
+        self.diagnostics.warn("missing-file", message, source, hint)
         return None
 
     def mesh(self, name: str, source: Source, *folders: str) -> tuple[MeshPart, ...]:
@@ -153,6 +157,24 @@ def _is_same_file(first: str, second: str) -> bool:
         return os.path.samefile(first, second)
     except OSError:  # one is gone, or was never a file
         return first == second
+
+
+_HOMES = {
+    **dict.fromkeys(("body", "joint", "adjacent", "mass"), "KinBody"),
+    **dict.fromkeys(("geom", "offsetfrom"), "Body"),
+    **dict.fromkeys(("extents", "radius", "height", "diffusecolor", "ambientcolor", "transparency"), "Geom"),
+    **dict.fromkeys(("axis", "anchor", "limits", "limitsdeg", "maxvel", "weight"), "Joint"),
+    **dict.fromkeys(("manipulator", "attachedsensor", "controller"), "Robot"),
+    **dict.fromkeys(("base", "effector"), "Manipulator"),
+    **dict.fromkeys(("density", "total", "com", "inertia"), "Mass"),
+    **dict.fromkeys(("robot", "kinbody", "bkgndcolor", "camtrans", "camrotationaxis", "physicsengine"), "Environment"),
+}
+
+
+def _belongs(element: Element) -> str:
+    """Return a hint for an element that stands in the wrong place, or nothing."""
+    home = _HOMES.get(element.tag)
+    return "" if home is None else f"<{element.spelled}> belongs in a <{home}>"
 
 
 def did_you_mean(name: str, known: Collection[str]) -> str:
