@@ -71,7 +71,7 @@ class _Scope:
         before = _Marks.of(self.body)
         self._include(element)
         marks = _Marks.of(self.body)
-        tags, ignored = (_ROBOT_TAGS, ROBOT_IGNORED) if element.tag == "robot" else (_KINBODY_TAGS, KINBODY_IGNORED)
+        tags, ignored = (ROBOT_TAGS, ROBOT_IGNORED) if element.tag == "robot" else (KINBODY_TAGS, KINBODY_IGNORED)
         self.context.walk(element, tags, ignored, self)
         self.body.name = element.attributes.get("name", "") or self.body.name
         prefix = element.attributes.get("prefix", "")
@@ -210,7 +210,7 @@ _PLACEMENT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     **dict.fromkeys(ROTATIONS, _Scope.turn),
     "jointvalues": _Scope.read_joint_values,
 }
-_ROBOT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
+ROBOT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     **_PLACEMENT_TAGS,
     "robot": _Scope.nest,
     "kinbody": _Scope.nest,
@@ -219,7 +219,7 @@ _ROBOT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     "controller": _Scope.read_controller,
 }
 ROBOT_IGNORED = reasons(NO_EFFECT_HERE, "sendcommand")
-_KINBODY_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
+KINBODY_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     **_PLACEMENT_TAGS,
     "kinbody": _Scope.nest,
     "body": _Scope.read_link,
@@ -251,8 +251,9 @@ def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError 
     """
     check_scope_attributes(element, context)
     body = BodyBuilder(element.tag == "robot", element.source)
-    joined = leading_numbers(element.attributes.get("makejoinedlinksadjacent", "1")).values
-    body.joined_links_adjacent = bool(joined and joined[0])
+    if "makejoinedlinksadjacent" in element.attributes:
+        joined = leading_numbers(element.attributes["makejoinedlinksadjacent"]).values
+        body.joined_links_adjacent = bool(joined and joined[0])
     skip_geometry = is_true(element.attributes.get("skipgeometry", "false"))
     scope = _Scope(body, context, scale_attribute(element), 0, skip_geometry=skip_geometry)
     scope.read(element)

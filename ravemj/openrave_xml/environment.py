@@ -82,6 +82,7 @@ class _Document:
     def __init__(self, context: Context) -> None:
         self.context = context
         self.bodies: list[KinBody] = []
+        self._names: set[str] = set()
         self.view: View | None = None
         self.gravity: Vec3 | None = None
 
@@ -100,12 +101,12 @@ class _Document:
 
     def read_environment(self, element: Element) -> None:
         """Read an ``<Environment>``: first its file, then its children."""
-        self.context.check_attributes(element, {"file"}, {})
+        self.context.check_attributes(element, ENVIRONMENT_ATTRIBUTES, {})
         root = self.context.include(element)
         if root is not None:
             self.read(root)
         environment = _EnvironmentScope(self)
-        self.context.walk(element, _ENVIRONMENT_TAGS, ENVIRONMENT_IGNORED, environment)
+        self.context.walk(element, ENVIRONMENT_TAGS, ENVIRONMENT_IGNORED, environment)
         self.view = environment.view
         for child in element.children:
             if not child.complete and child.tag == "environment":
@@ -115,8 +116,9 @@ class _Document:
         """Read a body and give it its place among the others."""
         body, refusal = read_body(element, self.context)
         check_name(body.name, element)
-        if any(body.name == other.name for other in self.bodies):
+        if body.name in self._names:
             raise SourceError(f"there already is a body '{body.name}'", element.source, "give it another name")
+        self._names.add(body.name)
         self.bodies.append(body)
         if refusal is not None:
             raise refusal
@@ -188,7 +190,7 @@ class _EnvironmentScope:
         return self.view.T_world_camera or Pose(_DEFAULT_CAMERA_POSITION, _DEFAULT_CAMERA_WXYZ)
 
 
-_ENVIRONMENT_TAGS: dict[str, Callable[[_EnvironmentScope, Element], None]] = {
+ENVIRONMENT_TAGS: dict[str, Callable[[_EnvironmentScope, Element], None]] = {
     "environment": _EnvironmentScope.read_environment,
     "robot": _EnvironmentScope.read_body,
     "kinbody": _EnvironmentScope.read_body,
@@ -200,6 +202,7 @@ _ENVIRONMENT_TAGS: dict[str, Callable[[_EnvironmentScope, Element], None]] = {
     "physicsengine": _EnvironmentScope.read_physics,
     **dict.fromkeys(_INTERFACES, _EnvironmentScope.read_interface),
 }
+ENVIRONMENT_ATTRIBUTES = {"file"}
 ENVIRONMENT_IGNORED = {
     "plugin": "plugins are not loaded",
     "unit": IGNORED,

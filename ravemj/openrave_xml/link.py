@@ -24,7 +24,7 @@ class _LinkScope:
         self.context = context
         self.geometry_scope = geometry_scope
         self.placement = Placement(link.pose, geometry_scope.scale)
-        self.T_scope_offset = Pose()
+        self.T_scope_offset: Pose | None = None
         self.skip_geometry = False
 
     def translate(self, element: Element) -> None:
@@ -49,7 +49,7 @@ class _LinkScope:
         self.mass.read(element)
 
 
-_LINK_TAGS: dict[str, Callable[[_LinkScope, Element], None]] = {
+LINK_TAGS: dict[str, Callable[[_LinkScope, Element], None]] = {
     "translation": _LinkScope.translate,
     **dict.fromkeys(ROTATIONS, _LinkScope.turn),
     "offsetfrom": _LinkScope.read_offset,
@@ -76,12 +76,14 @@ def read_link(
     name = element.attributes.get("name")
     existing = None if name is None else body.find_link(name)
     link = LinkBuilder(name or "", element.source) if existing is None else body.links[existing]
-    scale = hadamard(geometry_scope.scale, scale_attribute(element))
-    geometry_scope = GeometryScope(geometry_scope.models_folder, scale)
-    scope = _LinkScope(body, link, MassReader(context, default_mass, scale), context, geometry_scope)
+    if "scalegeometry" in element.attributes:
+        geometry_scope = geometry_scope._replace(scale=hadamard(geometry_scope.scale, scale_attribute(element)))
+    mass = MassReader(context, default_mass, geometry_scope.scale)
+    scope = _LinkScope(body, link, mass, context, geometry_scope)
     scope.skip_geometry = skip_geometry
-    context.walk(element, _LINK_TAGS, LINK_IGNORED, scope)
-    link.pose = scope.T_scope_offset @ scope.placement.pose
+    context.walk(element, LINK_TAGS, LINK_IGNORED, scope)
+    pose = scope.placement.pose
+    link.pose = pose if scope.T_scope_offset is None else scope.T_scope_offset @ pose
     link.inertial = link_inertial(scope.mass.rule or default_mass, link.geometries)
     link.enabled = not is_false(element.attributes.get("enable", "true"))
     if "type" in element.attributes:

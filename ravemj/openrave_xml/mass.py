@@ -7,7 +7,7 @@ there, so they are rounded to it here.
 import math
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from ravemj.builder import DEFAULT_INERTIAL
 from ravemj.openrave_xml.context import Context
@@ -20,8 +20,7 @@ NO_INERTIA: Rows = (ZERO, ZERO, ZERO)
 TOTAL_DENSITY = 1000.0  # OpenRAVE's density for shapes whose total mass is given
 
 
-@dataclass(frozen=True, slots=True)
-class MassRule:
+class MassRule(NamedTuple):
     """How the mass of a link is found.
 
     Attributes:
@@ -56,17 +55,17 @@ class MassReader:
 
     def read(self, element: Element) -> None:
         """Read a ``<Mass>`` of a Body."""
-        self._context.check_attributes(element, {"type"}, {})
+        self._context.check_attributes(element, MASS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "sphere").lower()
         if kind not in {"mimicgeom", "sphere", "box", "custom"}:
             self._context.diagnostics.warn(
                 "unknown-type", f"there is no mass of type '{kind}'; OpenRAVE takes a sphere", element.source
             )
             kind = "sphere"
-        self.rule = replace(self.rule or self._start, kind=kind)
+        self.rule = (self.rule or self._start)._replace(kind=kind)
         if kind == "custom" and self.rule.total == self._start.total:
-            self.rule = replace(self.rule, total=None)  # it takes no total from the KinBody
-        self._context.walk(element, _MASS_TAGS, {}, self)
+            self.rule = self.rule._replace(total=None)  # it takes no total from the KinBody
+        self._context.walk(element, MASS_TAGS, {}, self)
         if kind == "box" and any(child.tag == "extents" for child in element.children):
             self._context.diagnostics.warn(
                 "openrave-bug",
@@ -77,7 +76,7 @@ class MassReader:
             )
 
     def _update(self, **changes: object) -> None:
-        self.rule = replace(self.rule or self._start, **changes)  # pyright: ignore[reportArgumentType]
+        self.rule = (self.rule or self._start)._replace(**changes)
 
     def density(self, element: Element) -> None:
         """Read a ``<density>``."""
@@ -106,7 +105,8 @@ class MassReader:
         """Accept ``<extents>``, which OpenRAVE does not read in a Body."""
 
 
-_MASS_TAGS = {
+MASS_ATTRIBUTES = {"type"}
+MASS_TAGS = {
     "density": MassReader.density,
     "total": MassReader.total,
     "radius": MassReader.radius,
@@ -132,14 +132,14 @@ class DefaultMassReader:
 
     def read(self, element: Element) -> None:
         """Read a ``<Mass>`` of a KinBody."""
-        self._context.check_attributes(element, {"type"}, {})
+        self._context.check_attributes(element, MASS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "sphere").lower()
         if kind not in {"mimicgeom", "sphere", "box"}:
             message = f"OpenRAVE takes a mass of type '{kind}' in a KinBody for a sphere"
             self._context.diagnostics.warn("openrave-bug", message, element.source, "give each Body its own Mass")
             kind = "sphere"
         self._is_total = False
-        self._context.walk(element, _DEFAULT_MASS_TAGS, {}, self)
+        self._context.walk(element, DEFAULT_MASS_TAGS, {}, self)
         if self._is_total and kind == "mimicgeom":
             message = f"OpenRAVE takes the total {self._number:g} of a KinBody's mimicgeom mass for a density"
             self._context.diagnostics.warn("openrave-bug", message, element.source, "write <density>")
@@ -171,7 +171,7 @@ class DefaultMassReader:
             self._half_extents = half_extents
 
 
-_DEFAULT_MASS_TAGS = {
+DEFAULT_MASS_TAGS = {
     "density": DefaultMassReader.density,
     "total": DefaultMassReader.total,
     "radius": DefaultMassReader.radius,
@@ -206,6 +206,9 @@ def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     if mass == 0.0:
         return Inertial(0.0 if rule.total is None else math.nan, ZERO, NO_INERTIA)
     factor = 1.0 if rule.total is None else rule.total / mass
+    if len(geometries) == 1:
+        position, wxyz = geometries[0].T_link_geometry
+        return Inertial(mass * factor, position, _rotated(solids[0][1], wxyz))
     com = ZERO
     for geometry, (part, _) in zip(geometries, solids, strict=True):
         com = add(com, scale(geometry.T_link_geometry.position, part / mass))

@@ -56,7 +56,7 @@ class _ManipulatorScope:
         self.built.direction = vector(element, self.context.diagnostics)
 
 
-_MANIPULATOR_TAGS: dict[str, Callable[[_ManipulatorScope, Element], None]] = {
+MANIPULATOR_TAGS: dict[str, Callable[[_ManipulatorScope, Element], None]] = {
     "translation": _ManipulatorScope.translate,
     **dict.fromkeys(ROTATIONS, _ManipulatorScope.turn),
     "base": _ManipulatorScope.read_base,
@@ -65,6 +65,7 @@ _MANIPULATOR_TAGS: dict[str, Callable[[_ManipulatorScope, Element], None]] = {
     **dict.fromkeys(("closingdirection", "closingdir", "chuckingdirection"), _ManipulatorScope.read_closing),
     **dict.fromkeys(("direction", "palmdirection"), _ManipulatorScope.read_direction),
 }
+MANIPULATOR_ATTRIBUTES = {"name"}
 MANIPULATOR_IGNORED = {
     "armjoints": "OpenRAVE finds the arm's joints by itself, between base and effector",
     "iksolver": NO_EFFECT_HERE,
@@ -73,13 +74,13 @@ MANIPULATOR_IGNORED = {
 
 def read_manipulator(body: BodyBuilder, element: Element, context: Context) -> ManipulatorBuilder:
     """Read a ``<Manipulator>``."""
-    context.check_attributes(element, {"name"}, {})
+    context.check_attributes(element, MANIPULATOR_ATTRIBUTES, {})
     name = element.attributes.get("name", "")
     if not name:
         name = f"manip{len(body.manipulators)}"
         context.diagnostics.warn("no-name", f"the manipulator has no name; OpenRAVE calls it {name}", element.source)
     scope = _ManipulatorScope(body, ManipulatorBuilder(name, element.source), context)
-    context.walk(element, _MANIPULATOR_TAGS, MANIPULATOR_IGNORED, scope)
+    context.walk(element, MANIPULATOR_TAGS, MANIPULATOR_IGNORED, scope)
     if not scope.built.effector:
         message = f"the manipulator '{name}' has no effector"
         context.diagnostics.error("no-effector", message, element.source, "name its last link")
@@ -118,20 +119,21 @@ class _SensorScope:
         self.device = read_device(element, self.context)
 
 
-_SENSOR_TAGS: dict[str, Callable[[_SensorScope, Element], None]] = {
+SENSOR_TAGS: dict[str, Callable[[_SensorScope, Element], None]] = {
     "link": _SensorScope.read_link,
     "translation": _SensorScope.translate,
     **dict.fromkeys(ROTATIONS, _SensorScope.turn),
     "sensor": _SensorScope.read_device,
 }
+SENSOR_ATTRIBUTES = {"name"}
 SENSOR_IGNORED = reasons(NO_EFFECT_HERE, "sendcommand")
 
 
 def read_attached_sensor(body: BodyBuilder, element: Element, context: Context) -> None:
     """Read an ``<AttachedSensor>`` and append it to the body."""
-    context.check_attributes(element, {"name"}, {})
+    context.check_attributes(element, SENSOR_ATTRIBUTES, {})
     scope = _SensorScope(body, context)
-    context.walk(element, _SENSOR_TAGS, SENSOR_IGNORED, scope)
+    context.walk(element, SENSOR_TAGS, SENSOR_IGNORED, scope)
     if scope.link is None:
         message = "the sensor names no link, and is attached to nothing"
         context.diagnostics.warn("no-link", message, element.source, "add a <link>")

@@ -64,6 +64,7 @@ CAMERA_TAGS: dict[str, Callable[[_Camera, Element], None]] = {
     "height": _Camera.read_height,
     "image_dimensions": _Camera.read_dimensions,
 }
+DEVICE_ATTRIBUTES = {"type", "file", "name", "args"}
 CAMERA_IGNORED = reasons(
     NO_EFFECT_HERE, "framerate", "focal_length", "color", "power", "gain", "measurement_time", "format",
     "sensor_reference", "target_region", "hardware_id", "distortion_model", "distortion_coeffs",
@@ -72,7 +73,7 @@ CAMERA_IGNORED = reasons(
 
 def read_device(element: Element, context: Context) -> Device:
     """Read a ``<Sensor>``; with ``file``, that of the file."""
-    context.check_attributes(element, {"type", "file", "name", "args"}, {})
+    context.check_attributes(element, DEVICE_ATTRIBUTES, {})
     root = context.include(element)
     found = Device() if root is None or root.tag != "sensor" else read_device(root, context)
     kind = element.attributes.get("type")
