@@ -16,6 +16,8 @@ def adjacent_pairs(body: KinBody) -> set[Pair]:
     Returns:
         Pairs of link indices, the smaller one first.
     """
+    if len(body.links) < 2:
+        return set()
     joints = (*body.joints, *body.passive_joints)
     rigid = _components(len(body.links), ((joint.parent, joint.child) for joint in joints if joint.static))
     connected = _components(len(body.links), ((joint.parent, joint.child) for joint in joints))

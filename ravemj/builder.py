@@ -97,6 +97,8 @@ class BodyBuilder:
         Raises:
             SourceError: a manipulator is impossible.
         """
+        if not self.joints and not self.manipulators:
+            return self._frozen([link.pose for link in self.links], [], 0)
         listed = self._in_order()
         has_dofs = bool(listed and listed[0].active)
         mimics = resolve(_followers(listed), diagnostics)
@@ -110,21 +112,23 @@ class BodyBuilder:
             joints = self._settled(joints, poses, diagnostics)
             placing = [joints[index] for index in decided.order]
             place_links(poses, placing, [[axis.value for axis in joint.axes] for joint in placing])
-        active = tuple(joint for joint, built in zip(joints, listed, strict=True) if built.active)
-        passive = tuple(joint for joint, built in zip(joints, listed, strict=True) if not built.active)
-        body = scene.KinBody(
+        body = self._frozen(poses, joints, sum(built.active for built in listed))
+        manipulators = tuple(freeze_manipulator(built, body, diagnostics) for built in self.manipulators)
+        return replace(body, manipulators=manipulators) if manipulators else body
+
+    def _frozen(self, poses: Sequence[Pose], joints: Sequence[scene.Joint], active: int) -> scene.KinBody:
+        """Return the body with its links at the given poses, and without its manipulators."""
+        return scene.KinBody(
             name=self.name,
             is_robot=self.is_robot,
             links=tuple(_frozen_link(link, pose) for link, pose in zip(self.links, poses, strict=True)),
-            joints=active,
-            passive_joints=passive,
+            joints=tuple(joints[:active]),
+            passive_joints=tuple(joints[active:]),
             adjacent=tuple(self.adjacent),
             joined_links_adjacent=self.joined_links_adjacent,
             sensors=tuple(self.sensors),
             source=self.source,
         )
-        manipulators = tuple(freeze_manipulator(built, body, diagnostics) for built in self.manipulators)
-        return replace(body, manipulators=manipulators)
 
     def _in_order(self) -> list[JointBuilder]:
         """Return the active joints, then the disabled ones, then the followers."""

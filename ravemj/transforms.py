@@ -35,6 +35,8 @@ class Pose(NamedTuple):
 
     def __matmul__(self, other: "Pose") -> "Pose":
         """Compose: the result applies ``other`` first."""
+        if self.wxyz == UNIT_WXYZ:
+            return Pose(add(self.position, other.position), other.wxyz)
         return Pose(self.apply(other.position), multiply(self.wxyz, other.wxyz))
 
     def apply(self, point: Vec3) -> Vec3:

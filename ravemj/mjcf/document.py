@@ -1,6 +1,7 @@
 """The whole MJCF document."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal, NamedTuple
 
 from ravemj.adjacency import adjacent_pairs
@@ -10,7 +11,7 @@ from ravemj.mjcf.equality import EqualityWriter
 from ravemj.mjcf.geometry import GeometryWriter
 from ravemj.mjcf.inertia import inertia_attributes, legal_inertial
 from ravemj.mjcf.lines import Attribute, Lines, pose_attributes
-from ravemj.scene import Axis, Joint, KinBody, Link, Scene, View
+from ravemj.scene import Axis, Joint, KinBody, Link, Mesh, Scene, View
 from ravemj.transforms import ZERO, conjugate, rotate
 
 ASSETS = "assets"
@@ -47,22 +48,30 @@ class BodyNames(NamedTuple):
     joints: tuple[tuple[str, ...], ...]
 
 
-class Mjcf(NamedTuple):
+@dataclass(frozen=True)
+class Mjcf:
     """A translated scene.
 
     Attributes:
         text: The MJCF document.
-        assets: Content of the mesh files in the folder ``assets``, by name.
+        meshes: The meshes, by the name of their files in the folder ``assets``.
         sources: For each line of the text, the place that it comes from, or None.
         names: Names of the parts of each body of the scene, in the order of the bodies.
         altered: Links, as (body, link) indices, whose inertia MuJoCo would refuse; the text has the nearest legal one.
     """
 
     text: str
-    assets: dict[str, str]
+    meshes: dict[str, Mesh]
     sources: tuple[Source | None, ...]
     names: tuple[BodyNames, ...]
     altered: tuple[tuple[int, int], ...]
+
+    @cached_property
+    def assets(self) -> dict[str, str]:
+        """The content of the mesh files, by name."""
+        from ravemj.meshes.obj import write_obj  # noqa: PLC0415 - most models have no meshes
+
+        return {name: write_obj(mesh) for name, mesh in self.meshes.items()}
 
     def source_of_line(self, line: int) -> Source | None:
         """Return where a line of the text comes from; lines count from 1."""
@@ -93,7 +102,7 @@ def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None
     out.section("actuator", writer.actuators)
     out.close("mujoco")
     text = "\n".join(out.text) + "\n"
-    return Mjcf(text, writer.geometries.assets, tuple(out.sources), tuple(writer.names), tuple(writer.altered))
+    return Mjcf(text, writer.geometries.meshes, tuple(out.sources), tuple(writer.names), tuple(writer.altered))
 
 
 def _write_look(out: Lines, view: View, meshes: Lines) -> None:

@@ -30,13 +30,13 @@ class GeometryWriter:
     """Writes geoms and collects the meshes that they need.
 
     Attributes:
-        assets: Content of the mesh files, by file name.
+        meshes: The meshes, by the name of their files.
         lines: The elements that declare them.
     """
 
     def __init__(self, diagnostics: Diagnostics, *, decomposed: bool) -> None:
         self.diagnostics = diagnostics
-        self.assets: dict[str, str] = {}
+        self.meshes: dict[str, Mesh] = {}
         self.lines = Lines(2)
         self._decomposed = decomposed
 
@@ -116,10 +116,8 @@ class GeometryWriter:
             return None
         name = f"mesh-{mesh.digest[:16]}"
         file = f"{name}.obj"
-        if file not in self.assets:
-            from ravemj.meshes.obj import write_obj  # noqa: PLC0415 - most models have no meshes
-
-            self.assets[file] = write_obj(mesh)
+        if file not in self.meshes:
+            self.meshes[file] = mesh
             self.lines.element("mesh", name=name, file=file, inertia="shell")
         return name
 

@@ -5,9 +5,11 @@ from ravemj.transforms import Pose
 
 Attribute = str | float | bool | tuple[float, ...]
 
+_INDENTS = ["  " * depth for depth in range(20)]
 _ESCAPES = str.maketrans(
     {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 )
+_ESCAPED = frozenset(map(chr, _ESCAPES))
 
 
 class Lines:
@@ -50,7 +52,7 @@ class Lines:
             self.close(tag)
 
     def _line(self, text: str, source: Source | None) -> None:
-        self.text.append("  " * self._indent + text)
+        self.text.append(f"{_INDENTS[self._indent] if self._indent < len(_INDENTS) else '  ' * self._indent}{text}")
         self.sources.append(source)
 
 
@@ -67,16 +69,15 @@ def pose_attributes(pose: Pose) -> dict[str, Attribute]:
 def attribute_text(value: Attribute) -> str:
     """Return an attribute's text; numbers keep all their digits."""
     if isinstance(value, str):
-        return value.translate(_ESCAPES)
+        return value if _ESCAPED.isdisjoint(value) else value.translate(_ESCAPES)
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, tuple):
-        return " ".join([_number_text(part) for part in value])
-    return _number_text(value)
+    return _numbers_text(value if isinstance(value, tuple) else (value,))
 
 
-def _number_text(value: float) -> str:
-    return repr(int(value) if abs(value) < 1e15 and value == int(value) else value)
+def _numbers_text(values: tuple[float, ...]) -> str:
+    """Return numbers separated by spaces, whole ones without a point and none with a minus before zero."""
+    return f"{' '.join(map(repr, values))} ".replace(".0 ", " ").replace("-0 ", "0 ")[:-1]
 
 
 def _attributes(attributes: dict[str, Attribute | None]) -> str:

@@ -128,16 +128,18 @@ class _Parser:
         return Source(self._path, self._expat.CurrentLineNumber, self._included_from)
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
-        if len(self._open) >= DEEPEST:
-            self._refuse(f"more than {DEEPEST} elements inside one another")
         lowered = {key.lower(): value for key, value in attributes.items()} if attributes else attributes
-        element = Element(name.lower(), name, lowered, self._here())
-        if self._open:
-            self._open[-1].children.append(element)
+        source = Source(self._path, self._expat.CurrentLineNumber, self._included_from)
+        element = Element(name.lower(), name, lowered, source, "", [])
+        opened = self._open
+        if not opened:
+            self.root = element
+        elif len(opened) < DEEPEST:
+            opened[-1].children.append(element)
             self._text[-1].clear()
         else:
-            self.root = element
-        self._open.append(element)
+            self._refuse(f"more than {DEEPEST} elements inside one another")
+        opened.append(element)
         self._text.append([])
 
     def _end(self, name: str) -> None:

@@ -22,8 +22,8 @@ from ravemj.transforms import (
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))")
 
-_PLAIN = re.compile(r"[0-9.+\-eE\s]*", re.ASCII)
-"""Almost every text with numbers; what Python makes of their words is what C++ makes of them."""
+_PLAIN = "0123456789.+-eE \t\r\n"
+"""What almost every text with numbers consists of; then Python makes of their words what C++ makes of them."""
 
 
 class Numbers(NamedTuple):
@@ -40,12 +40,12 @@ class Numbers(NamedTuple):
 
 def leading_numbers(text: str) -> Numbers:
     """Return the numbers at the start of a text, as C++ streams would read them."""
-    if _PLAIN.fullmatch(text):
+    if not text.strip(_PLAIN):
         try:
             plain = [float(word) for word in text.split()]
         except ValueError:  # signs or points in odd places
             plain = [math.inf]
-        if all(map(math.isfinite, plain)):
+        if math.isfinite(sum(plain)):
             return Numbers(plain, "")
     values: list[float] = []
     position = 0
@@ -91,7 +91,9 @@ def vector(element: Element, diagnostics: Diagnostics) -> Vec3:
 
 def scale_attribute(element: Element) -> Vec3:
     """Return the ``scalegeometry`` of an element: one number for all axes, or three."""
-    values, _ = leading_numbers(element.attributes.get("scalegeometry", ""))
+    if "scalegeometry" not in element.attributes:
+        return (1.0, 1.0, 1.0)
+    values, _ = leading_numbers(element.attributes["scalegeometry"])
     if len(values) == 3:
         return (values[0], values[1], values[2])
     uniform = values[0] if values else 1.0
@@ -132,7 +134,8 @@ class Placement:
     @property
     def pose(self) -> Pose:
         """The transform that the elements so far amount to."""
-        return Pose(self._position, normalize(self._wxyz))
+        wxyz = self._wxyz
+        return Pose(self._position, wxyz if wxyz == UNIT_WXYZ else normalize(wxyz))
 
     @property
     def moves(self) -> bool:
