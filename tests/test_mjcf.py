@@ -9,7 +9,7 @@ import ravemj.mjcf.document
 from ravemj import mjcf
 from ravemj.errors import Diagnostics
 from ravemj.openrave_xml import read
-from ravemj.scene import Inertial
+from ravemj.scene import Inertial, Scene
 from ravemj.simulation import Simulation
 
 
@@ -156,3 +156,154 @@ def test_mujoco_s_complaints_name_the_user_s_line(monkeypatch, models, tmp_path)
         simulation.compile()
     assert caught.value.source.file == str(models / "double-pendulum.xml")
     assert caught.value.source.line == 16
+
+
+FOLLOWING = """<KinBody name="k"><Mass type="mimicgeom"><density>1000</density></Mass>
+  {bodies}
+  <Joint name="a"><Body>l0</Body><Body>l1</Body><axis>0 1 0</axis><limits>-2 2</limits><initial>0.25</initial></Joint>
+  <Joint name="b"><Body>l0</Body><Body>l2</Body><axis>0 1 0</axis><limits>-2 2</limits></Joint>
+  <Joint name="f" mimic_pos="{equation}"><Body>l0</Body><Body>l3</Body><axis>0 1 0</axis><limits>-3 3</limits></Joint>
+</KinBody>"""
+LINKS = "".join(
+    f'<Body name="l{i}"><Translation>0 {i} 0</Translation><Geom type="box"><extents>.1 .1 .1</extents>'
+    "<Translation>.3 0 0</Translation></Geom></Body>"
+    for i in range(4)
+)
+
+
+def settle(env, targets):
+    """Let MuJoCo alone pull the joints to the targets, and return where they all are."""
+    model = mujoco.MjModel.from_xml_string(env.mjcf)
+    data = mujoco.MjData(model)
+    model.opt.gravity[:] = 0
+    model.dof_damping[:] = 2
+    for _ in range(3000):
+        for name, target in targets.items():
+            joint = data.joint(name)
+            joint.qfrc_applied[:] = 50 * (target - joint.qpos) - 5 * joint.qvel
+        mujoco.mj_step(model, data)
+    return {name: float(data.joint(name).qpos[0]) for name in ("a", "b", "f")}
+
+
+@pytest.mark.parametrize(
+    ("equation", "value"),
+    [
+        ("0.5*a+0.2", lambda a, b: 0.5 * a + 0.2),
+        ("a^3-a", lambda a, b: a**3 - a),
+        ("a-2*b+0.1", lambda a, b: a - 2 * b + 0.1),
+        ("0.7", lambda a, b: 0.7),
+    ],
+)
+def test_followers_follow_in_plain_mujoco(load, equation, value):
+    env = load(FOLLOWING.format(bodies=LINKS, equation=equation))
+    assert codes(env) == []
+    settled = settle(env, {"a": 0.8, "b": -0.3})
+    assert settled["f"] == pytest.approx(value(settled["a"], settled["b"]), abs=5e-3)
+
+
+def test_a_follower_that_is_no_polynomial_is_fitted(load):
+    with pytest.warns(ravemj.RavemjWarning, match="off by up to"):
+        env = load(FOLLOWING.format(bodies=LINKS, equation="sin(a)"))
+    assert codes(env) == ["fitted-mimic"]
+    settled = settle(env, {"a": 0.8, "b": 0.0})
+    assert settled["f"] == pytest.approx(np.sin(settled["a"]), abs=0.05)
+
+
+def test_a_follower_that_mjcf_cannot_say_is_reported(load):
+    with pytest.warns(ravemj.RavemjWarning, match="in a way that MJCF cannot say"):
+        env = load(FOLLOWING.format(bodies=LINKS, equation="a*b"))
+    assert codes(env) == ["dropped-mimic"]
+    body = env.GetBodies()[0]
+    body.SetDOFValues([0.5, 0.4])
+    assert body.GetJoint("f").GetValues() == [0.2]  # the runtime needs no constraint
+
+
+def test_container(load):
+    env = load(
+        '<KinBody name="b"><Body name="a"><Geom type="container"><outer_extents>1 2 3</outer_extents>'
+        "<inner_extents>.8 1.6 2.9</inner_extents></Geom></Body></KinBody>"
+    )
+    lows = env.model.geom_pos - env.model.geom_size
+    highs = env.model.geom_pos + env.model.geom_size
+    np.testing.assert_allclose(lows.min(axis=0), [-0.5, -1, 0], atol=1e-12)
+    np.testing.assert_allclose(highs.max(axis=0), [0.5, 1, 3], atol=1e-12)
+    mujoco.mj_forward(env.model, env.data)
+    down = mujoco.mj_ray(
+        env.model, env.data, np.array([0.0, 0, 5]), np.array([0.0, 0, -1]), None, 1, -1, np.zeros(1, np.int32)
+    )
+    assert down == pytest.approx(4.9)  # the floor is 0.1 thick, and the box is open
+
+
+VERTICES = "0 0 0 1 0 0 0 1 0  0 0 0 0 0 1 1 0 0  0 0 0 0 1 0 0 0 1  1 0 0 0 0 1 0 1 0"
+
+
+def test_a_mesh_is_drawn_and_collides_as_one_geom(load):
+    env = load(
+        f'<KinBody name="b"><Body name="a"><Geom type="trimesh"><vertices>{VERTICES}</vertices></Geom></Body></KinBody>'
+    )
+    assert codes(env) == []
+    assert env.model.nmesh == env.model.ngeom == 1
+    assert env.model.geom_contype.tolist() == [1]
+    assert env.model.geom_group.tolist() == [0]
+
+
+def test_a_flat_mesh_is_drawn_only(load):
+    flat = "0 0 0 1 0 0 0 1 0  1 0 0 1 1 0 0 1 0"
+    with pytest.warns(ravemj.RavemjWarning, match="flat"):
+        env = load(
+            f'<KinBody name="b"><Body name="a"><Geom type="trimesh"><vertices>{flat}</vertices></Geom></Body></KinBody>'
+        )
+    assert codes(env) == ["flat-mesh"]
+    assert env.model.geom_contype.tolist() == [0]
+    assert env.model.geom_group.tolist() == [2]
+
+
+def test_mesh_vertices_stay_where_they_are(load):
+    """MuJoCo moves meshes to their centre of mass; what is seen must not move."""
+    env = load(
+        '<KinBody name="b"><Translation>1 2 3</Translation><Body name="a"><Geom type="trimesh">'
+        "<Translation>.1 0 0</Translation><RotationAxis>0 0 1 90</RotationAxis>"
+        f"<vertices>{VERTICES}</vertices></Geom></Body></KinBody>"
+    )
+    mujoco.mj_kinematics(env.model, env.data)
+    seen = env.model.mesh_vert @ env.data.geom_xmat[0].reshape(3, 3).T + env.data.geom_xpos[0]
+    expected = {(1.1, 2, 3), (1.1, 3, 3), (0.1, 2, 3), (1.1, 2, 4)}
+    assert {tuple(np.round(point, 6).tolist()) for point in seen} == expected
+
+
+class TestOptions:
+    def write(self, env, **options):
+        scene = read_scene(env)
+        return mujoco.MjModel.from_xml_string(mjcf.write(scene, Diagnostics(), mjcf.Options(**options)).text)
+
+    def test_free_bases(self, load):
+        env = load(
+            '<KinBody name="falls"><Body name="a"/></KinBody>'
+            '<KinBody name="stands"><Body name="b" type="static"/></KinBody>'
+        )
+        model = self.write(env, free_bases=True)
+        assert model.nq == 7
+        data = mujoco.MjData(model)
+        for _ in range(50):
+            mujoco.mj_step(model, data)
+        assert data.body("a").xpos[2] < -0.01
+        assert data.body("b").xpos[2] == 0
+
+    @pytest.mark.parametrize("kind", ["position", "velocity", "torque"])
+    def test_actuators(self, load, kind):
+        motor = (
+            '<actuator type="electric_motor"><gear_ratio>10</gear_ratio><rotor_inertia>0.002</rotor_inertia></actuator>'
+        )
+        env = load(
+            f'<KinBody name="b">{LINKS}<Joint name="j"><Body>l0</Body><Body>l1</Body><axis>0 0 1</axis>'
+            f"<limits>-1 2</limits><maxtorque>5</maxtorque><maxvel>3</maxvel>{motor}</Joint></KinBody>"
+        )
+        assert env.model.dof_armature.tolist() == [0]
+        model = self.write(env, actuators=kind)
+        assert model.dof_armature.tolist() == [0.2]
+        limits = {"position": [-1, 2], "velocity": [-3, 3], "torque": [-5, 5]}[kind]
+        assert model.actuator_ctrlrange.tolist() == [limits]
+
+
+def read_scene(env):
+    return Scene(tuple(body.scene for body in env.simulation.bodies))
