@@ -30,7 +30,7 @@ from ravemj.cli import main
 
 DATA = Path(__file__).resolve().parent / "data"
 MODELS = DATA.parent.parent / "models"
-COMMANDS = ["play", "render", "convert", "info", "run", "shell", "alias", "doctor"]
+COMMANDS = ["play", "render", "convert", "check", "info", "run", "shell", "alias", "doctor"]
 SMALL = ("--size", "96x72")
 CSV = "time,Joint1,Joint0\n0,0,0\n0.5,0,1.5707963267948966\n1,0,3.141592653589793\n"
 
@@ -256,11 +256,67 @@ def test_cameras_are_read_as_people_keep_them(folder, text):
 def test_info_lists_what_the_model_has(folder):
     printed = said(ravemj_command(folder, "info", "env.xml"))
     assert printed.startswith("robot Pendulum: 3 links, 2 DOFs, 21.6549 kg\n")
-    cells = [line.split() for line in printed.splitlines()]
-    assert ["1", "Arm0", "8", "0.1", "0", "0", "box", "Joint0"] in cells
-    assert ["1", "Joint1", "hinge", "Arm0", "Arm1", "circular", "5.42", "rad/s", "3"] in cells
+    lines = printed.splitlines()
+    assert lines[2:5] == [
+        "Base  5.655 kg",
+        "└─ Arm0  8 kg  ← Joint0: hinge, DOF 0, circular",
+        "   └─ Arm1  8 kg  ← Joint1: hinge, DOF 1, circular",
+    ]
+    cells = [line.split() for line in lines]
+    assert ["#", "link", "mass", "[kg]", "centre", "of", "mass", "[m]", "shapes"] in cells
+    assert ["1", "Arm0", "8", "0.1", "0", "0", "box"] in cells
+    assert ["1", "Joint1", "hinge", "circular", "0", "5.42", "50", "0", "3"] in cells
     limited = ravemj_command(folder, "info", DATA / "limited.xml")
     assert "-1.571 to 1.571 rad" in limited.stdout
+
+
+ALL_PARTS = """<Robot name="all"><KinBody>
+<Body name="base"/><Body name="arm"/><Body name="hand"/><Body name="finger"/><Body name="plate"/>
+<Joint name="j0" type="slider"><Body>base</Body><Body>arm</Body><axis>0 0 1</axis><limits>0 0.5</limits></Joint>
+<Joint name="j1" type="hinge"><Body>arm</Body><Body>hand</Body><axis>0 0 1</axis><limitsdeg>0 90</limitsdeg></Joint>
+<Joint name="j2" type="hinge"><Body>hand</Body><Body>finger</Body><axis>1 0 0</axis><limits>0 1</limits></Joint>
+<Joint name="j3" type="hinge" mimic_pos="2*j2" mimic_vel="|j2 2"><Body>hand</Body><Body>plate</Body></Joint>
+<Joint name="loop" type="hinge" enable="false"><Body>plate</Body><Body>finger</Body></Joint></KinBody>
+<Manipulator name="m"><base>base</base><effector>hand</effector><joints>j2</joints>
+<closingdirection>-1</closingdirection></Manipulator>
+<AttachedSensor name="eye"><link>hand</link><Sensor type="BaseCamera"><KK>500 510 320 240</KK><width>640</width>
+<height>480</height></Sensor></AttachedSensor>
+</Robot>
+"""
+
+
+def test_info_shows_tree_followers_manipulators_and_sensors_in_100_columns(folder):
+    (folder / "all.xml").write_text(ALL_PARTS)
+    printed = said(ravemj_command(folder, "info", "all.xml"))
+    lines = printed.splitlines()
+    assert max(map(len, lines)) <= 100
+    assert lines[2:8] == [
+        "base  1 kg",
+        "└─ arm  1 kg  ← j0: slider, DOF 0, 0 to 0.5 m",
+        "   └─ hand  1 kg  ← j1: hinge, DOF 1, 0 to 1.571 rad",
+        "      ├─ finger  1 kg  ← j2: hinge, DOF 2, 0 to 1 rad",
+        "      └─ plate  1 kg  ← j3: hinge, follows 2*j2",
+        "loop closes a loop between finger and plate",
+    ]
+    cells = [line.split() for line in lines]
+    assert ["j3", "hinge", "hand", "plate", "0", "2*j2"] in cells
+    assert ["m", "base", "hand", "0-1", "2", "-1"] in cells
+    assert ["eye", "hand", "BaseCamera", "640x480,", "f", "500", "510,", "c", "320", "240"] in cells
+
+
+def test_info_prints_the_numbers_as_json(folder):
+    (folder / "all.xml").write_text(ALL_PARTS)
+    (body,) = json.loads(said(ravemj_command(folder, "info", "all.xml", "--json")))["bodies"]
+    assert (body["name"], body["mass"], body["dof"], len(body["links"])) == ("all", 5, 3, 5)
+    assert [joint["dofs"] for joint in body["joints"]] == [[0], [1], [2]]
+    assert body["joints"][1]["axes"][0]["upper"] == pytest.approx(np.pi / 2)
+    passive = {joint["name"]: joint for joint in body["passive_joints"]}
+    assert (passive["j3"]["follows"], passive["loop"]["closes_loop"]) == ("2*j2", True)
+    assert body["manipulators"][0]["arm_dofs"] == [0, 1]
+    assert body["sensors"][0]["camera"] == {"fx": 500, "fy": 510, "cx": 320, "cy": 240, "width": 640, "height": 480}
+    (pendulum,) = json.loads(said(ravemj_command(folder, "info", "env.xml", "--json")))["bodies"]
+    assert pendulum["joints"][0]["axes"][0]["lower"] is None, "circular"
+    assert pendulum["links"][1]["geometries"][0]["half_extents"] == [0.1, 0.025, 0.025]
 
 
 def test_convert_writes_what_mujoco_loads(folder):

@@ -103,7 +103,7 @@ def _add_play(commands: Commands) -> None:
     parser.add_argument(
         "--duration", type=_positive, metavar="S", help="seconds the motion takes; default: 1, or as the file says"
     )
-    parser.add_argument("--fps", type=_positive, default=30.0, help="frames in a second (30)")
+    parser.add_argument("--fps", type=_positive, default=30.0, metavar="N", help="frames in a second (30)")
     _add_picture_options(parser, "size of the video (640x480); windows have a size of their own")
     parser.set_defaults(run=pictures.play)
 

@@ -55,8 +55,7 @@ class Context:
                 if child.complete:
                     handler(target, child)
             elif child.tag in ignored:
-                message = f"<{child.spelled}> is left out: {ignored[child.tag]}"
-                self.diagnostics.warn("ignored-tag", message, child.source)
+                self.leave_out(child, ignored[child.tag])
             else:
                 self.diagnostics.warn(
                     "unknown-tag",
@@ -64,6 +63,10 @@ class Context:
                     child.source,
                     _belongs(child) or did_you_mean(child.tag, handlers),
                 )
+
+    def leave_out(self, element: Element, reason: str) -> None:
+        """Report an element that has no effect here."""
+        self.diagnostics.warn("ignored-tag", f"<{element.spelled}> is left out: {reason}", element.source)
 
     def check_attributes(self, element: Element, known: Set[str], ignored: Mapping[str, str]) -> None:
         """Report the attributes of an element that nothing reads."""

@@ -18,7 +18,7 @@ _DEFAULT_CAMERA_WXYZ: Wxyz = wxyz_from_axis_angle((1.0, 0.0, 0.0), -0.5)
 
 _HALF_TURN_X: Wxyz = wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi)
 
-_INTERFACES = (
+INTERFACES = (
     "collisionchecker",
     "sensor",
     "module",
@@ -30,6 +30,8 @@ _INTERFACES = (
     "viewer",
     "spacesampler",
 )
+
+NO_PHYSICS = "of a physics engine, only the gravity means something to MuJoCo"
 
 _KNOWN_CLASSES = {
     "ode", "bullet", "pqp", "fcl_", "fcl", "genericcollisionchecker",
@@ -93,7 +95,7 @@ class _Document:
         elif root.tag in {"robot", "kinbody"}:
             if root.complete:
                 self.read_body(root)
-        elif root.tag not in _INTERFACES:
+        elif root.tag not in INTERFACES:
             raise SourceError(
                 f"the root element is <{root.spelled}>, and OpenRAVE expects <Environment>, <Robot> or <KinBody>",
                 root.source,
@@ -172,9 +174,14 @@ class _EnvironmentScope:
         if kind == "ode":
             self.document.gravity = ZERO
         for properties in element.children:
-            for child in properties.children if properties.tag == "odeproperties" else ():
+            if properties.tag != "odeproperties":
+                self.document.context.leave_out(properties, NO_PHYSICS)
+                continue
+            for child in properties.children:
                 if child.tag == "gravity":
                     self.document.gravity = vector(child, self._diagnostics)
+                else:
+                    self.document.context.leave_out(child, NO_PHYSICS)
 
     def read_interface(self, element: Element) -> None:
         """Report an interface that belongs to no model; of an unknown class OpenRAVE makes an error."""
@@ -200,7 +207,7 @@ ENVIRONMENT_TAGS: dict[str, Callable[[_EnvironmentScope, Element], None]] = {
     "camrotmat": _EnvironmentScope.read_camera_matrix,
     "camrotaxis": _EnvironmentScope.read_old_camera_rotation,
     "physicsengine": _EnvironmentScope.read_physics,
-    **dict.fromkeys(_INTERFACES, _EnvironmentScope.read_interface),
+    **dict.fromkeys(INTERFACES, _EnvironmentScope.read_interface),
 }
 ENVIRONMENT_ATTRIBUTES = {"file"}
 ENVIRONMENT_IGNORED = {

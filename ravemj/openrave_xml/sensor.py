@@ -64,6 +64,7 @@ CAMERA_TAGS: dict[str, Callable[[_Camera, Element], None]] = {
     "height": _Camera.read_height,
     "image_dimensions": _Camera.read_dimensions,
 }
+NO_DEVICE = "of sensors that are no cameras, only kind and place are kept"
 DEVICE_ATTRIBUTES = {"type", "file", "name", "args"}
 CAMERA_IGNORED = reasons(
     NO_EFFECT_HERE, "framerate", "focal_length", "color", "power", "gain", "measurement_time", "format",
@@ -84,6 +85,8 @@ def read_device(element: Element, context: Context) -> Device:
         return Device()
     name = _KNOWN_TYPES[kind.split()[0].lower()]
     if name.lower() != _CAMERA_TYPE:
+        for child in element.children:
+            context.leave_out(child, NO_DEVICE)
         return Device(name)
     camera = _Camera(context)
     context.walk(element, CAMERA_TAGS, CAMERA_IGNORED, camera)
