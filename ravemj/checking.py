@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 from ravemj.builder import DEFAULT_INERTIAL
-from ravemj.errors import Diagnostic, RavemjWarning, Source, SourceError, describe
+from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, Source, SourceError, describe
 from ravemj.rave import load
 from ravemj.scene import KinBody
 
@@ -54,6 +54,8 @@ def check(path: str | os.PathLike[str]) -> list[Finding]:
             env = load(path)
     except SourceError as error:
         return [*map(_finding, error.diagnostics), _fatal(error)]
+    except RavemjError as error:
+        return [Finding("error", "fatal", error.message, Source(os.fspath(path)))]
     notes = [note for body in env.simulation.bodies for note in _default_masses(body.scene)]
     return [*map(_finding, env.diagnostics), *notes]
 

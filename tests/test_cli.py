@@ -259,13 +259,13 @@ def test_info_lists_what_the_model_has(folder):
     lines = printed.splitlines()
     assert lines[2:5] == [
         "Base  5.655 kg",
-        "└─ Arm0  8 kg  ← Joint0: hinge, DOF 0, circular",
-        "   └─ Arm1  8 kg  ← Joint1: hinge, DOF 1, circular",
+        "└╴Arm0  8 kg  ← Joint0: hinge, DOF 0, circular",
+        "  └╴Arm1  8 kg  ← Joint1: hinge, DOF 1, circular",
     ]
     cells = [line.split() for line in lines]
     assert ["#", "link", "mass", "[kg]", "centre", "of", "mass", "[m]", "shapes"] in cells
     assert ["1", "Arm0", "8", "0.1", "0", "0", "box"] in cells
-    assert ["1", "Joint1", "hinge", "circular", "0", "5.42", "50", "0", "3"] in cells
+    assert ["1", "Joint1", "circular", "0", "5.42", "50", "0", "3"] in cells
     limited = ravemj_command(folder, "info", DATA / "limited.xml")
     assert "-1.571 to 1.571 rad" in limited.stdout
 
@@ -292,11 +292,11 @@ def test_info_shows_tree_followers_manipulators_and_sensors_in_100_columns(folde
     assert max(map(len, lines)) <= 100
     assert lines[2:8] == [
         "base  1 kg",
-        "└─ arm  1 kg  ← j0: slider, DOF 0, 0 to 0.5 m",
-        "   └─ hand  1 kg  ← j1: hinge, DOF 1, 0 to 1.571 rad",
-        "      ├─ finger  1 kg  ← j2: hinge, DOF 2, 0 to 1 rad",
-        "      └─ plate  1 kg  ← j3: hinge, follows 2*j2",
-        "loop closes a loop between finger and plate",
+        "└╴arm  1 kg  ← j0: slider, DOF 0, 0 to 0.5 m",
+        "  └╴hand  1 kg  ← j1: hinge, DOF 1, 0 to 1.571 rad",
+        "    ├╴finger  1 kg  ← j2: hinge, DOF 2, 0 to 1 rad",
+        "    └╴plate  1 kg  ← j3: hinge, follows 2*j2",
+        "loop closes a loop between plate and finger",
     ]
     cells = [line.split() for line in lines]
     assert ["j3", "hinge", "hand", "plate", "0", "2*j2"] in cells
@@ -316,7 +316,7 @@ def test_info_prints_the_numbers_as_json(folder):
     assert body["sensors"][0]["camera"] == {"fx": 500, "fy": 510, "cx": 320, "cy": 240, "width": 640, "height": 480}
     (pendulum,) = json.loads(said(ravemj_command(folder, "info", "env.xml", "--json")))["bodies"]
     assert pendulum["joints"][0]["axes"][0]["lower"] is None, "circular"
-    assert pendulum["links"][1]["geometries"][0]["half_extents"] == [0.1, 0.025, 0.025]
+    assert pendulum["links"][1]["geometries"][0]["half_extents"] == [0.1, 0.01, 0.01]
 
 
 def test_convert_writes_what_mujoco_loads(folder):

@@ -54,10 +54,10 @@ class _Tree:
         while pending:
             link, first, rest = pending.pop()
             children = [child for child, number in self._placing.items() if self._joints[number].parent == link]
-            yield from self._entry(link, first, rest + ("│  " if children else "   "))
-            branches = [(child, f"{rest}├─ ", f"{rest}│  ") for child in sorted(children)]
+            yield from self._entry(link, first, rest + ("│ " if children else "  "))
+            branches = [(child, f"{rest}├╴", f"{rest}│ ") for child in sorted(children)]
             if branches:
-                branches[-1] = (branches[-1][0], f"{rest}└─ ", f"{rest}   ")
+                branches[-1] = (branches[-1][0], f"{rest}└╴", f"{rest}  ")
             pending += reversed(branches)
         for joint in self._joints:
             if not joint.places_child:
@@ -116,14 +116,14 @@ def _links(links: Sequence[Link]) -> object:
 
 
 def _dofs(body: KinBody) -> object:
-    rows = table("DOFs", "DOF>", "joint", "type", "limits>", "value>", "velocity>", "accel.>", "torque>", "weight>")
-    rows.caption = "rad and m, 1/s, 1/s², N m and N; velocity, acceleration and torque are limits"
+    rows = table("DOFs", "DOF>", "joint", "limits", "value>", "velocity>", "accel.>", "torque>", "weight>")
+    rows.caption = "velocity, acceleration and torque are limits; SI units"
     rows.caption_justify = "left"
     for joint, first in zip(body.joints, dof_starts(body), strict=True):
         for dof, axis in enumerate(joint.axes, first):
             numbers = (axis.value, axis.max_velocity, axis.max_acceleration, axis.max_torque, axis.weight)
-            limits = "fixed" if joint.static else _limits(axis)
-            rows.add_row(str(dof), joint.name, joint.kind, limits, *map(_number, numbers))
+            limits = "fixed" if joint.static else f"{_limits(axis)}{_unit(joint, axis)}"
+            rows.add_row(str(dof), joint.name, limits, *map(_number, numbers))
     return rows
 
 
