@@ -2,13 +2,16 @@
 
 import multiprocessing
 import os
+import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ravemj.errors import SourceError
-from ravemj.meshes import cache, read_mesh, reading
+from ravemj.meshes import cache, collision_form, read_mesh, reading
+from ravemj.scene import Mesh
 
 FILES = Path(__file__).parent / "data" / "meshes"
 OBJ = "mtllib m.mtl\nv 0 0 0\nv 0.1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"
@@ -38,8 +41,43 @@ def reads(monkeypatch):
     return counted
 
 
+@pytest.fixture
+def later(monkeypatch):
+    """As if all files had been changed a while ago."""
+    real = time.time_ns
+    monkeypatch.setattr(cache.time, "time_ns", lambda: real() + 10**10)
+
+
+@pytest.fixture
+def contents(monkeypatch):
+    """Count how often the content of a file is looked at."""
+    counted = []
+    for name in ("read_bytes", "digest_of"):
+        real = getattr(cache, name)
+        monkeypatch.setattr(cache, name, lambda path, real=real: counted.append(path) or real(path))
+    return counted
+
+
 def entries(folder):
-    return sorted(folder.glob("*.npz"))
+    return sorted(folder.glob("*.mesh"))
+
+
+def shortcuts(folder):
+    return sorted(folder.glob("*.path"))
+
+
+def change(path, content):
+    """Change a file to something as long, so that only the clock tells."""
+    before = os.stat(path)
+    time.sleep(0.05)  # longer than a tick of the kernel
+    Path(path).write_text(content)
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert os.stat(path).st_size == before.st_size
+
+
+def anew(parts):
+    """Forget what the cache told about meshes besides their numbers."""
+    return tuple(replace(part, mesh=Mesh(part.mesh.vertices.copy(), part.mesh.triangles.copy())) for part in parts)
 
 
 def test_the_second_reading_comes_from_the_cache(folder, mesh, reads):
@@ -55,7 +93,9 @@ def test_every_format_comes_back_the_same(folder, path):
     if path.suffix in (".off", ".ply"):
         pytest.importorskip("trimesh")
     if path.suffix != ".mtl":
-        assert read_mesh(str(path)) == read_mesh(str(path))
+        first, second = read_mesh(str(path)), read_mesh(str(path))
+        assert anew(first) == anew(second) == second
+        assert [collision_form(part.mesh) for part in second] == [collision_form(part.mesh) for part in anew(second)]
         assert len(entries(folder)) == 1
 
 
@@ -85,6 +125,138 @@ def test_a_changed_file_or_reference_is_read_anew(folder, mesh, reads, tmp_path)
     assert len(reads) == 5
 
 
+def test_a_copy_elsewhere_has_its_own_references(folder, mesh, tmp_path):
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "mesh.obj").write_text(OBJ)
+    (other / "m.mtl").write_text("newmtl a\nKd 0 1 0\n")
+    for _ in range(2):
+        assert read_mesh(mesh)[0].diffuse == (1, 0, 0)
+        assert read_mesh(str(other / "mesh.obj"))[0].diffuse == (0, 1, 0)
+
+
+@pytest.mark.parametrize("stale", ["_readers", "_readers_unread"])
+def test_changed_readers(folder, later, mesh, reads, contents, monkeypatch, stale):
+    read_mesh(mesh)
+    contents.clear()
+    monkeypatch.setattr(cache, "_readers_unread", lambda: b"other times")
+    if stale == "_readers":
+        monkeypatch.setattr(cache, "_readers", lambda: b"other source")
+    read_mesh(mesh)
+    assert contents
+    assert len(reads) == (2 if stale == "_readers" else 1)
+
+
+def test_the_source_is_known():
+    names = {os.path.basename(path) for path in cache._sources()}
+    assert {"cache.py", "entries.py", "reading.py", "old.py", "geometry.py", "shapes.py"} <= names
+    assert len(cache._readers()) == len(cache._readers_unread()) == 32
+
+
+def test_an_unchanged_file_is_not_even_read(folder, later, mesh, contents, tmp_path, monkeypatch):
+    first = read_mesh(mesh)
+    assert (contents, len(shortcuts(folder))) == ([mesh], 1)
+    monkeypatch.chdir(tmp_path)
+    assert read_mesh("mesh.obj") == read_mesh(mesh) == first
+    assert contents == [mesh]
+
+
+def test_a_file_that_was_just_changed_gets_no_shortcut(folder, mesh, reads):
+    read_mesh(mesh)
+    assert shortcuts(folder) == []
+    for number in range(100):  # faster than the clock of the file system
+        Path(mesh).write_text(OBJ.replace("0.1", f"0.{number % 9 + 1}"))
+        assert read_mesh(mesh)[0].mesh.vertices.max(axis=0)[0] == pytest.approx((number % 9 + 1) / 10)
+    assert (len(reads), shortcuts(folder)) == (9, [])
+
+
+def test_a_reference_that_was_just_changed_allows_no_shortcut(folder, mesh, tmp_path, monkeypatch):
+    reference = str(tmp_path / "m.mtl")
+    monkeypatch.setattr(cache, "changed_at", lambda stamp: time.time_ns() if stamp == cache.stamp_of(reference) else 0)
+    read_mesh(mesh)
+    assert shortcuts(folder) == []
+    monkeypatch.setattr(cache, "changed_at", lambda stamp: 0)
+    read_mesh(mesh)
+    assert len(shortcuts(folder)) == 1
+
+
+@pytest.mark.parametrize("changed", ["mesh", "reference"])
+def test_a_file_that_changes_while_it_is_read_gets_no_shortcut(folder, later, mesh, tmp_path, monkeypatch, changed):
+    real = reading._read
+    path, before, after = {
+        "mesh": (mesh, "0.1", "0.5"),
+        "reference": (tmp_path / "m.mtl", "1 0 0", "0 1 0"),
+    }[changed]
+
+    def read(file, reader):
+        parts = real(file, reader)
+        change(path, Path(path).read_text().replace(before, after))
+        return parts
+
+    monkeypatch.setattr(reading, "_read", read)
+    read_mesh(mesh)
+    assert shortcuts(folder) == []
+    monkeypatch.setattr(reading, "_read", real)
+    (part,) = read_mesh(mesh)
+    assert part.mesh.vertices.max() == 1
+    assert (part.mesh.vertices[:, 0].max(), part.diffuse) == (
+        (0.5, (1, 0, 0)) if changed == "mesh" else (pytest.approx(0.1), (0, 1, 0))
+    )
+
+
+def test_changes_of_equal_size_are_seen_through_shortcuts(folder, later, mesh, tmp_path):
+    read_mesh(mesh)
+    change(mesh, OBJ.replace("0.1", "0.5"))
+    assert read_mesh(mesh)[0].mesh.vertices.max(axis=0)[0] == 0.5
+    change(tmp_path / "m.mtl", "newmtl a\nKd 0 1 0\n")
+    assert read_mesh(mesh)[0].diffuse == (0, 1, 0)
+    os.unlink(tmp_path / "m.mtl")
+    assert read_mesh(mesh)[0].diffuse == pytest.approx((0.6, 0.6, 0.6))
+    assert read_mesh(mesh)[0].diffuse == pytest.approx((0.6, 0.6, 0.6))
+    (tmp_path / "m.mtl").write_text("newmtl a\nKd 0 0 1\n")
+    assert read_mesh(mesh)[0].diffuse == (0, 0, 1)
+    assert len(shortcuts(folder)) == 1
+    os.unlink(mesh)
+    with pytest.raises(SourceError, match="no such mesh file"):
+        read_mesh(mesh)
+
+
+def test_a_link_that_leads_elsewhere(folder, later, mesh, tmp_path):
+    (tmp_path / "mesh2.obj").write_text(OBJ.replace("0.1", "0.5"))
+    link = tmp_path / "link.obj"
+    for target, width in [("mesh.obj", 0.1), ("mesh2.obj", 0.5)] * 2:
+        link.unlink(missing_ok=True)
+        link.symlink_to(target)
+        assert read_mesh(str(link))[0].mesh.vertices.max(axis=0)[0] == pytest.approx(width)
+
+
+def test_dots_behind_a_link_lead_elsewhere(folder, later, mesh, tmp_path):
+    (tmp_path / "far" / "away").mkdir(parents=True)
+    (tmp_path / "far" / "mesh.obj").write_text(OBJ.replace("0.1", "0.5"))
+    (tmp_path / "link").symlink_to("far/away")
+    for _ in range(2):
+        assert read_mesh(mesh)[0].mesh.vertices.max(axis=0)[0] == pytest.approx(0.1)
+        assert read_mesh(str(tmp_path / "link" / ".." / "mesh.obj"))[0].mesh.vertices.max(axis=0)[0] == 0.5
+
+
+def test_damaged_shortcuts_and_those_that_lead_nowhere(folder, later, mesh, reads, contents):
+    expected = read_mesh(mesh)
+    (shortcut,) = shortcuts(folder)
+    whole = shortcut.read_bytes()
+    flipped = [whole[:i] + bytes([whole[i] ^ 0x55]) + whole[i + 1 :] for i in range(0, len(whole), 7)]
+    for damaged in (b"", b"garbage", whole[:-1], whole + b" ", *flipped):
+        shortcut.write_bytes(damaged)
+        contents.clear()
+        assert read_mesh(mesh) == expected
+        assert contents
+        assert shortcut.read_bytes() == whole
+    assert len(reads) == 1
+    (entry,) = entries(folder)
+    entry.unlink()
+    assert anew(read_mesh(mesh)) == expected
+    assert len(reads) == 2
+
+
 @pytest.mark.parametrize("damage", [b"", b"garbage", b"PK\x03\x04" + bytes(50), None])
 def test_a_damaged_entry_is_read_over_and_rewritten(folder, mesh, reads, damage):
     expected = read_mesh(mesh)
@@ -101,16 +273,17 @@ def test_every_flipped_byte_is_noticed_or_harmless(folder, mesh):
     expected = read_mesh(mesh)
     (entry,) = entries(folder)
     whole = entry.read_bytes()
-    for position in range(0, len(whole), 11):
+    for position in range(0, len(whole), 5):
         entry.write_bytes(whole[:position] + bytes([whole[position] ^ 0x55]) + whole[position + 1 :])
-        assert read_mesh(mesh) == expected
+        assert anew(read_mesh(mesh)) == expected
 
 
 def test_pickles_are_not_loaded(folder, mesh):
-    read_mesh(mesh)
+    expected = read_mesh(mesh)
     (entry,) = entries(folder)
-    np.savez(entry, about=np.array([{"finish": []}], dtype=object), allow_pickle=True)
-    assert len(read_mesh(mesh)) == 1
+    with open(entry, "wb") as file:
+        np.save(file, np.array([{"finish": []}], dtype=object), allow_pickle=True)
+    assert read_mesh(mesh) == expected
 
 
 @pytest.mark.parametrize("switch", ["off", "OFF"])
@@ -144,6 +317,18 @@ def test_a_folder_that_cannot_be_written_is_no_trouble(tmp_path, monkeypatch, me
     assert {record.levelname for record in caplog.records} == {"DEBUG"}
 
 
+def test_the_folder_of_someone_else_is_used(folder, later, mesh, reads, contents, monkeypatch):
+    expected = read_mesh(mesh)
+
+    def refuse(*_args):
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(cache.os, "utime", refuse)
+    contents.clear()
+    assert read_mesh(mesh) == expected
+    assert (len(reads), contents) == (1, [])
+
+
 def test_a_full_disk_leaves_nothing_behind(folder, mesh, monkeypatch):
     def full(*_args):
         raise OSError(28, "No space left on device")
@@ -161,20 +346,21 @@ def test_malformed_files_leave_no_entry(folder, tmp_path):
 
 
 def test_the_longest_unused_go_first(tmp_path):
-    for number in range(4):
-        (tmp_path / f"{number}.npz").write_bytes(bytes(100))
-        os.utime(tmp_path / f"{number}.npz", (number, number))
+    for number, name in enumerate(["0.tmp", "1.path", "2.mesh", "3.path"]):
+        (tmp_path / name).write_bytes(bytes(100))
+        os.utime(tmp_path / name, (number, number))
     (tmp_path / "mine.txt").write_bytes(bytes(1000))
     cache.prune(tmp_path, max_bytes=250)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["2.npz", "3.npz", "mine.txt"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["2.mesh", "3.path", "mine.txt"]
 
 
 def _many_reads(folder, mesh, results):
     os.environ["RAVEMJ_CACHE"] = folder
+    cache._TICK = -(10**10)  # so that there are shortcuts to entries that are gone
     digests = set()
     for _ in range(30):
-        digests |= {part.mesh.digest for part in read_mesh(mesh)}
-        for entry in Path(folder, "meshes").glob("*.npz"):
+        digests |= {part.mesh.digest for part in anew(read_mesh(mesh))}
+        for entry in Path(folder, "meshes").glob("*.mesh"):
             entry.unlink(missing_ok=True)
     results.put(digests)
 

@@ -66,6 +66,15 @@ def test_collision_form(mesh, form):
         assert compiled(mesh, collides=form == "hull").mesh_facenum[0] == len(mesh.triangles)
 
 
+def test_collision_form_looks_at_all_triangles_and_at_used_vertices_only():
+    solid = box(1, 1, 1)
+    degenerate = np.zeros((1000, 3), int)
+    assert collision_form(Mesh(solid.vertices, np.concatenate([degenerate, solid.triangles]))) == "hull"
+    assert collision_form(Mesh(solid.vertices, degenerate)) == "none"
+    unused = np.concatenate([[[0.0, 0, 9]], SQUARE.vertices])
+    assert collision_form(Mesh(unused, SQUARE.triangles + 1)) == "visual"
+
+
 def test_what_is_none_does_not_load():
     for mesh in (LINE, EMPTY):
         with pytest.raises(ValueError, match=r"mesh|vert|face"):
@@ -88,6 +97,28 @@ def test_mujoco_loads_what_was_written():
     mujoco.mju_quat2Mat(rotation, model.mesh_quat[0])
     points = model.mesh_vert @ rotation.reshape(3, 3).T + model.mesh_pos[0]
     assert np.allclose(points[model.mesh_face], corners_of(mesh), atol=1e-7)
+
+
+def test_a_mesh_keeps_arrays_that_nobody_can_write_to():
+    vertices, triangles = np.eye(3), np.array([[0, 1, 2]])
+    mesh = Mesh(vertices, triangles)
+    vertices[0], triangles[0] = 9, 0
+    assert (mesh.vertices == np.eye(3)).all()
+    assert (mesh.triangles == [[0, 1, 2]]).all()
+    again = Mesh(mesh.vertices, mesh.triangles)
+    assert again.vertices is mesh.vertices
+    assert again.triangles is mesh.triangles
+    seen = vertices.view()
+    seen.flags.writeable = False
+    mesh = Mesh(seen, triangles.tolist())
+    vertices[0] = 8
+    assert (mesh.vertices[0] == 9).all()
+    for wrong in (np.asfortranarray(np.eye(3)), np.eye(3, dtype=np.float32), np.eye(3).ravel()):
+        wrong.flags.writeable = False
+        mesh = Mesh(wrong, triangles)
+        assert (mesh.vertices.shape, mesh.vertices.dtype) == ((3, 3), np.float64)
+        assert mesh.vertices.flags.c_contiguous
+        assert not mesh.vertices.flags.writeable
 
 
 def test_volume_and_area():

@@ -1,9 +1,15 @@
 """Parsed meshes kept on disk, by the content of their files.
 
-An entry is a ``.npz`` of plain arrays, named after the hash of the file, the end of its name and the source of the
-readers, so that no entry outlives a change of them. It lists the files that the mesh refers to with their hashes, and
-counts only while they are the same. Whatever goes wrong here is logged at debug level and never stops a mesh from
-being read.
+An entry (``.mesh``) is named after the hash of the file, the end of its name and the source of the readers, so that
+no entry outlives a change of them. It lists the files that the mesh refers to with their hashes, and counts only while
+they are the same.
+
+A shortcut (``.path``) saves reading and hashing a file to find its entry, as the index of git does: it is named after
+the file's path and the stamps of the readers' source, holds the stamps of the file and of those that it refers to, and
+counts while they are the same. A file that was changed just now may be changed again within the same tick of the
+clock, so it gets none.
+
+Whatever goes wrong here is logged at debug level and never stops a mesh from being read.
 
 ``RAVEMJ_CACHE`` names the folder, or ``off`` for none; otherwise it is ``$XDG_CACHE_HOME/ravemj`` or
 ``~/.cache/ravemj``. Meshes are in ``meshes`` below it.
@@ -12,63 +18,70 @@ being read.
 import contextlib
 import functools
 import hashlib
-import json
 import logging
 import os
 import tempfile
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ravemj.meshes.files import digest_of
-from ravemj.meshes.parts import MeshPart
-from ravemj.scene import Mesh
+from ravemj.meshes.entries import Parts, follow_shortcut, pack_entry, pack_shortcut, unpack_entry
+from ravemj.meshes.files import References, changed_at, digest_of, read_bytes, stamp_of
+from ravemj.scene import shapes
 
 _log = logging.getLogger(__name__)
 
 MAX_BYTES = 1 << 30
-"""The cache is pruned to this size, those entries first that were used least recently."""
+"""The cache is pruned to this size, those files first that were used least recently."""
 
-_PRUNE_EVERY = 64  # entries written by this process between two looks at the size
+_PRUNE_EVERY = 64  # files written by this process between two looks at the size
+_TICK = 2 * 10**9  # ns; the coarsest clock of a file system
 
 _written = 0
 
-Arrays = dict[str, NDArray[Any]]
-Parts = tuple[MeshPart, ...]
+_T = TypeVar("_T")
 
 
-def remembered(content: bytes, kind: str, read: Callable[[], tuple[Parts, dict[str, str]]]) -> Parts:
-    """Return what ``read`` gives for a file, from the cache if it is there.
+def remembered_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, References]]) -> Parts:
+    """Return what ``read`` makes of a file, from the cache if it is there.
 
     Args:
-        content: The file.
+        path: The file.
         kind: What else the result depends on, such as the end of the file's name.
-        read: Reads the file; returns the parts, and hashes of the other files that were read, by path.
+        read: Gets the file's content; returns the parts, and the other files that were read.
+
+    Raises:
+        SourceError: The file cannot be read.
     """
     folder = cache_folder()
     if folder is None:
-        return read()[0]
-    key = hashlib.sha256(content)
-    key.update(f"\0{kind}\0{_readers()}".encode())
-    entry = folder / f"{key.hexdigest()}.npz"
-    parts = _load(entry)
-    if parts is None:
-        parts, references = read()
-        _store(entry, _packed(parts, references))
+        return read(read_bytes(path))[0]
+    began, stamp = time.time_ns(), stamp_of(path)
+    place = os.path.join(os.getcwd(), path) if stamp else ""  # as it is: behind a link, ".." leads elsewhere
+    shortcut = folder / f"{_name(_readers_unread(), kind.encode(), os.fsencode(place))}.path"
+    entry = _loaded(shortcut, follow_shortcut) if stamp else None
+    found = _loaded(folder / entry, unpack_entry) if entry else None
+    if found:
+        return found[0]
+    content, home = read_bytes(path), os.path.dirname(os.path.abspath(place))
+    parts, entry, references = _by_content(folder, content, kind, home, read)
+    stamps = {**references.stamps, place: stamp}
+    if stamp and all(stamp_of(name) == known and changed_at(known) + _TICK < began for name, known in stamps.items()):
+        _store(shortcut, pack_shortcut(entry, stamps))
     return parts
 
 
-@functools.cache
-def _readers() -> str:
-    """Return a hash of the modules beside this one, which make what is kept."""
-    digest = hashlib.sha256()
-    with contextlib.suppress(OSError):
-        for path in sorted(Path(__file__).parent.rglob("*.py")):
-            digest.update(path.read_bytes())
-    return digest.hexdigest()
+def remembered(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
+    """Return what ``read`` gives, from the cache if it is there.
+
+    Args:
+        content: What the result is made from.
+        kind: What else it depends on.
+        read: Returns the parts.
+    """
+    folder = cache_folder()
+    return read() if folder is None else _by_content(folder, content, kind, "", lambda _: (read(), References()))[0]
 
 
 def cache_folder() -> Path | None:
@@ -87,55 +100,98 @@ def cache_folder() -> Path | None:
         return None
 
 
-def _packed(parts: Parts, references: dict[str, str]) -> Arrays:
-    about = {"references": references, "finish": [[*p.diffuse, *p.ambient, p.transparency] for p in parts]}
-    arrays: Arrays = {"about": np.frombuffer(json.dumps(about).encode(), np.uint8)}
-    for number, part in enumerate(parts):
-        arrays[f"vertices{number}"] = part.mesh.vertices.astype(np.float32)  # what the readers round to
-        arrays[f"triangles{number}"] = part.mesh.triangles.astype(np.int32)
-    return arrays
+def _by_content(
+    folder: Path, content: bytes, kind: str, home: str, read: Callable[[bytes], tuple[Parts, References]]
+) -> tuple[Parts, str, References]:
+    """Return the parts, the name of their entry, and the files that they come from besides this one.
+
+    Where there are such files, the entry belongs to the folder ``home``: elsewhere the same names are other files.
+    """
+    alone = f"{_name(_readers(), kind.encode(), content)}.mesh"
+    at_home = f"{_name(_readers(), kind.encode(), content, os.fsencode(home))}.mesh"
+    for entry in (alone, at_home):
+        found = _loaded(folder / entry, unpack_entry)
+        if found:
+            parts, digests = found
+            references = References(digests, {path: stamp_of(path) for path in digests})
+            if all(digest_of(path) == digest for path, digest in digests.items()):
+                return parts, entry, references
+    parts, references = read(content)
+    entry = at_home if references.digests else alone
+    _store(folder / entry, pack_entry(parts, references.digests))
+    return parts, entry, references
 
 
-def _unpacked(arrays: Arrays) -> Parts | None:
-    """Return the parts of an entry, or None if a file that they come from has changed."""
-    about = json.loads(arrays["about"].tobytes())
-    if any(digest_of(path) != digest for path, digest in about["references"].items()):
-        return None
-    parts: list[MeshPart] = []
-    for number, finish in enumerate(about["finish"]):
-        mesh = Mesh(np.asarray(arrays[f"vertices{number}"]), np.asarray(arrays[f"triangles{number}"]))
-        red, green, blue, ambient_red, ambient_green, ambient_blue, transparency = map(float, finish)
-        ambient = (ambient_red, ambient_green, ambient_blue)
-        parts.append(MeshPart(mesh, (red, green, blue), ambient, transparency))
-    return tuple(parts)
+def _name(readers: bytes, *parts: bytes) -> str:
+    """Return a name for what the readers make of something."""
+    key = hashlib.sha256(readers)
+    for part in parts:
+        key.update(b"%d\0" % len(part))
+        key.update(part)
+    return key.hexdigest()
 
 
-def _load(entry: Path) -> Parts | None:
+@functools.cache
+def _readers() -> bytes:
+    """Return a hash of the source that makes what is kept."""
+    digest = hashlib.sha256()
+    with contextlib.suppress(OSError):
+        for path in _sources():
+            with open(path, "rb") as file:
+                digest.update(file.read())
+    return digest.digest()
+
+
+@functools.cache
+def _readers_unread() -> bytes:
+    """Return a hash that changes with the source, though it is not read."""
+    with contextlib.suppress(OSError):
+        return hashlib.sha256("\n".join(f"{path} {stamp_of(path)}" for path in _sources()).encode()).digest()
+    return b""
+
+
+def _sources() -> list[str]:
+    """Return the paths of the modules beside this one, and of that with class ``Mesh``."""
+    return [*sorted(_modules(os.path.dirname(__file__))), shapes.__file__]
+
+
+def _modules(folder: str) -> Iterator[str]:
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.name.endswith(".py"):
+                yield entry.path
+            elif entry.is_dir() and entry.name != "__pycache__":
+                yield from _modules(entry.path)
+
+
+def _loaded(file: Path, unpack: Callable[[bytes], _T]) -> _T | None:
+    """Return what a file of the cache holds, or None if it is not there or damaged."""
     try:
-        with open(entry, "rb") as file, np.load(file, allow_pickle=False) as stored:
-            parts = _unpacked({name: stored[name] for name in stored.files})
-        os.utime(entry)  # used just now
+        with open(file, "rb", buffering=0) as opened:
+            unpacked = unpack(opened.read())
     except FileNotFoundError:
         return None
-    except Exception as error:  # a damaged file makes zipfile and numpy raise all kinds
-        _log.debug("cache entry %s cannot be used: %s", entry, error)
+    except Exception as error:  # a damaged file never stops anything
+        _log.debug("%s cannot be used: %s", file, error)
         return None
-    return parts
+    with contextlib.suppress(OSError):  # a folder of someone else
+        os.utime(file)  # used just now
+    return unpacked
 
 
-def _store(entry: Path, arrays: Arrays) -> None:
-    """Write an entry under another name first, so that no reader ever sees half of it."""
+def _store(file: Path, content: bytes) -> None:
+    """Write a file under another name first, so that no reader ever sees half of it."""
     global _written  # noqa: PLW0603 - a counter
     name = None
     try:
-        entry.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=entry.parent, suffix=".tmp", delete=False) as file:
-            name = file.name
-            np.savez(file, **arrays)  # pyright: ignore[reportArgumentType] - numpy's stub means allow_pickle
-        os.replace(name, entry)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=file.parent, suffix=".tmp", delete=False) as opened:
+            name = opened.name
+            opened.write(content)
+        os.replace(name, file)
         _written += 1
         if _written % _PRUNE_EVERY == 1:
-            prune(entry.parent)
+            prune(file.parent)
     except OSError as error:
         _log.debug("cannot write to the cache: %s", error)
         if name is not None:
@@ -144,7 +200,7 @@ def _store(entry: Path, arrays: Arrays) -> None:
 
 
 def prune(folder: Path, max_bytes: int = MAX_BYTES) -> None:
-    """Delete entries that were not used for the longest time, until the rest fits.
+    """Delete files that were not used for the longest time, until the rest fits.
 
     Args:
         folder: The folder of the cache.
@@ -154,7 +210,7 @@ def prune(folder: Path, max_bytes: int = MAX_BYTES) -> None:
     with os.scandir(folder) as entries:
         for entry in entries:
             with contextlib.suppress(OSError):  # another process was faster
-                if entry.name.endswith((".npz", ".tmp")):
+                if entry.name.endswith((".mesh", ".path", ".tmp")):
                     status = entry.stat()
                     sizes.append((status.st_mtime, status.st_size, entry.path))
     total = sum(size for _, size, _ in sizes)

@@ -33,8 +33,8 @@ def decompose(mesh: Mesh, threshold: float = 0.15, max_pieces: int = 8) -> tuple
     if collision_form(mesh) != "hull":
         return (mesh,)
 
-    def read() -> tuple[tuple[MeshPart, ...], dict[str, str]]:
-        return tuple(MeshPart(piece) for piece in _pieces(mesh, threshold, max_pieces)), {}
+    def read() -> tuple[MeshPart, ...]:
+        return tuple(MeshPart(piece) for piece in _pieces(mesh, threshold, max_pieces))
 
     settings = f"coacd {threshold!r} {max_pieces} {_SETTINGS}"
     return tuple(part.mesh for part in cache.remembered(mesh.digest.encode(), settings, read))

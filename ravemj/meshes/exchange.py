@@ -22,8 +22,6 @@ _COLOURS: dict[str, tuple[Rgb, Rgb]] = {
 }
 """Diffuse and ambient colours that OpenRAVE's importer gives to files without materials."""
 
-SUFFIXES = tuple(f".{kind}" for kind in _COLOURS)
-
 
 def read_exchange(file: MeshFile) -> tuple[MeshPart, ...]:
     """Read a PLY, OFF, GLB or glTF file: one part for each colour, in the order of the file.

@@ -20,18 +20,23 @@ class References:
 
     Attributes:
         digests: SHA-256 of each as it lies on the disk, by path; empty for those that cannot be read.
+        stamps: What ``stamp_of`` said of each before it was read.
     """
 
     digests: dict[str, str] = field(default_factory=dict[str, str])
+    stamps: dict[str, str] = field(default_factory=dict[str, str])
     _contents: dict[str, bytes] = field(default_factory=dict[str, bytes])
     _bytes_left: int = MAX_BYTES
 
     def read(self, path: str) -> bytes | None:
         """Return a file's unpacked content, or None if it cannot be read or goes beyond the bounds of all together."""
         if path not in self.digests and len(self.digests) < _MAX_REFERENCES:
-            self.digests[path] = digest_of(path)
+            self.stamps[path] = stamp_of(path)
+            self.digests[path] = ""
             try:
-                data = unpacked(read_bytes(path), path)
+                raw = read_bytes(path)
+                self.digests[path] = hashlib.sha256(raw).hexdigest()
+                data = unpacked(raw, path)
             except SourceError:
                 return None
             self._bytes_left -= len(data)
@@ -83,6 +88,23 @@ def digest_of(path: str) -> str:
         return hashlib.sha256(read_bytes(path)).hexdigest()
     except SourceError:
         return ""
+
+
+def stamp_of(path: str) -> str:
+    """Return a line that changes with a file, though it is not read; empty for what is not there.
+
+    It is number, size, and times of the last changes of content and status [ns].
+    """
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):  # ValueError: a zero byte in the name
+        return ""
+    return f"{status.st_ino} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}"
+
+
+def changed_at(stamp: str) -> int:
+    """Return the time of the last change in a stamp [ns]; the beginning of time for what is not there."""
+    return max(map(int, stamp.split()[2:]), default=0)
 
 
 def read_bytes(path: str) -> bytes:

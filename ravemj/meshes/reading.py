@@ -6,24 +6,53 @@ import numpy as np
 
 from ravemj.errors import Source, SourceError
 from ravemj.meshes import cache
-from ravemj.meshes.collada import read_collada
-from ravemj.meshes.exchange import SUFFIXES, read_exchange
-from ravemj.meshes.files import MeshFile, read_bytes, unpacked
-from ravemj.meshes.inventor import read_inventor
-from ravemj.meshes.obj import read_obj
+from ravemj.meshes.files import MeshFile, References, unpacked
 from ravemj.meshes.parts import MESH_SUFFIXES, MeshPart
-from ravemj.meshes.stl import read_stl
 
 _Reader = Callable[[MeshFile], tuple[MeshPart, ...]]
 
+
+def _inventor(file: MeshFile) -> tuple[MeshPart, ...]:
+    from ravemj.meshes.inventor import read_inventor  # noqa: PLC0415 - most meshes come from the cache
+
+    return read_inventor(file)
+
+
+def _stl(file: MeshFile) -> tuple[MeshPart, ...]:
+    from ravemj.meshes.stl import read_stl  # noqa: PLC0415
+
+    return read_stl(file)
+
+
+def _obj(file: MeshFile) -> tuple[MeshPart, ...]:
+    from ravemj.meshes.obj import read_obj  # noqa: PLC0415
+
+    return read_obj(file)
+
+
+def _collada(file: MeshFile) -> tuple[MeshPart, ...]:
+    from ravemj.meshes.collada import read_collada  # noqa: PLC0415
+
+    return read_collada(file)
+
+
+def _exchange(file: MeshFile) -> tuple[MeshPart, ...]:
+    from ravemj.meshes.exchange import read_exchange  # noqa: PLC0415
+
+    return read_exchange(file)
+
+
 _READERS: dict[str, _Reader] = {
-    ".iv": read_inventor,
-    ".wrl": read_inventor,
-    ".vrml": read_inventor,
-    ".stl": read_stl,
-    ".obj": read_obj,
-    ".dae": read_collada,
-    **dict.fromkeys(SUFFIXES, read_exchange),
+    ".iv": _inventor,
+    ".wrl": _inventor,
+    ".vrml": _inventor,
+    ".stl": _stl,
+    ".obj": _obj,
+    ".dae": _collada,
+    ".ply": _exchange,
+    ".off": _exchange,
+    ".glb": _exchange,
+    ".gltf": _exchange,
 }
 
 
@@ -47,14 +76,13 @@ def read_mesh(path: str) -> tuple[MeshPart, ...]:
     if suffix is None:
         known = " ".join(MESH_SUFFIXES)
         raise SourceError("no mesh format that ravemj knows", Source(path), hint=f"it reads {known}")
-    raw = read_bytes(path)
-    return cache.remembered(raw, suffix, lambda: _read(MeshFile(path, unpacked(raw, path)), _READERS[suffix]))
+    return cache.remembered_file(path, suffix, lambda raw: _read(MeshFile(path, unpacked(raw, path)), _READERS[suffix]))
 
 
-def _read(file: MeshFile, reader: _Reader) -> tuple[tuple[MeshPart, ...], dict[str, str]]:
-    """Return the parts, and the digests of the files that they come from besides ``file``."""
+def _read(file: MeshFile, reader: _Reader) -> tuple[tuple[MeshPart, ...], References]:
+    """Return the parts, and the files that they come from besides ``file``."""
     try:
         with np.errstate(all="ignore"):  # what is not finite in the end is refused
-            return reader(file), file.references.digests
+            return reader(file), file.references
     except (RecursionError, MemoryError, OverflowError) as error:
         raise SourceError(f"the file is too large or nested too deep ({type(error).__name__})", file.source) from error

@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ravemj.errors import Source
 from ravemj.transforms import Floats, Ints, Pose, Vec3
@@ -25,11 +27,12 @@ class Mesh:
     triangles: Ints
 
     def __post_init__(self) -> None:
-        vertices = np.array(self.vertices, dtype=np.float64).reshape(-1, 3)
-        triangles = np.array(self.triangles, dtype=np.int_).reshape(-1, 3)
-        for name, numbers in (("vertices", vertices), ("triangles", triangles)):
-            numbers.flags.writeable = False
-            object.__setattr__(self, name, numbers)
+        for name, kind in (("vertices", np.float64), ("triangles", np.int_)):
+            given: NDArray[Any] = np.asarray(getattr(self, name))
+            if not _is_settled(given, kind):
+                numbers = given.reshape(-1, 3).astype(kind, order="C")
+                numbers.flags.writeable = False
+                object.__setattr__(self, name, numbers)
 
     @cached_property
     def digest(self) -> str:
@@ -45,6 +48,17 @@ class Mesh:
 
     def __hash__(self) -> int:
         return hash(self.digest)
+
+
+def _is_settled(numbers: NDArray[Any], kind: type) -> bool:
+    """Tell whether a mesh can keep an array as it is: it is of the right form, has its own memory, and is read-only."""
+    return (
+        numbers.dtype == kind
+        and numbers.shape[1:] == (3,)
+        and numbers.flags.c_contiguous
+        and numbers.flags.owndata
+        and not numbers.flags.writeable
+    )
 
 
 @dataclass(frozen=True, slots=True)
