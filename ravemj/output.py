@@ -45,6 +45,8 @@ def check_folder(path: AnyPath, *patterns: str) -> None:
         _check_permissions(path, target)
         if not target.exists():
             return
+        if not target.is_dir():
+            raise OutputError(f"cannot replace {os.fspath(path)}: it exists and is no folder")
         foreign = next(_foreign_entries(target, patterns), None)
         if foreign is not None:
             ours = " and ".join(patterns)

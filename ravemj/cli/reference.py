@@ -6,6 +6,7 @@
 import argparse
 import sys
 from collections.abc import Iterator
+from typing import cast
 
 from ravemj.cli.parser import make_parser
 
@@ -25,8 +26,7 @@ and line number; `--strict` takes warnings for errors. Files and folders that co
 
 def markdown() -> str:
     """Return the page."""
-    parser = make_parser()
-    (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    commands = cast("argparse._SubParsersAction[argparse.ArgumentParser]", make_parser()._actions[-1])
     summaries = {choice.dest: choice.help or "" for choice in commands._choices_actions}
     index = [f"| [`{name}`](#ravemj-{name}) | {_cell(summary)} |\n" for name, summary in summaries.items()]
     pages = [_page(name, commands.choices[name]) for name in summaries]

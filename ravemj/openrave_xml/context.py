@@ -133,7 +133,7 @@ class Context:
         for candidate in candidates:
             if os.path.isfile(candidate):
                 return candidate
-        hint = "" if data_folders else "or set OPENRAVE_DATA to the folder that it is in"
+        hint = "" if data_folders else "put it there, or set OPENRAVE_DATA to the folder that it is in"
         message = f"there is no file {name}; looked at {', '.join(candidates)}"
         self.diagnostics.warn("missing-file", message, source, hint)
         return None
