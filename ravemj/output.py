@@ -46,7 +46,7 @@ def check_folder(path: AnyPath, *patterns: str) -> None:
         if not target.exists():
             return
         if not target.is_dir():
-            raise OutputError(f"cannot replace {os.fspath(path)}: it exists and is no folder")
+            raise OutputError(f"cannot write {os.fspath(path)}: it exists and is no folder")
         foreign = next(_foreign_entries(target, patterns), None)
         if foreign is not None:
             ours = " and ".join(patterns)

@@ -3,14 +3,12 @@
 import argparse
 import json
 import os
-import re
+import sys
 from collections import Counter
-from collections.abc import Iterable, Sequence
 
 from ravemj.checking import Finding, check
+from ravemj.cli.console import print_findings
 from ravemj.errors import Source
-
-_PLACES = 4
 
 
 def check_models(options: argparse.Namespace) -> int:
@@ -20,7 +18,7 @@ def check_models(options: argparse.Namespace) -> int:
         fresh = {key: finding for finding in check(model) if (key := _key(finding)) not in found}
         found.update(fresh)
         if not options.json:
-            _print(fresh.values())
+            print_findings(fresh.values(), sys.stdout)
     counts = Counter(finding.severity for finding in found.values())
     if options.json:
         print(json.dumps([_entry(finding) for finding in found.values()], indent=2))
@@ -33,29 +31,6 @@ def check_models(options: argparse.Namespace) -> int:
 def _key(finding: Finding) -> tuple[object, ...]:
     """Return what two reports of the same thing have in common, however the file was reached."""
     return os.path.realpath(finding.source.file), finding.source.line, finding.code, finding.message
-
-
-def _print(findings: Iterable[Finding]) -> None:
-    """Print findings, one line for those that say the same of several places or names."""
-    groups: dict[tuple[str, str], list[Finding]] = {}
-    for finding in findings:
-        text = finding.message if finding.severity == "error" else re.sub("'[^']*'", "''", finding.message)
-        groups.setdefault((finding.code, text), []).append(finding)
-    for first, *others in groups.values():
-        print(" ".join(f"{first}{_also(first, others)}".split()))
-
-
-def _also(first: Finding, others: Sequence[Finding]) -> str:
-    """Say how many others there are, and where."""
-    if not others:
-        return ""
-    places = list(dict.fromkeys(_place(other.source, first.source) for other in others))
-    more = [] if len(places) <= _PLACES else ["…"]
-    return f" (and {len(others)} more: {', '.join([*places[:_PLACES], *more])})"
-
-
-def _place(source: Source, first: Source) -> str:
-    return f"line {source.line}" if source.file == first.file else str(source)
 
 
 def _number(count: int, noun: str) -> str:

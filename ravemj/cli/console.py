@@ -1,19 +1,21 @@
 """What the commands print: errors, warnings, tables and progress."""
 
 import contextlib
+import re
 import sys
 import warnings
-from collections import Counter
-from collections.abc import Callable, Generator, Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Generator, Iterable, Sequence
+from typing import TYPE_CHECKING, TextIO
 
-from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, SourceError
+from ravemj.checking import Finding
+from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, Source, SourceError
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
 _LEAST_WIDTH = 100
+_PLACES = 4
 
 
 def print_error(error: RavemjError) -> None:
@@ -22,15 +24,33 @@ def print_error(error: RavemjError) -> None:
     print(" ".join(text.split()), file=sys.stderr)
 
 
-def print_findings(findings: Iterable[Diagnostic]) -> None:
-    """Print findings, one line for those that say the same of several places."""
-    found = list(findings)
-    counts = Counter((finding.code, finding.message) for finding in found)
-    for finding in found:
-        count = counts.pop((finding.code, finding.message), 0)
-        if count:
-            more = f" (and at {count - 1} more)" if count > 1 else ""
-            print(f"{finding}{more}", file=sys.stderr)
+def print_findings(findings: Iterable[Diagnostic | Finding], file: TextIO | None = None) -> None:
+    """Print findings, one line for those that say the same of several places or names.
+
+    Args:
+        findings: What to print.
+        file: Where; None: standard error.
+    """
+    groups: dict[tuple[str, str], list[Diagnostic | Finding]] = {}
+    for finding in findings:
+        text = finding.message if finding.severity == "error" else re.sub("'[^']*'", "''", finding.message)
+        groups.setdefault((finding.code, text), []).append(finding)
+    for first, *others in groups.values():
+        places = list(dict.fromkeys(_place(other.source, first.source) for other in others))
+        line = f"{first}{_more(len(others), places)}"
+        print(" ".join(line.split()), file=file or sys.stderr)
+
+
+def _more(count: int, places: Sequence[str]) -> str:
+    """Say how many findings there are besides, and where the first of them are."""
+    if not count:
+        return ""
+    rest = ["…"] if len(places) > _PLACES else []
+    return f" (and {count} more: {', '.join([*places[:_PLACES], *rest])})"
+
+
+def _place(source: Source, first: Source) -> str:
+    return f"line {source.line}" if source.file == first.file else str(source)
 
 
 @contextlib.contextmanager
