@@ -121,6 +121,9 @@ class BodyKinematics:
         return np.array(indices, dtype=int)
 
     def _find_followers(self, names: BodyNames) -> list[Follower]:
+        """Return the mimic joints to evaluate; none without a DOF, as OpenRAVE then never sets a value."""
+        if not self.body.joints:
+            return []
         mimics = {index: joint.mimic for index, joint in enumerate(self._joints) if joint.mimic is not None}
         variables = [f"joint{index}" for index in range(len(self._joints))]
         followers: list[Follower] = []

@@ -1,6 +1,7 @@
 """Bodies and the MuJoCo model made of them."""
 
 import re
+import warnings
 from threading import RLock
 
 import mujoco
@@ -17,6 +18,7 @@ from ravemj.transforms import Vec3, wxyz_from_rows
 DEFAULT_GRAVITY: Vec3 = (0.0, 0.0, -9.797930195020351)
 """OpenRAVE's, where a file has no physics engine."""
 
+_DOF = re.compile(r"DOF (\d+)")
 _LINE = re.compile(r"line (\d+)", re.IGNORECASE)
 
 
@@ -168,11 +170,27 @@ class Compiled:
                 for name, content in self.mjcf.assets.items():
                     files[f"{ASSETS}/{name}"] = content.encode()
                 self.spec = mujoco.MjSpec.from_string(self.mjcf.text, vfs=files)
-                self.model = self.spec.compile(vfs=files)
+                with warnings.catch_warnings(record=True) as complaints:
+                    warnings.simplefilter("always")
+                    self.model = self.spec.compile(vfs=files)
         except ValueError as error:
             raise _compile_error(str(error), self.mjcf) from None
+        for complaint in complaints:
+            self._report(str(complaint.message), scene, diagnostics)
         self._write_true_inertias(scene)
         self.data = mujoco.MjData(self.model)
+
+    def _report(self, complaint: str, scene: Scene, diagnostics: Diagnostics) -> None:
+        """Record a warning of MuJoCo's, with the link that it is about where it names a DOF."""
+        source, about = Source("the translated model", 0), ""
+        match = _DOF.search(complaint)
+        if match:
+            name = self.model.body(self.model.dof_bodyid[int(match[1])]).name
+            for body, names in zip(scene.bodies, self.mjcf.names, strict=True):
+                if name in names.links:
+                    source, about = body.links[names.links.index(name)].source, f" of '{name}'"
+        hint = "positions are exact; before time runs, give the link more mass or inertia"
+        diagnostics.warn("near-singular", f"MuJoCo warns{about}: {complaint}", source, hint)
 
     def _write_true_inertias(self, scene: Scene) -> None:
         """Give the links that MuJoCo's compiler refuses their true values back; inverse dynamics needs them."""

@@ -181,7 +181,7 @@ class _Writer:
                 self._write_actuators(joint, joint_names, self.options.actuators)
 
     def _joint_names(self, body: KinBody, joint: Joint, active: bool, name: str) -> tuple[str, ...]:
-        follows = joint.mimic is not None and joint.mimic.expression is not None
+        follows = joint.mimic is not None and joint.mimic.expression is not None and len(body.joints) > 0
         if not joint.places_child or joint.static or not (active or follows) or joint.axes[0].direction == ZERO:
             return ()
         first = self._given.give("joint", body, name)

@@ -2,15 +2,19 @@
 
 import os
 from collections.abc import Callable, Collection, Mapping, Set
+from dataclasses import replace
 from typing import TypeVar
 
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.meshes import MeshPart
 from ravemj.openrave_xml.tree import Element, parse_file
+from ravemj.scene import Mesh
+from ravemj.transforms import Vec3
 
 Target = TypeVar("Target")
 
 IGNORED = "OpenRAVE reads it and makes nothing of it"
+UNSCALED = (1.0, 1.0, 1.0)
 COLLADA_SUFFIXES = (".dae", ".zae")
 NOT_YET = "this version of ravemj does not read it yet"
 NO_EFFECT_HERE = "it has no effect on the model"
@@ -32,7 +36,7 @@ class Context:
     def __init__(self) -> None:
         self.diagnostics = Diagnostics()
         self.files: list[str] = []
-        self._meshes: dict[str, tuple[MeshPart, ...]] = {}
+        self._meshes: dict[tuple[str, Vec3], tuple[MeshPart, ...]] = {}
 
     def walk(
         self,
@@ -138,21 +142,37 @@ class Context:
         self.diagnostics.warn("missing-file", message, source, hint)
         return None
 
-    def mesh(self, name: str, source: Source, *folders: str) -> tuple[MeshPart, ...]:
-        """Return the triangles of a mesh file; none, with a warning, where it is missing or broken."""
-        path = self.find(name, source, *folders)
-        if path is None:
-            return ()
-        if path not in self._meshes:
-            self.files.append(path)
-            from ravemj.meshes.reading import read_mesh  # noqa: PLC0415 - most models have no meshes
+    def mesh(self, name: str, source: Source, *folders: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
+        """Return the triangles of a mesh file; none, with a warning, where it is missing or broken.
 
-            try:
-                self._meshes[path] = read_mesh(path)
-            except SourceError as error:
-                self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
-                self._meshes[path] = ()
-        return self._meshes[path]
+        The parts are the same objects at every use with the same scale.
+        """
+        path = self.find(name, source, *folders)
+        return () if path is None else self._parts(path, source, scale)
+
+    def _parts(self, path: str, source: Source, scale: Vec3) -> tuple[MeshPart, ...]:
+        parts = self._meshes.get((path, scale))
+        if parts is None:
+            if scale == UNSCALED:
+                parts = self._read_mesh(path, source)
+            else:
+                parts = tuple(_scaled(part, scale) for part in self._parts(path, source, UNSCALED))
+            self._meshes[path, scale] = parts
+        return parts
+
+    def _read_mesh(self, path: str, source: Source) -> tuple[MeshPart, ...]:
+        self.files.append(path)
+        from ravemj.meshes.reading import read_mesh  # noqa: PLC0415 - most models have no meshes
+
+        try:
+            return read_mesh(path)
+        except SourceError as error:
+            self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
+            return ()
+
+
+def _scaled(part: MeshPart, scale: Vec3) -> MeshPart:
+    return replace(part, mesh=Mesh(part.mesh.vertices * scale, part.mesh.triangles))
 
 
 def _is_same_file(first: str, second: str) -> bool:

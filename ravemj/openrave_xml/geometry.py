@@ -230,16 +230,13 @@ def _surfaces(
     )
 
 
-def _parts(geom: _Geom, file: _MeshFile | None, element: Element, scope: GeometryScope) -> list[MeshPart]:
+def _parts(geom: _Geom, file: _MeshFile | None, element: Element, scope: GeometryScope) -> tuple[MeshPart, ...]:
     """Return the parts of a mesh file, with the file's own scale."""
     if file is None or not file.name:
-        return []
+        return ()
     folder = scope.models_folder
     folders = [] if folder is None else [os.path.join(os.path.dirname(element.source.file), folder)]
-    parts = geom.context.mesh(file.name, element.source, *folders)
-    if file.scale == (1.0, 1.0, 1.0):
-        return list(parts)
-    return [replace(part, mesh=Mesh(part.mesh.vertices * file.scale, part.mesh.triangles)) for part in parts]
+    return geom.context.mesh(file.name, element.source, *folders, scale=file.scale)
 
 
 def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
