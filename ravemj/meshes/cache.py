@@ -169,13 +169,13 @@ def _loaded(file: Path, unpack: Callable[[bytes], _T]) -> _T | None:
     try:
         with open(file, "rb", buffering=0) as opened:
             unpacked = unpack(opened.read())
+            with contextlib.suppress(OSError):  # a file of someone else
+                os.utime(opened.fileno() if os.utime in os.supports_fd else file)  # used just now
     except FileNotFoundError:
         return None
     except Exception as error:  # a damaged file never stops anything
         _log.debug("%s cannot be used: %s", file, error)
         return None
-    with contextlib.suppress(OSError):  # a folder of someone else
-        os.utime(file)  # used just now
     return unpacked
 
 

@@ -36,6 +36,7 @@ class Context:
     def __init__(self) -> None:
         self.diagnostics = Diagnostics()
         self.files: list[str] = []
+        self._found: dict[tuple[str, str, tuple[str, ...]], str] = {}
         self._meshes: dict[tuple[str, Vec3], tuple[MeshPart, ...]] = {}
 
     def walk(
@@ -131,11 +132,16 @@ class Context:
         Returns:
             Its path, or None, with a warning, where it is in none of them.
         """
+        question = (name, os.path.dirname(source.file), folders)
+        found = self._found.get(question)
+        if found is not None:
+            return found
         data_folders = list(filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep)))
         places = [*folders, os.path.dirname(source.file), *data_folders]
         candidates = list(dict.fromkeys(os.path.join(folder, name) for folder in places))
         for candidate in candidates:
             if os.path.isfile(candidate):
+                self._found[question] = candidate
                 return candidate
         hint = "" if data_folders else "put it there, or set OPENRAVE_DATA to the folder that it is in"
         message = f"there is no file {name}; looked at {', '.join(candidates)}"
