@@ -3,14 +3,23 @@
 import glob
 import os
 from collections.abc import Collection
+from dataclasses import replace
 from pathlib import Path
+
+import mujoco
+import numpy as np
 
 from ravemj.errors import Diagnostics, OutputError
 from ravemj.mjcf import Mjcf, Options
 from ravemj.mjcf.document import ASSETS
+from ravemj.mjcf.lines import Lines
 from ravemj.output import AnyPath, added_files, new_file, new_folder
 from ravemj.scene import Scene
 from ravemj.simulation import Compiled, Simulation
+from ravemj.transforms import Floats
+
+START = "loaded"
+"""Name of the keyframe with the joint values that the model was loaded with."""
 
 _MARK = "<!-- made by ravemj"
 _MESHES = "mesh-*.obj"
@@ -18,6 +27,8 @@ _MESHES = "mesh-*.obj"
 
 def translate(simulation: Simulation, diagnostics: Diagnostics, options: Options) -> Mjcf:
     """Translate the bodies of a simulation, with its gravity, and see that MuJoCo takes the result.
+
+    Where joints are not at their zero, the keyframe ``loaded`` has their values.
 
     Args:
         simulation: What to translate.
@@ -29,7 +40,26 @@ def translate(simulation: Simulation, diagnostics: Diagnostics, options: Options
         RavemjError: meshes are to be cut, and CoACD is not installed.
     """
     scene = Scene(tuple(body.scene for body in simulation.bodies), simulation.view, simulation.gravity)
-    return Compiled(scene, diagnostics, options).mjcf
+    compiled = Compiled(scene, diagnostics, options)
+    start = _qpos(compiled.model, simulation.compile())
+    if np.array_equal(start, compiled.model.qpos0):
+        return compiled.mjcf
+    keyframe = Lines(indent=1)
+    keyframe.open("keyframe")
+    keyframe.element("key", name=START, qpos=tuple(start.tolist()))
+    keyframe.close("keyframe")
+    head, end = compiled.mjcf.text.rsplit("</mujoco>", 1)
+    return replace(compiled.mjcf, text="\n".join([f"{head}{keyframe.text[0]}", *keyframe.text[1:], f"</mujoco>{end}"]))
+
+
+def _qpos(model: mujoco.MjModel, current: Compiled) -> Floats:
+    """Return the positions of all joints of a model: those of the current one where it has the joint."""
+    qpos = model.qpos0.copy()
+    for number in range(current.model.njnt):
+        joint = current.model.joint(number)
+        first, width = model.joint(joint.name).qposadr[0], len(joint.qpos0)
+        qpos[first : first + width] = current.data.joint(number).qpos
+    return qpos
 
 
 def marked(text: str, model: AnyPath) -> str:

@@ -160,6 +160,21 @@ def test_actuators_are_bounded_as_the_joints_are(folder, kind, range_):
     assert np.array_equal(model.actuator_ctrlrange[0], range_)
 
 
+@pytest.mark.parametrize("base", ["fixed", "openrave"])
+def test_joint_values_of_the_file_are_a_keyframe(folder, base):
+    model = (folder / "plain.xml").read_text().replace("</Robot>", "<jointvalues>0.7</jointvalues></Robot>")
+    (folder / "bent.xml").write_text(model)
+    written = mujoco.MjModel.from_xml_string(convert(folder, "bent.xml", "-o", "-", "--base", base))
+    data = mujoco.MjData(written)
+    mujoco.mj_resetDataKeyframe(written, data, written.key("loaded").id)
+    assert data.joint("j").qpos == [0.7]
+    mujoco.mj_kinematics(written, data)
+    (body,) = ravemj.load(folder / "bent.xml").GetBodies()
+    np.testing.assert_allclose(data.body("b").xmat.reshape(3, 3), body.GetLinkTransformations()[1][:3, :3], atol=1e-12)
+    assert written.nkey == 1
+    assert mujoco.MjModel.from_xml_string(convert(folder, "plain.xml", "-o", "-")).nkey == 0
+
+
 @pytest.mark.skipif(importlib.util.find_spec("coacd") is None, reason="needs CoACD")
 def test_meshes_are_cut_where_that_is_asked_for(folder):
     case = next(case for case in mesh_cases() if "stl" in case.parent.name)
