@@ -1,21 +1,19 @@
 """STL, OBJ and the formats that trimesh reads. Numbers that are not plain geometry were measured with assimp 5."""
 
-import importlib.util
 import struct
 from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
-from ravemj.errors import RavemjError, SourceError
-from ravemj.meshes import area, exchange, read_mesh, volume
+from ravemj.errors import SourceError
+from ravemj.meshes import area, read_mesh, volume
 
 FILES = Path(__file__).parent / "data" / "meshes"
 WEDGE_AREA = 0.06 + 0.04 + 0.03 + 0.5 * np.sqrt(0.08**2 + 0.06**2 + 0.12**2)
 GRAY = pytest.approx((0.6, 0.6, 0.6))
 BOX = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n"
-
-needs_trimesh = pytest.mark.skipif(importlib.util.find_spec("trimesh") is None, reason="trimesh is not installed")
 
 
 @pytest.fixture(autouse=True)
@@ -44,7 +42,7 @@ FACE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 
 @pytest.mark.parametrize(
     "name",
-    ["wedge.stl", pytest.param("wedge.off", marks=needs_trimesh), pytest.param("wedge.ply", marks=needs_trimesh)],
+    ["wedge.stl", "wedge.off", "wedge.ply"],
 )
 def test_a_wedge(name):
     (part,) = read_mesh(str(FILES / name))
@@ -58,8 +56,8 @@ def test_a_wedge(name):
     ("name", "diffuse", "ambient"),
     [
         ("wedge.stl", 1, 0.05),
-        pytest.param("wedge.off", 0.6, 0, marks=needs_trimesh),
-        pytest.param("wedge.ply", 1, 1, marks=needs_trimesh),
+        ("wedge.off", 0.6, 0),
+        ("wedge.ply", 1, 1),
     ],
 )
 def test_default_colours_are_those_of_openraves_importer(name, diffuse, ambient):
@@ -146,9 +144,7 @@ def test_obj_without_faces(read):
     assert read("mesh.obj", "v 0 0 0\n") == ()
 
 
-@needs_trimesh
 def test_glb_materials_and_placement(read):
-    trimesh = pytest.importorskip("trimesh")
     scene = trimesh.Scene()
     box = trimesh.creation.box()
     box.visual = trimesh.visual.TextureVisuals(
@@ -163,18 +159,11 @@ def test_glb_materials_and_placement(read):
     assert len(white.mesh.triangles) == 80
 
 
-@needs_trimesh
 @pytest.mark.parametrize("name", ["mesh.ply", "mesh.off", "mesh.glb", "mesh.gltf"])
 def test_malformed_files_for_trimesh(read, name):
     for content in (b"garbage", b"ply\nformat ascii 1.0\nelement vertex 9\n", b"OFF\n9 9 9\n", b"glTF" + bytes(40)):
         with pytest.raises(SourceError):
             read(name, content)
-
-
-def test_without_trimesh_the_extra_is_named(read, monkeypatch):
-    monkeypatch.setattr(exchange.importlib, "import_module", lambda name: (_ for _ in ()).throw(ImportError(name)))
-    with pytest.raises(RavemjError, match=r"pip install \"ravemj\[meshes\]\""):
-        read_mesh(str(FILES / "wedge.ply"))
 
 
 @pytest.mark.parametrize("name", ["mesh.txt", "stl", "mesh.3ds"])

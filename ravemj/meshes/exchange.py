@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ravemj.errors import RavemjError, SourceError
+from ravemj.errors import SourceError
 from ravemj.meshes.files import MeshFile
 from ravemj.meshes.obj import GRAY, transparency
 from ravemj.meshes.parts import BLACK, WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
@@ -28,7 +28,6 @@ def read_exchange(file: MeshFile) -> tuple[MeshPart, ...]:
 
     Raises:
         SourceError: The file is malformed.
-        RavemjError: trimesh is not installed.
     """
     kind = file.path.lower().rpartition(".")[2]
     pieces: dict[tuple[Rgb, float], list[Floats]] = {}
@@ -67,10 +66,7 @@ class _References(Mapping[str, bytes]):
 
 def _geometries(file: MeshFile, kind: str) -> list[tuple[Floats, Floats | None]]:
     """Return corners and, where there is a material, its red, green, blue and opacity."""
-    try:
-        trimesh: Any = importlib.import_module("trimesh")
-    except ImportError as error:
-        raise RavemjError(f'.{kind} meshes need trimesh: pip install "ravemj[meshes]"') from error
+    trimesh: Any = importlib.import_module("trimesh")  # slow to import, and without types
     try:
         scene: Any = trimesh.load_scene(
             io.BytesIO(file.data), file_type=kind, resolver=_References(file), process=False
@@ -83,7 +79,7 @@ def _geometries(file: MeshFile, kind: str) -> list[tuple[Floats, Floats | None]]
         raise SourceError(f"trimesh cannot read it: {type(error).__name__}: {error}", file.source) from error
 
 
-def _placed(geometry: Any, matrix: Floats) -> tuple[Floats, Floats | None]:  # noqa: ANN401 - trimesh is an extra
+def _placed(geometry: Any, matrix: Floats) -> tuple[Floats, Floats | None]:  # noqa: ANN401 - trimesh has no types
     placed = np.asarray(geometry.vertices, np.float64).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
     corners = placed[np.asarray(geometry.faces, np.int_).reshape(-1, 3)]
     factor = getattr(getattr(geometry.visual, "material", None), "baseColorFactor", None)

@@ -70,7 +70,6 @@ def read_mesh(path: str) -> tuple[MeshPart, ...]:
 
     Raises:
         SourceError: The file is missing, empty, malformed, too large, or of an unknown kind.
-        RavemjError: The package for this kind of file is not installed.
     """
     suffix = next((suffix for suffix in MESH_SUFFIXES if path.lower().endswith(suffix)), None)
     if suffix is None:
