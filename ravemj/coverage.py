@@ -64,7 +64,7 @@ def sections() -> list[Section]:
             "a link, in KinBody",
             link.LINK_TAGS,
             link.LINK_ATTRIBUTES,
-            link.LINK_IGNORED,
+            {},
             link.LINK_IGNORED_ATTRIBUTES,
         ),
         Section("Geom", "a shape, in Body", geometry.GEOM_TAGS, geometry.GEOM_ATTRIBUTES, geometry.GEOM_IGNORED),
@@ -104,10 +104,10 @@ def _robot() -> Section:
 
 def _sensor() -> Section:
     left_out = {**sensor.CAMERA_IGNORED, "(what is in sensors other than cameras)": sensor.NO_DEVICE}
-    attributes = sensor.DEVICE_ATTRIBUTES - {"args"}
-    no_arguments = {"args": "no sensor here takes arguments; skipped without a word"}
     place = "in AttachedSensor, or the root of an included file"
-    return Section("Sensor", place, sensor.CAMERA_TAGS, attributes, left_out, no_arguments)
+    return Section(
+        "Sensor", place, sensor.CAMERA_TAGS, sensor.DEVICE_ATTRIBUTES, left_out, sensor.DEVICE_IGNORED_ATTRIBUTES
+    )
 
 
 def markdown() -> str:

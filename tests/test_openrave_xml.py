@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ravemj import scene
+from ravemj.meshes import area, volume
 from ravemj.openrave_xml import Reading, read
 
 
@@ -100,6 +101,55 @@ class TestDocument:
         assert view.background == (0.1, 0.2, 0.3)
         assert view.T_world_camera.position == (1, 2, 3)
         np.testing.assert_allclose(rotation(view.T_world_camera), [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
+
+
+class TestBodyInBody:
+    BOX = "<Geom><Extents>1 1 1</Extents><Translation>0 0 1</Translation></Geom>"
+    INNER = (
+        f'<Body name="other"><Translation>1 0 0</Translation><RotationAxis>1 0 0 90</RotationAxis>{BOX}'
+        "<Mass><total>7</total></Mass></Body>"
+    )
+
+    def test_is_the_same_link_and_moves_all_its_shapes(self, read_text):
+        reading = read_text(
+            f"<KinBody name='k'><Body name='a'><Translation>5 0 0</Translation>{self.BOX}{self.INNER}</Body></KinBody>"
+        )
+        ((link,),) = [body.links for body in reading.scene.bodies]
+        assert (link.name, link.T_world_link.position, link.inertial.mass) == ("a", (5, 0, 0), 1)
+        for geometry in link.geometries:
+            np.testing.assert_allclose(geometry.T_link_geometry.position, (1, -1, 0), atol=1e-15)
+        assert [finding.code for finding in reading.diagnostics] == ["openrave-bug", "openrave-bug"]
+
+    def test_in_a_file(self, read_text, tmp_path):
+        (tmp_path / "inner.xml").write_text(self.INNER)
+        mass = "<Mass type='custom'><total>3</total></Mass>"
+        reading = read_text(f"<KinBody name='k'><Body name='a' file='inner.xml'>{mass}{self.BOX}</Body></KinBody>")
+        (link,) = reading.scene.bodies[0].links
+        assert (link.name, link.inertial.mass) == ("a", 3)
+        positions = [geometry.T_link_geometry.position for geometry in link.geometries]
+        np.testing.assert_allclose(positions, [(1, -1, 0), (0, 0, 1)], atol=1e-15)
+
+    def test_a_file_with_something_else(self, read_text, tmp_path):
+        (tmp_path / "inner.xml").write_text("<KinBody><Body name='b'/></KinBody>")
+        reading = read_text("<KinBody name='k'><Body name='a' file='inner.xml'/></KinBody>")
+        assert [link.name for link in reading.scene.bodies[0].links] == ["a"]
+        (finding,) = reading.diagnostics
+        assert (
+            "inner.xml:1: warning[unknown-tag]: the file of a Body has to hold a <Body>, and holds a <KinBody>"
+            in str(finding)
+        )
+
+
+def test_a_prism_has_walls_alone(link):
+    corners = "0 0  2 0  2 1  0 1"
+    geometry = link(
+        f'<Body name="a"><Geom type="prism"><crosssection>{corners}</crosssection><height>3</height></Geom></Body>'
+    ).geometries[0]
+    walls = geometry.shape.walls()
+    assert area(walls) == pytest.approx((2 + 1 + 2 + 1) * 3)
+    assert volume(walls) == pytest.approx(2 * 1 * 3 * 2 / 3)  # two of three pairs of faces, all turned outwards
+    np.testing.assert_array_equal(walls.vertices.min(axis=0), [0, 0, -1.5])
+    np.testing.assert_array_equal(walls.vertices.max(axis=0), [2, 1, 1.5])
 
 
 class TestPlacement:

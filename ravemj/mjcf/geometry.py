@@ -11,6 +11,7 @@ from ravemj.scene import (
     Geometry,
     Mesh,
     NoShape,
+    Prism,
     Rgb,
     Shape,
     Sphere,
@@ -45,6 +46,8 @@ class GeometryWriter:
         seen = geometry.visible and geometry.display is None
         if isinstance(geometry.shape, TriMesh):
             self._write_mesh(geometry, geometry.shape.mesh, out, seen=seen)
+        elif isinstance(geometry.shape, Prism):
+            self._write_mesh(geometry, geometry.shape.walls(), out, seen=seen)
         else:
             for solid in solids(geometry.shape):
                 self._write_solid(geometry, solid, out, seen=seen)
@@ -135,7 +138,7 @@ def solids(shape: Shape) -> list[Solid]:
             return [("capsule", (radius, height / 2), (0.0, 0.0, 0.0))]
         case Container():
             return _container(shape)
-        case TriMesh() | NoShape():
+        case Prism() | TriMesh() | NoShape():
             return []
 
 

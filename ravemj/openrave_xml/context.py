@@ -16,7 +16,6 @@ Target = TypeVar("Target")
 IGNORED = "OpenRAVE reads it and makes nothing of it"
 UNSCALED = (1.0, 1.0, 1.0)
 COLLADA_SUFFIXES = (".dae", ".zae")
-NOT_YET = "this version of ravemj does not read it yet"
 NO_EFFECT_HERE = "it has no effect on the model"
 
 

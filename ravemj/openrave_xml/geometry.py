@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.meshes import MeshPart
-from ravemj.openrave_xml.context import NOT_YET, Context, reasons
+from ravemj.openrave_xml.context import Context
 from ravemj.openrave_xml.tree import Element
 from ravemj.openrave_xml.values import (
     ROTATIONS,
@@ -28,6 +28,7 @@ from ravemj.scene import (
     Geometry,
     Mesh,
     NoShape,
+    Prism,
     Rgb,
     Shape,
     Sphere,
@@ -70,6 +71,7 @@ class _Geom:
     radius: float = 0.0
     height: float = 0.0
     container: dict[str, Vec3] = field(default_factory=dict[str, Vec3])
+    cross_section: list[float] = field(default_factory=list[float])
     vertices: list[float] = field(default_factory=list[float])
     collision: _MeshFile | None = None
     render: _MeshFile | None = None
@@ -97,6 +99,12 @@ class _Geom:
 
     def read_container(self, element: Element) -> None:
         self.container[element.tag] = vector(element, self.context.diagnostics)
+
+    def read_cross_section(self, element: Element) -> None:
+        self.cross_section, rest = leading_numbers(element.text)
+        if rest or len(self.cross_section) % 2:
+            message = f"<{element.spelled}> needs x and y of each corner, and holds {len(self.cross_section)} numbers"
+            self.context.diagnostics.warn("number-count", message, element.source)
 
     def read_vertices(self, element: Element) -> None:
         self.vertices, rest = leading_numbers(element.text)
@@ -134,6 +142,7 @@ GEOM_TAGS: dict[str, Callable[[_Geom, Element], None]] = {
     "radius": _Geom.read_radius,
     "height": _Geom.read_height,
     **dict.fromkeys(("outer_extents", "inner_extents", "bottom_cross", "bottom"), _Geom.read_container),
+    "crosssection": _Geom.read_cross_section,
     "vertices": _Geom.read_vertices,
     "data": _Geom.read_collision,
     "collision": _Geom.read_collision,
@@ -143,7 +152,7 @@ GEOM_TAGS: dict[str, Callable[[_Geom, Element], None]] = {
     "transparency": _Geom.read_transparency,
     "name": _Geom.read_name,
 }
-GEOM_IGNORED = reasons(NOT_YET, "crosssection", "sidewall")
+GEOM_IGNORED = {"sidewall": "OpenRAVE itself cannot make a cage from XML"}
 GEOM_ATTRIBUTES = {"type", "name", "render", "modifiable", "group"}
 
 _SHAPES: dict[str, Callable[[_Geom], Shape]] = {
@@ -153,6 +162,9 @@ _SHAPES: dict[str, Callable[[_Geom], Shape]] = {
     "capsule": lambda geom: Capsule(geom.radius, geom.height),
     "container": lambda geom: Container(
         *(geom.container.get(name, ZERO) for name in ("outer_extents", "inner_extents", "bottom_cross", "bottom"))
+    ),
+    "prism": lambda geom: Prism(
+        tuple(zip(geom.cross_section[::2], geom.cross_section[1::2], strict=False)), geom.height
     ),
     "none": lambda geom: NoShape(),
 }

@@ -65,7 +65,8 @@ CAMERA_TAGS: dict[str, Callable[[_Camera, Element], None]] = {
     "image_dimensions": _Camera.read_dimensions,
 }
 NO_DEVICE = "of sensors that are no cameras, only kind and place are kept"
-DEVICE_ATTRIBUTES = {"type", "file", "name", "args"}
+DEVICE_ATTRIBUTES = {"type", "file", "name"}
+DEVICE_IGNORED_ATTRIBUTES = {"args": "no sensor here takes arguments"}
 CAMERA_IGNORED = reasons(
     NO_EFFECT_HERE, "framerate", "focal_length", "color", "power", "gain", "measurement_time", "format",
     "sensor_reference", "target_region", "hardware_id", "distortion_model", "distortion_coeffs",
@@ -74,7 +75,7 @@ CAMERA_IGNORED = reasons(
 
 def read_device(element: Element, context: Context) -> Device:
     """Read a ``<Sensor>``; with ``file``, that of the file."""
-    context.check_attributes(element, DEVICE_ATTRIBUTES, {})
+    context.check_attributes(element, DEVICE_ATTRIBUTES, DEVICE_IGNORED_ATTRIBUTES)
     root = context.include(element)
     found = Device() if root is None or root.tag != "sensor" else read_device(root, context)
     kind = element.attributes.get("type")

@@ -15,6 +15,7 @@ _TYPES: dict[type[scene.Shape], GeometryType] = {
     scene.Cylinder: GeometryType.Cylinder,
     scene.Capsule: GeometryType.Capsule,
     scene.Container: GeometryType.Container,
+    scene.Prism: GeometryType.Prism,
     scene.TriMesh: GeometryType.Trimesh,
     scene.NoShape: GeometryType.None_,
 }

@@ -109,6 +109,28 @@ class Container:
 
 
 @dataclass(frozen=True, slots=True)
+class Prism:
+    """Walls along z over the edges of a polygon, without top and bottom.
+
+    Attributes:
+        cross_section: Corners x y of the polygon [m]; the last is joined to the first.
+        height: The full height; the origin is at half of it.
+    """
+
+    cross_section: tuple[tuple[float, float], ...]
+    height: float
+
+    def walls(self) -> Mesh:
+        """Return the walls, two triangles for each edge."""
+        corners = np.array(self.cross_section, dtype=float).reshape(-1, 2)
+        count = len(corners)
+        below, above = (np.column_stack([corners, np.full(count, z)]) for z in (-self.height / 2, self.height / 2))
+        here, after = np.arange(count), np.roll(np.arange(count), -1)
+        triangles = [(here, after, after + count), (here, after + count, here + count)]
+        return Mesh(np.concatenate([below, above]), np.concatenate([np.column_stack(three) for three in triangles]))
+
+
+@dataclass(frozen=True, slots=True)
 class TriMesh:
     """Triangles; none where their file is missing."""
 
@@ -120,7 +142,7 @@ class NoShape:
     """A geometry without a shape."""
 
 
-Shape = Box | Sphere | Cylinder | Capsule | Container | TriMesh | NoShape
+Shape = Box | Sphere | Cylinder | Capsule | Container | Prism | TriMesh | NoShape
 
 
 @dataclass(frozen=True, slots=True)
