@@ -742,7 +742,7 @@ class _Disguise:
         return self._one_of(escape(text), f"<![CDATA[{text}]]>", references)
 
     def _content(self, text: str) -> str:
-        words = text.split()
+        words = text.split() or [""]
         cut = self.choices.integer(0, len(words[0]))
         parts = [self._piece(words[0][:cut]), self._one_of("", "<!-- x -->", "<?y z?>"), self._piece(words[0][cut:])]
         for word in words[1:]:

@@ -1,0 +1,261 @@
+"""Damaged and hostile documents: a scene or a ``RavemjError``, after little work, and nothing on stderr."""
+
+import os
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from fuzzing import MAIN, Fuzzer, Outcome, Trial, parsed, smaller, time_limit
+from lxml import etree
+
+import ravemj
+from ravemj import mjcf
+from ravemj.errors import Diagnostics
+from ravemj.readers import read_file
+
+BATCHES, BATCH = 20, 250
+DEEP = 5
+"""One in so many documents is compiled too."""
+
+
+class TestDamaged:
+    @pytest.fixture(autouse=True)
+    def _elsewhere(self, tmp_path, monkeypatch):
+        """MuJoCo would leave a log in the working folder."""
+        monkeypatch.chdir(tmp_path)
+        monkeypatch.setenv("RAVEMJ_CACHE", "off")
+
+    @pytest.mark.parametrize("batch", range(BATCHES))
+    def test_documents(self, batch, capfd, tmp_path):
+        fuzzer = Fuzzer(seed=0)
+        linked, crashes = 0, []
+        for number in range(batch * BATCH, (batch + 1) * BATCH):
+            try:
+                outcome = Trial(deep=number % DEEP == 0).run(fuzzer.make(number))
+            except Exception as error:  # the number says how to make it again
+                crashes.append((number, repr(error)[:200]))
+                continue
+            linked += outcome.links > 0
+        assert crashes == []
+        assert linked >= BATCH / 2, "too few documents reach the meaning of elements"
+        assert capfd.readouterr().err == ""
+        assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
+
+    def test_a_seed_gives_the_same_documents_again(self):
+        assert [Fuzzer(5).make(number) for number in range(20)] == [Fuzzer(5).make(number) for number in range(20)]
+
+    def test_small_examples(self):
+        files = {
+            MAIN: b'<KinBody name="b"><Body name="a"><Translation>1 2 7</Translation></Body></KinBody>',
+            "x.xml": b"",
+        }
+
+        def fails(files) -> bool:
+            root = parsed(files[MAIN])
+            return root is not None and any("7" in node.text for node in root.walk())
+
+        assert (
+            smaller(files, fails)[MAIN].split()
+            == b"<KinBody> <Body> <Translation>7</Translation> </Body> </KinBody>".split()
+        )
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    """Read, translate and compile a document."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(content: str | bytes, seconds: float = 10.0, **files: str | bytes) -> Outcome:
+        named = {MAIN: content, **{f"{name}.xml": text for name, text in files.items()}}
+        encoded = {name: text if isinstance(text, bytes) else text.encode() for name, text in named.items()}
+        return Trial(seconds, deep=True).run(encoded)
+
+    return run
+
+
+def body(content: str, attributes: str = "") -> str:
+    return f'<KinBody name="b" {attributes}>{content}</KinBody>'
+
+
+LINK = '<Body name="A"/>'
+TWO = '<Body name="A"/><Body name="B"/>'
+HINGE = "<Joint name='j'><Body>A</Body><Body>B</Body>{}</Joint>"
+BOMB = "<!DOCTYPE x [<!ENTITY a0 'aaaaaaaaaa'>{}]>".format(
+    "".join(f"<!ENTITY a{i} '{f'&a{i - 1};' * 10}'>" for i in range(1, 10))
+)
+EXTERNAL = "<!DOCTYPE x [<!ENTITY a SYSTEM '/etc/passwd'>]>"
+
+
+class TestHostile:
+    @pytest.mark.parametrize(
+        "content",
+        [
+            BOMB + body("<Body name='A'><Translation>&a9;</Translation></Body>"),
+            BOMB + body("<Body name='&a9;'/>"),
+            EXTERNAL + body("<Body name='A'><Translation>&a;</Translation></Body>"),
+            EXTERNAL + body("<Body name='&a;'/>"),
+            "<KinBody>" * 100_000,
+            body("<x>" * 100_000 + "</x>" * 100_000),
+            body("<Body name='a\0'/>"),
+            body("<Body name='a&#0;'/>"),
+            body("<Body name='a&#1;'/>"),
+            body(LINK).encode("utf-32"),
+            body("<Body name='é'/>").encode("latin-1"),
+            *(f"<?xml version='1.0' encoding='{code}'?>{body(LINK)}" for code in ("utf-7", "idna", "hex", "x" * 999)),
+            body("<Translation>1 2 3"),
+        ],
+        ids=lambda content: content[:30],
+    )  # fmt: skip
+    def test_refused(self, run, content):
+        outcome = run(content)
+        assert outcome.links == 0
+        assert any(name.startswith("failure") for name in outcome.signature)
+
+    @pytest.mark.parametrize(
+        "content",
+        [
+            body("<KinBody>" * 190 + LINK + "</KinBody>" * 190),
+            body(f"<Body name='{'n' * 1_000_000}'/>"),
+            body("<Body name='a&#10;&#9;&#13;&#x85;&#x2028;&#x202e;&#xfffd;--&gt;'/>"),
+            body(LINK, f"zzz='{'q' * 5_000_000}'"),
+            body(f"<Body name='A'><Translation>{'9' * 4_000_000} 1 2</Translation></Body>"),
+            body(f"<Body name='A'><Translation>.{'9' * 4_000_000} 1 2</Translation></Body>"),
+            body(f"<Body name='A'><Translation>{' ' * 5_000_000}x</Translation></Body>"),
+            body(TWO + HINGE.replace("{}", "<axis>0 0 1</axis>").replace("'j'", f"'j' mimic_pos='{'j+' * 999_999}1'")),
+            body("<Body name='ü'/>").encode("utf-16"),
+            body("<Body name='ü'/>").encode("utf-16-le"),
+            "<!DOCTYPE x SYSTEM '/dev/zero'>" + body(LINK),
+            "<!DOCTYPE x [<!ENTITY % p SYSTEM '/dev/zero'> %p;]>" + body(LINK),
+        ],
+        ids=lambda content: content[:30],
+    )
+    def test_read(self, run, content):
+        assert run(content).links >= 1
+
+    @pytest.mark.parametrize(
+        "name", [".", "/", "/dev/zero", "fifo", "a/" * 100_000, "socket:", "http://localhost/x.xml"]
+    )
+    def test_files_that_are_none(self, tmp_path, name):
+        os.mkfifo(tmp_path / "fifo")
+        (tmp_path / MAIN).write_text(
+            body(f"<Body name='A'><Geom type='trimesh'><data>{name}</data></Geom></Body>", f"file='{name}'")
+        )
+        with time_limit(10):
+            reading = read_file(tmp_path / MAIN)
+        assert reading.failure is None
+        assert {finding.code for finding in reading.diagnostics} == {"missing-file"}
+
+    @pytest.mark.parametrize("files", [
+        {"a": "<KinBody file='main.xml'/>"},
+        {"a": "<KinBody file='b.xml'/>", "b": "<KinBody file='a.xml'/>"},
+        {"a": "<KinBody><KinBody><KinBody file='a.xml'/></KinBody></KinBody>"},
+    ])  # fmt: skip
+    def test_files_that_include_themselves(self, run, files):
+        assert "failure: the file includes" in run(body("", "file='a.xml'"), **files).signature
+
+    def test_links_that_include_themselves(self, tmp_path):
+        (tmp_path / "round").symlink_to(".")
+        (tmp_path / "other.xml").symlink_to(MAIN)
+        for name in ("other.xml", "round/main.xml", "round/round/other.xml"):
+            (tmp_path / MAIN).write_text(body("", f"file='{name}'"))
+            with time_limit(10):
+                assert "includes itself" in str(read_file(tmp_path / MAIN).failure)
+
+    def test_many_bodies_in_linear_time(self, tmp_path):
+        def seconds(count: int) -> float:
+            bodies = "".join(f"<KinBody name='b{i}'><Body name='l'/></KinBody>" for i in range(count))
+            (tmp_path / MAIN).write_text(f"<Environment>{bodies}</Environment>")
+            start = time.process_time()
+            reading = read_file(tmp_path / MAIN)
+            mjcf.write(reading.scene, Diagnostics())
+            assert len(reading.scene.bodies) == count
+            return time.process_time() - start
+
+        seconds(100)
+        assert seconds(4000) < 12 * seconds(1000)
+
+
+THREE = TWO + "<Body name='C'/>" + HINGE.format("")
+FOLLOWER = "<Joint name='k' {}><Body>A</Body><Body>C</Body></Joint>"
+SOLID = "<Body name='A'><Geom type='{0}'><{1}>1e200</{1}></Geom><Mass type='mimicgeom'/></Body>"
+TETRAHEDRON = "0 0 0 0 1 0 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 0 0 1 0 1 0 1 0 0 0 1 0 1e308 0 1"
+FAR = "<Translation>1e308 0 0</Translation>"
+
+EXCEPTIONS = {
+    "a matrix": body("<RotationMat>1e200</RotationMat>" + LINK),
+    "a gear": body(TWO + HINGE.format("<actuator><gear_ratio>1e300</gear_ratio></actuator>")),
+    "a sphere": body(SOLID.format("sphere", "radius")),
+    "a cylinder": body(SOLID.format("cylinder", "radius")),
+    "a high cylinder": body(SOLID.format("cylinder", "height")),
+    "a box": body("<Body name='A'><Geom><extents>1e154 1 1</extents></Geom><Mass type='mimicgeom'/></Body>"),
+    "a mesh": body(f"<Body name='A'><Geom type='trimesh'><vertices>{TETRAHEDRON}</vertices></Geom></Body>"),
+    "two translations": body(f"<Body name='A'>{FAR}{FAR}</Body>"),
+    "an infinite follower": body(THREE + FOLLOWER.format("circular='1' mimic_pos='1e300*1e300*(j+1)'")),
+    "a follower without a value": body(THREE.replace("'j'", "'j' enable='0'") + FOLLOWER.format("mimic_pos='acos(2+j)'")
+                                       + "<Joint name='l'><Body>B</Body><Body>C</Body></Joint>"),
+}  # fmt: skip
+REFUSED = {
+    "transparency": body(
+        "<Body name='A'><Geom><extents>1 1 1</extents><transparency>1e77</transparency></Geom></Body>"
+    ),
+    "inertia": body("<Body name='A'><Mass type='custom'><inertia>0 1.7167209862385004</inertia></Mass></Body>"),
+    "a ball that follows": body(THREE + FOLLOWER.format("type='spherical' mimic_pos='j'")),
+    "an axis": body(TWO + HINGE.replace("'j'", "'j' type='hinge2'").format("<axis1>1 0 0</axis1><axis2>1e200</axis2>")),
+}
+
+
+class TestFound:
+    """What these tests found once."""
+
+    @pytest.mark.parametrize("name", EXCEPTIONS)
+    def test_exceptions(self, run, name):
+        run(EXCEPTIONS[name])
+
+    @pytest.mark.parametrize("name", REFUSED)
+    def test_refused_by_mujoco(self, run, name):
+        assert run(REFUSED[name]).refused == ""
+
+    def test_entities_in_attributes(self, run):
+        assert run("<!DOCTYPE x [<!ENTITY a 'zzz'>]>" + body("<Body name='&a;'/>")).links == 0
+
+    def test_inclusions_that_double(self, run):
+        files = {
+            f"f{i}": f"<KinBody><KinBody file='f{i + 1}.xml'/><KinBody file='f{i + 1}.xml'/></KinBody>"
+            for i in range(16)
+        }
+        try:
+            run(body("", "file='f0.xml'"), 3, f16="<KinBody/>", **files)
+        except BaseException as error:
+            raise AssertionError(repr(error)) from None
+
+    @pytest.mark.xfail(reason="every pair of links that no joints connect is excluded by name", strict=True)
+    def test_size_of_the_mjcf_is_linear(self, tmp_path):
+        def size(count: int) -> int:
+            (tmp_path / MAIN).write_text(body("".join(f"<Body name='l{i}'/>" for i in range(count))))
+            return len(mjcf.write(read_file(tmp_path / MAIN).scene, Diagnostics()).text)
+
+        assert size(200) < 3 * size(100)
+
+    @pytest.mark.parametrize("name", ["a---b.xml", "a--->b.xml", "new\nline.xml", "control\x01.xml", "\udcff.xml"])
+    def test_strange_paths(self, tmp_path, name):
+        (tmp_path / name).write_text(body(LINK))
+        env = ravemj.load(tmp_path / name)
+        compiled = env.simulation.compile().mjcf
+        assert len(compiled.sources) == compiled.text.count("\n")
+        root = etree.fromstring(compiled.text.encode())
+        assert "".join(root.itertext()).strip() == ""
+
+    def test_loading_a_pipe(self, tmp_path):
+        os.mkfifo(tmp_path / "pipe.xml")
+        answers: list[bool] = []
+        thread = threading.Thread(
+            target=lambda: answers.append(ravemj.Environment().Load(tmp_path / "pipe.xml")), daemon=True
+        )
+        thread.start()
+        thread.join(1)
+        if thread.is_alive():  # let it go
+            Path(tmp_path / "pipe.xml").write_text("<x/>")
+            thread.join(5)
+            pytest.fail("it waits for a writer")
+        assert answers == [False]
