@@ -5,6 +5,7 @@ of a body's outermost element settles it. ``BodyBuilder.freeze`` then decides pa
 from the poses of the links, and places the links by them, as OpenRAVE does.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -254,6 +255,8 @@ def _limited(
 
 
 def _frozen_link(link: LinkBuilder, pose: Pose) -> scene.Link:
+    if not (math.isfinite(sum(pose.position)) and math.isfinite(sum(pose.wxyz))):
+        raise SourceError(f"the pose of link '{link.name}' is not finite", link.source, "look for enormous numbers")
     return scene.Link(
         name=link.name,
         T_world_link=pose,

@@ -12,7 +12,7 @@ import numpy as np
 from ravemj.errors import Diagnostics, OutputError
 from ravemj.mjcf import Mjcf, Options
 from ravemj.mjcf.document import ASSETS
-from ravemj.mjcf.lines import Lines
+from ravemj.mjcf.lines import Lines, comment_text
 from ravemj.output import AnyPath, added_files, new_file, new_folder
 from ravemj.scene import Scene
 from ravemj.simulation import Compiled, Simulation
@@ -64,8 +64,7 @@ def _qpos(model: mujoco.MjModel, current: Compiled) -> Floats:
 
 def marked(text: str, model: AnyPath) -> str:
     """Return an MJCF document with a first line that says what it was made from."""
-    name = Path(model).name.replace("--", "- -")
-    return f"{_MARK} from {name} -->\n{text}"
+    return f"{_MARK} from {comment_text(Path(model).name)} -->\n{text}"
 
 
 def is_folder(path: AnyPath) -> bool:

@@ -22,8 +22,9 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
     found = find(os.fspath(path))
     if found is None:
         failure = SourceError("there is no such file", Source(os.fspath(path)), "check the path, or set OPENRAVE_DATA")
-    elif os.path.isdir(found):
-        failure = SourceError("this is a folder, not a model file", Source(found))
+    elif not os.path.isfile(found):
+        kind = "folder" if os.path.isdir(found) else "device or pipe"
+        failure = SourceError(f"this is a {kind}, not a model file", Source(found))
     elif found.lower().endswith(COLLADA_SUFFIXES):
         failure = SourceError("this version of ravemj does not read COLLADA yet", Source(found))
     else:

@@ -14,6 +14,7 @@ CollisionForm = Literal["hull", "visual", "none"]
 _FLAT = 1e-6  # thickness by width; paper is 100 times thicker
 _ROUNDING = 4 * float(np.finfo(np.float32).eps)
 _MIN_AREA = 1e-12  # m^2
+_MAX_REACH = 1e15  # m; MuJoCo computes areas in single precision
 _SAMPLE = 64  # triangles
 _MEMO = "_collision_form"
 
@@ -23,8 +24,8 @@ def collision_form(mesh: Mesh) -> CollisionForm:
 
     Returns:
         ``hull`` if the mesh has a convex hull with volume, and so can collide; ``visual`` if it is flat, so that it
-        can only be seen; ``none`` if it has no area either, and MuJoCo would not load it. With ``inertia="shell"``
-        MuJoCo loads the first two, with other settings not all of them.
+        can only be seen; ``none`` if it has no area either or is enormous, and MuJoCo would not load it. With
+        ``inertia="shell"`` MuJoCo loads the first two, with other settings not all of them.
     """
     form = mesh.__dict__.get(_MEMO)
     if form is None:
@@ -39,6 +40,8 @@ def remember_form(mesh: Mesh, form: CollisionForm) -> None:
 
 
 def _form(mesh: Mesh) -> CollisionForm:
+    if len(mesh.vertices) and max(mesh.vertices.max(), -mesh.vertices.min()) > _MAX_REACH:
+        return "none"
     if _is_plainly_solid(mesh):
         return "hull"
     if area(mesh) <= _MIN_AREA:

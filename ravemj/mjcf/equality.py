@@ -47,7 +47,9 @@ class EqualityWriter:
                 continue
             expression = _without_welds(joint.mimic.expression, joints, names)
             moving = leaders(expression)
-            if len(moving) <= 1:
+            if any(joints[index].kind == "spherical" for index in moving) or joint.kind == "spherical":
+                self._drop(joint, "has to do with a spherical joint")
+            elif len(moving) <= 1:
                 self._write_polynomial(joint, joint_names[0], expression, joints, names)
             else:
                 self._write_tendon(joint, joint_names[0], expression, joints, names)
@@ -105,8 +107,7 @@ class EqualityWriter:
     ) -> None:
         slopes = {variable: expression.derivative(variable) for variable in expression.variables}
         if any(slope.variables for slope in slopes.values()):
-            message = f"joint '{joint.name}' follows several joints in a way that MJCF cannot say; it is free there"
-            self.diagnostics.warn("dropped-mimic", message, joint.source)
+            self._drop(joint, "follows several joints in a way that MJCF cannot say")
             return
         constant = expression.evaluate(dict.fromkeys(expression.variables, 0.0))
         tendon = f"{name}/follows"
@@ -121,6 +122,9 @@ class EqualityWriter:
         self.tendons.close("fixed")
         offset = (constant - rest, 0.0, 0.0, 0.0, 0.0)
         self.equalities.element("tendon", joint.source, tendon1=tendon, polycoef=offset)
+
+    def _drop(self, joint: Joint, reason: str) -> None:
+        self.diagnostics.warn("dropped-mimic", f"joint '{joint.name}' {reason}; it is free there", joint.source)
 
 
 def _without_welds(expression: "Expression", joints: Sequence[Joint], names: Sequence[tuple[str, ...]]) -> "Expression":

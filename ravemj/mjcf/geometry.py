@@ -88,6 +88,9 @@ class GeometryWriter:
         if form == "visual":
             message = "the mesh is flat and has no convex hull; it is drawn and does not collide"
             self.diagnostics.warn("flat-mesh", message, geometry.source)
+        elif form == "none" and len(mesh.triangles):
+            message = "the mesh has no area, or is too large for MuJoCo; it is left out"
+            self.diagnostics.warn("flat-mesh", message, geometry.source)
         if form != "hull":
             return ()
         if not self._decomposed:
@@ -161,4 +164,5 @@ def _container(shape: Container) -> list[Solid]:
 
 
 def _rgba(colour: Rgb, transparency: float) -> tuple[float, ...]:
-    return (*colour, 1.0 - transparency)
+    """Return colour and opacity in the range from 0 to 1, beyond which nothing looks different."""
+    return tuple(min(max(part, 0.0), 1.0) for part in (*colour, 1.0 - transparency))

@@ -23,6 +23,7 @@ def legal_inertial(inertial: Inertial) -> Inertial:
     com = inertial.com if all(map(math.isfinite, inertial.com)) else (0.0, 0.0, 0.0)
     if mass == inertial.mass and com == inertial.com and np.all(legal <= moments * (1 + 1e-12)):
         return inertial
+    legal[0] += 1e-12 * legal[2]  # MuJoCo looks at the moments that it computes from the tensor
     xx, xy, xz, _, yy, yz, _, _, zz = ((axes * legal) @ axes.T).ravel().tolist()
     return Inertial(mass, com, ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
 
@@ -33,7 +34,12 @@ def _is_legal_diagonal(inertial: Inertial) -> bool:
     if xy or xz or yz or not SMALLEST <= inertial.mass < math.inf:
         return False
     small, middle, large = sorted((xx, yy, zz))
-    return small >= SMALLEST and large <= (small + middle) * (1 + 1e-12) and all(map(math.isfinite, inertial.com))
+    return (
+        small >= SMALLEST
+        and large <= (small + middle) * (1 + 1e-12)
+        and large < math.inf
+        and all(map(math.isfinite, inertial.com))
+    )
 
 
 def inertia_attributes(inertial: Inertial) -> dict[str, Attribute]:

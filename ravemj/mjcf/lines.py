@@ -1,5 +1,7 @@
 """Lines of XML, each with the place in the user's file that it comes from."""
 
+import re
+
 from ravemj.errors import Source
 from ravemj.transforms import Pose
 
@@ -41,7 +43,7 @@ class Lines:
 
     def comment(self, text: str, source: Source | None) -> None:
         """Write a comment."""
-        self._line(f"<!-- {text.replace('--', '- -')} -->", source)
+        self._line(f"<!-- {comment_text(text)} -->", source)
 
     def section(self, tag: str, content: "Lines") -> None:
         """Write a section with lines that were made apart, unless there are none."""
@@ -54,6 +56,12 @@ class Lines:
     def _line(self, text: str, source: Source | None) -> None:
         self.text.append(f"{_INDENTS[self._indent] if self._indent < len(_INDENTS) else '  ' * self._indent}{text}")
         self.sources.append(source)
+
+
+def comment_text(text: str) -> str:
+    """Return a text as it may stand in a comment: in one line, without two dashes in a row."""
+    printable = "".join(character if character.isprintable() else "?" for character in text)
+    return re.sub("-(?=-)", "- ", printable)
 
 
 def pose_attributes(pose: Pose) -> dict[str, Attribute]:

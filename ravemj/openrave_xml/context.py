@@ -15,6 +15,8 @@ Target = TypeVar("Target")
 
 IGNORED = "OpenRAVE reads it and makes nothing of it"
 UNSCALED = (1.0, 1.0, 1.0)
+MOST_INCLUDES = 10_000
+"""Files that include others twice, which include others twice, would keep the reader busy for years."""
 COLLADA_SUFFIXES = (".dae", ".zae")
 NO_EFFECT_HERE = "it has no effect on the model"
 
@@ -22,6 +24,15 @@ NO_EFFECT_HERE = "it has no effect on the model"
 def reasons(reason: str, *names: str) -> dict[str, str]:
     """Return a table that gives one reason for each name."""
     return dict.fromkeys(names, reason)
+
+
+UNCOMPUTABLE = (ArithmeticError, ValueError)
+"""What arithmetic raises at numbers such as 1e200."""
+
+
+def uncomputable(element: Element) -> SourceError:
+    """Return the error for an element with numbers that arithmetic cannot cope with."""
+    return SourceError(f"a number in this <{element.spelled}> is too large to compute with", element.source)
 
 
 class Context:
@@ -35,6 +46,7 @@ class Context:
     def __init__(self) -> None:
         self.diagnostics = Diagnostics()
         self.files: list[str] = []
+        self._count = 0
         self._found: dict[tuple[str, str, tuple[str, ...]], str] = {}
         self._meshes: dict[tuple[str, Vec3], tuple[MeshPart, ...]] = {}
 
@@ -57,7 +69,10 @@ class Context:
             handler = handlers.get(child.tag)
             if handler is not None:
                 if child.complete:
-                    handler(target, child)
+                    try:
+                        handler(target, child)
+                    except UNCOMPUTABLE as error:
+                        raise uncomputable(child) from error
             elif child.tag in ignored:
                 self.leave_out(child, ignored[child.tag])
             else:
@@ -93,7 +108,7 @@ class Context:
         and what stands before the mistake is read.
 
         Raises:
-            SourceError: the file includes itself.
+            SourceError: the file includes itself, or very many files are included.
         """
         name = element.attributes.get("file")
         if name is None:
@@ -110,9 +125,15 @@ class Context:
             if _is_same_file(chain.file, path):
                 raise SourceError(f"the file includes itself through {name}", element.source)
             chain = chain.included_from
+        return self._included(path, element.source)
+
+    def _included(self, path: str, source: Source) -> Element | None:
+        self._count += 1
+        if self._count > MOST_INCLUDES:
+            raise SourceError(f"more than {MOST_INCLUDES} files are included", source)
         self.files.append(path)
         try:
-            document = parse_file(path, element.source)
+            document = parse_file(path, source)
         except SourceError as error:
             self.diagnostics.error("broken-file", error.message, error.source)
             return None

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.openrave_xml.body import read_body
-from ravemj.openrave_xml.context import IGNORED, NO_EFFECT_HERE, Context
+from ravemj.openrave_xml.context import IGNORED, NO_EFFECT_HERE, UNCOMPUTABLE, Context, uncomputable
 from ravemj.openrave_xml.tree import Element, parse_file
 from ravemj.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.scene import KinBody, Scene, View
@@ -116,7 +116,10 @@ class _Document:
 
     def read_body(self, element: Element) -> None:
         """Read a body and give it its place among the others."""
-        body, refusal = read_body(element, self.context)
+        try:
+            body, refusal = read_body(element, self.context)
+        except UNCOMPUTABLE as error:
+            raise uncomputable(element) from error
         check_name(body.name, element)
         if body.name in self._names:
             raise SourceError(f"there already is a body '{body.name}'", element.source, "give it another name")

@@ -20,7 +20,7 @@ from ravemj.openrave_xml.values import (
     word,
 )
 from ravemj.scene import UNLIMITED, Axis, JointKind
-from ravemj.transforms import ZERO, Pose, Vec3, dot, rotate, scale
+from ravemj.transforms import ZERO, Pose, Vec3, rotate, scale
 
 _KINDS: dict[str, JointKind] = {"hinge": "hinge", "slider": "slider", "hinge2": "hinge2", "spherical": "spherical"}
 _DEFAULT_LIMIT: dict[JointKind, float] = {"hinge": math.pi, "slider": 10.0, "hinge2": math.pi, "spherical": 100.0}
@@ -68,7 +68,7 @@ class _JointReader:
             self.context.diagnostics.warn("ignored-tag", message, element.source)
             return
         x, y, z = vector(element, self.context.diagnostics)
-        length = math.sqrt(dot((x, y, z), (x, y, z)))
+        length = math.hypot(x, y, z)
         if length == 0.0:
             raise SourceError("the axis of a joint cannot be 0 0 0", element.source)
         self.directions[index] = scale((x, y, z), 1 / length)

@@ -109,6 +109,7 @@ class _Parser:
         self._expat.EndElementHandler = self._end
         self._expat.CharacterDataHandler = self._characters
         self._expat.DefaultHandler = self._other
+        self._expat.EntityDeclHandler = self._declared
 
     def parse(self, content: bytes) -> SourceError | None:
         """Parse the content; return what is wrong with it, if anything."""
@@ -154,6 +155,11 @@ class _Parser:
     def _other(self, data: str) -> None:
         if self._open and data.startswith("&"):
             self._refuse(f"the entity {data} is not supported; write the text itself in its place")
+
+    def _declared(self, name: str, is_parameter: bool, *_: object) -> None:
+        """Refuse entities of the file's own: expat would put them into attributes."""
+        if not is_parameter:
+            self._refuse(f"the entity &{name}; is not supported; write the text itself in its place")
 
     def _refuse(self, reason: str) -> NoReturn:
         raise SourceError(reason, self._here())
