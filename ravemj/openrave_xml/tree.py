@@ -101,6 +101,8 @@ class _Parser:
         self.root: Element | None = None
         self._path = path
         self._included_from = included_from
+        self._content = b""
+        self._entities: list[str] = []
         self._open: list[Element] = []
         self._text: list[list[str]] = []
         self._expat = expat.ParserCreate()
@@ -113,6 +115,7 @@ class _Parser:
 
     def parse(self, content: bytes) -> SourceError | None:
         """Parse the content; return what is wrong with it, if anything."""
+        self._content = content
         try:
             self._expat.Parse(content, True)
         except expat.ExpatError as error:
@@ -129,6 +132,8 @@ class _Parser:
         return Source(self._path, self._expat.CurrentLineNumber, self._included_from)
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
+        if self._entities and attributes:
+            self._refuse_entities()
         lowered = {key.lower(): value for key, value in attributes.items()} if attributes else attributes
         source = Source(self._path, self._expat.CurrentLineNumber, self._included_from)
         element = Element(name.lower(), name, lowered, source, "", [])
@@ -154,12 +159,22 @@ class _Parser:
 
     def _other(self, data: str) -> None:
         if self._open and data.startswith("&"):
-            self._refuse(f"the entity {data} is not supported; write the text itself in its place")
+            self._refuse_entity(data)
 
     def _declared(self, name: str, is_parameter: bool, *_: object) -> None:
-        """Refuse entities of the file's own: expat would put them into attributes."""
         if not is_parameter:
-            self._refuse(f"the entity &{name}; is not supported; write the text itself in its place")
+            self._entities.append(f"&{name};")
+
+    def _refuse_entities(self) -> None:
+        """Refuse a start tag with entities of the file's own in it: expat has replaced them without a word."""
+        start = self._expat.CurrentByteIndex
+        tag = self._content[start : self._content.find(b">", start)].replace(b"\0", b"")  # UTF-16 has zeros
+        for entity in self._entities:
+            if entity.encode() in tag:
+                self._refuse_entity(entity)
+
+    def _refuse_entity(self, entity: str) -> NoReturn:
+        self._refuse(f"the entity {entity} is not supported; write the text itself in its place")
 
     def _refuse(self, reason: str) -> NoReturn:
         raise SourceError(reason, self._here())
