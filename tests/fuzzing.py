@@ -32,7 +32,7 @@ from ravemj.readers import read_file
 from ravemj.simulation import Simulation
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-SEEDS = (REPOSITORY / "models", REPOSITORY / "tests" / "data", REPOSITORY.parent / "shared" / "conformance" / "cases")
+SEEDS = (REPOSITORY / "models", REPOSITORY / "tests" / "data", REPOSITORY / "tests" / "conformance" / "cases")
 
 MAIN = "main.xml"
 Files = dict[str, bytes]
