@@ -205,6 +205,15 @@ REFUSED = {
 }
 
 
+FORMULA = "<Joint name='k' {}><Body>A</Body><Body>C</Body></Joint>"
+
+
+def test_a_formula_without_finite_values_is_left_out(run):
+    content = TWO + "<Body name='C'/>" + HINGE.replace("'j'", "'j' enable='false'").format("")
+    content += FORMULA.format("mimic_pos='exp(exp(exp(j+9)))'") + FORMULA.format("").replace("'k'", "'l'")
+    run(body(content))
+
+
 class TestFound:
     """What these tests found once."""
 

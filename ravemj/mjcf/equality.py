@@ -73,6 +73,9 @@ class EqualityWriter:
             coefficients = np.polynomial.Polynomial(coefficients)(np.polynomial.Polynomial([shift, 1])).coef.tolist()
             coefficients[0] -= joint.axes[0].reference
             leader_name = names[moving[0]][0]
+        if not np.isfinite(coefficients).all():
+            self._drop(joint, "follows a formula without finite values")
+            return
         padded = tuple((coefficients + [0.0] * _TERMS)[:_TERMS])
         self.equalities.element("joint", joint.source, joint1=name, joint2=leader_name, polycoef=padded)
 

@@ -23,7 +23,7 @@ def legal_inertial(inertial: Inertial) -> Inertial:
     com = inertial.com if all(map(math.isfinite, inertial.com)) else (0.0, 0.0, 0.0)
     if mass == inertial.mass and com == inertial.com and np.all(legal <= moments * (1 + 1e-12)):
         return inertial
-    legal[0] += 1e-12 * legal[2]  # MuJoCo looks at the moments that it computes from the tensor
+    legal += 1e-9 * large  # MuJoCo looks at the moments that it computes from the tensor
     xx, xy, xz, _, yy, yz, _, _, zz = ((axes * legal) @ axes.T).ravel().tolist()
     return Inertial(mass, com, ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
 
