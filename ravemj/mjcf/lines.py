@@ -60,8 +60,9 @@ class Lines:
 
 def comment_text(text: str) -> str:
     """Return a text as it may stand in a comment: in one line, without two dashes in a row."""
-    printable = "".join(character if character.isprintable() else "?" for character in text)
-    return re.sub("-(?=-)", "- ", printable)
+    if not text.isprintable():
+        text = "".join(character if character.isprintable() else "?" for character in text)
+    return re.sub("-(?=-)", "- ", text) if "--" in text else text
 
 
 def pose_attributes(pose: Pose) -> dict[str, Attribute]:
