@@ -208,6 +208,15 @@ REFUSED = {
 FORMULA = "<Joint name='k' {}><Body>A</Body><Body>C</Body></Joint>"
 
 
+@pytest.mark.parametrize("third", ["2.0000000000001", "2.000000000001", "2", "1.9999999999999"])
+def test_inertias_at_the_edge(run, third):
+    mass = f"<Mass type='custom'><total>1</total><inertia>1 0 0 0 1 0 0 0 {third}</inertia></Mass>"
+    turned = f"<Mass type='custom'><total>1</total><inertia>1.5 .5 0 .5 1.5 0 0 0 {third}</inertia></Mass>"
+    rod = "<Mass type='custom'><total>1</total><inertia>1 1 0 1 1 0 0 0 2</inertia></Mass>"
+    for content in (mass, turned, rod):
+        assert run(body(f"<Body name='A'>{content}</Body>")).refused == ""
+
+
 def test_a_formula_without_finite_values_is_left_out(run):
     content = TWO + "<Body name='C'/>" + HINGE.replace("'j'", "'j' enable='false'").format("")
     content += FORMULA.format("mimic_pos='exp(exp(exp(j+9)))'") + FORMULA.format("").replace("'k'", "'l'")

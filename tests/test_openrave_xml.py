@@ -103,6 +103,11 @@ class TestDocument:
         np.testing.assert_allclose(rotation(view.T_world_camera), [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
 
 
+def test_an_entity_behind_a_greater_sign_is_found(read_text):
+    reading = read_text("<!DOCTYPE r [<!ENTITY e '1'>]><KinBody name='a>&e;'><Body name='l'/></KinBody>")
+    assert "the entity &e; is not supported" in str(reading.failure)
+
+
 class TestBodyInBody:
     BOX = "<Geom><Extents>1 1 1</Extents><Translation>0 0 1</Translation></Geom>"
     INNER = (

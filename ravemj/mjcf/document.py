@@ -9,7 +9,7 @@ from ravemj.errors import Diagnostics, Source
 from ravemj.joints import relative_pose
 from ravemj.mjcf.equality import EqualityWriter
 from ravemj.mjcf.geometry import GeometryWriter
-from ravemj.mjcf.inertia import inertia_attributes, legal_inertial
+from ravemj.mjcf.inertia import inertia_attributes, is_rounding, legal_inertial
 from ravemj.mjcf.lines import Attribute, Lines, pose_attributes
 from ravemj.scene import Axis, Joint, KinBody, Link, Mesh, Scene, View
 from ravemj.transforms import ZERO, conjugate, rotate
@@ -230,8 +230,9 @@ class _Writer:
         inertial = legal_inertial(link.inertial)
         if inertial != link.inertial:
             self.altered.append((body_index, link_index))
-            message = f"MuJoCo refuses the mass or inertia of '{link.name}'; the MJCF has the nearest legal one"
-            self.diagnostics.warn("raised-inertia", message, link.source)
+            if not is_rounding(inertial, link.inertial):
+                message = f"MuJoCo refuses the mass or inertia of '{link.name}'; the MJCF has the nearest legal one"
+                self.diagnostics.warn("raised-inertia", message, link.source)
         self.bodies.element("inertial", link.source, **inertia_attributes(inertial))
 
     def _write_joint(self, joint: Joint, names: tuple[str, ...]) -> None:

@@ -11,6 +11,19 @@ SMALLEST = 1e-10
 """The least mass [kg] and moment of inertia [kg m^2] that is written; MuJoCo wants them positive."""
 
 
+_ROUNDING = 1e-11
+"""How far, relative to the largest, moments stay from the edge: MuJoCo computes them anew from the tensor."""
+
+
+def is_rounding(legal: Inertial, given: Inertial) -> bool:
+    """Tell whether mass properties were changed by no more than rounding."""
+    inertia = np.array(given.inertia)
+    if not np.isfinite(inertia).all():
+        return False
+    close = np.allclose(legal.inertia, inertia, rtol=0, atol=10 * _ROUNDING * float(np.abs(inertia).max()))
+    return close and (legal.mass, legal.com) == (given.mass, given.com)
+
+
 def legal_inertial(inertial: Inertial) -> Inertial:
     """Return the nearest mass properties that MuJoCo takes: positive, and no moment above the sum of the others."""
     if _is_legal_diagonal(inertial):
@@ -21,9 +34,10 @@ def legal_inertial(inertial: Inertial) -> Inertial:
     small, middle, large = (max(float(moment), SMALLEST) for moment in moments)
     legal = np.array([max(small, large - middle), middle, large])
     com = inertial.com if all(map(math.isfinite, inertial.com)) else (0.0, 0.0, 0.0)
-    if mass == inertial.mass and com == inertial.com and np.all(legal <= moments * (1 + 1e-12)):
+    positive = np.array_equal((small, middle, large), moments)
+    if mass == inertial.mass and com == inertial.com and positive and small + middle - large >= _ROUNDING * large:
         return inertial
-    legal += 1e-9 * large  # MuJoCo looks at the moments that it computes from the tensor
+    legal += _ROUNDING * large
     xx, xy, xz, _, yy, yz, _, _, zz = ((axes * legal) @ axes.T).ravel().tolist()
     return Inertial(mass, com, ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
 
@@ -34,12 +48,7 @@ def _is_legal_diagonal(inertial: Inertial) -> bool:
     if xy or xz or yz or not SMALLEST <= inertial.mass < math.inf:
         return False
     small, middle, large = sorted((xx, yy, zz))
-    return (
-        small >= SMALLEST
-        and large <= (small + middle) * (1 + 1e-12)
-        and large < math.inf
-        and all(map(math.isfinite, inertial.com))
-    )
+    return small >= SMALLEST and large <= small + middle and large < math.inf and all(map(math.isfinite, inertial.com))
 
 
 def inertia_attributes(inertial: Inertial) -> dict[str, Attribute]:

@@ -15,7 +15,7 @@ Target = TypeVar("Target")
 
 IGNORED = "OpenRAVE reads it and makes nothing of it"
 UNSCALED = (1.0, 1.0, 1.0)
-MOST_INCLUDES = 10_000
+MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
 COLLADA_SUFFIXES = (".dae", ".zae")
 NO_EFFECT_HERE = "it has no effect on the model"
@@ -46,7 +46,6 @@ class Context:
     def __init__(self) -> None:
         self.diagnostics = Diagnostics()
         self.files: list[str] = []
-        self._count = 0
         self._found: dict[tuple[str, str, tuple[str, ...]], str] = {}
         self._meshes: dict[tuple[str, Vec3], tuple[MeshPart, ...]] = {}
 
@@ -128,9 +127,8 @@ class Context:
         return self._included(path, element.source)
 
     def _included(self, path: str, source: Source) -> Element | None:
-        self._count += 1
-        if self._count > MOST_INCLUDES:
-            raise SourceError(f"more than {MOST_INCLUDES} files are included", source)
+        if len(self.files) >= MOST_FILES:
+            raise SourceError(f"the model has more than {MOST_FILES} files", source)
         self.files.append(path)
         try:
             document = parse_file(path, source)

@@ -168,7 +168,8 @@ class _Parser:
     def _refuse_entities(self) -> None:
         """Refuse a start tag with entities of the file's own in it: expat has replaced them without a word."""
         start = self._expat.CurrentByteIndex
-        tag = self._content[start : self._content.find(b">", start)].replace(b"\0", b"")  # UTF-16 has zeros
+        end = self._content.find(b"<", start + 1)  # values may hold a ">", never a "<"
+        tag = self._content[start:end].replace(b"\0", b"")  # UTF-16 has zeros
         for entity in self._entities:
             if entity.encode() in tag:
                 self._refuse_entity(entity)
