@@ -56,6 +56,14 @@ class Pose(NamedTuple):
         return matrix
 
 
+def inverse(T_a_b: Floats) -> Floats:
+    """Return ``T_b_a``, the inverse of a rigid transform, shape (4, 4)."""
+    T_b_a = np.eye(4)
+    T_b_a[:3, :3] = T_a_b[:3, :3].T
+    T_b_a[:3, 3] = -T_a_b[:3, :3].T @ T_a_b[:3, 3]
+    return T_b_a
+
+
 def add(a: Vec3, b: Vec3) -> Vec3:
     """Return a + b."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])

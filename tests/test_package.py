@@ -19,7 +19,7 @@ LEVELS: list[set[str]] = [
     {"adjacency", "following", "hierarchy", "joints", "manipulators", "meshes", "summary"},
     {"builder", "mjcf"},
     {"kinematics", "openrave_xml"},
-    {"coverage", "dynamics", "readers", "rendering"},
+    {"coverage", "dynamics", "placement", "readers", "rendering"},
     {"simulation"},
     {"export", "studio"},
     {"viewers"},

@@ -1,6 +1,6 @@
 """OpenRAVE's enumerations, with OpenRAVE's numbers."""
 
-from enum import IntEnum
+from enum import IntEnum, IntFlag
 
 
 class CheckLimitsAction(IntEnum):
@@ -56,3 +56,67 @@ class SensorType(IntEnum):
     Odometry = 6
     Tactile = 7
     Actuator = 8
+
+
+class InterfaceType(IntEnum):
+    """Kinds of objects that OpenRAVE's plugins make."""
+
+    planner = 1
+    robot = 2
+    sensorsystem = 3
+    controller = 4
+    module = 5
+    probleminstance = 5
+    iksolver = 6
+    kinbody = 7
+    physicsengine = 8
+    sensor = 9
+    collisionchecker = 10
+    trajectory = 11
+    viewer = 12
+    spacesampler = 13
+
+
+class InterfaceAddMode(IntEnum):
+    """What ``env.Add`` does when the name is taken."""
+
+    StrictNameChecking = 0
+    """Raise."""
+    AllowRenaming = 1
+    """Add it under a name of its own."""
+
+
+class SaveParameters(IntFlag):
+    """What a state saver keeps and restores."""
+
+    LinkTransformation = 0x1
+    """Poses of the links and joint values."""
+    LinkEnable = 0x2
+    """Which links collision checking looks at."""
+    LinkVelocities = 0x4
+    JointMaxVelocityAndAcceleration = 0x8
+    JointWeights = 0x10
+    JointLimits = 0x20
+    JointResolutions = 0x40
+    ActiveDOF = 0x10000
+    ActiveManipulator = 0x20000
+    GrabbedBodies = 0x40000
+    ActiveManipulatorToolTransform = 0x80000
+    ManipulatorsToolTransform = 0x100000
+
+
+class DOFAffine(IntFlag):
+    """Degrees of freedom of a body's base; combine them with ``|``."""
+
+    NoTransform = 0
+    X = 1
+    Y = 2
+    Z = 4
+    RotationAxis = 8
+    """One angle about an axis."""
+    Rotation3D = 16
+    """A rotation vector."""
+    RotationQuat = 32
+    """A quaternion wxyz."""
+    RotationMask = 56
+    Transform = 39

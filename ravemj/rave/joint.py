@@ -159,7 +159,7 @@ class Joint:
     def _T_world_parent(self) -> Floats:
         """Return the parent link's pose in the world, shape (3, 4)."""
         with self._state.simulation.lock:
-            return self._state.kinematics.link_transform(self._scene.parent)[:3]
+            return self._state.link_transform(self._scene.parent)[:3]
 
     def GetHierarchyParentLink(self) -> Link:
         """Return the link of the joint that is nearer to the body's first link."""

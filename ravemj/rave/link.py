@@ -44,7 +44,7 @@ class Link:
             ``T_world_link``, shape (4, 4); a copy.
         """
         with self._state.simulation.lock:
-            return self._state.kinematics.link_transform(self._index)
+            return self._state.link_transform(self._index)
 
     def GetMass(self) -> float:
         """Return the link's mass [kg]."""
