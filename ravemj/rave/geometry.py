@@ -1,10 +1,10 @@
 """Shapes of a link."""
 
-from dataclasses import dataclass
-
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ravemj import scene
+from ravemj.arrays import checked_numbers
 from ravemj.errors import RavemjError
 from ravemj.rave.enums import GeometryType
 from ravemj.transforms import Floats, Ints
@@ -21,17 +21,35 @@ _TYPES: dict[type[scene.Shape], GeometryType] = {
 }
 
 
-@dataclass(eq=False)
 class TriMesh:
     """Triangles.
 
     Attributes:
-        vertices: Shape (n, 3) [m].
-        indices: Corners of each triangle, shape (m, 3).
+        vertices: Shape (n, 3) [m]; None in a new mesh.
+        indices: Corners of each triangle, shape (m, 3); None in a new mesh.
+
+    Example:
+        >>> mesh = TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     """
 
-    vertices: Floats
-    indices: Ints
+    vertices: Floats | None
+    indices: Ints | None
+
+    def __init__(self, vertices: ArrayLike | None = None, indices: ArrayLike | None = None) -> None:
+        self.vertices = None if vertices is None else checked_numbers(vertices, "vertices")
+        self.indices = None if indices is None else checked_numbers(indices, "indices").astype(np.int_)
+
+    def toDict(self) -> dict[str, Floats | Ints | None]:
+        """Return the mesh as ``vertices`` and ``indices``."""
+        return {"vertices": self.vertices, "indices": self.indices}
+
+    def __repr__(self) -> str:
+        vertices, indices = ("None" if part is None else part.tolist() for part in (self.vertices, self.indices))
+        return f"TriMesh({vertices},{indices})"
+
+    def __str__(self) -> str:
+        counts = (0 if part is None else len(part) for part in (self.vertices, self.indices))
+        return "<trimesh: verts {}, tris={}>".format(*counts)
 
 
 class Geometry:
@@ -122,7 +140,7 @@ class Geometry:
         shape = self._scene.shape
         if not isinstance(shape, scene.TriMesh):
             raise self._has_none("triangles")
-        return TriMesh(shape.mesh.vertices.copy(), shape.mesh.triangles.copy())
+        return TriMesh(shape.mesh.vertices, shape.mesh.triangles)
 
     def GetDiffuseColor(self) -> Floats:
         """Return the colour: red, green, blue from 0 to 1, shape (3,)."""
