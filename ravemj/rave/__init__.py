@@ -4,8 +4,27 @@
 objects is ravemj's own.
 """
 
-from ravemj.rave.enums import CheckLimitsAction, GeometryType, JointType, SensorType
-from ravemj.rave.environment import Environment, RaveGetEnvironment, load
+from ravemj.rave.body.grabbing import GrabbedInfo
+from ravemj.rave.body.saving import StateSaver
+from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
+from ravemj.rave.enums import (
+    CheckLimitsAction,
+    CloningOptions,
+    GeometryType,
+    InterfaceAddMode,
+    InterfaceType,
+    JointType,
+    SaveParameters,
+    SensorType,
+)
+from ravemj.rave.environment import (
+    Environment,
+    RaveDestroy,
+    RaveGetEnvironment,
+    RaveGetEnvironmentId,
+    RaveGetEnvironments,
+    load,
+)
 from ravemj.rave.geometry import Geometry, TriMesh
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
@@ -20,19 +39,30 @@ __all__ = [
     "CameraGeomData",
     "CameraIntrinsics",
     "CheckLimitsAction",
+    "CloningOptions",
     "Environment",
     "Geometry",
     "GeometryType",
+    "GrabbedInfo",
+    "InterfaceAddMode",
+    "InterfaceType",
     "Joint",
     "JointType",
     "KinBody",
     "Link",
     "Manipulator",
     "PhysicsEngine",
+    "RaveCreateKinBody",
+    "RaveCreateRobot",
+    "RaveDestroy",
     "RaveGetEnvironment",
+    "RaveGetEnvironmentId",
+    "RaveGetEnvironments",
     "Robot",
+    "SaveParameters",
     "Sensor",
     "SensorType",
+    "StateSaver",
     "TriMesh",
     "load",
 ]
