@@ -1,5 +1,6 @@
 """Bodies."""
 
+from ravemj.rave.body.building import Building
 from ravemj.rave.body.limits import Limits
 from ravemj.rave.body.mechanism import Mechanism
 from ravemj.rave.body.motion import Motion
@@ -10,7 +11,7 @@ from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 
 
-class KinBody(Placement, Limits, Mechanism, Motion):
+class KinBody(Placement, Limits, Mechanism, Motion, Building):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:
