@@ -13,20 +13,30 @@ class TriMesh:
     """Triangles.
 
     Attributes:
-        vertices: Shape (n, 3) [m], or None.
-        indices: Corners of each triangle, shape (m, 3), or None.
+        vertices: Shape (n, 3) [m]; None in a new mesh.
+        indices: Corners of each triangle, shape (m, 3); None in a new mesh.
 
     Example:
-        >>> body.InitFromTrimesh(TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
-        True
+        >>> mesh = TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     """
 
+    vertices: Floats | None
+    indices: Ints | None
+
     def __init__(self, vertices: ArrayLike | None = None, indices: ArrayLike | None = None) -> None:
-        self.vertices: Floats | None = None if vertices is None else np.array(vertices, dtype=np.float64)
-        self.indices: Ints | None = None if indices is None else np.array(indices, dtype=np.int_)
+        self.vertices = None if vertices is None else checked_numbers(vertices, "vertices")
+        self.indices = None if indices is None else checked_numbers(indices, "indices").astype(np.int_)
+
+    def toDict(self) -> dict[str, Floats | Ints | None]:
+        """Return the mesh as ``vertices`` and ``indices``."""
+        return {"vertices": self.vertices, "indices": self.indices}
+
+    def __repr__(self) -> str:
+        vertices, indices = ("None" if part is None else part.tolist() for part in (self.vertices, self.indices))
+        return f"TriMesh({vertices},{indices})"
 
     def __str__(self) -> str:
-        counts = (0 if numbers is None else len(numbers) for numbers in (self.vertices, self.indices))
+        counts = (0 if part is None else len(part) for part in (self.vertices, self.indices))
         return "<trimesh: verts {}, tris={}>".format(*counts)
 
 
