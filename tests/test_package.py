@@ -16,7 +16,7 @@ LEVELS: list[set[str]] = [
     {"_mujoco", "errors", "transforms"},
     {"alias", "arrays", "coverage_notes", "expressions", "motion", "output"},
     {"geometry_functions", "scene", "video"},
-    {"adjacency", "following", "hierarchy", "joints", "manipulators", "meshes", "summary"},
+    {"adjacency", "following", "hierarchy", "joints", "making", "manipulators", "meshes", "summary"},
     {"builder", "mjcf"},
     {"kinematics", "openrave_xml"},
     {"coverage", "dynamics", "placement", "readers", "rendering"},
@@ -34,8 +34,8 @@ ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
     "adjacency", "alias", "arrays", "builder", "coverage", "errors", "expressions", "following", "geometry_functions",
-    "hierarchy", "joints", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "output", "readers", "scene",
-    "transforms", "video",
+    "hierarchy", "joints", "making", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "output", "readers",
+    "scene", "transforms", "video",
 }  # fmt: skip
 
 

@@ -25,7 +25,7 @@ from ravemj.rave.environment import (
     RaveGetEnvironments,
     load,
 )
-from ravemj.rave.geometry import Geometry, TriMesh
+from ravemj.rave.geometry import Geometry
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
@@ -33,6 +33,7 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.physics import PhysicsEngine
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
+from ravemj.rave.trimesh import TriMesh
 
 __all__ = [
     "AttachedSensor",

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from ravemj.rave.body.building import Building
 from ravemj.rave.body.grabbing import Grabbing
 from ravemj.rave.body.limits import Limits
 from ravemj.rave.body.mechanism import Mechanism
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class KinBody(Saving, Grabbing, Limits, Mechanism, Motion):
+class KinBody(Saving, Grabbing, Limits, Mechanism, Motion, Building):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:
