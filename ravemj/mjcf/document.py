@@ -211,7 +211,8 @@ class _Writer:
             for geometry in body.links[link].geometries:
                 self.geometries.write(geometry, self.bodies)
             pending.append((link, True))
-            pending.extend((child, False) for child in sorted(children.get(link, ()), reverse=True))
+            if link in children:
+                pending.extend((child, False) for child in sorted(children[link], reverse=True))
 
     def _open_link(self, body: KinBody, index: int, name: str, joint: Joint | None, moves: bool) -> None:
         link = body.links[index]
@@ -228,7 +229,7 @@ class _Writer:
 
     def _write_inertial(self, body_index: int, link_index: int, link: Link) -> None:
         inertial = legal_inertial(link.inertial)
-        if inertial != link.inertial:
+        if inertial is not link.inertial:
             self.altered.append((body_index, link_index))
             if not is_rounding(inertial, link.inertial):
                 message = f"MuJoCo refuses the mass or inertia of '{link.name}'; the MJCF has the nearest legal one"

@@ -56,8 +56,9 @@ class GeometryWriter:
 
     def _write_solid(self, geometry: Geometry, solid: Solid, out: Lines, *, seen: bool) -> None:
         kind, size, centre = solid
-        legal = tuple(max(part, SMALLEST_SIZE) for part in size)
-        if legal != size:
+        legal = size
+        if min(size) < SMALLEST_SIZE:
+            legal = tuple(max(part, SMALLEST_SIZE) for part in size)
             message = f"MuJoCo refuses a {kind} of size {attribute_text(size)}; the MJCF has {attribute_text(legal)}"
             self.diagnostics.warn("raised-size", message, geometry.source)
         pose = geometry.T_link_geometry @ Pose(centre) if any(centre) else geometry.T_link_geometry
@@ -165,4 +166,5 @@ def _container(shape: Container) -> list[Solid]:
 
 def _rgba(colour: Rgb, transparency: float) -> tuple[float, ...]:
     """Return colour and opacity in the range from 0 to 1, beyond which nothing looks different."""
-    return tuple(min(max(part, 0.0), 1.0) for part in (*colour, 1.0 - transparency))
+    rgba = (*colour, 1.0 - transparency)
+    return rgba if min(rgba) >= 0.0 and max(rgba) <= 1.0 else tuple(min(max(part, 0.0), 1.0) for part in rgba)
