@@ -56,6 +56,9 @@ class Pose(NamedTuple):
         return matrix
 
 
+UNMOVED = Pose()
+
+
 def pose_of(matrix: Floats) -> Pose:
     """Return the pose of a 4x4 matrix."""
     x, y, z = matrix[:3, 3].tolist()

@@ -244,5 +244,5 @@ def check_name(name: str, element: Element) -> None:
     """
     if not name:
         raise SourceError(f"<{element.spelled}> has no name", element.source, 'write name="…"')
-    if any(character.isspace() or not character.isprintable() for character in name):
+    if " " in name or not name.isprintable():  # other spaces than this one are not printable
         raise SourceError(f"the name '{name}' has spaces or control characters", element.source)
