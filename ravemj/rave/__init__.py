@@ -33,6 +33,7 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.physics import PhysicsEngine
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
+from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
 from ravemj.rave.trimesh import TriMesh
 
 __all__ = [
@@ -41,6 +42,7 @@ __all__ = [
     "CameraIntrinsics",
     "CheckLimitsAction",
     "CloningOptions",
+    "ConfigurationSpecification",
     "Environment",
     "Geometry",
     "GeometryType",
@@ -56,6 +58,7 @@ __all__ = [
     "RaveCreateKinBody",
     "RaveCreateRobot",
     "RaveDestroy",
+    "RaveGetAffineConfigurationSpecification",
     "RaveGetEnvironment",
     "RaveGetEnvironmentId",
     "RaveGetEnvironments",

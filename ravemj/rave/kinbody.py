@@ -8,6 +8,7 @@ from ravemj.rave.body.limits import Limits
 from ravemj.rave.body.mechanism import Mechanism
 from ravemj.rave.body.motion import Motion
 from ravemj.rave.body.saving import Saving, StateSaver
+from ravemj.rave.configured import Configured
 from ravemj.rave.enums import CheckLimitsAction, InterfaceType, JointType, SaveParameters
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.joint import Joint
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class KinBody(Saving, Grabbing, Limits, Mechanism, Motion, Building):
+class KinBody(Saving, Configured, Grabbing, Limits, Mechanism, Motion, Building):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:

@@ -11,6 +11,7 @@ from ravemj.arrays import checked_transform, checked_vector
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.link import Link
+from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats, Ints, pose_of
 
@@ -149,6 +150,14 @@ class Manipulator:
         self._edit(chucking_direction=tuple(signs.tolist()))
 
     SetClosingDirection = SetChuckingDirection
+
+    def GetArmConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
+        """Return the specification of the arm's joint values.
+
+        Args:
+            interpolation: How they change between waypoints, for instance ``linear``.
+        """
+        return self._robot.GetConfigurationSpecificationIndices(self.GetArmIndices(), interpolation)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Manipulator) and self._state is other._state and self._index == other._index

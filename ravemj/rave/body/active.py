@@ -12,6 +12,8 @@ from ravemj.rave.body.affine import AffineSettings
 from ravemj.rave.body.limits import Limits
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import CheckLimitsAction
+from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.trajectories.bodies import body_groups
 from ravemj.transforms import Floats, Ints, Vec3
 
 Z_AXIS: Vec3 = (0.0, 0.0, 1.0)
@@ -177,6 +179,19 @@ class ActiveDofs(Placement, Limits, AffineSettings):
         """Return 0, 1 or 2 for a rotation about x, y or z, and 3 for any other axis."""
         axis = self.active_choice.axis
         return next((number for number in range(3) if axis[number] == 1.0), 3)
+
+    def GetActiveConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
+        """Return what the active values are: the layout of the waypoints of trajectories for them.
+
+        Args:
+            interpolation: How they change between waypoints, for instance ``linear``.
+
+        Example:
+            >>> trajectory = ravemj.RaveCreateTrajectory(env, "")
+            >>> trajectory.Init(robot.GetActiveConfigurationSpecification("linear"))
+        """
+        groups = body_groups(self.GetName(), self._active_dofs(), self.active_choice.affine, interpolation)
+        return ConfigurationSpecification.of(groups)
 
     def SubtractActiveDOFValues(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
         """Return the difference of active values; circular joints and the base's angle go the shorter way round.
