@@ -14,7 +14,7 @@ PACKAGE = Path(ravemj.__file__).parent
 
 LEVELS: list[set[str]] = [
     {"_mujoco", "errors", "transforms"},
-    {"alias", "arrays", "coverage_notes", "expressions", "motion", "output"},
+    {"alias", "arrays", "coverage_notes", "drawing", "expressions", "handles", "motion", "output"},
     {"scene", "video"},
     {"adjacency", "following", "hierarchy", "joints", "manipulators", "meshes", "summary"},
     {"builder", "mjcf"},
@@ -33,8 +33,9 @@ LEVELS: list[set[str]] = [
 ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
-    "adjacency", "alias", "arrays", "builder", "coverage", "errors", "expressions", "following", "hierarchy", "joints",
-    "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "output", "readers", "scene", "transforms", "video",
+    "adjacency", "alias", "arrays", "builder", "coverage", "drawing", "errors", "expressions", "following", "handles",
+    "hierarchy", "joints", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "output", "readers", "scene",
+    "transforms", "video",
 }  # fmt: skip
 
 

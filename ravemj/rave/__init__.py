@@ -7,6 +7,7 @@ objects is ravemj's own.
 from ravemj.rave.enums import CheckLimitsAction, GeometryType, JointType, SensorType
 from ravemj.rave.environment import Environment, RaveGetEnvironment, load
 from ravemj.rave.geometry import Geometry, TriMesh
+from ravemj.rave.graph_handle import GraphHandle
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
@@ -23,6 +24,7 @@ __all__ = [
     "Environment",
     "Geometry",
     "GeometryType",
+    "GraphHandle",
     "Joint",
     "JointType",
     "KinBody",
