@@ -14,7 +14,7 @@ PACKAGE = Path(ravemj.__file__).parent
 
 LEVELS: list[set[str]] = [
     {"_mujoco", "errors", "transforms"},
-    {"alias", "arrays", "coverage_notes", "expressions", "motion", "output"},
+    {"alias", "arrays", "coverage_notes", "drawing", "expressions", "handles", "motion", "output"},
     {"geometry_functions", "scene", "video"},
     {"adjacency", "following", "hierarchy", "joints", "making", "manipulators", "meshes", "summary"},
     {"builder", "mjcf"},
@@ -25,7 +25,7 @@ LEVELS: list[set[str]] = [
     {"viewers"},
     {"extension", "rave"},
     {"checking", "misc", "recording"},
-    {"cli", "__init__"},
+    {"__init__", "cli"},
     {"__main__"},
 ]
 """Rooms from the ground up: each may import those of lower levels only, within its own package what it likes."""
@@ -33,9 +33,9 @@ LEVELS: list[set[str]] = [
 ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
-    "adjacency", "alias", "arrays", "builder", "coverage", "errors", "expressions", "following", "geometry_functions",
-    "hierarchy", "joints", "making", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "output", "readers",
-    "scene", "trajectories", "transforms", "video",
+    "adjacency", "alias", "arrays", "builder", "coverage", "drawing", "errors", "expressions", "following",
+    "geometry_functions", "handles", "hierarchy", "joints", "making", "manipulators", "meshes", "mjcf", "motion",
+    "openrave_xml", "output", "readers", "scene", "trajectories", "transforms", "video",
 }  # fmt: skip
 
 

@@ -26,6 +26,7 @@ from ravemj.rave.environment import (
     load,
 )
 from ravemj.rave.geometry import Geometry
+from ravemj.rave.graph_handle import GraphHandle
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
@@ -47,6 +48,7 @@ __all__ = [
     "Geometry",
     "GeometryType",
     "GrabbedInfo",
+    "GraphHandle",
     "InterfaceAddMode",
     "InterfaceType",
     "Joint",
