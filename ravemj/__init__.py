@@ -9,82 +9,60 @@
 ``CamelCase`` names are OpenRAVE's, with OpenRAVE's meaning; ``snake_case`` names are ravemj's own.
 """
 
+import importlib
+from types import ModuleType
+
 import ravemj._mujoco  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco
+from ravemj import rave
 from ravemj.errors import (
     ArgumentError,
     CompileError,
     Diagnostic,
-    ErrorCode,
     OutputError,
     RavemjError,
     RavemjWarning,
     RenderingError,
     Source,
     SourceError,
+    UnsupportedError,
 )
 from ravemj.extension import load_ipython_extension
 from ravemj.motion import Motion, read_motion
-from ravemj.rave import (
-    AttachedSensor,
-    CheckLimitsAction,
-    Environment,
-    Geometry,
-    GeometryType,
-    Joint,
-    JointType,
-    KinBody,
-    Link,
-    Manipulator,
-    PhysicsEngine,
-    RaveGetEnvironment,
-    Robot,
-    Sensor,
-    TriMesh,
-    load,
-)
+from ravemj.rave import *  # noqa: F403 - OpenRAVE's names, which ravemj/rave/__init__.py lists
 from ravemj.recording import record
 from ravemj.viewers import Viewer
 
 __version__ = "0.1.0"
 
-OpenRAVEException = openrave_exception = RavemjError
+_MODULES = ["databases", "examples", "interfaces", "metaclass", "misc", "openravepy_int", "planningutils"]
 
 __all__ = [
     "ArgumentError",
-    "AttachedSensor",
-    "CheckLimitsAction",
     "CompileError",
     "Diagnostic",
-    "Environment",
-    "ErrorCode",
-    "Geometry",
-    "GeometryType",
-    "Joint",
-    "JointType",
-    "KinBody",
-    "Link",
-    "Manipulator",
     "Motion",
-    "OpenRAVEException",
     "OutputError",
-    "PhysicsEngine",
-    "RaveGetEnvironment",
     "RavemjError",
     "RavemjWarning",
     "RenderingError",
-    "Robot",
-    "Sensor",
     "Source",
     "SourceError",
-    "TriMesh",
+    "UnsupportedError",
     "Viewer",
     "__version__",
-    "load",
     "load_ipython_extension",
-    "openrave_exception",
     "read_motion",
     "record",
 ]
+__all__ += rave.__all__
+__all__ += _MODULES  # noqa: PLE0605  # pyright: ignore[reportUnsupportedDunderAll] - __getattr__ imports them
+
+
+def __getattr__(name: str) -> ModuleType:
+    """Import a module of OpenRAVE's when it is asked for."""
+    if name in _MODULES:
+        return importlib.import_module(f"ravemj.{name}")
+    raise AttributeError(f"module 'ravemj' has no attribute '{name}'")
 
 
 def __dir__() -> list[str]:

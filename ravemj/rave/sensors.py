@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ravemj import scene
-from ravemj.rave.enums import SensorType
+from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.link import Link
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats
@@ -50,6 +50,7 @@ class Sensor:
     """A device that measures; ``attached.GetSensor()`` makes it."""
 
     Type = SensorType
+    ConfigureCommand = SensorCommand
 
     def __init__(self, attached: scene.AttachedSensor, kind: str) -> None:
         self._scene = attached
