@@ -14,7 +14,7 @@ PACKAGE = Path(ravemj.__file__).parent
 
 LEVELS: list[set[str]] = [
     {"_mujoco", "errors", "transforms"},
-    {"alias", "arrays", "coverage_notes", "examples", "expressions", "metaclass", "motion", "output"},
+    {"alias", "arrays", "coverage_notes", "examples", "expressions", "metaclass", "motion", "output", "python2"},
     {"scene", "video"},
     {"adjacency", "following", "hierarchy", "joints", "manipulators", "meshes", "summary"},
     {"builder", "mjcf"},
