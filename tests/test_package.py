@@ -14,7 +14,7 @@ PACKAGE = Path(ravemj.__file__).parent
 
 LEVELS: list[set[str]] = [
     {"_mujoco", "errors", "transforms"},
-    {"alias", "arrays", "coverage_notes", "expressions", "motion", "output"},
+    {"alias", "arrays", "coverage_notes", "expressions", "motion", "ordering", "output"},
     {"scene", "video"},
     {"adjacency", "following", "hierarchy", "joints", "manipulators", "meshes", "summary"},
     {"builder", "mjcf"},
@@ -34,7 +34,8 @@ ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
     "adjacency", "alias", "arrays", "builder", "coverage", "errors", "expressions", "following", "hierarchy", "joints",
-    "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "output", "readers", "scene", "transforms", "video",
+    "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "ordering", "output", "readers", "scene", "transforms",
+    "video",
 }  # fmt: skip
 
 
