@@ -13,6 +13,7 @@
     RavemjWarning               .code .diagnostic: read, but not as the author may think
 """
 
+import re
 import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -87,6 +88,16 @@ class RavemjError(Exception):
         return self._code.name
 
 
+_LONG_QUOTATION = re.compile("'([^']{80})[^']{2,}'")
+_LONGEST = 2000  # characters of a message
+
+
+def shortened(message: str) -> str:
+    """Return a message without most of the text that it quotes, which may be megabytes of a damaged file."""
+    message = _LONG_QUOTATION.sub(r"'\1…'", message)
+    return message if len(message) <= _LONGEST else f"{message[: _LONGEST // 2]} … {message[-_LONGEST // 2 :]}"
+
+
 _CAUSES = {"missing-file", "broken-file", "unsupported-file", "bad-number"}
 
 
@@ -100,9 +111,9 @@ class SourceError(RavemjError):
     """
 
     def __init__(self, message: str, source: Source, hint: str = "") -> None:
-        super().__init__(message)
+        super().__init__(shortened(message))
         self.source = source
-        self.hint = hint
+        self.hint = shortened(hint)
         self.diagnostics: tuple[Diagnostic, ...] = ()
 
     def __str__(self) -> str:
@@ -211,11 +222,11 @@ class Diagnostics:
 
     def warn(self, code: str, message: str, source: Source, hint: str = "") -> None:
         """Record something that OpenRAVE lets pass in silence or with a log line."""
-        self._found.append(Diagnostic("warning", code, message, source, hint))
+        self._found.append(Diagnostic("warning", code, shortened(message), source, shortened(hint)))
 
     def error(self, code: str, message: str, source: Source, hint: str = "") -> None:
         """Record something for which OpenRAVE's ``Load`` returns False though it goes on."""
-        self._found.append(Diagnostic("error", code, message, source, hint))
+        self._found.append(Diagnostic("error", code, shortened(message), source, shortened(hint)))
 
 
 def _places(source: Source | None) -> Iterator[tuple[str, int]]:

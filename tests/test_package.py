@@ -24,6 +24,7 @@ LEVELS: list[set[str]] = [
         "handles",
         "metaclass",
         "motion",
+        "ordering",
         "output",
         "python2",
     },
@@ -47,7 +48,7 @@ ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 WITHOUT_MUJOCO = {
     "adjacency", "alias", "arrays", "builder", "coverage", "drawing", "errors", "expressions", "following",
     "geometry_functions", "handles", "hierarchy", "joints", "making", "manipulators", "meshes", "mjcf", "motion",
-    "openrave_xml", "output", "readers", "scene", "trajectories", "transforms", "video",
+    "openrave_xml", "ordering", "output", "readers", "scene", "trajectories", "transforms", "video",
 }  # fmt: skip
 
 

@@ -1,5 +1,6 @@
 """What every part of the reader needs: where to report, where files are, and how to walk over an element."""
 
+import functools
 import os
 from collections.abc import Callable, Collection, Mapping, Set
 from dataclasses import replace
@@ -24,10 +25,6 @@ NO_EFFECT_HERE = "it has no effect on the model"
 def reasons(reason: str, *names: str) -> dict[str, str]:
     """Return a table that gives one reason for each name."""
     return dict.fromkeys(names, reason)
-
-
-UNCOMPUTABLE = (ArithmeticError, ValueError)
-"""What arithmetic raises at numbers such as 1e200."""
 
 
 def uncomputable(element: Element) -> SourceError:
@@ -70,7 +67,7 @@ class Context:
                 if child.complete:
                     try:
                         handler(target, child)
-                    except UNCOMPUTABLE as error:
+                    except ArithmeticError as error:
                         raise uncomputable(child) from error
             elif child.tag in ignored:
                 self.leave_out(child, ignored[child.tag])
@@ -228,7 +225,12 @@ def _belongs(element: Element) -> str:
 
 def did_you_mean(name: str, known: Collection[str]) -> str:
     """Return a hint with the known name that looks most like the one given, or nothing."""
+    return _closest(name, tuple(known))
+
+
+@functools.lru_cache(maxsize=1000)  # slow, and who spells a tag wrongly does so many times
+def _closest(name: str, known: tuple[str, ...]) -> str:
     import difflib  # noqa: PLC0415 - slow to import
 
-    similar = difflib.get_close_matches(name, list(known), n=1)
+    similar = difflib.get_close_matches(name, known, n=1)
     return f"did you mean '{similar[0]}'?" if similar else ""

@@ -175,7 +175,7 @@ def _matrix(element: Element, diagnostics: Diagnostics) -> Wxyz:
     m = numbers(element, 9, diagnostics)
     try:
         return wxyz_from_rows((m[0:3], m[3:6], m[6:9]))
-    except ValueError:
+    except ZeroDivisionError:
         raise SourceError(f"<{element.spelled}> holds no rotation: {element.text.strip()}", element.source) from None
 
 
@@ -183,7 +183,7 @@ def _quaternion(element: Element, diagnostics: Diagnostics) -> Wxyz:
     w, x, y, z = numbers(element, 4, diagnostics)
     try:
         return normalize((w, x, y, z))
-    except ValueError:
+    except ZeroDivisionError:
         raise SourceError(
             f"<{element.spelled}> holds no rotation: {element.text.strip()}",
             element.source,
