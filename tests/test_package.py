@@ -19,7 +19,7 @@ LEVELS: list[set[str]] = [
     {"adjacency", "following", "hierarchy", "joints", "manipulators", "meshes", "summary"},
     {"builder", "mjcf"},
     {"kinematics", "openrave_xml"},
-    {"coverage", "dynamics", "readers", "rendering"},
+    {"coverage", "dynamics", "readers", "rendering", "trajectories"},
     {"simulation"},
     {"export", "studio"},
     {"viewers"},
@@ -35,7 +35,7 @@ ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 WITHOUT_MUJOCO = {
     "adjacency", "alias", "arrays", "builder", "coverage", "errors", "expressions", "following", "geometry_functions",
     "hierarchy", "joints", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "output", "readers", "scene",
-    "transforms", "video",
+    "trajectories", "transforms", "video",
 }  # fmt: skip
 
 

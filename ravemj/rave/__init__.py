@@ -14,12 +14,14 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.physics import PhysicsEngine
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
+from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
 
 __all__ = [
     "AttachedSensor",
     "CameraGeomData",
     "CameraIntrinsics",
     "CheckLimitsAction",
+    "ConfigurationSpecification",
     "Environment",
     "Geometry",
     "GeometryType",
@@ -29,6 +31,7 @@ __all__ = [
     "Link",
     "Manipulator",
     "PhysicsEngine",
+    "RaveGetAffineConfigurationSpecification",
     "RaveGetEnvironment",
     "Robot",
     "Sensor",

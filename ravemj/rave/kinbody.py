@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from ravemj.adjacency import adjacent_pairs
 from ravemj.arrays import checked_numbers, checked_vector
 from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning
+from ravemj.rave.configured import Configured
 from ravemj.rave.enums import CheckLimitsAction, JointType
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.joint import Joint
@@ -25,7 +26,7 @@ ROUNDING = 2e-10
 """How far outside its limits [rad or m] OpenRAVE moves a value without a warning."""
 
 
-class KinBody:
+class KinBody(Configured):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:

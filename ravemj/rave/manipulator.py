@@ -7,6 +7,7 @@ import numpy as np
 from ravemj import scene
 from ravemj.errors import RavemjError
 from ravemj.rave.link import Link
+from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats, Ints
 
@@ -82,6 +83,14 @@ class Manipulator:
     def GetChuckingDirection(self) -> Floats:
         """Return for each DOF of the gripper the sign of closing: 1, 0 or -1."""
         return np.array(self._scene.chucking_direction)
+
+    def GetArmConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
+        """Return the specification of the arm's joint values.
+
+        Args:
+            interpolation: How they change between waypoints, for instance ``linear``.
+        """
+        return self._robot.GetConfigurationSpecificationIndices(self.GetArmIndices(), interpolation)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Manipulator) and self._state is other._state and self._index == other._index

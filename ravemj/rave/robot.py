@@ -3,6 +3,7 @@
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.sensors import AttachedSensor
+from ravemj.rave.specification import ConfigurationSpecification
 
 
 class Robot(KinBody):
@@ -29,3 +30,11 @@ class Robot(KinBody):
     def GetAttachedSensor(self, name: str) -> AttachedSensor | None:
         """Return the attached sensor of that name, or None."""
         return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == name), None)
+
+    def GetActiveConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
+        """Return the specification of the active DOFs: all joint values.
+
+        Args:
+            interpolation: How they change between waypoints, for instance ``linear``.
+        """
+        return self.GetConfigurationSpecificationIndices(range(self.GetDOF()), interpolation)

@@ -1,0 +1,218 @@
+"""What the numbers of a configuration are."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Self
+
+from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.rave.configuration_data import ConfigurationData, checked_order
+from ravemj.trajectories import layout
+from ravemj.trajectories.bodies import body_groups
+from ravemj.trajectories.groups import DELTATIME, Group
+from ravemj.trajectories.text import layout_text, read_layout
+
+if TYPE_CHECKING:
+    from ravemj.rave.kinbody import KinBody
+
+
+class ConfigurationSpecification(ConfigurationData):
+    """What the numbers of a configuration are: named groups of joint values, poses, velocities, times.
+
+    Example:
+        >>> spec = robot.GetConfigurationSpecification("linear")
+        >>> spec.AddDerivativeGroups(1, True)
+        >>> [group.name for group in spec.GetGroups()]
+        ['joint_values arm 0 1', 'affine_transform arm 39', 'joint_velocities arm 0 1', 'affine_velocities arm 39', \
+'deltatime']
+        >>> spec.ExtractJointValues(trajectory.Sample(0.5), robot, [0, 1])
+    """
+
+    Group = Group
+
+    def __init__(self, spec: "ConfigurationSpecification | Group | str | None" = None) -> None:
+        """Make a specification.
+
+        Args:
+            spec: Another one, a group, or XML text, as ``repr`` shows it; None: no groups.
+        """
+        if isinstance(spec, str):
+            self._groups = read_layout(spec)
+        elif isinstance(spec, Group):
+            self._groups = layout.packed([spec])
+        else:
+            self._groups = [] if spec is None else spec.GetGroups()
+
+    @classmethod
+    def of(cls, groups: Sequence[Group]) -> Self:
+        """Make a specification of copies of groups."""
+        spec = cls()
+        spec._groups = layout.copied(groups)
+        return spec
+
+    def GetGroups(self) -> list[Group]:
+        """Return the groups; copies, each with ``name``, ``offset``, ``dof`` and ``interpolation``."""
+        return layout.copied(self._groups)
+
+    def GetDOF(self) -> int:
+        """Return how many numbers a configuration has."""
+        return layout.count(self._groups)
+
+    def IsValid(self) -> bool:
+        """Return whether each number is in just one group, and each name is used once."""
+        return layout.flaw(self._groups) is None
+
+    def Validate(self) -> None:
+        """Check the specification.
+
+        Raises:
+            ArgumentError: it is not valid; the message says why.
+        """
+        wrong = layout.flaw(self._groups)
+        if wrong is not None:
+            raise ArgumentError(wrong, ErrorCode.Assert)
+
+    def GetGroupFromName(self, name: str) -> Group:
+        """Return the group of that name, or else the one with the shortest name that starts so; a copy.
+
+        Raises:
+            ArgumentError: there is none.
+        """
+        group = layout.find_prefix(self._groups, name)
+        if group is None:
+            raise ArgumentError(f"name: no group starts with '{name}'")
+        return layout.copied([group])[0]
+
+    def FindCompatibleGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
+        """Return the group with values of the same kind and body; a copy, or None.
+
+        Args:
+            name: A group's name, or its beginning, for instance ``joint_values arm``.
+            exactmatch: Whether the names have to be equal.
+        """
+        found = layout.find_compatible(self._groups, name if isinstance(name, str) else name.name, exactmatch)
+        return None if found is None else layout.copied([found])[0]
+
+    def FindTimeDerivativeGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
+        """Return the group with the time derivative of another; a copy, or None. See ``FindCompatibleGroup``."""
+        return self._shifted(name, 1, exactmatch)
+
+    def FindTimeIntegralGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
+        """Return the group of which another is the time derivative; a copy, or None. See ``FindCompatibleGroup``."""
+        return self._shifted(name, -1, exactmatch)
+
+    def _shifted(self, name: "str | Group", steps: int, exactmatch: bool) -> Group | None:
+        found = layout.find_shifted(self._groups, name if isinstance(name, str) else name.name, steps, exactmatch)
+        return None if found is None else layout.copied([found])[0]
+
+    def AddGroup(self, name: "str | Group", dof: int = 0, interpolation: str = "") -> int:
+        """Add a group behind the others, unless it is there.
+
+        Args:
+            name: What the values are, for instance ``joint_values arm 0 1``; or a group, of which the rest is taken.
+            dof: How many values it has.
+            interpolation: How they change between waypoints.
+
+        Returns:
+            Its offset.
+
+        Raises:
+            ArgumentError: there is another group of that kind for the same body.
+
+        Example:
+            >>> spec.AddGroup("joint_values arm 0 1", 2, "linear")
+            0
+        """
+        new = name if isinstance(name, Group) else Group(name, 0, dof, interpolation)
+        self._groups = layout.with_group(self._groups, new)
+        return next(group.offset for group in self._groups if group.name == new.name)
+
+    def AddDeltaTimeGroup(self) -> int:
+        """Add the time since the last waypoint [s], unless it is there; return its offset."""
+        return self.AddGroup(DELTATIME, 1)
+
+    def AddDerivativeGroups(self, deriv: int, adddeltatime: bool = False) -> None:
+        """Add the derivatives of all positions, with the interpolations that fit to theirs.
+
+        Args:
+            deriv: 1 for velocities, 2 for accelerations and so on.
+            adddeltatime: Whether to add the time since the last waypoint, too.
+        """
+        self._groups = layout.with_derivatives(self._groups, checked_order(deriv, "deriv"), adddeltatime)
+
+    def AddVelocityGroups(self, adddeltatime: bool) -> None:
+        """Add velocities: the older name of ``AddDerivativeGroups(1, adddeltatime)``."""
+        self.AddDerivativeGroups(1, adddeltatime)
+
+    def RemoveGroups(self, groupname: str, exactmatch: bool = True) -> int:
+        """Remove groups, and close the gaps.
+
+        Args:
+            groupname: The name of a group.
+            exactmatch: False: also groups whose names start so.
+
+        Returns:
+            How many are gone.
+        """
+        before = len(self._groups)
+        self._groups = layout.without(self._groups, groupname, exactmatch)
+        return before - len(self._groups)
+
+    def ResetGroupOffsets(self) -> None:
+        """Put the groups one behind the other, without gaps."""
+        self._groups = layout.packed(self._groups)
+
+    def ConvertToVelocitySpecification(self) -> "ConfigurationSpecification":
+        """Return a specification with velocities in place of positions."""
+        return self.ConvertToDerivativeSpecification(1)
+
+    def ConvertToDerivativeSpecification(self, timederivative: int) -> "ConfigurationSpecification":
+        """Return a specification with derivatives in place of positions: 1 for velocities, 2 for accelerations."""
+        return self.of(layout.derived(self._groups, checked_order(timederivative)))
+
+    def GetTimeDerivativeSpecification(self, timederivative: int) -> "ConfigurationSpecification":
+        """Return the groups of a time derivative alone: 0 for positions, 1 for velocities and so on."""
+        return self.of(layout.of_order(self._groups, checked_order(timederivative)))
+
+    def SerializeJSON(self) -> dict[str, list[dict[str, Any]]]:
+        """Return the groups as dictionaries and lists."""
+        return {"groups": [dict(vars(group)) for group in sorted(self._groups, key=lambda group: group.offset)]}
+
+    def DeserializeJSON(self, obj: dict[str, list[dict[str, Any]]]) -> None:
+        """Take the groups that ``SerializeJSON`` returned."""
+        self._groups = [Group(**group) for group in obj["groups"]]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, ConfigurationSpecification):
+            return NotImplemented
+        return layout.equal(self._groups, other._groups)
+
+    __hash__ = None  # pyright: ignore[reportAssignmentType] - specifications change
+
+    def __add__(self, other: "ConfigurationSpecification") -> "ConfigurationSpecification":
+        """Return a specification that holds the values of both; groups of one kind and body become one."""
+        return self.of(layout.merged(self._groups, other._groups))
+
+    def __iadd__(self, other: "ConfigurationSpecification") -> Self:
+        """Add the values of another specification."""
+        self._groups = layout.merged(self._groups, other._groups)
+        return self
+
+    def __repr__(self) -> str:
+        return f'ConfigurationSpecification("""{layout_text(self._groups)}""")'
+
+    def __str__(self) -> str:
+        return f'<configuration dof="{self.GetDOF()}">'
+
+
+def RaveGetAffineConfigurationSpecification(
+    affinedofs: int, body: "KinBody | None" = None, interpolation: str = ""
+) -> ConfigurationSpecification:
+    """Return the specification of parts of a pose.
+
+    Args:
+        affinedofs: ``DOFAffine`` values, combined.
+        body: Whose pose; None: a body called ``__dummy__``.
+        interpolation: How the values change between waypoints.
+    """
+    return ConfigurationSpecification.of(
+        body_groups("__dummy__" if body is None else body.GetName(), [], affinedofs, interpolation)
+    )
