@@ -86,6 +86,7 @@ from ravemj.rave.planning import Planner, PlanningError, planning_error
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
 from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
+from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 from ravemj.rave.trimesh import TriMesh
 
 OpenRAVEException = openrave_exception = RavemjError
@@ -130,6 +131,7 @@ __all__ = [
     "RaveCreateRobot",
     "RaveCreateSensor",
     "RaveCreateSpaceSampler",
+    "RaveCreateTrajectory",
     "RaveCreateViewer",
     "RaveDestroy",
     "RaveFindDatabaseFile",
@@ -160,6 +162,7 @@ __all__ = [
     "SensorType",
     "SerializationOptions",
     "StateSaver",
+    "Trajectory",
     "TriMesh",
     "TriangulateOptions",
     "load",
