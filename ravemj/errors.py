@@ -7,7 +7,8 @@
     │   └── CompileError        MuJoCo refuses the translated model
     ├── ArgumentError           a wrong argument of a call
     ├── OutputError             also an OSError: a file that cannot be written
-    └── RenderingError          no picture can be drawn
+    ├── RenderingError          no picture can be drawn
+    └── UnsupportedError        also a NotImplementedError: .capability that ravemj does not have
 
     RavemjWarning               .code .diagnostic: read, but not as the author may think
 """
@@ -137,6 +138,20 @@ class RenderingError(RavemjError):
 
     def __str__(self) -> str:
         return self.message
+
+
+class UnsupportedError(RavemjError, NotImplementedError):
+    """A name of OpenRAVE's that stands for something ravemj does not do.
+
+    Attributes:
+        capability: What is missing, for instance ``inverse kinematics``.
+    """
+
+    _code = ErrorCode.NotImplemented
+
+    def __init__(self, name: str, capability: str) -> None:
+        super().__init__(f"{name}: ravemj does no {capability} yet")
+        self.capability = capability
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,18 @@ PACKAGE = Path(ravemj.__file__).parent
 
 LEVELS: list[set[str]] = [
     {"_mujoco", "errors", "transforms"},
-    {"alias", "arrays", "coverage_notes", "drawing", "expressions", "handles", "motion", "output"},
+    {
+        "alias",
+        "arrays",
+        "coverage_notes",
+        "drawing",
+        "examples",
+        "expressions",
+        "handles",
+        "metaclass",
+        "motion",
+        "output",
+    },
     {"geometry_functions", "scene", "video"},
     {"adjacency", "following", "hierarchy", "joints", "making", "manipulators", "meshes", "summary"},
     {"builder", "mjcf"},
@@ -24,9 +35,9 @@ LEVELS: list[set[str]] = [
     {"export", "studio"},
     {"viewers"},
     {"extension", "rave"},
-    {"checking", "misc", "recording"},
+    {"checking", "databases", "interfaces", "misc", "openravepy_int", "planningutils", "recording"},
     {"__init__", "cli"},
-    {"__main__"},
+    {"__main__", "openravepy"},
 ]
 """Rooms from the ground up: each may import those of lower levels only, within its own package what it likes."""
 
@@ -101,8 +112,15 @@ def test_everything_imported_into_the_package_is_exported():
     imported = {alias.asname or alias.name for node in imports for alias in node.names} - {"*"}
     targets = {target.id for node in tree.body if isinstance(node, ast.Assign) for target in node.targets}
     parts = {*ravemj.rave.__all__, *ravemj.geometry_functions.__all__}
-    assert imported | targets - {"__all__"} | parts == set(ravemj.__all__)
+    modules = set(ravemj._MODULES)
+    assert imported | targets - {"__all__", "_MODULES"} | parts | modules == set(ravemj.__all__)
     assert len(ravemj.__all__) == len(set(ravemj.__all__))
+
+
+def test_modules_of_openrave_are_imported_when_they_are_asked_for():
+    code = "import ravemj, sys; print('ravemj.databases' in sys.modules, ravemj.databases.__name__)"
+    assert run(code).split() == ["False", "ravemj.databases"]
+    assert run("from ravemj import *; print(databases.__name__)") == "ravemj.databases\n"
 
 
 def run(code: str) -> str:
