@@ -13,19 +13,8 @@ import ravemj
 PACKAGE = Path(ravemj.__file__).parent
 
 LEVELS: list[set[str]] = [
-    {"_mujoco", "errors", "transforms"},
-    {
-        "alias",
-        "arrays",
-        "coverage_notes",
-        "drawing",
-        "examples",
-        "expressions",
-        "handles",
-        "metaclass",
-        "motion",
-        "output",
-    },
+    {"_mujoco", "errors", "examples", "metaclass", "python2", "transforms"},
+    {"alias", "api_names", "arrays", "coverage_notes", "drawing", "expressions", "handles", "motion", "output"},
     {"geometry_functions", "scene", "video"},
     {"adjacency", "following", "hierarchy", "joints", "making", "manipulators", "meshes", "summary"},
     {"builder", "mjcf"},
@@ -37,7 +26,7 @@ LEVELS: list[set[str]] = [
     {"extension", "rave"},
     {"checking", "databases", "interfaces", "misc", "openravepy_int", "planningutils", "recording"},
     {"__init__", "cli"},
-    {"__main__", "openravepy"},
+    {"__main__", "api_coverage", "openravepy"},
 ]
 """Rooms from the ground up: each may import those of lower levels only, within its own package what it likes."""
 
@@ -108,7 +97,7 @@ def test_all_is_what_is_exported(name):
 
 def test_everything_imported_into_the_package_is_exported():
     tree = ast.parse((PACKAGE / "__init__.py").read_text())
-    imports = [node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module != "ravemj"]
+    imports = [node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module.startswith("ravemj.")]
     imported = {alias.asname or alias.name for node in imports for alias in node.names} - {"*"}
     targets = {target.id for node in tree.body if isinstance(node, ast.Assign) for target in node.targets}
     parts = {*ravemj.rave.__all__, *ravemj.geometry_functions.__all__}

@@ -9,7 +9,7 @@ from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
 from ravemj.rave.planning import PLANNING, Planner
 from ravemj.rave.sensors import Sensor
-from ravemj.viewers import Viewer
+from ravemj.viewers import VIEWERS, Viewer
 
 INVERSE_KINEMATICS = "inverse kinematics"
 _GRASPING = "planning of grasps"
@@ -17,7 +17,6 @@ _SAMPLING = "sampling of spaces"
 _SENSORS = "simulation of sensors"
 
 _LOG = logging.getLogger("ravemj")
-_VIEWERS = ("qtcoin", "qtosg", "qtcameraviewer", "window", "offscreen")
 
 MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
     {
@@ -132,9 +131,9 @@ def RaveCreateViewer(env: Environment, name: str) -> Viewer | None:
     Returns:
         The viewer, or None for a name that is no viewer's.
     """
-    if name.lower() not in _VIEWERS:
+    if name.lower() not in VIEWERS:
         return None
-    env.SetViewer(name)
+    env.SetViewer(name.lower())
     return env.GetViewer()
 
 
@@ -147,7 +146,7 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
         InterfaceType.physicsengine: ["GenericPhysicsEngine"],
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],
-        InterfaceType.viewer: list(_VIEWERS),
+        InterfaceType.viewer: list(VIEWERS),
     }
     return {kind: made.get(kind, []) for kind in InterfaceType}
 
