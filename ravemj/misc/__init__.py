@@ -1,5 +1,6 @@
 """``openravepy.misc``: what scripts need beside the API."""
 
+from ravemj.geometry_functions.solids import TSP, ComputeBoxMesh, ComputeCylinderYMesh, ComputeGeodesicSphereMesh
 from ravemj.misc.drawing import DrawAxes, DrawCircle
 from ravemj.misc.sampling import SpaceSamplerExtra
 from ravemj.misc.scripts import (
@@ -11,6 +12,10 @@ from ravemj.misc.scripts import (
 )
 
 __all__ = [
+    "TSP",
+    "ComputeBoxMesh",
+    "ComputeCylinderYMesh",
+    "ComputeGeodesicSphereMesh",
     "DrawAxes",
     "DrawCircle",
     "InitOpenRAVELogging",

@@ -105,6 +105,18 @@ class SaveParameters(IntFlag):
     ManipulatorsToolTransform = 0x100000
 
 
+class CloningOptions(IntFlag):
+    """What a clone of an environment takes over."""
+
+    Bodies = 1
+    Viewer = 2
+    Simulation = 4
+    RealControllers = 8
+    Sensors = 16
+    Modules = 32
+    PassOnMissingBodyReferences = 0x8000
+
+
 class DebugLevel(IntEnum):
     """How much is logged; each level includes those before it."""
 
@@ -187,18 +199,6 @@ class CollisionAction(IntEnum):
 
     DefaultAction = 0
     Ignore = 1
-
-
-class CloningOptions(IntFlag):
-    """What a clone of an environment takes over."""
-
-    Bodies = 1
-    Viewer = 2
-    Simulation = 4
-    RealControllers = 8
-    Sensors = 16
-    Modules = 32
-    PassOnMissingBodyReferences = 0x8000
 
 
 class TriangulateOptions(IntEnum):
