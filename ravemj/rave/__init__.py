@@ -89,6 +89,7 @@ from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineC
 from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 from ravemj.rave.trimesh import TriMesh
 
+KinBodyStateSaver = RobotStateSaver = StateSaver
 OpenRAVEException = openrave_exception = RavemjError
 
 __all__ = [
@@ -115,6 +116,7 @@ __all__ = [
     "Joint",
     "JointType",
     "KinBody",
+    "KinBodyStateSaver",
     "Link",
     "Manipulator",
     "OpenRAVEException",
@@ -156,6 +158,7 @@ __all__ = [
     "RaveReloadPlugins",
     "RaveSetDebugLevel",
     "Robot",
+    "RobotStateSaver",
     "SaveParameters",
     "SelectionOptions",
     "Sensor",
