@@ -33,6 +33,12 @@ class Pose(NamedTuple):
     position: Vec3 = ZERO
     wxyz: Wxyz = UNIT_WXYZ
 
+    @classmethod
+    def of(cls, matrix: Floats) -> "Pose":
+        """Return the pose of a 4x4 matrix."""
+        x, y, z = matrix[:3, 3].tolist()
+        return cls((x, y, z), wxyz_from_rows(matrix[:3, :3].tolist()))
+
     def __matmul__(self, other: "Pose") -> "Pose":
         """Compose: the result applies ``other`` first."""
         if self.wxyz == UNIT_WXYZ:

@@ -16,9 +16,10 @@ LEVELS: list[set[str]] = [
     {"_mujoco", "errors", "transforms"},
     {"alias", "arrays", "coverage_notes", "expressions", "motion", "output"},
     {"geometry_functions", "scene", "video"},
-    {"adjacency", "following", "hierarchy", "joints", "making", "manipulators", "meshes", "summary"},
+    {"adjacency", "following", "hierarchy", "inertia", "joints", "making", "manipulators", "meshes", "summary"},
+    {"chains"},
     {"builder", "mjcf"},
-    {"kinematics", "openrave_xml"},
+    {"kinematics", "openrave_xml", "tessellation"},
     {"coverage", "dynamics", "placement", "readers", "rendering"},
     {"simulation"},
     {"export", "studio"},
@@ -33,9 +34,9 @@ LEVELS: list[set[str]] = [
 ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
-    "adjacency", "alias", "arrays", "builder", "coverage", "errors", "expressions", "following", "geometry_functions",
-    "hierarchy", "joints", "making", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "output", "readers",
-    "scene", "transforms", "video",
+    "adjacency", "alias", "arrays", "builder", "chains", "coverage", "errors", "expressions", "following",
+    "geometry_functions", "hierarchy", "inertia", "joints", "making", "manipulators", "meshes", "mjcf", "motion", "openrave_xml",
+    "output", "readers", "scene", "tessellation", "transforms", "video",
 }  # fmt: skip
 
 

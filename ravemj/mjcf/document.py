@@ -42,10 +42,12 @@ class BodyNames(NamedTuple):
         links: Name of the MuJoCo body of each link.
         joints: For each joint, active ones and then passive ones, the names of the MuJoCo joints that it became; none
             for one that moves no link: a weld, a passive one that follows nothing, and one that closes a loop.
+        geoms: For each link, how many geoms each of its geometries became; they stand in this order.
     """
 
     links: tuple[str, ...]
     joints: tuple[tuple[str, ...], ...]
+    geoms: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -170,9 +172,9 @@ class _Writer:
                 self._joint_names(body, joint, i < len(body.joints), joint.name or f"joint{i}")
                 for i, joint in enumerate(joints)
             ),
+            geoms=(),
         )
-        self.names.append(names)
-        self._write_tree(index, body, names, joints)
+        self.names.append(names._replace(geoms=self._write_tree(index, body, names, joints)))
         for first, second in sorted(adjacent_pairs(body)):
             self.excludes.element("exclude", body1=names.links[first], body2=names.links[second])
         self.equalities.write(joints, names.joints)
@@ -187,7 +189,11 @@ class _Writer:
         first = self._given.give("joint", body, name)
         return (first, self._given.give("joint", body, f"{name}_1")) if joint.kind == "hinge2" else (first,)
 
-    def _write_tree(self, index: int, body: KinBody, names: BodyNames, joints: tuple[Joint, ...]) -> None:
+    def _write_tree(
+        self, index: int, body: KinBody, names: BodyNames, joints: tuple[Joint, ...]
+    ) -> tuple[tuple[int, ...], ...]:
+        """Write the links; return for each how many geoms its geometries became."""
+        geoms: list[tuple[int, ...]] = [()] * len(body.links)
         placing = {joint.child: number for number, joint in enumerate(joints) if joint.places_child}
         children: dict[int, list[int]] = {}
         for child, number in placing.items():
@@ -208,10 +214,12 @@ class _Writer:
             self._write_inertial(index, link, body.links[link])
             if joint is not None:
                 self._write_joint(joint, joint_names)
-            for geometry in body.links[link].geometries:
-                self.geometries.write(geometry, self.bodies)
+            geoms[link] = tuple(
+                self.geometries.write(geometry, self.bodies) for geometry in body.links[link].geometries
+            )
             pending.append((link, True))
             pending.extend((child, False) for child in sorted(children.get(link, ()), reverse=True))
+        return tuple(geoms)
 
     def _open_link(self, body: KinBody, index: int, name: str, joint: Joint | None, moves: bool) -> None:
         link = body.links[index]

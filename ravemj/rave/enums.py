@@ -30,6 +30,7 @@ class JointType(IntEnum):
 class GeometryType(IntEnum):
     """Kinds of shapes."""
 
+    vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
     None_ = 0
     Box = 1
     Sphere = 2

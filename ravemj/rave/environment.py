@@ -10,6 +10,7 @@ from ravemj.errors import SourceError
 from ravemj.rave.env.contents import Contents
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.locking import Locking
+from ravemj.rave.env.meshing import Meshing
 from ravemj.rave.env.viewing import Viewing
 from ravemj.readers import read_file
 from ravemj.simulation import Simulation
@@ -18,7 +19,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Contents, Loading, Locking, Viewing):
+class Environment(Contents, Loading, Locking, Meshing, Viewing):
     """A world with robots and other bodies.
 
     Example:

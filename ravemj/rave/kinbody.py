@@ -2,7 +2,7 @@
 
 from ravemj.rave.body.building import Building
 from ravemj.rave.body.limits import Limits
-from ravemj.rave.body.mechanism import Mechanism
+from ravemj.rave.body.looks import Looks
 from ravemj.rave.body.motion import Motion
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import CheckLimitsAction, InterfaceType, JointType, SaveParameters
@@ -11,7 +11,7 @@ from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 
 
-class KinBody(Placement, Limits, Mechanism, Motion, Building):
+class KinBody(Placement, Limits, Looks, Motion, Building):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:

@@ -1,0 +1,23 @@
+"""What a body looks like."""
+
+from ravemj.rave.body.mechanism import Mechanism
+
+
+class Looks(Mechanism):
+    """Whether a body is drawn."""
+
+    def IsVisible(self) -> bool:
+        """Return whether any shape of the body is drawn."""
+        return any(link.IsVisible() for link in self.GetLinks())
+
+    def SetVisible(self, visible: bool) -> bool:
+        """Draw all shapes of the body, or none; they collide all the same.
+
+        Args:
+            visible: Whether to draw them.
+
+        Returns:
+            Whether that changed something.
+        """
+        with self._simulation.lock:
+            return any([link.SetVisible(visible) for link in self.GetLinks()])
