@@ -33,12 +33,6 @@ class Pose(NamedTuple):
     position: Vec3 = ZERO
     wxyz: Wxyz = UNIT_WXYZ
 
-    @classmethod
-    def of(cls, matrix: Floats) -> "Pose":
-        """Return the pose of a 4x4 matrix."""
-        x, y, z = matrix[:3, 3].tolist()
-        return cls((x, y, z), wxyz_from_rows(matrix[:3, :3].tolist()))
-
     def __matmul__(self, other: "Pose") -> "Pose":
         """Compose: the result applies ``other`` first."""
         if self.wxyz == UNIT_WXYZ:
@@ -60,6 +54,15 @@ class Pose(NamedTuple):
         matrix[:3, :3] = rows_from_wxyz(self.wxyz)
         matrix[:3, 3] = self.position
         return matrix
+
+
+UNMOVED = Pose()
+
+
+def pose_of(matrix: Floats) -> Pose:
+    """Return the pose of a 4x4 matrix."""
+    x, y, z = matrix[:3, 3].tolist()
+    return Pose((x, y, z), wxyz_from_rows(matrix[:3, :3].tolist()))
 
 
 def inverse(T_a_b: Floats) -> Floats:

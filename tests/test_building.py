@@ -18,7 +18,7 @@ def env():
 @pytest.fixture
 def body(env):
     empty = scene.KinBody(name="b", is_robot=False, links=(), joints=(), passive_joints=(), source=Source("test"))
-    return env._wrap(env.simulation.create(empty))
+    return env.wrap(env.simulation.create(empty))
 
 
 def test_boxes_are_one_static_link(body):

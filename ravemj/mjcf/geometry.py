@@ -42,25 +42,28 @@ class GeometryWriter:
         self._decomposed = decomposed
         self._written = 0
 
-    def write(self, geometry: Geometry, out: Lines) -> int:
-        """Write the geoms of a geometry; return how many there are."""
+    def write(self, geometry: Geometry, out: Lines) -> tuple[int, bool]:
+        """Write the geoms of a geometry; return how many there are, and whether one of them collides."""
         before = self._written
         seen = geometry.visible and geometry.display is None
         if isinstance(geometry.shape, TriMesh):
-            self._write_mesh(geometry, geometry.shape.mesh, out, seen=seen)
+            collides = self._write_mesh(geometry, geometry.shape.mesh, out, seen=seen)
         elif isinstance(geometry.shape, Prism):
-            self._write_mesh(geometry, geometry.shape.walls(), out, seen=seen)
+            collides = self._write_mesh(geometry, geometry.shape.walls(), out, seen=seen)
         else:
-            for solid in solids(geometry.shape):
+            parts = solids(geometry.shape)
+            collides = bool(parts)
+            for solid in parts:
                 self._write_solid(geometry, solid, out, seen=seen)
         for surface in geometry.display or () if geometry.visible else ():
             self._write_surface(geometry, surface, out)
-        return self._written - before
+        return self._written - before, collides
 
     def _write_solid(self, geometry: Geometry, solid: Solid, out: Lines, *, seen: bool) -> None:
         kind, size, centre = solid
-        legal = tuple(max(part, SMALLEST_SIZE) for part in size)
-        if legal != size:
+        legal = size
+        if min(size) < SMALLEST_SIZE:
+            legal = tuple(max(part, SMALLEST_SIZE) for part in size)
             message = f"MuJoCo refuses a {kind} of size {attribute_text(size)}; the MJCF has {attribute_text(legal)}"
             self.diagnostics.warn("raised-size", message, geometry.source)
         pose = geometry.T_link_geometry @ Pose(centre) if any(centre) else geometry.T_link_geometry
@@ -75,7 +78,7 @@ class GeometryWriter:
             rgba=rgba(geometry.diffuse, geometry.transparency),
         )
 
-    def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: Lines, *, seen: bool) -> None:
+    def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: Lines, *, seen: bool) -> bool:
         """Write a mesh that is seen and collides: once for both, where one geom can do both."""
         hulls = self._hulls(geometry, mesh)
         both = seen and hulls == (mesh,)
@@ -84,6 +87,7 @@ class GeometryWriter:
         if not both:
             for hull in hulls:
                 self._write_mesh_geom(geometry, hull, "collision", out)
+        return bool(hulls)
 
     def _hulls(self, geometry: Geometry, mesh: Mesh) -> tuple[Mesh, ...]:
         """Return the meshes whose convex hulls collide in place of a mesh."""
@@ -169,4 +173,5 @@ def _container(shape: Container) -> list[Solid]:
 
 def rgba(colour: Rgb, transparency: float) -> tuple[float, ...]:
     """Return colour and opacity in the range from 0 to 1, beyond which nothing looks different."""
-    return tuple(min(max(part, 0.0), 1.0) for part in (*colour, 1.0 - transparency))
+    rgba = (*colour, 1.0 - transparency)
+    return rgba if min(rgba) >= 0.0 and max(rgba) <= 1.0 else tuple(min(max(part, 0.0), 1.0) for part in rgba)

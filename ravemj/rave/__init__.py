@@ -4,8 +4,27 @@
 objects is ravemj's own.
 """
 
-from ravemj.rave.enums import CheckLimitsAction, GeometryType, JointType, SensorType
-from ravemj.rave.environment import Environment, RaveGetEnvironment, load
+from ravemj.rave.body.grabbing import GrabbedInfo
+from ravemj.rave.body.saving import StateSaver
+from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
+from ravemj.rave.enums import (
+    CheckLimitsAction,
+    CloningOptions,
+    GeometryType,
+    InterfaceAddMode,
+    InterfaceType,
+    JointType,
+    SaveParameters,
+    SensorType,
+)
+from ravemj.rave.environment import (
+    Environment,
+    RaveDestroy,
+    RaveGetEnvironment,
+    RaveGetEnvironmentId,
+    RaveGetEnvironments,
+    load,
+)
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
@@ -14,6 +33,7 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.physics import PhysicsEngine
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
+from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
 from ravemj.rave.trimesh import TriMesh
 
 __all__ = [
@@ -21,19 +41,32 @@ __all__ = [
     "CameraGeomData",
     "CameraIntrinsics",
     "CheckLimitsAction",
+    "CloningOptions",
+    "ConfigurationSpecification",
     "Environment",
     "Geometry",
     "GeometryType",
+    "GrabbedInfo",
+    "InterfaceAddMode",
+    "InterfaceType",
     "Joint",
     "JointType",
     "KinBody",
     "Link",
     "Manipulator",
     "PhysicsEngine",
+    "RaveCreateKinBody",
+    "RaveCreateRobot",
+    "RaveDestroy",
+    "RaveGetAffineConfigurationSpecification",
     "RaveGetEnvironment",
+    "RaveGetEnvironmentId",
+    "RaveGetEnvironments",
     "Robot",
+    "SaveParameters",
     "Sensor",
     "SensorType",
+    "StateSaver",
     "TriMesh",
     "load",
 ]

@@ -13,7 +13,7 @@ from ravemj.mjcf import rgba
 from ravemj.placement import place_links
 from ravemj.scene import Axis, Geometry, Inertial, KinBody
 from ravemj.simulation.compiled import write_inertial
-from ravemj.transforms import Floats, inverse
+from ravemj.transforms import Floats, Pose, inverse, pose_of
 
 if TYPE_CHECKING:
     from ravemj.simulation.world import Simulation
@@ -22,7 +22,7 @@ _LOOKS = {"name", "diffuse", "ambient", "transparency"}
 
 
 @dataclass(frozen=True, slots=True)
-class Grab:
+class GrabbedBody:
     """One body held by a link of another.
 
     Attributes:
@@ -58,7 +58,7 @@ class BodyState:
         self.simulation = simulation
         self.index = 0
         self.stamp = 0
-        self.grabs: list[Grab] = []
+        self.grabs: list[GrabbedBody] = []
         self.api_object: object | None = None
         self._kinematics: BodyKinematics | None = None
         self._dynamics: BodyDynamics | None = None
@@ -165,6 +165,18 @@ class BodyState:
             self._is_moved = True
         self.moved()
 
+    def pose(self) -> Pose:
+        """Return the pose of the first link."""
+        if self._kinematics is not None:
+            return self._kinematics.link_pose(0)
+        return pose_of(self.link_transform(0)) if self.scene.links else Pose()
+
+    def set_pose(self, T_world_link0: Pose) -> None:
+        """Move the body rigidly, as ``set_transform``; ``pose()`` gives back this quaternion, not its negative."""
+        self.set_transform(T_world_link0.matrix())
+        if self._kinematics is not None:
+            self._kinematics.set_root_wxyz(T_world_link0.wxyz)
+
     def place_links(self, T_world_links: Floats, last_values: Floats | None = None) -> None:
         """Put every link at a pose; joints get the values that the poses show. This never compiles.
 
@@ -185,6 +197,18 @@ class BodyState:
         for grab in self.grabs:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 
+    def grab(self, grab: GrabbedBody) -> None:
+        """Hold a body; one that is held already, anew."""
+        places = [number for number, old in enumerate(self.grabs) if old.body is grab.body]
+        if places:
+            self.grabs[places[0]] = grab
+        else:
+            self.grabs.append(grab)
+
+    def release(self, body: "BodyState") -> None:
+        """Let go of a body; nothing happens if it is not held."""
+        self.grabs = [grab for grab in self.grabs if grab.body is not body]
+
     def configuration(self) -> "tuple[Configuration | None, Floats]":
         """Return the state of joints and links, for ``restore``."""
         configuration = self._configuration if self._kinematics is None else self._kinematics.configuration()
@@ -198,6 +222,17 @@ class BodyState:
             self.moved()
         else:
             self.place_links(poses)
+
+    def copy(self, other: "BodyState", name: str | None = None) -> None:
+        """Become like another body, its configuration and flags included; what it holds is left out.
+
+        Raises:
+            RavemjError: this body is in the world.
+        """
+        self.rebuild(other.scene if name is None else replace(other.scene, name=name))
+        self.link_enabled = list(other.link_enabled)
+        self._configuration, self._poses = other.configuration()
+        self._is_moved = self._configuration is None
 
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
         """Change the description of the body where links and joints stay the same: names, limits, manipulators."""

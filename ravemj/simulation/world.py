@@ -87,6 +87,9 @@ class Simulation:
             if not self.holds(body):
                 return False
             self.forget_model()
+            body.grabs = []
+            for holder in self.bodies:
+                holder.release(body)
             self._places[body.index - 1] = None
             while self._places and self._places[-1] is None:
                 self._places.pop()

@@ -9,7 +9,7 @@ from ravemj.arrays import checked_transform, checked_vector
 from ravemj.inertia import inertial_about, principal_frame, principal_moments
 from ravemj.rave.links.base import LinkPart
 from ravemj.scene import Inertial
-from ravemj.transforms import Floats, Pose
+from ravemj.transforms import Floats, pose_of
 
 
 class LinkMass(LinkPart):
@@ -77,7 +77,7 @@ class LinkMass(LinkPart):
         Args:
             massframe: ``T_link_mass``: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
         """
-        T_link_mass = Pose.of(checked_transform(massframe, "SetLocalMassFrame: massframe"))
+        T_link_mass = pose_of(checked_transform(massframe, "SetLocalMassFrame: massframe"))
         self._set_inertial(inertial_about(self._inertial.mass, T_link_mass, principal_moments(self._inertial)))
 
     def SetPrincipalMomentsOfInertia(self, inertiamoments: ArrayLike) -> None:
