@@ -92,6 +92,18 @@ class BodyDynamics:
         step = STEP * self.velocities
         return (self.velocity_map(values + step) - self.velocity_map(values - step)) / (2 * STEP)
 
+    def passive_velocity(self, joint: int) -> float:
+        """Return the velocity of a joint without DOFs: that of its equation, or 0 where it follows none [rad/s or m/s].
+
+        Args:
+            joint: Its index among the active joints followed by the passive ones.
+        """
+        qpos = next((one.qpos for one in self._kinematics.followers if one.joint == joint), WELDED)
+        if qpos == WELDED:
+            return 0.0
+        velocities = self.velocity_map(self._kinematics.values()) @ self.velocities
+        return float(velocities[self._qvel_of_qpos[qpos]])
+
     def jacobian(self, link: int, point: Floats) -> tuple[Floats, Floats]:
         """Return the derivatives of a link's motion by the DOF values.
 

@@ -17,7 +17,7 @@ LEVELS: list[set[str]] = [
     {"alias", "arrays", "coverage_notes", "expressions", "motion", "output"},
     {"geometry_functions", "scene", "video"},
     {"adjacency", "following", "hierarchy", "inertia", "joints", "making", "manipulators", "meshes", "summary"},
-    {"chains"},
+    {"chains", "fingerprints"},
     {"builder", "mjcf"},
     {"kinematics", "openrave_xml", "tessellation"},
     {"coverage", "dynamics", "placement", "readers", "rendering", "trajectories"},
@@ -34,9 +34,9 @@ LEVELS: list[set[str]] = [
 ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
-    "adjacency", "alias", "arrays", "builder", "chains", "coverage", "errors", "expressions", "following",
-    "geometry_functions", "hierarchy", "inertia", "joints", "making", "manipulators", "meshes", "mjcf", "motion",
-    "openrave_xml", "output", "readers", "scene", "tessellation", "trajectories", "transforms", "video",
+    "adjacency", "alias", "arrays", "builder", "chains", "coverage", "errors", "expressions", "fingerprints",
+    "following", "geometry_functions", "hierarchy", "inertia", "joints", "making", "manipulators", "meshes", "mjcf",
+    "motion", "openrave_xml", "output", "readers", "scene", "tessellation", "trajectories", "transforms", "video",
 }  # fmt: skip
 
 

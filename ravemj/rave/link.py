@@ -120,7 +120,7 @@ class Link(LinkMass, LinkShapes, LinkParameters):
         return hash((id(self._state), self._index))
 
     def __repr__(self) -> str:
-        return f"{self._parent!r}.GetLink('{self.GetName()}')"
+        return f"{self._parent.GetEnv()!r}.GetKinBody('{self._parent.GetName()}').GetLink('{self.GetName()}')"
 
     def __str__(self) -> str:
         return f"<link:{self.GetName()} ({self._index}), parent={self._parent.GetName()}>"

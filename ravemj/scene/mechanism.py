@@ -86,6 +86,7 @@ class Axis:
         max_acceleration: Acceleration limit [rad/s^2 or m/s^2].
         max_torque: Torque or force limit [N m or N]; 0 where the file says nothing.
         armature: Inertia of a motor behind its gear [kg m^2].
+        wrap_offset: The value about which scripts chose the turn that the value is in [rad].
     """
 
     direction: Vec3
@@ -100,6 +101,7 @@ class Axis:
     max_acceleration: float = 50.0
     max_torque: float = 0.0
     armature: float = 0.0
+    wrap_offset: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

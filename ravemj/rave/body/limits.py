@@ -39,7 +39,7 @@ class Limits(BodyPart):
             indices: Which DOFs, in which order; None: all.
 
         Raises:
-            ArgumentError: there are too few or too many limits. Nothing has changed then.
+            openrave_exception: there are too few or too many limits. Nothing has changed then.
             IndexError: there is no such DOF.
         """
         self._set_axes("SetDOFLimits", {"lower": lower, "upper": upper}, indices)
@@ -84,8 +84,7 @@ class Limits(BodyPart):
         Raises:
             openrave_exception: there are too few or too many weights, or one is not positive.
         """
-        if not np.all(checked_numbers(weights, "SetDOFWeights: weights") > 0):
-            raise RavemjError(f"SetDOFWeights: weights are {weights}, and should be positive")
+        _check_positive(weights, "SetDOFWeights: weights")
         self._set_axes("SetDOFWeights", {"weight": weights}, indices)
 
     def GetDOFResolutions(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
@@ -93,7 +92,8 @@ class Limits(BodyPart):
         return self._of_axes("resolution", indices)
 
     def SetDOFResolutions(self, resolutions: ArrayLike, indices: "ArrayLike | None" = None) -> None:
-        """Set the steps of planners [rad or m], as many as there are DOFs, or as there are indices."""
+        """Set the steps of planners [rad or m], as many as there are DOFs, or as there are indices; all positive."""
+        _check_positive(resolutions, "SetDOFResolutions: resolutions")
         self._set_axes("SetDOFResolutions", {"resolution": resolutions}, indices)
 
     def _of_axes(self, field: str, indices: "ArrayLike | EllipsisType | None") -> Floats:
@@ -110,7 +110,7 @@ class Limits(BodyPart):
             numbers = checked_numbers(values, f"{caller}: values")
             if numbers.ndim != 1 or (len(numbers) != len(chosen) and numbers.size + len(chosen) > 0):
                 wanted = f"{dof} numbers, one for each DOF" if indices is None else f"{len(chosen)}, as many as indices"
-                raise ArgumentError(f"{caller}: values have shape {numbers.shape}, and should be {wanted}")
+                raise RavemjError(f"{caller}: values have shape {numbers.shape}, and should be {wanted}")
             if np.isnan(numbers).any():
                 raise ArgumentError(f"{caller}: values are {numbers.tolist()}, and should be numbers")
             given[name] = numbers.tolist()
@@ -145,3 +145,8 @@ class Limits(BodyPart):
         difference = minuend - subtrahend
         wrapped = (difference + np.pi) % (2 * np.pi) - np.pi
         return np.where(circular, wrapped, difference)
+
+
+def _check_positive(values: ArrayLike, name: str) -> None:
+    if not np.all(checked_numbers(values, name) > 0):
+        raise ArgumentError(f"{name} are {values}, and should be positive")

@@ -1,10 +1,14 @@
-"""What a body looks like."""
+"""What a body weighs, and whether it is drawn."""
 
 from ravemj.rave.body.mechanism import Mechanism
 
 
-class Looks(Mechanism):
-    """Whether a body is drawn."""
+class Substance(Mechanism):
+    """Mass and visibility of all links together."""
+
+    def GetMass(self) -> float:
+        """Return the mass of all links [kg]."""
+        return sum(link.inertial.mass for link in self._state.scene.links)
 
     def IsVisible(self) -> bool:
         """Return whether any shape of the body is drawn."""
