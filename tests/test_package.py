@@ -30,9 +30,22 @@ LEVELS: list[set[str]] = [
         "python2",
     },
     {"geometry_functions", "scene", "video"},
-    {"adjacency", "following", "hierarchy", "joints", "making", "manipulators", "meshes", "summary"},
+    {
+        "adjacency",
+        "chains",
+        "fingerprints",
+        "following",
+        "hierarchy",
+        "inertia",
+        "joints",
+        "making",
+        "manipulators",
+        "meshes",
+        "summary",
+    },
+    {"chains", "fingerprints"},
     {"builder", "mjcf"},
-    {"kinematics", "openrave_xml"},
+    {"kinematics", "openrave_xml", "tessellation"},
     {"coverage", "dynamics", "placement", "readers", "rendering", "trajectories"},
     {"simulation"},
     {"export", "studio"},
@@ -47,9 +60,10 @@ LEVELS: list[set[str]] = [
 ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
-    "adjacency", "alias", "arrays", "builder", "coverage", "drawing", "errors", "expressions", "following",
-    "geometry_functions", "handles", "hierarchy", "joints", "making", "manipulators", "meshes", "mjcf", "motion",
-    "openrave_xml", "ordering", "output", "readers", "scene", "trajectories", "transforms", "video",
+    "adjacency", "alias", "arrays", "builder", "chains", "coverage", "drawing", "errors", "expressions",
+    "fingerprints", "following", "geometry_functions", "handles", "hierarchy", "inertia", "joints", "making",
+    "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "ordering", "output", "readers", "scene",
+    "tessellation", "trajectories", "transforms", "video",
 }  # fmt: skip
 
 

@@ -39,7 +39,7 @@ class Limits(BodyPart):
             indices: Which DOFs, in which order; None: all.
 
         Raises:
-            ArgumentError: there are too few or too many limits. Nothing has changed then.
+            openrave_exception: there are too few or too many limits. Nothing has changed then.
             IndexError: there is no such DOF.
         """
         self._set_axes("SetDOFLimits", {"lower": lower, "upper": upper}, indices)
