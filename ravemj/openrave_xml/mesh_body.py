@@ -7,7 +7,7 @@ from ravemj.builder import BodyBuilder, LinkBuilder
 from ravemj.errors import Source
 from ravemj.meshes import MESH_SUFFIXES
 from ravemj.openrave_xml.context import COLLADA_SUFFIXES, Context
-from ravemj.scene import Geometry, Inertial, Mesh, TriMesh
+from ravemj.scene import Geometry, Inertial, TriMesh
 from ravemj.transforms import ZERO, Pose, Vec3
 
 _MASSLESS = Inertial(1e-10, ZERO, (ZERO, ZERO, ZERO))
@@ -31,7 +31,7 @@ def add_mesh(body: BodyBuilder, path: str, scale: Vec3, source: Source, context:
     """
     geometries = [
         Geometry(
-            shape=TriMesh(Mesh(part.mesh.vertices * scale, part.mesh.triangles)),
+            shape=TriMesh(part.mesh),
             T_link_geometry=Pose(),
             name="",
             diffuse=part.diffuse,
@@ -40,7 +40,7 @@ def add_mesh(body: BodyBuilder, path: str, scale: Vec3, source: Source, context:
             visible=True,
             source=source,
         )
-        for part in context.mesh(os.path.abspath(path), source)
+        for part in context.mesh(os.path.abspath(path), source, scale=scale)
     ]
     body.links.append(LinkBuilder("base", source, geometries=geometries, inertial=_MASSLESS, static=True))
     body.name = Path(path).stem
