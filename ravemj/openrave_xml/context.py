@@ -16,6 +16,8 @@ IGNORED = "OpenRAVE reads it and makes nothing of it"
 MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
 COLLADA_SUFFIXES = (".dae", ".zae")
+_LONGEST_NAME = 80
+"""No known name is anywhere near as long."""
 NO_EFFECT_HERE = "it has no effect on the model"
 
 
@@ -214,7 +216,7 @@ def _belongs(element: Element) -> str:
 
 def did_you_mean(name: str, known: Collection[str]) -> str:
     """Return a hint with the known name that looks most like the one given, or nothing."""
-    return _closest(name, tuple(known))
+    return _closest(name, tuple(known)) if len(name) < _LONGEST_NAME else ""
 
 
 @functools.lru_cache(maxsize=1000)  # slow, and who spells a tag wrongly does so many times
