@@ -69,6 +69,7 @@ class Stage:
         with _quality_of(model, quality):
             self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_150.value)
         self._shadows = quality.shadows
+        self._has_warned = False
         self._make_scene(_SPARE_GEOMS)
         self._option = drawing_option()
         self._skybox = _find_skybox(model)
@@ -110,7 +111,8 @@ class Stage:
         add_figures(self.scene, shapes, camera, width, height)
 
     def _make_room(self, figures: int) -> None:
-        if figures > _MAX_FIGURES:
+        if figures > _MAX_FIGURES and not self._has_warned:
+            self._has_warned = True
             _LOG.warning("%d figures are drawn, and OpenGL shows %d of them", figures, _MAX_FIGURES)
         if self._room < min(figures, _MAX_FIGURES):
             self._make_scene(min(2 * figures, _MAX_FIGURES))
