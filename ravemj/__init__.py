@@ -10,6 +10,7 @@
 """
 
 import ravemj._mujoco  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco
+from ravemj import geometry_functions, rave
 from ravemj.errors import (
     ArgumentError,
     CompileError,
@@ -23,25 +24,9 @@ from ravemj.errors import (
     SourceError,
 )
 from ravemj.extension import load_ipython_extension
+from ravemj.geometry_functions import *  # noqa: F403 - as its __all__ lists them
 from ravemj.motion import Motion, read_motion
-from ravemj.rave import (
-    AttachedSensor,
-    CheckLimitsAction,
-    Environment,
-    Geometry,
-    GeometryType,
-    Joint,
-    JointType,
-    KinBody,
-    Link,
-    Manipulator,
-    PhysicsEngine,
-    RaveGetEnvironment,
-    Robot,
-    Sensor,
-    TriMesh,
-    load,
-)
+from ravemj.rave import *  # noqa: F403 - the OpenRAVE API, as its __all__ lists it
 from ravemj.recording import record
 from ravemj.viewers import Viewer
 
@@ -51,40 +36,26 @@ OpenRAVEException = openrave_exception = RavemjError
 
 __all__ = [
     "ArgumentError",
-    "AttachedSensor",
-    "CheckLimitsAction",
     "CompileError",
     "Diagnostic",
-    "Environment",
     "ErrorCode",
-    "Geometry",
-    "GeometryType",
-    "Joint",
-    "JointType",
-    "KinBody",
-    "Link",
-    "Manipulator",
     "Motion",
     "OpenRAVEException",
     "OutputError",
-    "PhysicsEngine",
-    "RaveGetEnvironment",
     "RavemjError",
     "RavemjWarning",
     "RenderingError",
-    "Robot",
-    "Sensor",
     "Source",
     "SourceError",
-    "TriMesh",
     "Viewer",
     "__version__",
-    "load",
     "load_ipython_extension",
     "openrave_exception",
     "read_motion",
     "record",
 ]
+__all__ += geometry_functions.__all__
+__all__ += rave.__all__
 
 
 def __dir__() -> list[str]:

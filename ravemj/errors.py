@@ -5,7 +5,7 @@
     RavemjError                 also called openrave_exception
     ├── SourceError             .source .hint: a file that cannot be read as a model
     │   └── CompileError        MuJoCo refuses the translated model
-    ├── ArgumentError           also a ValueError: a wrong argument of a call
+    ├── ArgumentError           a wrong argument of a call
     ├── OutputError             also an OSError: a file that cannot be written
     └── RenderingError          no picture can be drawn
 
@@ -78,6 +78,9 @@ class RavemjError(Exception):
         if code is not None:
             self._code = code
 
+    def __str__(self) -> str:
+        return f"{self.message} ({self._code.name})"
+
     def GetCode(self) -> str:  # noqa: N802 - OpenRAVE's name
         """Return the name of OpenRAVE's code for this kind of error, for instance ``InvalidArguments``."""
         return self._code.name
@@ -116,7 +119,7 @@ class CompileError(SourceError):
     """MuJoCo refuses the translated model; ``source`` is the element that the refused part comes from."""
 
 
-class ArgumentError(RavemjError, ValueError):
+class ArgumentError(RavemjError):
     """A wrong argument: its length, its value or its type."""
 
     _code = ErrorCode.InvalidArguments
@@ -125,9 +128,15 @@ class ArgumentError(RavemjError, ValueError):
 class OutputError(RavemjError, OSError):
     """A file or folder cannot be written."""
 
+    def __str__(self) -> str:
+        return self.message
+
 
 class RenderingError(RavemjError):
     """No picture can be drawn; the message says what was tried and how to install what is missing."""
+
+    def __str__(self) -> str:
+        return self.message
 
 
 @dataclass(frozen=True, slots=True)

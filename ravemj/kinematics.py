@@ -14,7 +14,7 @@ from ravemj.following import evaluation_order
 from ravemj.joints import measured_values, rotation_vector, wxyz_from_rotation_vector
 from ravemj.mjcf import BodyNames
 from ravemj.scene import Axis, Joint, KinBody
-from ravemj.transforms import Floats, Ints, Pose, conjugate, inverse, multiply, wxyz_from_rows
+from ravemj.transforms import Floats, Ints, Pose, Wxyz, conjugate, inverse, multiply, wxyz_from_rows
 
 LARGEST = float(np.finfo(np.float64).max)
 WELDED = -1
@@ -185,7 +185,7 @@ class BodyKinematics:
         for ball in self.balls:
             values[ball.dofs] = ball.to_values(self._qpos[ball.qpos].tolist())
         for dof, joint in self._loose:
-            T_parent_child = self._pose(joint.parent).inverse() @ self._pose(joint.child)
+            T_parent_child = self.link_pose(joint.parent).inverse() @ self.link_pose(joint.child)
             values[dof : dof + len(joint.axes)] = measured_values(joint, T_parent_child)
         return values
 
@@ -238,6 +238,11 @@ class BodyKinematics:
         body_id = self.body_ids[link]
         self.model.body_pos[body_id] = T_world_link[:3, 3]
         self.model.body_quat[body_id] = wxyz_from_rows(T_world_link[:3, :3].tolist())
+
+    def set_root_wxyz(self, wxyz: Wxyz) -> None:
+        """Write the orientation of the first link as this quaternion rather than its negative."""
+        self.model.body_quat[self.body_ids[0]] = wxyz
+        self.update()
 
     def configuration(self) -> "Configuration":
         """Return all that ``restore`` needs, also in another model of the same body."""
@@ -307,10 +312,11 @@ class BodyKinematics:
         transform[:3, :3] = self._xmat[body_id].reshape(3, 3)
         return transform
 
-    def _pose(self, link: int) -> Pose:
+    def link_pose(self, link: int) -> Pose:
+        """Return ``T_world_link`` of one link."""
         body_id = self.body_ids[link]
-        x, y, z = self._xpos[body_id].tolist()
-        return Pose((x, y, z), wxyz_from_rows(self._xmat[body_id].reshape(3, 3).tolist()))
+        (x, y, z), (w, i, j, k) = self._xpos[body_id].tolist(), self.data.xquat[body_id].tolist()
+        return Pose((x, y, z), (w, i, j, k))
 
 
 _BODY = mujoco.mjtObj.mjOBJ_BODY

@@ -14,7 +14,7 @@ import numpy as np
 from ravemj.joints import measured_values
 from ravemj.kinematics import BodyKinematics
 from ravemj.scene import Joint
-from ravemj.transforms import Floats, Pose, inverse, wxyz_from_rows
+from ravemj.transforms import Floats, inverse, pose_of
 
 ROUNDING = 1e-10
 """A link this far [m or in its matrix] from where its joint places it is where its joint places it."""
@@ -39,7 +39,7 @@ def place_links(kinematics: BodyKinematics, T_world_links: Floats, last_values: 
 
 def _shown_values(kinematics: BodyKinematics, T_world_links: Floats, last_values: Floats) -> Floats:
     values = last_values.copy()
-    poses = [_pose(transform) for transform in T_world_links]
+    poses = [pose_of(transform) for transform in T_world_links]
     for joint, first in zip(kinematics.body.joints, kinematics.first_dofs, strict=True):
         dofs = slice(first, first + len(joint.axes))
         shown = measured_values(joint, poses[joint.parent].inverse() @ poses[joint.child])
@@ -69,8 +69,3 @@ def _displace(kinematics: BodyKinematics, placed: Floats, wanted: Floats) -> Non
         by_joint: Floats = inverse(placed[parent] @ fixed) @ placed[link]
         kinematics.write_root(link, inverse(wanted[parent]) @ wanted[link] @ inverse(by_joint))
     kinematics.displaced = True
-
-
-def _pose(transform: Floats) -> Pose:
-    x, y, z = transform[:3, 3].tolist()
-    return Pose((x, y, z), wxyz_from_rows(transform[:3, :3].tolist()))

@@ -56,6 +56,15 @@ class Pose(NamedTuple):
         return matrix
 
 
+UNMOVED = Pose()
+
+
+def pose_of(matrix: Floats) -> Pose:
+    """Return the pose of a 4x4 matrix."""
+    x, y, z = matrix[:3, 3].tolist()
+    return Pose((x, y, z), wxyz_from_rows(matrix[:3, :3].tolist()))
+
+
 def inverse(T_a_b: Floats) -> Floats:
     """Return ``T_b_a``, the inverse of a rigid transform, shape (4, 4)."""
     T_b_a = np.eye(4)

@@ -244,7 +244,6 @@ class TestFound:
         }
         run(body("", "file='f0.xml'"), 30, f40="<KinBody/>", **files)
 
-    @pytest.mark.xfail(reason="every pair of links that no joints connect is excluded by name", strict=True)
     def test_size_of_the_mjcf_is_linear(self, tmp_path):
         def size(count: int) -> int:
             (tmp_path / MAIN).write_text(body("".join(f"<Body name='l{i}'/>" for i in range(count))))

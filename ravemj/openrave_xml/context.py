@@ -8,13 +8,13 @@ from typing import TypeVar
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.meshes import MeshPart
 from ravemj.openrave_xml.tree import Element, parse_file
+from ravemj.openrave_xml.values import UNSCALED
 from ravemj.scene import Mesh
 from ravemj.transforms import Vec3
 
 Target = TypeVar("Target")
 
 IGNORED = "OpenRAVE reads it and makes nothing of it"
-UNSCALED = (1.0, 1.0, 1.0)
 MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
 COLLADA_SUFFIXES = (".dae", ".zae")
@@ -150,19 +150,21 @@ class Context:
         Returns:
             Its path, or None, with a warning, where it is in none of them.
         """
-        question = (name, os.path.dirname(source.file), folders)
+        question = (name, source.file, folders)
         found = self._found.get(question)
         if found is not None:
             return found
         data_folders = list(filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep)))
         places = [*folders, os.path.dirname(source.file), *data_folders]
-        candidates = list(dict.fromkeys(os.path.join(folder, name) for folder in places))
-        for candidate in candidates:
+        looked_at: list[str] = []
+        for folder in places:
+            candidate = os.path.join(folder, name)
             if os.path.isfile(candidate):
                 self._found[question] = candidate
                 return candidate
+            looked_at.append(candidate)
         hint = "" if data_folders else "put it there, or set OPENRAVE_DATA to the folder that it is in"
-        message = f"there is no file {name}; looked at {', '.join(candidates)}"
+        message = f"there is no file {name}; looked at {', '.join(dict.fromkeys(looked_at))}"
         self.diagnostics.warn("missing-file", message, source, hint)
         return None
 

@@ -105,18 +105,13 @@ class SaveParameters(IntFlag):
     ManipulatorsToolTransform = 0x100000
 
 
-class DOFAffine(IntFlag):
-    """Degrees of freedom of a body's base; combine them with ``|``."""
+class CloningOptions(IntFlag):
+    """What a clone of an environment takes over."""
 
-    NoTransform = 0
-    X = 1
-    Y = 2
-    Z = 4
-    RotationAxis = 8
-    """One angle about an axis."""
-    Rotation3D = 16
-    """A rotation vector."""
-    RotationQuat = 32
-    """A quaternion wxyz."""
-    RotationMask = 56
-    Transform = 39
+    Bodies = 1
+    Viewer = 2
+    Simulation = 4
+    RealControllers = 8
+    Sensors = 16
+    Modules = 32
+    PassOnMissingBodyReferences = 0x8000

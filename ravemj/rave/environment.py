@@ -7,7 +7,8 @@ import weakref
 import mujoco
 
 from ravemj.errors import SourceError
-from ravemj.rave.env.contents import Contents
+from ravemj.rave.env.cloning import Cloning
+from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.locking import Locking
 from ravemj.rave.env.viewing import Viewing
@@ -18,7 +19,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Contents, Loading, Locking, Viewing):
+class Environment(Cloning, Drawing, Loading, Locking, Viewing):
     """A world with robots and other bodies.
 
     Example:
@@ -31,20 +32,32 @@ class Environment(Contents, Loading, Locking, Viewing):
         >>> picture = env.render(640, 480)
     """
 
-    def __init__(self) -> None:
+    def __init__(self, options: int = 1) -> None:
+        """Make an empty environment.
+
+        Args:
+            options: OpenRAVE's; ignored.
+        """
+        del options
         super().__init__()
         self._number = next(_numbers)
         _environments[self._number] = self
+
+    def GetId(self) -> int:
+        """Return the environment's number, as ``repr(env)`` shows it."""
+        return self._number
 
     def Reset(self) -> None:
         """Remove all bodies."""
         self._simulation.clear()
 
     def Destroy(self) -> None:
-        """Close the viewer and remove all bodies."""
+        """Close the viewer and remove all bodies; nothing can be added afterwards. A second time does nothing."""
         self.SetViewer("")
         self.Reset()
         self._studio.close()
+        self._is_destroyed = True
+        _environments.pop(self._number, None)
 
     @property
     def simulation(self) -> Simulation:
@@ -82,6 +95,22 @@ class Environment(Contents, Loading, Locking, Viewing):
 def RaveGetEnvironment(id: int) -> Environment | None:  # OpenRAVE's name of the argument
     """Return the environment of that number, as ``repr(env)`` shows it, or None."""
     return _environments.get(id)
+
+
+def RaveGetEnvironmentId(env: Environment) -> int:
+    """Return the environment's number, as ``RaveGetEnvironment`` takes it."""
+    return env.GetId()
+
+
+def RaveGetEnvironments() -> list[Environment]:
+    """Return all environments that are in use."""
+    return list(_environments.values())
+
+
+def RaveDestroy() -> None:
+    """Destroy all environments; usually the last line of a script."""
+    for env in RaveGetEnvironments():
+        env.Destroy()
 
 
 def load(path: str | os.PathLike[str]) -> Environment:

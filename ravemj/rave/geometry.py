@@ -1,13 +1,12 @@
 """Shapes of a link."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ravemj import scene
 from ravemj.errors import RavemjError
 from ravemj.rave.enums import GeometryType
-from ravemj.transforms import Floats, Ints
+from ravemj.rave.trimesh import TriMesh, trimesh_of
+from ravemj.transforms import Floats
 
 _TYPES: dict[type[scene.Shape], GeometryType] = {
     scene.Box: GeometryType.Box,
@@ -19,19 +18,6 @@ _TYPES: dict[type[scene.Shape], GeometryType] = {
     scene.TriMesh: GeometryType.Trimesh,
     scene.NoShape: GeometryType.None_,
 }
-
-
-@dataclass(eq=False)
-class TriMesh:
-    """Triangles.
-
-    Attributes:
-        vertices: Shape (n, 3) [m].
-        indices: Corners of each triangle, shape (m, 3).
-    """
-
-    vertices: Floats
-    indices: Ints
 
 
 class Geometry:
@@ -122,7 +108,7 @@ class Geometry:
         shape = self._scene.shape
         if not isinstance(shape, scene.TriMesh):
             raise self._has_none("triangles")
-        return TriMesh(shape.mesh.vertices.copy(), shape.mesh.triangles.copy())
+        return trimesh_of(shape.mesh)
 
     def GetDiffuseColor(self) -> Floats:
         """Return the colour: red, green, blue from 0 to 1, shape (3,)."""

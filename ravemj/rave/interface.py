@@ -17,14 +17,35 @@ class Annotations:
         self.data: dict[str, Any] = {}
 
 
-class Interface:
+class UserData:
+    """Keeps data of users."""
+
+    _annotations: Annotations
+
+    def SetUserData(self, *arguments: Any) -> None:  # noqa: ANN401 - any object of the user's
+        """Attach an object of your own: ``SetUserData(data)`` or ``SetUserData(key, data)``.
+
+        It stays as long as the body does. ``GetUserData`` returns it.
+        """
+        key, data = ("", *arguments) if len(arguments) == 1 else arguments
+        self._annotations.data[str(key)] = data
+
+    def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
+        """Return what ``SetUserData`` attached under that name, or None."""
+        return self._annotations.data.get(key)
+
+    def RemoveUserData(self, key: str = "") -> bool:
+        """Forget what is attached under a name; return whether there was something."""
+        return self._annotations.data.pop(key, None) is not None
+
+
+class Interface(UserData):
     """An object of an environment: a body, a controller, a physics engine, a trajectory, ...
 
     OpenRAVE calls them interfaces, since its plugins make them.
     """
 
     _env: "Environment"
-    _annotations: Annotations
     _interface_type: InterfaceType
 
     def GetEnv(self) -> "Environment":
@@ -50,22 +71,6 @@ class Interface:
     def SetDescription(self, description: str) -> None:
         """Attach a text."""
         self._annotations.description = str(description)
-
-    def SetUserData(self, *arguments: Any) -> None:  # noqa: ANN401 - any object of the user's
-        """Attach an object of your own: ``SetUserData(data)`` or ``SetUserData(key, data)``.
-
-        It stays as long as the body does. ``GetUserData`` returns it.
-        """
-        key, data = ("", *arguments) if len(arguments) == 1 else arguments
-        self._annotations.data[str(key)] = data
-
-    def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
-        """Return what ``SetUserData`` attached under that name, or None."""
-        return self._annotations.data.get(key)
-
-    def RemoveUserData(self, key: str = "") -> bool:
-        """Forget what is attached under a name; return whether there was something."""
-        return self._annotations.data.pop(key, None) is not None
 
     def SupportsCommand(self, cmd: str) -> bool:
         """Return whether ``SendCommand`` knows a command; no command is known here."""

@@ -1,16 +1,25 @@
 """Bodies."""
 
+from typing import TYPE_CHECKING
+
+from ravemj.rave.body.building import Building
+from ravemj.rave.body.grabbing import Grabbing
 from ravemj.rave.body.limits import Limits
 from ravemj.rave.body.mechanism import Mechanism
 from ravemj.rave.body.motion import Motion
-from ravemj.rave.body.placement import Placement
+from ravemj.rave.body.saving import Saving, StateSaver
+from ravemj.rave.configured import Configured
 from ravemj.rave.enums import CheckLimitsAction, InterfaceType, JointType, SaveParameters
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
+from ravemj.simulation import BodyState
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
 
 
-class KinBody(Placement, Limits, Mechanism, Motion):
+class KinBody(Saving, Configured, Grabbing, Limits, Mechanism, Motion, Building):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:
@@ -25,9 +34,14 @@ class KinBody(Placement, Limits, Mechanism, Motion):
     Joint = Joint
     JointType = JointType
     Link = Link
+    KinBodyStateSaver = StateSaver
     SaveParameters = SaveParameters
 
     _interface_type = InterfaceType.kinbody
+
+    def __init__(self, env: "Environment", state: BodyState) -> None:
+        super().__init__(env, state)
+        self._open_savers = []
 
     def SetName(self, name: str) -> None:
         """Give the body another name.
@@ -44,6 +58,19 @@ class KinBody(Placement, Limits, Mechanism, Motion):
     def GetEnvironmentBodyIndex(self) -> int:
         """Return the body's number in its environment, from 1; 0 while it is not added."""
         return self._state.index
+
+    def Clone(self, reference: "KinBody", cloningoptions: int = 0) -> None:
+        """Become like another body, which may be in another environment: links, joints, name and configuration.
+
+        Args:
+            reference: The body to copy; what it holds is not copied.
+            cloningoptions: OpenRAVE's; ignored.
+
+        Raises:
+            openrave_exception: this body is in an environment.
+        """
+        del cloningoptions
+        self._state.copy(reference.simulation_state)
 
     GetEnvironmentId = GetEnvironmentBodyIndex
 

@@ -8,22 +8,12 @@ import numpy as np
 from ravemj import scene
 from ravemj.rave.enums import SensorType
 from ravemj.rave.link import Link
+from ravemj.rendering import CameraIntrinsics
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
-
-
-@dataclass(eq=False)
-class CameraIntrinsics:
-    """A pinhole camera.
-
-    Attributes:
-        K: Camera matrix [pixels], shape (3, 3).
-    """
-
-    K: Floats
 
 
 @dataclass(eq=False)

@@ -11,14 +11,14 @@ from ravemj.errors import ErrorCode, RavemjError
 from ravemj.kinematics import BodyKinematics, Configuration
 from ravemj.placement import place_links
 from ravemj.scene import Axis, KinBody, Link
-from ravemj.transforms import Floats, inverse
+from ravemj.transforms import Floats, Pose, inverse, pose_of
 
 if TYPE_CHECKING:
     from ravemj.simulation.world import Simulation
 
 
 @dataclass(frozen=True, slots=True)
-class Grab:
+class GrabbedBody:
     """One body held by a link of another.
 
     Attributes:
@@ -54,7 +54,7 @@ class BodyState:
         self.simulation = simulation
         self.index = 0
         self.stamp = 0
-        self.grabs: list[Grab] = []
+        self.grabs: list[GrabbedBody] = []
         self.api_object: object | None = None
         self._kinematics: BodyKinematics | None = None
         self._dynamics: BodyDynamics | None = None
@@ -166,6 +166,18 @@ class BodyState:
             self._is_moved = True
         self.moved()
 
+    def pose(self) -> Pose:
+        """Return the pose of the first link."""
+        if self._kinematics is not None:
+            return self._kinematics.link_pose(0)
+        return pose_of(self.link_transform(0)) if self.scene.links else Pose()
+
+    def set_pose(self, T_world_link0: Pose) -> None:
+        """Move the body rigidly, as ``set_transform``; ``pose()`` gives back this quaternion, not its negative."""
+        self.set_transform(T_world_link0.matrix())
+        if self._kinematics is not None:
+            self._kinematics.set_root_wxyz(T_world_link0.wxyz)
+
     def place_links(self, T_world_links: Floats, last_values: Floats | None = None) -> None:
         """Put every link at a pose; joints get the values that the poses show. This never compiles.
 
@@ -200,9 +212,13 @@ class BodyState:
         """Set the velocities of the links, shape (links, 6); what they hold moves with them."""
         self._velocities = velocities.copy()
         for grab in self.grabs:
-            carrier = velocities[grab.link]
-            arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
-            grab.body.set_velocity(carrier[:3] + np.cross(carrier[3:], arm), carrier[3:])
+            self._carry(grab)
+
+    def _carry(self, grab: GrabbedBody) -> None:
+        """Give a held body the velocity of the link that holds it."""
+        carrier = self._velocities[grab.link]
+        arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
+        grab.body.set_velocity(carrier[:3] + np.cross(carrier[3:], arm), carrier[3:])
 
     def set_velocity(self, linear: Floats, angular: Floats) -> None:
         """Let all links move as one.
@@ -214,6 +230,19 @@ class BodyState:
         origins = self.link_transforms()[:, :3, 3]
         moved = linear + np.cross(angular, origins - origins[:1])
         self.set_link_velocities(np.column_stack((moved, np.tile(angular, (len(origins), 1)))))
+
+    def grab(self, grab: GrabbedBody) -> None:
+        """Hold a body; one that is held already, anew."""
+        places = [number for number, old in enumerate(self.grabs) if old.body is grab.body]
+        if places:
+            self.grabs[places[0]] = grab
+        else:
+            self.grabs.append(grab)
+        self._carry(grab)
+
+    def release(self, body: "BodyState") -> None:
+        """Let go of a body; nothing happens if it is not held."""
+        self.grabs = [grab for grab in self.grabs if grab.body is not body]
 
     def configuration(self) -> "tuple[Configuration | None, Floats]":
         """Return the state of joints and links, for ``restore``."""
@@ -228,6 +257,17 @@ class BodyState:
             self.moved()
         else:
             self.place_links(poses)
+
+    def copy(self, other: "BodyState", name: str | None = None) -> None:
+        """Become like another body, its configuration and flags included; what it holds is left out.
+
+        Raises:
+            RavemjError: this body is in the world.
+        """
+        self.rebuild(other.scene if name is None else replace(other.scene, name=name))
+        self.link_enabled = list(other.link_enabled)
+        self._configuration, self._poses = other.configuration()
+        self._is_moved = self._configuration is None
 
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
         """Change the description of the body where links and joints stay the same: names, limits, manipulators."""

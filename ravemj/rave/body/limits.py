@@ -114,7 +114,7 @@ class Limits(BodyPart):
             if np.isnan(numbers).any():
                 raise ArgumentError(f"{caller}: values are {numbers.tolist()}, and should be numbers")
             given[name] = numbers.tolist()
-        for position, dof_index in enumerate(chosen.tolist()):
+        for position, dof_index in enumerate(map(int, chosen)):
             changes: dict[str, Any] = {name: values[position] for name, values in given.items()}
             axes[dof_index] = replace(axes[dof_index], **changes)
         with self._simulation.lock:
@@ -141,7 +141,7 @@ class Limits(BodyPart):
             )
             raise ArgumentError(message)
         axes = self._state.scene.dof_axes
-        circular = np.array([axes[dof].circular for dof in chosen.tolist()], dtype=bool)
+        circular = np.array([axes[dof].circular for dof in map(int, chosen)], dtype=bool)
         difference = minuend - subtrahend
         wrapped = (difference + np.pi) % (2 * np.pi) - np.pi
         return np.where(circular, wrapped, difference)

@@ -1,0 +1,176 @@
+"""Affine DOFs: which parts of a body's pose move, and their values."""
+
+from enum import IntFlag
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.geometry_functions import arguments
+from ravemj.geometry_functions.rotations import normalizeAxisRotation
+from ravemj.transforms import Floats, Pose, Vec3, normalize, wxyz_from_axis_angle
+
+Z_AXIS: Vec3 = (0.0, 0.0, 1.0)
+
+
+class DOFAffine(IntFlag):
+    """Parts of a pose; combine them with ``|``. There is one kind of rotation at most."""
+
+    NoTransform = 0
+    X = 1
+    Y = 2
+    Z = 4
+    RotationAxis = 8
+    """A turn about a given axis: one angle [rad]."""
+    Rotation3D = 16
+    """Any rotation: its axis times its angle [rad], three values."""
+    RotationQuat = 32
+    """Any rotation: a quaternion, four values."""
+    XYZ = 7
+    RotationMask = 56
+    Transform = 39
+
+
+_SIZES = {
+    DOFAffine.X: 1,
+    DOFAffine.Y: 1,
+    DOFAffine.Z: 1,
+    DOFAffine.RotationAxis: 1,
+    DOFAffine.Rotation3D: 3,
+    DOFAffine.RotationQuat: 4,
+}
+
+
+def _parts(affinedofs: int) -> list[DOFAffine]:
+    """Return the parts in the order of their values.
+
+    Raises:
+        ArgumentError: there are two kinds of rotation.
+    """
+    parts = [part for part in _SIZES if part & affinedofs]
+    if sum(bool(part & DOFAffine.RotationMask) for part in parts) > 1:
+        raise ArgumentError(f"affinedofs: {affinedofs} has more than one kind of rotation", ErrorCode.Assert)
+    return parts
+
+
+def RaveGetAffineDOF(affinedofs: int) -> int:
+    """Return how many values these parts of a pose have.
+
+    Args:
+        affinedofs: ``DOFAffine`` values, combined.
+
+    Raises:
+        ArgumentError: there are two kinds of rotation.
+
+    Example:
+        >>> RaveGetAffineDOF(DOFAffine.X | DOFAffine.Y | DOFAffine.RotationAxis)
+        3
+    """
+    return sum(_SIZES[part] for part in _parts(affinedofs))
+
+
+def RaveGetAffineDOFFromIndex(affinedofs: int, index: int) -> DOFAffine:
+    """Return which part a value belongs to.
+
+    Raises:
+        ArgumentError: there are not so many values.
+    """
+    owners = [part for part in _parts(affinedofs) for _ in range(_SIZES[part])]
+    if not 0 <= index < len(owners):
+        raise ArgumentError(f"index: is {index}, and affinedofs {int(affinedofs)} has {len(owners)} values")
+    return owners[index]
+
+
+def RaveGetIndexFromAffineDOF(affinedofs: int, dof: int) -> int:
+    """Return where the first value of a part is.
+
+    Raises:
+        ArgumentError: the part is not among ``affinedofs``.
+    """
+    index = 0
+    for part in _parts(affinedofs):
+        if part & dof:
+            return index
+        index += _SIZES[part]
+    raise ArgumentError(f"dof: {int(dof)} is not among affinedofs {int(affinedofs)}")
+
+
+def RaveGetAffineDOFValuesFromTransform(
+    transform: ArrayLike, affinedofs: int, rotationaxis: ArrayLike | None = None
+) -> Floats:
+    """Return the values of parts of a pose.
+
+    Args:
+        transform: A matrix of 4x4 or a pose of 7 numbers.
+        affinedofs: ``DOFAffine`` values, combined.
+        rotationaxis: The axis of ``RotationAxis``; None: z.
+
+    Returns:
+        X, Y, Z [m], then the rotation, as far as they are among ``affinedofs``.
+    """
+    return affine_values(arguments.pose(transform, "transform"), affinedofs, _axis(rotationaxis))
+
+
+def RaveGetTransformFromAffineDOFValues(
+    values: ArrayLike, affinedofs: int, rotationaxis: ArrayLike | None = None, transform: ArrayLike | None = None
+) -> Floats:
+    """Return a transform with parts replaced.
+
+    Args:
+        values: One for each DOF, in the order of ``RaveGetAffineDOFValuesFromTransform``.
+        affinedofs: ``DOFAffine`` values, combined.
+        rotationaxis: The axis of ``RotationAxis``; None: z.
+        transform: What to start from, a matrix of 4x4 or a pose of 7 numbers; None: the identity.
+
+    Returns:
+        Shape (4, 4).
+    """
+    start = Pose() if transform is None else arguments.pose(transform, "transform")
+    given = arguments.numbers(values, RaveGetAffineDOF(affinedofs), "values")
+    return pose_with_values(start, given, affinedofs, _axis(rotationaxis)).matrix()
+
+
+def _axis(rotationaxis: ArrayLike | None) -> Vec3:
+    return Z_AXIS if rotationaxis is None else arguments.vec3(rotationaxis, "rotationaxis")
+
+
+def affine_values(pose: Pose, affinedofs: int, axis: Vec3 = Z_AXIS) -> Floats:
+    """Return the values of parts of a pose, X, Y, Z, then the rotation."""
+    values: list[float] = []
+    for part in _parts(affinedofs):
+        if part & DOFAffine.XYZ:
+            values.append(pose.position[(DOFAffine.X, DOFAffine.Y, DOFAffine.Z).index(part)])
+        else:
+            values.extend(rotation_values(pose, part, axis))
+    return np.array(values)
+
+
+def rotation_values(pose: Pose, part: DOFAffine, axis: Vec3 = Z_AXIS) -> list[float]:
+    """Return the values of one kind of rotation."""
+    w, *vector = pose.wxyz
+    if part == DOFAffine.RotationQuat:
+        return list(pose.wxyz)
+    if part == DOFAffine.RotationAxis:
+        return [-normalizeAxisRotation(axis, pose.wxyz)[0]]
+    sine = float(np.linalg.norm(vector))
+    factor = 2 * float(np.arctan2(sine, w)) / sine if sine else 0.0
+    return [factor * component for component in vector]
+
+
+def pose_with_values(pose: Pose, values: Floats, affinedofs: int, axis: Vec3 = Z_AXIS) -> Pose:
+    """Return the pose with parts replaced by their values; the rest stays."""
+    position, quaternion = list(pose.position), pose.wxyz
+    numbers = iter(values.tolist())
+    for part in _parts(affinedofs):
+        given = [next(numbers) for _ in range(_SIZES[part])]
+        if part & DOFAffine.XYZ:
+            position[(DOFAffine.X, DOFAffine.Y, DOFAffine.Z).index(part)] = given[0]
+        elif part == DOFAffine.RotationAxis:
+            quaternion = wxyz_from_axis_angle(axis, given[0])
+        elif part == DOFAffine.Rotation3D:
+            turn = arguments.vec3(given, "values")
+            quaternion = wxyz_from_axis_angle(turn, float(np.linalg.norm(turn)))
+        else:
+            quaternion = normalize(arguments.wxyz(given, "values"))
+    x, y, z = position
+    return Pose((x, y, z), quaternion)

@@ -1,0 +1,95 @@
+"""Arguments of the geometry functions, checked.
+
+As in OpenRAVE, what is too short is refused, and of what is too long the beginning is taken.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.arrays import checked_numbers
+from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.transforms import Floats, Pose, Vec3, Wxyz, normalize, wxyz_from_rows
+
+
+def numbers(values: ArrayLike, length: int, name: str) -> Floats:
+    """Return a copy of the first numbers of a vector.
+
+    Raises:
+        ArgumentError: there are fewer.
+    """
+    vector = checked_numbers(values, name)
+    if vector.ndim != 1 or len(vector) < length:
+        raise ArgumentError(f"{name}: has shape {vector.shape}, and should have shape ({length},)")
+    return vector[:length]
+
+
+def vec3(values: ArrayLike, name: str) -> Vec3:
+    """Return a vector of three numbers."""
+    x, y, z = numbers(values, 3, name).tolist()
+    return x, y, z
+
+
+def wxyz(values: ArrayLike, name: str) -> Wxyz:
+    """Return a quaternion of any length."""
+    w, x, y, z = numbers(values, 4, name).tolist()
+    return w, x, y, z
+
+
+def unit_wxyz(values: ArrayLike, name: str) -> Wxyz:
+    """Return a quaternion that is nearly of unit length, with unit length.
+
+    Raises:
+        ArgumentError: its squared length is not within 0.99 and 1.01 (code Assert), or it has too few numbers.
+    """
+    quaternion = wxyz(values, name)
+    if not 0.99 < sum(part * part for part in quaternion) < 1.01:
+        message = (
+            f"{name}: the quaternion {list(quaternion)} has length {np.linalg.norm(quaternion):.6g}, and should have 1"
+        )
+        raise ArgumentError(message, ErrorCode.Assert)
+    return normalize(quaternion)
+
+
+def rotation(values: ArrayLike, name: str) -> Floats:
+    """Return the 3x3 rotation in a matrix of 3x3, 3x4 or 4x4."""
+    return _matrix(values, name, 3)[:3, :3]
+
+
+def affine(values: ArrayLike, name: str) -> Floats:
+    """Return the upper three rows of a matrix of 3x4 or 4x4."""
+    return _matrix(values, name, 4)[:3, :4]
+
+
+def table(values: ArrayLike, columns: int, name: str) -> Floats:
+    """Return a copy of a two-dimensional array with that many columns; no rows may be written as []."""
+    rows = checked_numbers(values, name)
+    if rows.size == 0:
+        return np.empty((0, columns))
+    if rows.ndim != 2 or rows.shape[1] < columns:
+        raise ArgumentError(f"{name}: has shape {rows.shape}, and should have shape (n, {columns})")
+    return rows[:, :columns]
+
+
+def pose(values: ArrayLike, name: str) -> Pose:
+    """Return a transform given as a pose of 7 numbers, quaternion first, or as a matrix of 3x4 or 4x4.
+
+    The quaternion gets unit length.
+
+    Raises:
+        ArgumentError: it is neither, or the quaternion is zero.
+    """
+    given = checked_numbers(values, name)
+    if given.ndim == 2:
+        matrix = affine(given, name)
+        return Pose(vec3(matrix[:, 3], name), wxyz_from_rows(matrix[:, :3].tolist()))
+    quaternion = wxyz(given, name)
+    if not any(quaternion):
+        raise ArgumentError(f"{name}: its quaternion is zero, which is no rotation")
+    return Pose(vec3(numbers(given, 7, name)[4:], name), normalize(quaternion))
+
+
+def _matrix(values: ArrayLike, name: str, columns: int) -> Floats:
+    matrix = checked_numbers(values, name)
+    if matrix.ndim != 2 or matrix.shape[0] < 3 or matrix.shape[1] < columns:
+        raise ArgumentError(f"{name}: has shape {matrix.shape}, and should have shape (4, 4)")
+    return matrix

@@ -1,0 +1,139 @@
+"""Rays and boxes: small values that pickle, print and convert."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.geometry_functions import arguments
+from ravemj.transforms import ZERO, Floats, Pose
+
+
+class Ray:
+    """A ray; its length is that of its direction.
+
+    Example:
+        >>> ray = Ray([0, 0, 2], [0, 0, -5])  # reaches down to z = -3
+    """
+
+    def __init__(self, pos: ArrayLike = ZERO, dir: ArrayLike = ZERO) -> None:
+        self._pos = arguments.vec3(pos, "pos")
+        self._dir = arguments.vec3(dir, "dir")
+
+    def pos(self) -> Floats:
+        """Return the start [m], shape (3,)."""
+        return np.array(self._pos)
+
+    def dir(self) -> Floats:
+        """Return the direction and range [m], shape (3,)."""
+        return np.array(self._dir)
+
+    def __repr__(self) -> str:
+        return f"<Ray([{_listed(self._pos)}],[{_listed(self._dir)}])>"
+
+    def __str__(self) -> str:
+        return f"<{_listed((*self._pos, *self._dir), ' ')}>"
+
+
+class AABB:
+    """A box along the axes of the world.
+
+    Example:
+        >>> box = robot.ComputeAABB()
+        >>> top = box.pos()[2] + box.extents()[2]
+    """
+
+    def __init__(self, pos: ArrayLike = ZERO, extents: ArrayLike = ZERO) -> None:
+        self._pos = arguments.vec3(pos, "pos")
+        self._extents = arguments.vec3(extents, "extents")
+
+    def pos(self) -> Floats:
+        """Return the centre [m], shape (3,)."""
+        return np.array(self._pos)
+
+    def extents(self) -> Floats:
+        """Return half the edge lengths [m], shape (3,)."""
+        return np.array(self._extents)
+
+    def toDict(self) -> dict[str, Floats]:
+        """Return the box as ``pos`` and ``extents``."""
+        return {"pos": self.pos(), "extents": self.extents()}
+
+    def __repr__(self) -> str:
+        return f"AABB([{_listed(self._pos)}],[{_listed(self._extents)}])"
+
+    def __str__(self) -> str:
+        return f"<{_listed((*self._pos, *self._extents), ' ')}>"
+
+
+class OrientedBox:
+    """A box that may be turned."""
+
+    def __init__(self, transform: ArrayLike = (1, 0, 0, 0, 0, 0, 0), extents: ArrayLike = ZERO) -> None:
+        self._pose = arguments.pose(transform, "transform")
+        self._extents = arguments.vec3(extents, "extents")
+
+    def extents(self) -> Floats:
+        """Return half the edge lengths [m], shape (3,)."""
+        return np.array(self._extents)
+
+    def transform(self) -> Floats:
+        """Return the pose of the centre, shape (4, 4)."""
+        return self._pose.matrix()
+
+    def pose(self) -> Floats:
+        """Return the pose of the centre, quaternion first, shape (7,)."""
+        return np.array([*self._pose.wxyz, *self._pose.position])
+
+    def toDict(self) -> dict[str, Floats]:
+        """Return the box as ``transform``, a pose of 7 numbers, and ``extents``."""
+        return {"transform": self.pose(), "extents": self.extents()}
+
+    def __repr__(self) -> str:
+        return f"OrientedBox([{_listed(self.pose())}],[{_listed(self._extents)}])"
+
+    def __str__(self) -> str:
+        return f"<{self!r}>"
+
+
+def _listed(numbers: Iterable[float], separator: str = ",") -> str:
+    return separator.join(f"{number:.15e}" for number in numbers)
+
+
+def OrientedBoxFromAABB(aabb: AABB, transform: ArrayLike) -> OrientedBox:
+    """Return a box moved by a transform, a matrix of 4x4 or a pose of 7 numbers."""
+    x, y, z = aabb.pos().tolist()
+    moved = arguments.pose(transform, "transform") @ Pose((x, y, z))
+    return OrientedBox([*moved.wxyz, *moved.position], aabb.extents())
+
+
+def AABBFromOrientedBox(obb: OrientedBox) -> AABB:
+    """Return the smallest box along the axes of the world that holds a box."""
+    transform = obb.transform()
+    return AABB(transform[:3, 3], np.abs(transform[:3, :3]) @ obb.extents())
+
+
+def CheckAABBCollision(aabb1: AABB, aabb2: AABB) -> bool:
+    """Return whether two boxes along the axes of the world overlap or touch."""
+    return bool(np.all(np.abs(aabb1.pos() - aabb2.pos()) <= aabb1.extents() + aabb2.extents()))
+
+
+def CheckOBBCollision(obb1: OrientedBox, obb2: OrientedBox) -> bool:
+    """Return whether two boxes overlap or touch: no plane along their faces or edges separates them."""
+    first, second = obb1.transform(), obb2.transform()
+    edges1, edges2 = first[:3, :3].T, second[:3, :3].T
+    crossed = np.cross(edges1[:, None], edges2[None]).reshape(-1, 3)
+    normals = np.vstack([edges1, edges2, crossed[np.linalg.norm(crossed, axis=1) > 1e-9]])
+    distances = np.abs(normals @ (second[:3, 3] - first[:3, 3]))
+    reaches = np.abs(normals @ edges1.T) @ obb1.extents() + np.abs(normals @ edges2.T) @ obb2.extents()
+    return bool(np.all(distances <= reaches))
+
+
+def CheckAABBAndOBBCollision(aabb: AABB, obb: OrientedBox) -> bool:
+    """Return whether a box along the axes of the world and another box overlap or touch."""
+    return CheckOBBCollision(OrientedBoxFromAABB(aabb, np.eye(4)), obb)
+
+
+def CheckBoxAtOriginAndOBBCollision(extents: ArrayLike, obb: OrientedBox) -> bool:
+    """Return whether a box in the origin, given by half its edge lengths, and another box overlap or touch."""
+    return CheckAABBAndOBBCollision(AABB(ZERO, extents), obb)

@@ -1,0 +1,182 @@
+"""Transforms as matrices of 4x4 and as poses (qw, qx, qy, qz, x, y, z)."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.arrays import checked_numbers
+from ravemj.errors import ArgumentError
+from ravemj.geometry_functions import arguments
+from ravemj.transforms import Floats, Pose, Vec3, wxyz_from_rows
+
+
+def matrixFromPose(pose: ArrayLike) -> Floats:
+    """Return the matrix of a pose.
+
+    Args:
+        pose: Quaternion and position, shape (7,).
+
+    Returns:
+        Shape (4, 4).
+
+    Raises:
+        ArgumentError: the quaternion is far from unit length.
+    """
+    return Pose(_position(pose), arguments.unit_wxyz(pose, "pose")).matrix()
+
+
+def matrixFromPoses(poses: ArrayLike) -> list[Floats]:
+    """Return the matrices, each of shape (4, 4), of poses of shape (n, 7)."""
+    return [matrixFromPose(pose) for pose in arguments.table(poses, 7, "poses")]
+
+
+def poseFromMatrix(transform: ArrayLike) -> Floats:
+    """Return the pose of a matrix.
+
+    Args:
+        transform: Shape (4, 4) or (3, 4).
+
+    Returns:
+        Quaternion and position, shape (7,).
+    """
+    matrix = arguments.affine(transform, "transform")
+    return np.array([*wxyz_from_rows(matrix[:, :3].tolist()), *matrix[:, 3]])
+
+
+def poseFromMatrices(transforms: ArrayLike) -> Floats:
+    """Return the poses, shape (n, 7), of matrices of 4x4 or 3x4."""
+    matrices = checked_numbers(transforms, "transforms")
+    return np.array([poseFromMatrix(matrix) for matrix in matrices]).reshape(-1, 7)
+
+
+def InvertPose(pose: ArrayLike) -> Floats:
+    """Return the inverse of a pose, shape (7,)."""
+    return _numbers(_pose(pose).inverse())
+
+
+def InvertPoses(poses: ArrayLike) -> Floats:
+    """Return the inverses, shape (n, 7), of poses of shape (n, 7)."""
+    return np.array([InvertPose(pose) for pose in arguments.table(poses, 7, "poses")]).reshape(-1, 7)
+
+
+invertPoses = InvertPoses
+
+
+def MultiplyPose(pose1: ArrayLike, pose2: ArrayLike) -> Floats:
+    """Return the pose that applies ``pose2``, then ``pose1``, shape (7,).
+
+    Raises:
+        ArgumentError: the product's quaternion is far from unit length.
+    """
+    product = _pose(pose1) @ _pose(pose2)
+    return _numbers(Pose(product.position, arguments.unit_wxyz(product.wxyz, "pose1 * pose2")))
+
+
+poseMult = MultiplyPose
+
+
+def poseTransformPoint(pose: ArrayLike, point: ArrayLike) -> Floats:
+    """Return a point moved by a pose, shape (3,)."""
+    return np.array(_pose(pose).apply(arguments.vec3(point, "point")))
+
+
+def poseTransformPoints(pose: ArrayLike, points: ArrayLike) -> Floats:
+    """Return points of shape (n, 3) moved by a pose, shape (n, 3)."""
+    return transformPoints(_pose(pose).matrix(), arguments.table(points, 3, "points"))
+
+
+def transformPoints(T: ArrayLike, points: ArrayLike) -> Floats:
+    """Return points moved by an affine matrix.
+
+    Args:
+        T: Shape (k + 1, k + 1) or (k, k + 1); k is 3 in space.
+        points: Shape (n, k).
+
+    Returns:
+        Shape (n, k).
+    """
+    linear, offset = _linear(T)
+    return arguments.table(points, len(offset), "points") @ linear.T + offset
+
+
+def transformInversePoints(T: ArrayLike, points: ArrayLike) -> Floats:
+    """Return points moved by the inverse of a rigid matrix; arguments as for ``transformPoints``."""
+    linear, offset = _linear(T)
+    return (arguments.table(points, len(offset), "points") - offset) @ linear
+
+
+def _linear(matrix: ArrayLike) -> tuple[Floats, Floats]:
+    rows = checked_numbers(matrix, "T")
+    if rows.ndim != 2 or rows.shape[0] not in {rows.shape[1], rows.shape[1] - 1} or rows.shape[1] < 2:
+        raise ArgumentError(f"T: has shape {rows.shape}, and should have shape (4, 4)")
+    size = rows.shape[1] - 1
+    return rows[:size, :size], rows[:size, size]
+
+
+def transformLookat(lookat: ArrayLike, camerapos: ArrayLike, cameraup: ArrayLike) -> Floats:
+    """Return the pose of a camera that looks at a point.
+
+    Args:
+        lookat: The point.
+        camerapos: Where the camera is.
+        cameraup: Where its y axis should point. Cameras of viewers have y down, so give them the direction down.
+
+    Returns:
+        Shape (4, 4), with z towards the point. Without a direction to look along it is z of the world; without a
+        usable y axis, y of the world is tried, then x.
+    """
+    position = np.array(arguments.vec3(camerapos, "camerapos"))
+    forward = np.array(arguments.vec3(lookat, "lookat")) - position
+    distance = np.linalg.norm(forward)
+    forward = forward / distance if distance > 1e-6 else np.array([0.0, 0.0, 1.0])
+    for wanted in (np.array(arguments.vec3(cameraup, "cameraup")), np.array([0.0, 1, 0]), np.array([1.0, 0, 0])):
+        up = wanted - forward * (forward @ wanted)
+        if up @ up >= 1e-8:
+            break
+    up = up / np.linalg.norm(up)
+    matrix = np.eye(4)
+    matrix[:3] = np.column_stack([np.cross(up, forward), up, forward, position])
+    return matrix
+
+
+TransformLookat = transformLookat
+
+
+def ComputePoseDistSqr(pose0: ArrayLike, pose1: ArrayLike, quatweight: float = 1.0) -> float:
+    """Return the squared distance of two poses: of the positions, plus ``quatweight`` times that of the quaternions.
+
+    The sign of a quaternion does not count.
+    """
+    return float(ComputePoseArrayDistSqr(pose0, [arguments.numbers(pose1, 7, "pose1")], quatweight)[0])
+
+
+def ComputePoseArrayDistSqr(pose0: ArrayLike, posearray: ArrayLike, quatweight: float = 1.0) -> Floats:
+    """Return the squared distances, shape (n,), of a pose to poses of shape (n, 7); see ``ComputePoseDistSqr``."""
+    first, others = arguments.numbers(pose0, 7, "pose0"), arguments.table(posearray, 7, "posearray")
+    squares = [((others[:, :4] - sign * first[:4]) ** 2).sum(axis=1) for sign in (1, -1)]
+    return ((others[:, 4:] - first[4:]) ** 2).sum(axis=1) + quatweight * np.minimum(*squares)
+
+
+def poseSerialization(pose: ArrayLike) -> str:
+    """Return a transform, a pose of 7 numbers or a matrix of 4x4, as the text of its 7 numbers."""
+    return _text(_numbers(arguments.pose(pose, "pose")))
+
+
+def matrixSerialization(transform: ArrayLike) -> str:
+    """Return a transform, a pose of 7 numbers or a matrix of 4x4, as the text of the columns of its 3x4 matrix."""
+    return _text(arguments.pose(transform, "transform").matrix()[:3].T.ravel())
+
+
+def _text(numbers: Floats) -> str:
+    return "".join(f"{number:.16g} " for number in numbers)
+
+
+def _position(pose: ArrayLike) -> Vec3:
+    return arguments.vec3(arguments.numbers(pose, 7, "pose")[4:], "pose")
+
+
+def _pose(pose: ArrayLike) -> Pose:
+    return Pose(_position(pose), arguments.wxyz(pose, "pose"))
+
+
+def _numbers(pose: Pose) -> Floats:
+    return np.array([*pose.wxyz, *pose.position])

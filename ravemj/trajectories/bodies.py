@@ -1,0 +1,61 @@
+"""The layouts of bodies: their joints, then their pose."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.geometry_functions import arguments
+from ravemj.geometry_functions.affine import DOFAffine, RaveGetAffineDOF, affine_values, pose_with_values
+from ravemj.trajectories.groups import AFFINE, JOINTS, Group
+from ravemj.trajectories.layout import packed
+from ravemj.transforms import Floats, Pose
+
+
+class Configurable(Protocol):
+    """What has joints and a pose."""
+
+    def GetDOF(self) -> int:  # noqa: N802 - OpenRAVE's name
+        """Return the number of joint values."""
+        ...
+
+    def GetDOFValues(self) -> Floats:  # noqa: N802 - OpenRAVE's name
+        """Return the joint values."""
+        ...
+
+    def GetTransform(self) -> Floats:  # noqa: N802 - OpenRAVE's name
+        """Return the pose, 4x4."""
+        ...
+
+
+def body_groups(name: str, indices: Sequence[int], affinedofs: int, interpolation: str) -> list[Group]:
+    """Return the layout of some joints of a body, then of parts of its pose; what is empty is left out.
+
+    Args:
+        name: The body's name.
+        indices: DOF indices, in order.
+        affinedofs: Parts of the pose, a ``DOFAffine``.
+        interpolation: How all of them change between waypoints.
+    """
+    joints = Group(" ".join([JOINTS[0], name, *map(str, indices)]), 0, len(indices), interpolation)
+    affine = Group(f"{AFFINE[0]} {name} {int(affinedofs)}", 0, RaveGetAffineDOF(affinedofs), interpolation)
+    return packed([group for group in (joints, affine) if group.dof])
+
+
+def configuration_values(body: Configurable) -> Floats:
+    """Return the joint values and the pose (x, y, z, qw, qx, qy, qz) of a body."""
+    pose = arguments.pose(body.GetTransform(), "transform")
+    return np.concatenate([body.GetDOFValues(), affine_values(pose, DOFAffine.Transform)])
+
+
+def split_configuration(values: Floats, dof: int) -> tuple[Floats, Pose]:
+    """Return the joint values and the pose in the values of a whole body.
+
+    Raises:
+        ArgumentError: there are not ``dof`` + 7 of them.
+    """
+    if values.shape != (dof + 7,):
+        message = f"values: has shape {values.shape}, and should have shape ({dof + 7},)"
+        raise ArgumentError(message, ErrorCode.Assert)
+    return values[:dof], pose_with_values(Pose(), values[dof:], DOFAffine.Transform)

@@ -1,0 +1,103 @@
+"""Values of joints, poses and times in the data of one configuration."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ravemj.geometry_functions.affine import (
+    DOFAffine,
+    RaveGetAffineDOF,
+    RaveGetAffineDOFFromIndex,
+    RaveGetIndexFromAffineDOF,
+    pose_with_values,
+)
+from ravemj.trajectories.groups import AFFINE, DELTATIME, JOINTS, Group, affine_parts, joint_indices
+from ravemj.transforms import Floats, Pose
+
+
+def _of_body(groups: Sequence[Group], kind: str, body: str | None) -> list[Group]:
+    return [group for group in groups if group.kind == kind and (body is None or group.body == body)]
+
+
+def joint_values(
+    groups: Sequence[Group], data: Floats, body: str | None, indices: Sequence[int], order: int
+) -> Floats | None:
+    """Return the values of joints, or of their derivatives; 0 for those that are not there.
+
+    Returns:
+        One value for each index, or None where there is no group of the body, or no index.
+    """
+    found = _of_body(groups, JOINTS[order], body)
+    if not found or not indices:
+        return None
+    values = np.zeros(len(indices))
+    for group in found:
+        present = joint_indices(group)
+        for place, index in enumerate(indices):
+            if index in present:
+                values[place] = data[group.offset + present.index(index)]
+    return values
+
+
+def insert_joint_values(
+    groups: Sequence[Group], data: Floats, values: Floats, body: str | None, indices: Sequence[int], order: int
+) -> bool:
+    """Write the values of joints into data; return whether there is a group of the body, and an index."""
+    found = _of_body(groups, JOINTS[order], body)
+    for group in found if indices else ():
+        for place, index in enumerate(joint_indices(group)):
+            if index in indices:
+                data[group.offset + place] = values[indices.index(index)]
+    return bool(found and indices)
+
+
+def affine_values(groups: Sequence[Group], data: Floats, body: str | None, parts: int, order: int) -> Floats | None:
+    """Return the values of parts of a pose (``DOFAffine``), or of their derivatives; 0 for those that are not there."""
+    found = _of_body(groups, AFFINE[order], body)
+    if not found or not parts:
+        return None
+    values = np.zeros(RaveGetAffineDOF(parts))
+    for group in found:
+        present = affine_parts(group)[0]
+        for index in range(len(values)):
+            part = RaveGetAffineDOFFromIndex(parts, index)
+            if part & present:
+                within = index - RaveGetIndexFromAffineDOF(parts, part)
+                values[index] = data[group.offset + RaveGetIndexFromAffineDOF(present, part) + within]
+    return values
+
+
+def pose(groups: Sequence[Group], data: Floats, body: str | None, start: Pose) -> Pose | None:
+    """Return a pose with the parts replaced that the data has, or None where it has none of the body."""
+    found = _of_body(groups, AFFINE[0], body)
+    for group in found:
+        parts, axis = affine_parts(group)
+        start = pose_with_values(start, data[group.columns], parts, axis)
+    return start if found else None
+
+
+def time_column(groups: Sequence[Group]) -> int | None:
+    """Return where the time since the last waypoint is."""
+    return next((group.offset for group in groups if group.name == DELTATIME), None)
+
+
+def used_bodies(groups: Sequence[Group]) -> list[str]:
+    """Return the names of the bodies whose values there are."""
+    of_bodies = [group for group in groups if group.kind.startswith(("joint_", "affine_", "grabbody"))]
+    return list(dict.fromkeys(group.body for group in of_bodies if group.body is not None))
+
+
+def used_indices(groups: Sequence[Group], body: str) -> tuple[list[int], list[int]]:
+    """Return the DOF indices of a body that there are, and where the first value of each is."""
+    places: dict[int, int] = {}
+    for group in groups:
+        if group.kind.startswith("joint_") and group.body == body and len(group.name.split()) > 2:
+            for place, index in enumerate(joint_indices(group)):
+                places.setdefault(index, group.offset + place)
+    return list(places), list(places.values())
+
+
+def rotation_columns(group: Group) -> tuple[DOFAffine, slice]:
+    """Return the kind of rotation in an affine group (0: none), and where its values are in the group."""
+    kind = DOFAffine(affine_parts(group)[0]) & DOFAffine.RotationMask
+    return kind, slice(group.dof - RaveGetAffineDOF(kind), group.dof)

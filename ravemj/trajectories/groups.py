@@ -1,0 +1,109 @@
+"""Groups of values in a configuration, and what their names say.
+
+A name is a kind and further words: ``joint_values BODY INDEX...``, ``affine_transform BODY PARTS [AXIS]``,
+``ikparam_values TYPE``, ``deltatime``. The kinds of derivatives have names of their own.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ravemj.errors import ArgumentError
+from ravemj.geometry_functions.affine import Z_AXIS
+from ravemj.transforms import Vec3
+
+_RATES = ("velocities", "accelerations", "jerks", "snaps", "crackles", "pops")
+JOINTS = ("joint_values", *(f"joint_{rate}" for rate in _RATES))
+AFFINE = ("affine_transform", *(f"affine_{rate}" for rate in _RATES))
+IK = ("ikparam_values", *(f"ikparam_{rate}" for rate in _RATES))
+FAMILIES = (JOINTS, AFFINE, IK)
+"""Kinds with those of their time derivatives behind them."""
+
+DELTATIME = "deltatime"
+INTERPOLATIONS = ("next", "linear", "quadratic", "cubic", "quartic", "quintic", "sextic")
+"""Interpolations in which each is the derivative of the following one."""
+
+
+@dataclass
+class Group:
+    """Some values of a configuration that belong together.
+
+    Attributes:
+        name: What they are, for instance ``joint_values BarrettWAM 0 1 2``.
+        offset: Where they start in the configuration.
+        dof: How many they are.
+        interpolation: How they change between waypoints: ``previous``, ``next``, ``linear``, ``quadratic``, ``cubic``,
+            ``quartic``, ``quintic``, ``sextic`` or ``max``; empty is ``next``.
+    """
+
+    name: str = ""
+    offset: int = 0
+    dof: int = 0
+    interpolation: str = ""
+
+    @property
+    def columns(self) -> slice:
+        """Where the values are in the last axis of data."""
+        return slice(self.offset, self.offset + self.dof)
+
+    @property
+    def kind(self) -> str:
+        """The first word of the name."""
+        return next(iter(self.name.split()), "")
+
+    @property
+    def body(self) -> str | None:
+        """The second word of the name."""
+        words = self.name.split()
+        return words[1] if len(words) > 1 else None
+
+
+def shifted_name(name: str, steps: int) -> str | None:
+    """Return the name of the group's time derivative, or its integral for negative steps; None where there is none."""
+    kind, *rest = name.split() or [""]
+    for family in FAMILIES:
+        if kind in family and 0 <= family.index(kind) + steps < len(family):
+            return " ".join([family[family.index(kind) + steps], *rest])
+    return None
+
+
+def is_position(group: Group) -> bool:
+    """Return whether the values are positions, and no derivatives or times."""
+    return any(group.kind == family[0] for family in FAMILIES)
+
+
+def derived_interpolation(interpolation: str, order: int) -> str:
+    """Return how the derivative of values changes that are interpolated so; empty where that is not known."""
+    if interpolation not in INTERPOLATIONS:
+        return ""
+    return INTERPOLATIONS[max(0, INTERPOLATIONS.index(interpolation) - order)]
+
+
+def joint_indices(group: Group) -> list[int]:
+    """Return the DOF index of each value; names without indices count from 0."""
+    words = group.name.split()[2:]
+    return _integers(words[: group.dof], group.name) if len(words) >= group.dof else list(range(group.dof))
+
+
+def affine_parts(group: Group) -> tuple[int, Vec3]:
+    """Return which parts of a pose the values are (``DOFAffine``), and the axis of a turn about an axis.
+
+    Raises:
+        ArgumentError: the name does not say it.
+    """
+    words = group.name.split()[2:]
+    if not words:
+        raise ArgumentError(f"group '{group.name}': its name should end with the affine DOFs")
+    if len(words) < 4:
+        return _integers(words[:1], group.name)[0], Z_AXIS
+    try:
+        x, y, z = (float(word) for word in words[1:4])
+    except ValueError:
+        raise ArgumentError(f"group '{group.name}': its axis should be three numbers") from None
+    return _integers(words[:1], group.name)[0], (x, y, z)
+
+
+def _integers(words: Sequence[str], name: str) -> list[int]:
+    try:
+        return [int(word) for word in words]
+    except ValueError:
+        raise ArgumentError(f"group '{name}': what follows the body should be integers") from None
