@@ -20,6 +20,7 @@ LEVELS: list[set[str]] = [
     {"builder", "mjcf"},
     {"kinematics", "openrave_xml"},
     {"coverage", "dynamics", "placement", "readers", "rendering", "trajectories"},
+    {"batch"},
     {"simulation"},
     {"export", "studio"},
     {"viewers"},

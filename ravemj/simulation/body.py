@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ravemj.batch import Batch
 from ravemj.dynamics import BodyDynamics, Inertias
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.kinematics import BodyKinematics, Configuration
@@ -58,6 +59,7 @@ class BodyState:
         self.api_object: object | None = None
         self._kinematics: BodyKinematics | None = None
         self._dynamics: BodyDynamics | None = None
+        self._batch: Batch | None = None
         self._inertias: tuple[tuple[Link, ...], Inertias] | None = None
         self.rebuild(scene)
 
@@ -100,6 +102,13 @@ class BodyState:
         return self._dynamics
 
     @property
+    def batch(self) -> Batch:
+        """The chain of links, ready for many configurations."""
+        if self._batch is None:
+            self._batch = Batch(self.kinematics, self.dynamics)
+        return self._batch
+
+    @property
     def inertias(self) -> Inertias:
         """Mass properties of the links, as the scene has them now."""
         if self._inertias is None or self._inertias[0] is not self.scene.links:
@@ -127,7 +136,7 @@ class BodyState:
             self._poses = self._kinematics.link_transforms()
             self._configuration = self._kinematics.configuration()
             self._kinematics = None
-        self._dynamics = None
+        self._dynamics = self._batch = None
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy. This never compiles."""

@@ -8,11 +8,12 @@ from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_vector
 from ravemj.errors import ArgumentError
+from ravemj.rave.body.many import Many
 from ravemj.rave.body.velocities import Velocities
 from ravemj.transforms import Floats
 
 
-class Motion(Velocities):
+class Motion(Velocities, Many):
     """Jacobians, Hessians and inverse dynamics."""
 
     def GetCenterOfMass(self) -> Floats:
