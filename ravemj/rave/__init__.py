@@ -15,6 +15,7 @@ from ravemj.rave.physics import PhysicsEngine
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
 from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
+from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 
 __all__ = [
     "AttachedSensor",
@@ -31,11 +32,13 @@ __all__ = [
     "Link",
     "Manipulator",
     "PhysicsEngine",
+    "RaveCreateTrajectory",
     "RaveGetAffineConfigurationSpecification",
     "RaveGetEnvironment",
     "Robot",
     "Sensor",
     "SensorType",
+    "Trajectory",
     "TriMesh",
     "load",
 ]
