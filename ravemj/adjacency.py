@@ -19,13 +19,13 @@ def adjacent_pairs(body: KinBody) -> set[Pair]:
     if len(body.links) < 2:
         return set()
     joints = (*body.joints, *body.passive_joints)
-    rigid = _components(len(body.links), ((joint.parent, joint.child) for joint in joints if joint.static))
-    connected = _components(len(body.links), ((joint.parent, joint.child) for joint in joints))
-    one_joint = {_ordered(rigid[joint.parent], rigid[joint.child]) for joint in joints}
+    rigid = components(len(body.links), ((joint.parent, joint.child) for joint in joints if joint.static))
+    connected = components(len(body.links), ((joint.parent, joint.child) for joint in joints))
+    one_joint = {ordered(rigid[joint.parent], rigid[joint.child]) for joint in joints}
     shapeless = {index for index, link in enumerate(body.links) if not link.geometries}
 
     def adjacent(first: int, second: int) -> bool:
-        parts = _ordered(rigid[first], rigid[second])
+        parts = ordered(rigid[first], rigid[second])
         joined = parts[0] == parts[1] or parts in one_joint
         return (
             (joined and body.joined_links_adjacent)
@@ -38,11 +38,12 @@ def adjacent_pairs(body: KinBody) -> set[Pair]:
     return {(i, j) for i in links for j in links if i < j and adjacent(i, j)} | set(body.adjacent)
 
 
-def _ordered(first: int, second: int) -> Pair:
+def ordered(first: int, second: int) -> Pair:
+    """Return two numbers, the smaller one first."""
     return (first, second) if first <= second else (second, first)
 
 
-def _components(count: int, edges: Iterable[Pair]) -> list[int]:
+def components(count: int, edges: Iterable[Pair]) -> list[int]:
     """Return for each node the smallest node that edges connect it to."""
     label = list(range(count))
 
@@ -53,6 +54,6 @@ def _components(count: int, edges: Iterable[Pair]) -> list[int]:
         return node
 
     for first, second in edges:
-        small, large = _ordered(root(first), root(second))
+        small, large = ordered(root(first), root(second))
         label[large] = small
     return [root(node) for node in range(count)]

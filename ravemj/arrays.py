@@ -1,10 +1,15 @@
 """Arrays that users hand in, checked once."""
 
+from types import EllipsisType
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.errors import ArgumentError
-from ravemj.transforms import Floats
+from ravemj.transforms import Floats, Ints, normalize, rows_from_wxyz
+
+NOT_RIGID = 1e-3
+"""How far a rotation times its transpose may be from the identity."""
 
 
 def checked_numbers(values: ArrayLike, name: str) -> Floats:
@@ -31,3 +36,46 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     if not np.isfinite(vector).all():
         raise ArgumentError(f"{name}: is {vector.tolist()}, and should be finite")
     return vector.reshape(length)
+
+
+def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "DOF indices") -> Ints:
+    """Return indices as an array; None stands for none, ``...`` for all.
+
+    Raises:
+        IndexError: one is not from 0 to ``count - 1``.
+    """
+    if indices is ...:
+        return np.arange(count)
+    checked = np.array([] if indices is None else indices, dtype=np.int_).reshape(-1)
+    if checked.size and not (checked.min() >= 0 and checked.max() < count):
+        raise IndexError(f"{name} are {checked.tolist()}, and should be from 0 to {count - 1}")
+    return checked
+
+
+def checked_transform(transform: ArrayLike, name: str) -> Floats:
+    """Return a rigid transform as a 4x4 matrix.
+
+    Args:
+        transform: Shape (4, 4) or (3, 4), or a pose [w, x, y, z, tx, ty, tz], whose quaternion is normalised.
+        name: What to call it in errors.
+
+    Raises:
+        ArgumentError: it has another shape, is not finite, or its rotation is none.
+    """
+    given = checked_numbers(transform, name)
+    matrix = np.eye(4)
+    if not np.isfinite(given).all():
+        raise ArgumentError(f"{name}: is {given.tolist()}, and should be finite")
+    if given.shape == (7,):
+        if not given[:4].any():
+            raise ArgumentError(f"{name}: the quaternion is zero, and should be [w, x, y, z]")
+        matrix[:3, :3] = rows_from_wxyz(normalize((given[0], given[1], given[2], given[3])))
+        matrix[:3, 3] = given[4:]
+    elif given.shape in {(4, 4), (3, 4)}:
+        matrix[:3] = given[:3]
+        rotation = matrix[:3, :3]
+        if np.abs(rotation @ rotation.T - np.eye(3)).max() > NOT_RIGID or np.linalg.det(rotation) < 0:
+            raise ArgumentError(f"{name}: the rotation {rotation.tolist()} is none: its rows should be orthonormal")
+    else:
+        raise ArgumentError(f"{name}: has shape {given.shape}, and should have (4, 4), (3, 4) or (7,)")
+    return matrix

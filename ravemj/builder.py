@@ -14,7 +14,7 @@ from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.following import Equations, Follower, evaluation_order, leaders, resolve
 from ravemj.joints import measured_values, place_links
 from ravemj.manipulators import ManipulatorBuilder, freeze_manipulator
-from ravemj.transforms import ZERO, Pose, Vec3, rotate, scale
+from ravemj.transforms import UNMOVED, ZERO, Pose, Vec3, rotate, scale
 
 DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 0.4)))
 """A link without mass properties weighs 1 kg, like a unit sphere."""
@@ -26,8 +26,8 @@ class LinkBuilder:
 
     name: str
     source: Source
-    pose: Pose = field(default_factory=Pose)
-    geometries: list[scene.Geometry] = field(default_factory=list[scene.Geometry])
+    pose: Pose = UNMOVED
+    geometries: list[scene.Geometry] = field(default_factory=lambda: [])
     inertial: scene.Inertial = DEFAULT_INERTIAL
     static: bool = False
     enabled: bool = True
@@ -71,12 +71,12 @@ class BodyBuilder:
     is_robot: bool
     source: Source
     name: str = ""
-    links: list[LinkBuilder] = field(default_factory=list[LinkBuilder])
-    joints: list[JointBuilder] = field(default_factory=list[JointBuilder])
-    adjacent: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
+    links: list[LinkBuilder] = field(default_factory=lambda: [])
+    joints: list[JointBuilder] = field(default_factory=lambda: [])
+    adjacent: list[tuple[int, int]] = field(default_factory=lambda: [])
     joined_links_adjacent: bool = True
-    manipulators: list[ManipulatorBuilder] = field(default_factory=list[ManipulatorBuilder])
-    sensors: list[scene.AttachedSensor] = field(default_factory=list[scene.AttachedSensor])
+    manipulators: list[ManipulatorBuilder] = field(default_factory=lambda: [])
+    sensors: list[scene.AttachedSensor] = field(default_factory=lambda: [])
     joint_values: list[float] | None = None
     refusal: SourceError | None = None
 

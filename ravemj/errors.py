@@ -5,13 +5,15 @@
     RavemjError                 also called openrave_exception
     ├── SourceError             .source .hint: a file that cannot be read as a model
     │   └── CompileError        MuJoCo refuses the translated model
-    ├── ArgumentError           also a ValueError: a wrong argument of a call
+    ├── ArgumentError           a wrong argument of a call
     ├── OutputError             also an OSError: a file that cannot be written
-    └── RenderingError          no picture can be drawn
+    ├── RenderingError          no picture can be drawn
+    └── UnsupportedError        also a NotImplementedError: .capability that ravemj does not have
 
     RavemjWarning               .code .diagnostic: read, but not as the author may think
 """
 
+import re
 import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -78,9 +80,22 @@ class RavemjError(Exception):
         if code is not None:
             self._code = code
 
+    def __str__(self) -> str:
+        return f"{self.message} ({self._code.name})"
+
     def GetCode(self) -> str:  # noqa: N802 - OpenRAVE's name
         """Return the name of OpenRAVE's code for this kind of error, for instance ``InvalidArguments``."""
         return self._code.name
+
+
+_LONG_QUOTATION = re.compile("'([^']{80})[^']{2,}'")
+_LONGEST = 2000  # characters of a message
+
+
+def shortened(message: str) -> str:
+    """Return a message without most of the text that it quotes, which may be megabytes of a damaged file."""
+    message = _LONG_QUOTATION.sub(r"'\1…'", message)
+    return message if len(message) <= _LONGEST else f"{message[: _LONGEST // 2]} … {message[-_LONGEST // 2 :]}"
 
 
 _CAUSES = {"missing-file", "broken-file", "unsupported-file", "bad-number"}
@@ -96,9 +111,9 @@ class SourceError(RavemjError):
     """
 
     def __init__(self, message: str, source: Source, hint: str = "") -> None:
-        super().__init__(message)
+        super().__init__(shortened(message))
         self.source = source
-        self.hint = hint
+        self.hint = shortened(hint)
         self.diagnostics: tuple[Diagnostic, ...] = ()
 
     def __str__(self) -> str:
@@ -116,7 +131,7 @@ class CompileError(SourceError):
     """MuJoCo refuses the translated model; ``source`` is the element that the refused part comes from."""
 
 
-class ArgumentError(RavemjError, ValueError):
+class ArgumentError(RavemjError):
     """A wrong argument: its length, its value or its type."""
 
     _code = ErrorCode.InvalidArguments
@@ -125,9 +140,29 @@ class ArgumentError(RavemjError, ValueError):
 class OutputError(RavemjError, OSError):
     """A file or folder cannot be written."""
 
+    def __str__(self) -> str:
+        return self.message
+
 
 class RenderingError(RavemjError):
     """No picture can be drawn; the message says what was tried and how to install what is missing."""
+
+    def __str__(self) -> str:
+        return self.message
+
+
+class UnsupportedError(RavemjError, NotImplementedError):
+    """A name of OpenRAVE's that stands for something ravemj does not do.
+
+    Attributes:
+        capability: What is missing, for instance ``inverse kinematics``.
+    """
+
+    _code = ErrorCode.NotImplemented
+
+    def __init__(self, name: str, capability: str) -> None:
+        super().__init__(f"{name}: ravemj does no {capability} yet")
+        self.capability = capability
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,11 +222,11 @@ class Diagnostics:
 
     def warn(self, code: str, message: str, source: Source, hint: str = "") -> None:
         """Record something that OpenRAVE lets pass in silence or with a log line."""
-        self._found.append(Diagnostic("warning", code, message, source, hint))
+        self._found.append(Diagnostic("warning", code, shortened(message), source, shortened(hint)))
 
     def error(self, code: str, message: str, source: Source, hint: str = "") -> None:
         """Record something for which OpenRAVE's ``Load`` returns False though it goes on."""
-        self._found.append(Diagnostic("error", code, message, source, hint))
+        self._found.append(Diagnostic("error", code, shortened(message), source, shortened(hint)))
 
 
 def _places(source: Source | None) -> Iterator[tuple[str, int]]:

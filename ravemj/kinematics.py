@@ -14,7 +14,7 @@ from ravemj.following import evaluation_order
 from ravemj.joints import measured_values, rotation_vector, wxyz_from_rotation_vector
 from ravemj.mjcf import BodyNames
 from ravemj.scene import Axis, Joint, KinBody
-from ravemj.transforms import Floats, Ints, Pose, conjugate, multiply, wxyz_from_rows
+from ravemj.transforms import Floats, Ints, Pose, Wxyz, conjugate, inverse, multiply, wxyz_from_rows
 
 LARGEST = float(np.finfo(np.float64).max)
 WELDED = -1
@@ -56,6 +56,24 @@ class Follower(NamedTuple):
     evaluate: Callable[[Sequence[float]], float]
 
 
+class Configuration(NamedTuple):
+    """Where the links of a body are, and why: what ``BodyKinematics.restore`` needs.
+
+    Attributes:
+        qpos: The body's part of MuJoCo's ``qpos``.
+        positions: Positions of the links in their parents at rest, shape (links, 3).
+        quaternions: Their orientations, wxyz, shape (links, 4).
+        passive: The values of the passive joints.
+        displaced: Whether links are where their joints do not place them.
+    """
+
+    qpos: Floats
+    positions: Floats
+    quaternions: Floats
+    passive: list[list[float]]
+    displaced: bool
+
+
 class BodyKinematics:
     """Reads and writes the configuration of one body in a compiled model.
 
@@ -67,6 +85,9 @@ class BodyKinematics:
         lower: Lower limits, shape (dof,); of circular joints the limits that OpenRAVE reports.
         upper: Upper limits, shape (dof,).
         circular: For each DOF, whether it turns without end, shape (dof,).
+        names: What the links and joints are called in the model.
+        roots: Indices of the links that no joint places; the first link is one.
+        displaced: Whether links are where their joints do not place them; ``set_values`` ends that.
         body_ids: MuJoCo's index of each link, shape (links,).
         qpos_indices: Where each DOF is in ``qpos``, shape (dof,); -1 for that of a joint that moves no link, and for
             those of a spherical joint.
@@ -76,19 +97,16 @@ class BodyKinematics:
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, body: KinBody, names: BodyNames) -> None:
-        self.body = body
         self.model, self.data = model, data
         self._qpos, self._xpos, self._xmat = data.qpos, data.xpos, data.xmat
-        axes = body.dof_axes
-        self.dof = len(axes)
-        self.lower = np.array([axis.lower for axis in axes])
-        self.upper = np.array([axis.upper for axis in axes])
-        self.circular = np.array([axis.circular for axis in axes], dtype=bool)
-        self._bounds = [
-            (-LARGEST, LARGEST) if axis.circular else (axis.lower, axis.upper) for axis in axes
-        ]  # plain floats: for few joints a loop over them is faster than numpy
+        self.followers: list[Follower] = []
+        self.describe(body)
+        self.names = names
         self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
-        self._joints = (*body.joints, *body.passive_joints)
+        self.roots = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
+        self._rest = (model.body_pos[self.body_ids], model.body_quat[self.body_ids])
+        self._own_qpos = _all_qpos(model, names)
+        self.displaced = False
         sizes = (len(joint.axes) for joint in body.joints)
         self.first_dofs = list(itertools.accumulate(sizes, initial=0))[:-1]
         self.balls = self._find_balls(names)
@@ -102,6 +120,20 @@ class BodyKinematics:
         self._homogeneous = np.zeros((len(self.body_ids), 4, 4))
         self._homogeneous[:, 3, 3] = 1.0
         self._passive_values = [[axis.value for axis in joint.axes] for joint in body.passive_joints]
+
+    def describe(self, body: KinBody) -> None:
+        """Take over a description of the body with other limits; its links and joints are the same."""
+        self.body = body
+        axes = body.dof_axes
+        self.dof = len(axes)
+        self.lower = np.array([axis.lower for axis in axes])
+        self.upper = np.array([axis.upper for axis in axes])
+        self.circular = np.array([axis.circular for axis in axes], dtype=bool)
+        self._bounds = [
+            (-LARGEST, LARGEST) if axis.circular else (axis.lower, axis.upper) for axis in axes
+        ]  # plain floats: for few joints a loop over them is faster than numpy
+        self._joints = (*body.joints, *body.passive_joints)
+        self.followers = [one._replace(axis=self._joints[one.joint].axes[0]) for one in self.followers]
 
     def _find_balls(self, names: BodyNames) -> list[Ball]:
         balls: list[Ball] = []
@@ -153,7 +185,7 @@ class BodyKinematics:
         for ball in self.balls:
             values[ball.dofs] = ball.to_values(self._qpos[ball.qpos].tolist())
         for dof, joint in self._loose:
-            T_parent_child = self._pose(joint.parent).inverse() @ self._pose(joint.child)
+            T_parent_child = self.link_pose(joint.parent).inverse() @ self.link_pose(joint.child)
             values[dof : dof + len(joint.axes)] = measured_values(joint, T_parent_child)
         return values
 
@@ -164,6 +196,13 @@ class BodyKinematics:
             values: Joint values [rad or m], shape (dof,).
             limit_followers: Whether mimic joints stop at their limits.
         """
+        self.write_values(values, limit_followers=limit_followers)
+        mujoco.mj_kinematics(self.model, self.data)
+
+    def write_values(self, values: Floats, *, limit_followers: bool = True) -> None:
+        """Write the joint values, as ``set_values``, and leave the links for ``mj_kinematics`` to place."""
+        if self.displaced:
+            self.undo_displacement()
         if self._plain:
             self._qpos[self._to_qpos] = values
         else:
@@ -172,7 +211,63 @@ class BodyKinematics:
                 self._qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
             if self.followers:
                 self._follow(values, limit_followers=limit_followers)
+
+    def undo_displacement(self) -> None:
+        """Let the joints place the links again that ``place_links`` put elsewhere; the roots stay."""
+        positions, quaternions = self._rest
+        for link in set(range(len(self.body_ids))) - set(self.roots):
+            self.model.body_pos[self.body_ids[link]] = positions[link]
+            self.model.body_quat[self.body_ids[link]] = quaternions[link]
+        self.displaced = False
+
+    def set_transform(self, T_world_link0: Floats) -> None:
+        """Move the body rigidly: all links, with the joint values as they are.
+
+        Args:
+            T_world_link0: Pose of the first link, shape (4, 4).
+        """
+        if self.roots != [0]:
+            motion = T_world_link0 @ inverse(self.link_transform(0))
+            for link in self.roots:
+                self.write_root(link, motion @ self.link_transform(link))
+        self.write_root(0, T_world_link0)
         mujoco.mj_kinematics(self.model, self.data)
+
+    def write_root(self, link: int, T_world_link: Floats) -> None:
+        """Write the pose of a link that no joint places, and leave it for ``mj_kinematics`` to place."""
+        body_id = self.body_ids[link]
+        self.model.body_pos[body_id] = T_world_link[:3, 3]
+        self.model.body_quat[body_id] = wxyz_from_rows(T_world_link[:3, :3].tolist())
+
+    def set_root_wxyz(self, wxyz: Wxyz) -> None:
+        """Write the orientation of the first link as this quaternion rather than its negative."""
+        self.model.body_quat[self.body_ids[0]] = wxyz
+        self.update()
+
+    def configuration(self) -> "Configuration":
+        """Return all that ``restore`` needs, also in another model of the same body."""
+        return Configuration(
+            self._qpos[self._own_qpos],
+            self.model.body_pos[self.body_ids],
+            self.model.body_quat[self.body_ids],
+            [list(values) for values in self._passive_values],
+            self.displaced,
+        )
+
+    def restore(self, configuration: "Configuration") -> bool:
+        """Write a configuration, and leave the links for ``mj_kinematics`` to place.
+
+        Returns:
+            False, and nothing is written, if it is that of another set of joints.
+        """
+        if configuration.qpos.shape != self._own_qpos.shape or len(configuration.positions) != len(self.body_ids):
+            return False
+        self._qpos[self._own_qpos] = configuration.qpos
+        self.model.body_pos[self.body_ids] = configuration.positions
+        self.model.body_quat[self.body_ids] = configuration.quaternions
+        self._passive_values = [list(values) for values in configuration.passive]
+        self.displaced = configuration.displaced
+        return True
 
     def _follow(self, values: Floats, *, limit_followers: bool) -> None:
         known = self.first_values(values)
@@ -194,6 +289,10 @@ class BodyKinematics:
         """Return the values of a passive joint [rad or m], shape (axes,); a copy."""
         return np.array(self._passive_values[index])
 
+    def update(self) -> None:
+        """Place the links by what was written."""
+        mujoco.mj_kinematics(self.model, self.data)
+
     def within_limits(self, values: Sequence[float]) -> bool:
         """Return whether all values are finite numbers inside the limits; circular joints have none."""
         return all(lower <= value <= upper for value, (lower, upper) in zip(values, self._bounds, strict=True))
@@ -213,10 +312,11 @@ class BodyKinematics:
         transform[:3, :3] = self._xmat[body_id].reshape(3, 3)
         return transform
 
-    def _pose(self, link: int) -> Pose:
+    def link_pose(self, link: int) -> Pose:
+        """Return ``T_world_link`` of one link."""
         body_id = self.body_ids[link]
-        x, y, z = self._xpos[body_id].tolist()
-        return Pose((x, y, z), wxyz_from_rows(self._xmat[body_id].reshape(3, 3).tolist()))
+        (x, y, z), (w, i, j, k) = self._xpos[body_id].tolist(), self.data.xquat[body_id].tolist()
+        return Pose((x, y, z), (w, i, j, k))
 
 
 _BODY = mujoco.mjtObj.mjOBJ_BODY
@@ -224,6 +324,16 @@ _BODY = mujoco.mjtObj.mjOBJ_BODY
 
 def _qpos_index(model: mujoco.MjModel, joint_name: str) -> int:
     return int(model.jnt_qposadr[mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, joint_name)])
+
+
+def _all_qpos(model: mujoco.MjModel, names: BodyNames) -> Ints:
+    """Return the places of all joints of a body in ``qpos``."""
+    places: list[int] = []
+    for name in (name for joint_names in names.joints for name in joint_names):
+        joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
+        first, width = int(model.jnt_qposadr[joint]), 4 if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_BALL else 1
+        places.extend(range(first, first + width))
+    return np.array(places, dtype=int)
 
 
 def _index_range(indices: Ints) -> slice | Ints:

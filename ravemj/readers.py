@@ -1,10 +1,11 @@
 """Finds a file and reads it by its kind."""
 
 import os
+from urllib.parse import unquote
 
 from ravemj.builder import BodyBuilder
 from ravemj.errors import Diagnostics, Source, SourceError
-from ravemj.openrave_xml import Reading, read
+from ravemj.openrave_xml import Reading, read, read_text
 from ravemj.openrave_xml.context import COLLADA_SUFFIXES, Context
 from ravemj.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.scene import Scene
@@ -19,7 +20,7 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
     Returns:
         What was read; its ``failure`` says what ended the reading.
     """
-    found = find(os.fspath(path))
+    found = find(_without_scheme(os.fspath(path)))
     if found is None:
         failure = SourceError("there is no such file", Source(os.fspath(path)), "check the path, or set OPENRAVE_DATA")
     elif not os.path.isfile(found):
@@ -32,11 +33,29 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
     return Reading(Scene(), Diagnostics(), failure)
 
 
+def read_data(data: str | bytes) -> Reading:
+    """Read the text of an OpenRAVE XML document, as ``read_file`` reads a file."""
+    head = data[:1000] if isinstance(data, bytes) else data[:1000].encode()
+    if b"<COLLADA" in head:
+        failure = SourceError("this version of ravemj does not read COLLADA yet", Source("data"))
+        return Reading(Scene(), Diagnostics(), failure)
+    return read_text(data, "data")
+
+
 def find(name: str) -> str | None:
     """Return the path of a file, or None where it is in no known place."""
     folders = ["", *filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep))]
     candidates = (os.path.join(folder, name) for folder in folders)
     return next((path for path in candidates if os.path.exists(path)), None)
+
+
+def _without_scheme(uri: str) -> str:
+    """Return the path of a URI ``file:`` or ``openrave:``; anything else as it is."""
+    scheme, separator, rest = uri.partition(":")
+    if not separator or scheme.lower() not in {"file", "openrave"}:
+        return uri
+    path = rest.removeprefix("//") if scheme.lower() == "file" else rest.lstrip("/")
+    return unquote(path)
 
 
 def read_mesh_file(path: str) -> Reading:

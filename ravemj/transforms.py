@@ -56,6 +56,23 @@ class Pose(NamedTuple):
         return matrix
 
 
+UNMOVED = Pose()
+
+
+def pose_of(matrix: Floats) -> Pose:
+    """Return the pose of a 4x4 matrix."""
+    x, y, z = matrix[:3, 3].tolist()
+    return Pose((x, y, z), wxyz_from_rows(matrix[:3, :3].tolist()))
+
+
+def inverse(T_a_b: Floats) -> Floats:
+    """Return ``T_b_a``, the inverse of a rigid transform, shape (4, 4)."""
+    T_b_a = np.eye(4)
+    T_b_a[:3, :3] = T_a_b[:3, :3].T
+    T_b_a[:3, 3] = -T_a_b[:3, :3].T @ T_a_b[:3, 3]
+    return T_b_a
+
+
 def add(a: Vec3, b: Vec3) -> Vec3:
     """Return a + b."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
@@ -101,12 +118,10 @@ def normalize(wxyz: Wxyz) -> Wxyz:
     """Return the quaternion with unit length.
 
     Raises:
-        ValueError: all four numbers are zero.
+        ZeroDivisionError: all four numbers are zero.
     """
     w, x, y, z = wxyz
     length = math.sqrt(w * w + x * x + y * y + z * z)
-    if length == 0.0:
-        raise ValueError("a quaternion of zeros is no rotation")
     return (w / length, x / length, y / length, z / length)
 
 
@@ -114,10 +129,15 @@ def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
     """Return the right-handed rotation by an angle [rad] about an axis of any length; no axis, no rotation.
 
     Quarter and half turns come out without rounding, since models are full of them.
+
+    Raises:
+        OverflowError: the angle is infinite.
     """
     length = math.sqrt(dot(axis, axis))
     if length == 0.0:
         return UNIT_WXYZ
+    if math.isinf(angle):
+        raise OverflowError("there is no turn by an infinite angle")
     cosine, sine = math.cos(angle / 2), math.sin(angle / 2)
     if abs(abs(cosine) - abs(sine)) < 1e-15:
         cosine, sine = math.copysign(math.sqrt(0.5), cosine), math.copysign(math.sqrt(0.5), sine)

@@ -321,10 +321,22 @@ def test_the_folder_of_someone_else_is_used(folder, later, mesh, reads, contents
     def refuse(*_args):
         raise PermissionError(1, "Operation not permitted")
 
+    for path in folder.iterdir():
+        os.utime(path, (1, 1))
     monkeypatch.setattr(cache.os, "utime", refuse)
     contents.clear()
     assert read_mesh(mesh) == expected
     assert (len(reads), contents) == (1, [])
+
+
+@pytest.mark.parametrize(("hours", "marked"), [(1, False), (25, True)])
+def test_what_is_used_is_marked_once_a_day(folder, later, mesh, hours, marked):
+    read_mesh(mesh)
+    then = time.time() - 3600 * hours
+    for path in folder.iterdir():
+        os.utime(path, (then, then))
+    read_mesh(mesh)
+    assert [path.stat().st_mtime > then + 1 for path in folder.iterdir()] == [marked, marked]
 
 
 def test_a_full_disk_leaves_nothing_behind(folder, mesh, monkeypatch):

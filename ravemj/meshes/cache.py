@@ -37,6 +37,8 @@ MAX_BYTES = 1 << 30
 
 _PRUNE_EVERY = 64  # files written by this process between two looks at the size
 _TICK = 2 * 10**9  # ns; the coarsest clock of a file system
+_RECENT = 24 * 3600  # s; a file that was used that recently is not marked again
+_READ = os.O_RDONLY | getattr(os, "O_BINARY", 0)
 
 _written = 0
 
@@ -59,16 +61,16 @@ def remembered_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, R
         return read(read_bytes(path))[0]
     began, stamp = time.time_ns(), stamp_of(path)
     place = os.path.join(os.getcwd(), path) if stamp else ""  # as it is: behind a link, ".." leads elsewhere
-    shortcut = folder / f"{_name(_readers_unread(), kind.encode(), os.fsencode(place))}.path"
+    shortcut = f"{folder}/{_name(_readers_unread(), kind.encode(), os.fsencode(place))}.path"
     entry = _loaded(shortcut, follow_shortcut) if stamp else None
-    found = _loaded(folder / entry, unpack_entry) if entry else None
+    found = _loaded(f"{folder}/{entry}", unpack_entry) if entry else None
     if found:
         return found[0]
     content, home = read_bytes(path), os.path.dirname(os.path.abspath(place))
     parts, entry, references = _by_content(folder, content, kind, home, read)
     stamps = {**references.stamps, place: stamp}
     if stamp and all(stamp_of(name) == known and changed_at(known) + _TICK < began for name, known in stamps.items()):
-        _store(shortcut, pack_shortcut(entry, stamps))
+        _store(Path(shortcut), pack_shortcut(entry, stamps))
     return parts
 
 
@@ -110,7 +112,7 @@ def _by_content(
     alone = f"{_name(_readers(), kind.encode(), content)}.mesh"
     at_home = f"{_name(_readers(), kind.encode(), content, os.fsencode(home))}.mesh"
     for entry in (alone, at_home):
-        found = _loaded(folder / entry, unpack_entry)
+        found = _loaded(f"{folder}/{entry}", unpack_entry)
         if found:
             parts, digests = found
             references = References(digests, {path: stamp_of(path) for path in digests})
@@ -164,18 +166,23 @@ def _modules(folder: str) -> Iterator[str]:
                 yield from _modules(entry.path)
 
 
-def _loaded(file: Path, unpack: Callable[[bytes], _T]) -> _T | None:
+def _loaded(file: str, unpack: Callable[[bytes], _T]) -> _T | None:
     """Return what a file of the cache holds, or None if it is not there or damaged."""
     try:
-        with open(file, "rb", buffering=0) as opened:
-            unpacked = unpack(opened.read())
-            with contextlib.suppress(OSError):  # a file of someone else
-                os.utime(opened.fileno() if os.utime in os.supports_fd else file)  # used just now
+        descriptor = os.open(file, _READ)  # a model has many meshes, and ``open`` takes twice the time
+        try:
+            status = os.fstat(descriptor)
+            unpacked = unpack(os.read(descriptor, status.st_size))
+        finally:
+            os.close(descriptor)
     except FileNotFoundError:
         return None
     except Exception as error:  # a damaged file never stops anything
         _log.debug("%s cannot be used: %s", file, error)
         return None
+    if time.time() - status.st_mtime > _RECENT:
+        with contextlib.suppress(OSError):  # a file of someone else
+            os.utime(file)
     return unpacked
 
 

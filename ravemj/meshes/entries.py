@@ -50,7 +50,7 @@ def unpack_entry(content: bytes) -> tuple[Parts, dict[str, str]]:
     """
     _check(content)
     position = _START + 4 + int.from_bytes(content[_START : _START + 4], "little")
-    digests, about = json.loads(content[_START + 4 : position])
+    digests, about = json.loads(content[_START + 4 : position].decode())
     parts: list[MeshPart] = []
     for (vertices, triangles), diffuse, ambient, transparency, form, digest in about:
         middle = position + _ROW * vertices
@@ -83,8 +83,8 @@ def follow_shortcut(content: bytes) -> str | None:
         ValueError: The content is damaged.
     """
     _check(content)
-    entry, stamps = json.loads(content[_START:])
-    return entry if all(stamp_of(path) == stamp for path, stamp in stamps.items()) else None
+    entry, stamps = json.loads(content[_START:].decode())
+    return entry if all([stamp_of(path) == stamp for path, stamp in stamps.items()]) else None
 
 
 def _sealed(content: bytes) -> bytes:

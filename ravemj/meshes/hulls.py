@@ -71,7 +71,7 @@ def _is_plainly_solid(mesh: Mesh) -> bool:
 
 def _covariance(points: Floats) -> Floats:
     centred = points - points[0]
-    centred -= centred.mean(axis=0)
+    centred -= centred.sum(axis=0) / len(points)
     return centred.T @ centred / len(points)
 
 
@@ -87,5 +87,6 @@ def area(mesh: Mesh) -> float:
 
 
 def _area(corners: Floats) -> float:
-    a, b, c = np.moveaxis(corners, 1, 0)
-    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+    ux, uy, uz = (corners[:, 1] - corners[:, 0]).T
+    vx, vy, vz = (corners[:, 2] - corners[:, 0]).T  # np.cross takes thrice the time
+    return float(np.sqrt((uy * vz - uz * vy) ** 2 + (uz * vx - ux * vz) ** 2 + (ux * vy - uy * vx) ** 2).sum() / 2)

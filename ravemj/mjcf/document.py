@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, NamedTuple
 
-from ravemj.adjacency import adjacent_pairs
 from ravemj.errors import Diagnostics, Source
 from ravemj.joints import relative_pose
 from ravemj.mjcf.equality import EqualityWriter
+from ravemj.mjcf.excludes import WeldGroups, excluded_pairs
 from ravemj.mjcf.geometry import GeometryWriter
 from ravemj.mjcf.inertia import inertia_attributes, is_rounding, legal_inertial
 from ravemj.mjcf.lines import Attribute, Lines, pose_attributes
@@ -28,11 +28,13 @@ class Options(NamedTuple):
             root is fixed to the world.
         actuators: The kind of actuator for each DOF, or None.
         decomposed: Whether meshes collide as several convex parts (with CoACD) in place of one hull.
+        excludes: Whether pairs of links that OpenRAVE never tests are excluded by name.
     """
 
     free_bases: bool = False
     actuators: Actuators | None = None
     decomposed: bool = False
+    excludes: bool = True
 
 
 class BodyNames(NamedTuple):
@@ -172,9 +174,10 @@ class _Writer:
             ),
         )
         self.names.append(names)
-        self._write_tree(index, body, names, joints)
-        for first, second in sorted(adjacent_pairs(body)):
-            self.excludes.element("exclude", body1=names.links[first], body2=names.links[second])
+        welds = self._write_tree(index, body, names, joints)
+        if self.options.excludes:
+            for first, second in excluded_pairs(body, welds):
+                self.excludes.element("exclude", body1=names.links[first], body2=names.links[second])
         self.equalities.write(joints, names.joints)
         if self.options.actuators is not None:
             for joint, joint_names in zip(body.joints, names.joints, strict=False):
@@ -187,7 +190,8 @@ class _Writer:
         first = self._given.give("joint", body, name)
         return (first, self._given.give("joint", body, f"{name}_1")) if joint.kind == "hinge2" else (first,)
 
-    def _write_tree(self, index: int, body: KinBody, names: BodyNames, joints: tuple[Joint, ...]) -> None:
+    def _write_tree(self, index: int, body: KinBody, names: BodyNames, joints: tuple[Joint, ...]) -> WeldGroups:
+        welds = WeldGroups()
         placing = {joint.child: number for number, joint in enumerate(joints) if joint.places_child}
         children: dict[int, list[int]] = {}
         for child, number in placing.items():
@@ -203,15 +207,19 @@ class _Writer:
             joint = None if number is None else joints[number]
             joint_names = () if number is None else names.joints[number]
             self._open_link(body, link, names.links[link], joint, bool(joint_names))
-            if joint is None and free:
+            is_free = joint is None and free
+            if is_free:
                 self.bodies.element("freejoint", body.links[link].source)
             self._write_inertial(index, link, body.links[link])
             if joint is not None:
                 self._write_joint(joint, joint_names)
-            for geometry in body.links[link].geometries:
-                self.geometries.write(geometry, self.bodies)
+            solid = [self.geometries.write(geometry, self.bodies) for geometry in body.links[link].geometries]
+            parent = None if joint is None else joint.parent
+            welds.add(link, parent, moves=is_free or bool(joint_names), solid=any(solid))
             pending.append((link, True))
-            pending.extend((child, False) for child in sorted(children.get(link, ()), reverse=True))
+            if link in children:
+                pending.extend((child, False) for child in sorted(children[link], reverse=True))
+        return welds
 
     def _open_link(self, body: KinBody, index: int, name: str, joint: Joint | None, moves: bool) -> None:
         link = body.links[index]
@@ -228,7 +236,7 @@ class _Writer:
 
     def _write_inertial(self, body_index: int, link_index: int, link: Link) -> None:
         inertial = legal_inertial(link.inertial)
-        if inertial != link.inertial:
+        if inertial is not link.inertial:
             self.altered.append((body_index, link_index))
             if not is_rounding(inertial, link.inertial):
                 message = f"MuJoCo refuses the mass or inertia of '{link.name}'; the MJCF has the nearest legal one"

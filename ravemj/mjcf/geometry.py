@@ -41,23 +41,27 @@ class GeometryWriter:
         self.lines = Lines(2)
         self._decomposed = decomposed
 
-    def write(self, geometry: Geometry, out: Lines) -> None:
-        """Write the geoms of a geometry."""
+    def write(self, geometry: Geometry, out: Lines) -> bool:
+        """Write the geoms of a geometry; return whether one of them collides."""
         seen = geometry.visible and geometry.display is None
         if isinstance(geometry.shape, TriMesh):
-            self._write_mesh(geometry, geometry.shape.mesh, out, seen=seen)
+            collides = self._write_mesh(geometry, geometry.shape.mesh, out, seen=seen)
         elif isinstance(geometry.shape, Prism):
-            self._write_mesh(geometry, geometry.shape.walls(), out, seen=seen)
+            collides = self._write_mesh(geometry, geometry.shape.walls(), out, seen=seen)
         else:
-            for solid in solids(geometry.shape):
+            parts = solids(geometry.shape)
+            collides = bool(parts)
+            for solid in parts:
                 self._write_solid(geometry, solid, out, seen=seen)
         for surface in geometry.display or () if geometry.visible else ():
             self._write_surface(geometry, surface, out)
+        return collides
 
     def _write_solid(self, geometry: Geometry, solid: Solid, out: Lines, *, seen: bool) -> None:
         kind, size, centre = solid
-        legal = tuple(max(part, SMALLEST_SIZE) for part in size)
-        if legal != size:
+        legal = size
+        if min(size) < SMALLEST_SIZE:
+            legal = tuple(max(part, SMALLEST_SIZE) for part in size)
             message = f"MuJoCo refuses a {kind} of size {attribute_text(size)}; the MJCF has {attribute_text(legal)}"
             self.diagnostics.warn("raised-size", message, geometry.source)
         pose = geometry.T_link_geometry @ Pose(centre) if any(centre) else geometry.T_link_geometry
@@ -72,7 +76,7 @@ class GeometryWriter:
             rgba=colour,
         )
 
-    def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: Lines, *, seen: bool) -> None:
+    def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: Lines, *, seen: bool) -> bool:
         """Write a mesh that is seen and collides: once for both, where one geom can do both."""
         hulls = self._hulls(geometry, mesh)
         both = seen and hulls == (mesh,)
@@ -81,6 +85,7 @@ class GeometryWriter:
         if not both:
             for hull in hulls:
                 self._write_mesh_geom(geometry, hull, "collision", out)
+        return bool(hulls)
 
     def _hulls(self, geometry: Geometry, mesh: Mesh) -> tuple[Mesh, ...]:
         """Return the meshes whose convex hulls collide in place of a mesh."""
@@ -165,4 +170,5 @@ def _container(shape: Container) -> list[Solid]:
 
 def _rgba(colour: Rgb, transparency: float) -> tuple[float, ...]:
     """Return colour and opacity in the range from 0 to 1, beyond which nothing looks different."""
-    return tuple(min(max(part, 0.0), 1.0) for part in (*colour, 1.0 - transparency))
+    rgba = (*colour, 1.0 - transparency)
+    return rgba if min(rgba) >= 0.0 and max(rgba) <= 1.0 else tuple(min(max(part, 0.0), 1.0) for part in rgba)

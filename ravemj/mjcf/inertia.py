@@ -48,7 +48,7 @@ def _is_legal_diagonal(inertial: Inertial) -> bool:
     if xy or xz or yz or not SMALLEST <= inertial.mass < math.inf:
         return False
     small, middle, large = sorted((xx, yy, zz))
-    return small >= SMALLEST and large <= small + middle and large < math.inf and all(map(math.isfinite, inertial.com))
+    return small >= SMALLEST and large <= small + middle and math.isfinite(large + sum(inertial.com))
 
 
 def inertia_attributes(inertial: Inertial) -> dict[str, Attribute]:

@@ -1,9 +1,10 @@
 """Lines of XML, each with the place in the user's file that it comes from."""
 
+import functools
 import re
 
 from ravemj.errors import Source
-from ravemj.transforms import Pose
+from ravemj.transforms import UNIT_WXYZ, ZERO, Pose
 
 Attribute = str | float | bool | tuple[float, ...]
 
@@ -68,22 +69,26 @@ def comment_text(text: str) -> str:
 def pose_attributes(pose: Pose) -> dict[str, Attribute]:
     """Return ``pos`` and ``quat`` of a pose; a part that does nothing is left out."""
     attributes: dict[str, Attribute] = {}
-    if any(pose.position):
-        attributes["pos"] = pose.position
-    if any(pose.wxyz[1:]):
-        attributes["quat"] = pose.wxyz
+    position, wxyz = pose
+    if position != ZERO:
+        attributes["pos"] = position
+    if wxyz != UNIT_WXYZ and any(wxyz[1:]):
+        attributes["quat"] = wxyz
     return attributes
 
 
 def attribute_text(value: Attribute) -> str:
     """Return an attribute's text; numbers keep all their digits."""
+    if isinstance(value, tuple):
+        return _numbers_text(value)
     if isinstance(value, str):
         return value if _ESCAPED.isdisjoint(value) else value.translate(_ESCAPES)
     if isinstance(value, bool):
         return "true" if value else "false"
-    return _numbers_text(value if isinstance(value, tuple) else (value,))
+    return _numbers_text((value,))
 
 
+@functools.lru_cache(maxsize=10_000)  # models repeat sizes, colours and axes, and digits take time
 def _numbers_text(values: tuple[float, ...]) -> str:
     """Return numbers separated by spaces, whole ones without a point and none with a minus before zero."""
     return f"{' '.join(map(repr, values))} ".replace(".0 ", " ").replace("-0 ", "0 ")[:-1]

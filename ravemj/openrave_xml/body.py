@@ -61,15 +61,16 @@ class _Scope:
         self.skip_geometry = skip_geometry
         self.placement = Placement(scale=scale)
         self.default_mass = DefaultMassReader(context)
-        self.models_folder: str | None = None
+        self.geometry_scope = GeometryScope(None, scale)
         self.joint_values: list[float] | None = None
         self.own_manipulators: list[ManipulatorBuilder] = []
         self.transparency: float | None = None
 
     def read(self, element: Element) -> None:
         """Read a whole element: its file, its children, and what its end tag does."""
-        before = _Marks.of(self.body)
-        self._include(element)
+        first_link = len(self.body.links)
+        if "file" in element.attributes:
+            self._include(element)
         marks = _Marks.of(self.body)
         tags, ignored = (ROBOT_TAGS, ROBOT_IGNORED) if element.tag == "robot" else (KINBODY_TAGS, KINBODY_IGNORED)
         self.context.walk(element, tags, ignored, self)
@@ -84,12 +85,12 @@ class _Scope:
             self._own_manipulators_first()
         if self.placement.moves:
             T_outer_scope = self.placement.pose
-            for link in self.body.links[before.links :]:
+            for link in self.body.links[first_link:]:
                 link.pose = T_outer_scope @ link.pose
 
     def _include(self, element: Element) -> None:
         """Read the file of an element as if it stood inside an element like it."""
-        name = element.attributes.get("file", "")
+        name = element.attributes["file"]
         if is_mesh(name):
             path = self.context.find(name, element.source)
             if path is not None:
@@ -157,8 +158,8 @@ class _Scope:
 
     def read_link(self, element: Element) -> None:
         """Read a ``<Body>``."""
-        scope = GeometryScope(self.models_folder, self.scale)
-        read_link(self.body, element, self.context, self.default_mass.rule, scope, skip_geometry=self.skip_geometry)
+        default_mass, geometry_scope = self.default_mass.rule, self.geometry_scope
+        read_link(self.body, element, self.context, default_mass, geometry_scope, skip_geometry=self.skip_geometry)
 
     def read_joint(self, element: Element) -> None:
         """Read a ``<Joint>``."""
@@ -176,7 +177,7 @@ class _Scope:
 
     def read_models_folder(self, element: Element) -> None:
         """Read where the meshes of the following Bodies are looked for first."""
-        self.models_folder = element.text.strip()
+        self.geometry_scope = self.geometry_scope._replace(models_folder=element.text.strip())
 
     def read_transparency(self, element: Element) -> None:
         """Read the transparency that everything the body has gets at the end of the element."""

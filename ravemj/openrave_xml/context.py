@@ -1,5 +1,6 @@
 """What every part of the reader needs: where to report, where files are, and how to walk over an element."""
 
+import functools
 import os
 from collections.abc import Callable, Collection, Mapping, Set
 from dataclasses import replace
@@ -8,13 +9,13 @@ from typing import TypeVar
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.meshes import MeshPart
 from ravemj.openrave_xml.tree import Element, parse_file
+from ravemj.openrave_xml.values import UNSCALED
 from ravemj.scene import Mesh
 from ravemj.transforms import Vec3
 
 Target = TypeVar("Target")
 
 IGNORED = "OpenRAVE reads it and makes nothing of it"
-UNSCALED = (1.0, 1.0, 1.0)
 MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
 COLLADA_SUFFIXES = (".dae", ".zae")
@@ -24,10 +25,6 @@ NO_EFFECT_HERE = "it has no effect on the model"
 def reasons(reason: str, *names: str) -> dict[str, str]:
     """Return a table that gives one reason for each name."""
     return dict.fromkeys(names, reason)
-
-
-UNCOMPUTABLE = (ArithmeticError, ValueError)
-"""What arithmetic raises at numbers such as 1e200."""
 
 
 def uncomputable(element: Element) -> SourceError:
@@ -70,7 +67,7 @@ class Context:
                 if child.complete:
                     try:
                         handler(target, child)
-                    except UNCOMPUTABLE as error:
+                    except ArithmeticError as error:
                         raise uncomputable(child) from error
             elif child.tag in ignored:
                 self.leave_out(child, ignored[child.tag])
@@ -150,19 +147,21 @@ class Context:
         Returns:
             Its path, or None, with a warning, where it is in none of them.
         """
-        question = (name, os.path.dirname(source.file), folders)
+        question = (name, source.file, folders)
         found = self._found.get(question)
         if found is not None:
             return found
         data_folders = list(filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep)))
         places = [*folders, os.path.dirname(source.file), *data_folders]
-        candidates = list(dict.fromkeys(os.path.join(folder, name) for folder in places))
-        for candidate in candidates:
+        looked_at: list[str] = []
+        for folder in places:
+            candidate = os.path.join(folder, name)
             if os.path.isfile(candidate):
                 self._found[question] = candidate
                 return candidate
+            looked_at.append(candidate)
         hint = "" if data_folders else "put it there, or set OPENRAVE_DATA to the folder that it is in"
-        message = f"there is no file {name}; looked at {', '.join(candidates)}"
+        message = f"there is no file {name}; looked at {', '.join(dict.fromkeys(looked_at))}"
         self.diagnostics.warn("missing-file", message, source, hint)
         return None
 
@@ -226,7 +225,12 @@ def _belongs(element: Element) -> str:
 
 def did_you_mean(name: str, known: Collection[str]) -> str:
     """Return a hint with the known name that looks most like the one given, or nothing."""
+    return _closest(name, tuple(known))
+
+
+@functools.lru_cache(maxsize=1000)  # slow, and who spells a tag wrongly does so many times
+def _closest(name: str, known: tuple[str, ...]) -> str:
     import difflib  # noqa: PLC0415 - slow to import
 
-    similar = difflib.get_close_matches(name, list(known), n=1)
+    similar = difflib.get_close_matches(name, known, n=1)
     return f"did you mean '{similar[0]}'?" if similar else ""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.openrave_xml.body import read_body
-from ravemj.openrave_xml.context import IGNORED, NO_EFFECT_HERE, UNCOMPUTABLE, Context, uncomputable
-from ravemj.openrave_xml.tree import Element, parse_file
+from ravemj.openrave_xml.context import IGNORED, NO_EFFECT_HERE, Context, uncomputable
+from ravemj.openrave_xml.tree import Document, Element, parse, parse_file
 from ravemj.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.scene import KinBody, Scene, View
 from ravemj.transforms import ZERO, Pose, Vec3, Wxyz, multiply, wxyz_from_axis_angle
@@ -63,19 +63,35 @@ class Reading:
 
 def read(path: str | os.PathLike[str]) -> Reading:
     """Read an OpenRAVE XML file whose root is an environment, a robot or a kinbody."""
+    return _read(os.fspath(path), parse_file)
+
+
+def read_text(text: str | bytes, name: str) -> Reading:
+    """Read an OpenRAVE XML document that is no file.
+
+    Args:
+        text: The document; files that it names are looked for in the working folder.
+        name: What to call it in messages.
+    """
+    content = text.encode() if isinstance(text, str) else text
+    reading = _read(name, lambda path: parse(content, path))
+    return replace(reading, files=reading.files[1:])
+
+
+def _read(path: str, parsed_file: Callable[[str], Document]) -> Reading:
     context = Context()
     document = _Document(context)
     failure = None
     try:
-        parsed = parse_file(os.fspath(path))
+        parsed = parsed_file(path)
         failure = parsed.error
         document.read(parsed.root)
     except SourceError as error:
         failure = error
     except RecursionError:
-        failure = SourceError("the elements are nested too deeply", Source(os.fspath(path)))
+        failure = SourceError("the elements are nested too deeply", Source(path))
     scene = Scene(tuple(document.bodies), document.view, document.gravity)
-    return Reading(scene, context.diagnostics, failure, (os.fspath(path), *context.files))
+    return Reading(scene, context.diagnostics, failure, (path, *context.files))
 
 
 class _Document:
@@ -118,7 +134,7 @@ class _Document:
         """Read a body and give it its place among the others."""
         try:
             body, refusal = read_body(element, self.context)
-        except UNCOMPUTABLE as error:
+        except ArithmeticError as error:
             raise uncomputable(element) from error
         check_name(body.name, element)
         if body.name in self._names:
@@ -228,5 +244,5 @@ def check_name(name: str, element: Element) -> None:
     """
     if not name:
         raise SourceError(f"<{element.spelled}> has no name", element.source, 'write name="…"')
-    if any(character.isspace() or not character.isprintable() for character in name):
+    if " " in name or not name.isprintable():  # other spaces than this one are not printable
         raise SourceError(f"the name '{name}' has spaces or control characters", element.source)

@@ -2,8 +2,8 @@
 
 import math
 import os
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -40,7 +40,7 @@ from ravemj.transforms import ZERO, Floats, Pose, Vec3, rows_from_wxyz, scale, w
 _CYLINDER_TURN = Pose(ZERO, wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi / 2))
 """In XML a cylinder lies along y, in memory along z."""
 
-_EMPTY = Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int))
+_NO_PART = MeshPart(Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)))
 
 
 class GeometryScope(NamedTuple):
@@ -70,9 +70,9 @@ class _Geom:
     half_extents: Vec3 = ZERO
     radius: float = 0.0
     height: float = 0.0
-    container: dict[str, Vec3] = field(default_factory=dict[str, Vec3])
-    cross_section: list[float] = field(default_factory=list[float])
-    vertices: list[float] = field(default_factory=list[float])
+    container: dict[str, Vec3] = field(default_factory=lambda: {})
+    cross_section: Sequence[float] = ()
+    vertices: Sequence[float] = ()
     collision: _MeshFile | None = None
     render: _MeshFile | None = None
     diffuse: Rgb | None = None
@@ -112,7 +112,7 @@ class _Geom:
             message = f"<{element.spelled}> needs nine numbers for each triangle, and holds {len(self.vertices)}"
             self.context.diagnostics.warn("number-count", message, element.source)
         if len(self.vertices) % 9:
-            self.vertices = []
+            self.vertices = ()
 
     def read_collision(self, element: Element) -> None:
         self.collision = self.collision or _mesh_file(element)
@@ -186,7 +186,8 @@ def read_geometries(element: Element, scope: GeometryScope, context: Context) ->
     if shape is None:
         message = f"a geometry of type '{kind}' has no shape here"
         context.diagnostics.warn("unsupported-geometry", message, element.source)
-    return [_geometry(geom, element, shape(geom) if shape else NoShape(), scope, MeshPart(_EMPTY))]
+    display = _surfaces(geom, geom.render, element, scope)
+    return [_geometry(geom, element, shape(geom) if shape else NoShape(), scope, _NO_PART, display)]
 
 
 def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geometry]:
@@ -196,16 +197,24 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
         if parts:
             drawn = geom.render if file is geom.collision and geom.collision is not None else None
             surfaces = _surfaces(geom, drawn, element, scope)
-            made = [_geometry(geom, element, TriMesh(_scaled(part.mesh, geom, scope)), scope, part) for part in parts]
-            if surfaces is None:
-                return made
-            return [replace(made[0], display=surfaces), *(replace(part, display=()) for part in made[1:])]
+            displays = [surfaces, *[None if surfaces is None else ()] * (len(parts) - 1)]
+            return [
+                _geometry(geom, element, TriMesh(_scaled(part.mesh, geom, scope)), scope, part, display)
+                for part, display in zip(parts, displays, strict=True)
+            ]
     corners = np.array(geom.vertices).reshape(-1, 3)
     mesh = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
-    return [_geometry(geom, element, TriMesh(_scaled(mesh, geom, scope)), scope, MeshPart(mesh))]
+    return [_geometry(geom, element, TriMesh(_scaled(mesh, geom, scope)), scope, MeshPart(mesh), None)]
 
 
-def _geometry(geom: _Geom, element: Element, shape: Shape, scope: GeometryScope, part: MeshPart) -> Geometry:
+def _geometry(
+    geom: _Geom,
+    element: Element,
+    shape: Shape,
+    scope: GeometryScope,
+    part: MeshPart,
+    display: tuple[Surface, ...] | None,
+) -> Geometry:
     pose = geom.placement.pose
     if isinstance(shape, Cylinder):
         pose = pose @ _CYLINDER_TURN
@@ -220,7 +229,7 @@ def _geometry(geom: _Geom, element: Element, shape: Shape, scope: GeometryScope,
         transparency=part.transparency if geom.transparency is None else geom.transparency,
         visible=not is_false(element.attributes.get("render", "true")),
         modifiable=not is_false(element.attributes.get("modifiable", "true")),
-        display=None if isinstance(shape, TriMesh) else _surfaces(geom, geom.render, element, scope),
+        display=display,
         source=element.source,
     )
 

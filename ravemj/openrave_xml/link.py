@@ -31,13 +31,18 @@ class _LinkScope:
     def read(self, element: Element) -> None:
         """Read the attributes, the file that they name, and the children."""
         self.context.check_attributes(element, LINK_ATTRIBUTES, LINK_IGNORED_ATTRIBUTES)
+        if "file" in element.attributes:
+            self._include(element)
+        self.context.walk(element, LINK_TAGS, {}, self)
+
+    def _include(self, element: Element) -> None:
+        """Read the file of a Body as a Body in this one."""
         root = self.context.include(element)
         if root is not None and root.tag == "body":
             self.read_nested(root)
         elif root is not None:
             message = f"the file of a Body has to hold a <Body>, and holds a <{root.spelled}>; it is skipped"
             self.context.diagnostics.warn("unknown-tag", message, root.source)
-        self.context.walk(element, LINK_TAGS, {}, self)
 
     @property
     def pose(self) -> Pose:

@@ -40,6 +40,9 @@ class MassRule(NamedTuple):
     inertia: Rows = DEFAULT_INERTIAL.inertia
 
 
+_SPHERE = MassRule()
+
+
 class MassReader:
     """Reads ``<Mass>`` elements one after the other; what one leaves out keeps its value.
 
@@ -50,7 +53,8 @@ class MassReader:
     def __init__(self, context: Context, default: MassRule | None, scale: Vec3) -> None:
         self._context = context
         self._scale = scale
-        self._start = default or MassRule()
+        self._start = default or _SPHERE
+        self._said: dict[str, object] = {}
         self.rule: MassRule | None = None
 
     def read(self, element: Element) -> None:
@@ -62,10 +66,12 @@ class MassReader:
                 "unknown-type", f"there is no mass of type '{kind}'; OpenRAVE takes a sphere", element.source
             )
             kind = "sphere"
-        self.rule = (self.rule or self._start)._replace(kind=kind)
-        if kind == "custom" and self.rule.total == self._start.total:
-            self.rule = self.rule._replace(total=None)  # it takes no total from the KinBody
+        before = self.rule or self._start
+        self._said = {"kind": kind}
+        if kind == "custom" and before.total == self._start.total:
+            self._said["total"] = None  # it takes no total from the KinBody
         self._context.walk(element, MASS_TAGS, {}, self)
+        self.rule = before._replace(**self._said)
         if kind == "box" and any(child.tag == "extents" for child in element.children):
             self._context.diagnostics.warn(
                 "openrave-bug",
@@ -75,31 +81,28 @@ class MassReader:
                 "write the mass as type custom",
             )
 
-    def _update(self, **changes: object) -> None:
-        self.rule = (self.rule or self._start)._replace(**changes)
-
     def density(self, element: Element) -> None:
         """Read a ``<density>``."""
-        self._update(density=_single(number(element, self._context.diagnostics)), total=None)
+        self._said.update(density=_single(number(element, self._context.diagnostics)), total=None)
 
     def total(self, element: Element) -> None:
         """Read a ``<total>`` mass."""
-        self._update(total=_single(number(element, self._context.diagnostics)), density=None)
+        self._said.update(total=_single(number(element, self._context.diagnostics)), density=None)
 
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
         extents = (self.rule or self._start).half_extents
         radius = number(element, self._context.diagnostics) * self._scale[0]
-        self._update(half_extents=(radius, *extents[1:]))
+        self._said.update(half_extents=(radius, *extents[1:]))
 
     def com(self, element: Element) -> None:
         """Read the centre of mass of a custom mass."""
-        self._update(com=hadamard(self._scale, vector(element, self._context.diagnostics)))
+        self._said.update(com=hadamard(self._scale, vector(element, self._context.diagnostics)))
 
     def inertia(self, element: Element) -> None:
         """Read the inertia of a custom mass; only its upper triangle counts."""
         xx, xy, xz, _, yy, yz, _, _, zz = numbers(element, 9, self._context.diagnostics)
-        self._update(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+        self._said.update(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
 
     def extents(self, element: Element) -> None:
         """Accept ``<extents>``, which OpenRAVE does not read in a Body."""

@@ -5,12 +5,11 @@ from pathlib import Path
 
 from ravemj.builder import BodyBuilder, LinkBuilder
 from ravemj.errors import Source
+from ravemj.making import MASSLESS
 from ravemj.meshes import MESH_SUFFIXES
 from ravemj.openrave_xml.context import COLLADA_SUFFIXES, Context
-from ravemj.scene import Geometry, Inertial, Mesh, TriMesh
-from ravemj.transforms import ZERO, Pose, Vec3
-
-_MASSLESS = Inertial(1e-10, ZERO, (ZERO, ZERO, ZERO))
+from ravemj.scene import Geometry, Mesh, TriMesh
+from ravemj.transforms import Pose, Vec3
 
 
 def is_mesh(name: str) -> bool:
@@ -42,5 +41,5 @@ def add_mesh(body: BodyBuilder, path: str, scale: Vec3, source: Source, context:
         )
         for part in context.mesh(os.path.abspath(path), source)
     ]
-    body.links.append(LinkBuilder("base", source, geometries=geometries, inertial=_MASSLESS, static=True))
+    body.links.append(LinkBuilder("base", source, geometries=geometries, inertial=MASSLESS, static=True))
     body.name = Path(path).stem

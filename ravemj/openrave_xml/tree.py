@@ -34,7 +34,7 @@ class Element:
     attributes: dict[str, str]
     source: Source
     text: str = ""
-    children: list["Element"] = field(default_factory=list["Element"])
+    children: list["Element"] = field(default_factory=lambda: [])
     complete: bool = False
 
 
@@ -104,12 +104,12 @@ class _Parser:
         self._content = b""
         self._entities: list[str] = []
         self._open: list[Element] = []
-        self._text: list[list[str]] = []
+        self._text: list[str] = []  # since the last tag
         self._expat = expat.ParserCreate()
         self._expat.buffer_text = True
         self._expat.StartElementHandler = self._start
         self._expat.EndElementHandler = self._end
-        self._expat.CharacterDataHandler = self._characters
+        self._expat.CharacterDataHandler = self._text.append
         self._expat.DefaultHandler = self._other
         self._expat.EntityDeclHandler = self._declared
 
@@ -142,20 +142,17 @@ class _Parser:
             self.root = element
         elif len(opened) < DEEPEST:
             opened[-1].children.append(element)
-            self._text[-1].clear()
         else:
             self._refuse(f"more than {DEEPEST} elements inside one another")
         opened.append(element)
-        self._text.append([])
+        self._text.clear()
 
     def _end(self, name: str) -> None:
         del name
         element = self._open.pop()
-        element.text = "".join(self._text.pop())
+        element.text = "".join(self._text)
         element.complete = True
-
-    def _characters(self, data: str) -> None:
-        self._text[-1].append(data)
+        self._text.clear()
 
     def _other(self, data: str) -> None:
         if self._open and data.startswith("&"):

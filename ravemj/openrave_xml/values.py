@@ -9,6 +9,7 @@ from ravemj.errors import Diagnostics, SourceError
 from ravemj.openrave_xml.tree import Element
 from ravemj.transforms import (
     UNIT_WXYZ,
+    UNMOVED,
     ZERO,
     Pose,
     Vec3,
@@ -19,6 +20,8 @@ from ravemj.transforms import (
     wxyz_from_axis_angle,
     wxyz_from_rows,
 )
+
+UNSCALED: Vec3 = (1.0, 1.0, 1.0)
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))")
 
@@ -40,13 +43,9 @@ class Numbers(NamedTuple):
 
 def leading_numbers(text: str) -> Numbers:
     """Return the numbers at the start of a text, as C++ streams would read them."""
-    if not text.strip(_PLAIN):
-        try:
-            plain = [float(word) for word in text.split()]
-        except ValueError:  # signs or points in odd places
-            plain = [math.inf]
-        if math.isfinite(sum(plain)):
-            return Numbers(plain, "")
+    plain = _plain_numbers(text)
+    if plain is not None:
+        return Numbers(plain, "")
     values: list[float] = []
     position = 0
     while (match := _NUMBER.match(text, position)) and math.isfinite(value := float(match[1])):
@@ -55,26 +54,39 @@ def leading_numbers(text: str) -> Numbers:
     return Numbers(values, text[position:].strip())
 
 
+def _plain_numbers(text: str) -> list[float] | None:
+    """Return the numbers of a text that holds nothing else, or None."""
+    if text.strip(_PLAIN):
+        return None
+    try:
+        plain = list(map(float, text.split()))
+    except ValueError:  # signs or points in odd places
+        return None
+    return plain if math.isfinite(sum(plain)) else None
+
+
 def numbers(element: Element, count: int, diagnostics: Diagnostics, default: float = 0.0) -> list[float]:
     """Return exactly ``count`` numbers from an element's text.
 
     A word that is no number counts as 0 and ends the reading (``bad-number``); numbers that are missing keep
     the default, and what is too much is left out (``number-count``). OpenRAVE says nothing about either.
     """
+    plain = _plain_numbers(element.text)
+    if plain is not None and len(plain) == count:
+        return plain
     values, rest = leading_numbers(element.text)
     found = len(values)
     if found < count and rest:
         values.append(0.0)
     values = (values + [default] * count)[:count]
-    if found != count or rest:
-        taken = " ".join(f"{value:g}" for value in values)
-        expected = "a number" if count == 1 else f"{count} numbers separated by spaces"
-        diagnostics.warn(
-            "bad-number" if found < count and rest else "number-count",
-            f"<{element.spelled}> holds '{' '.join(element.text.split())}' where {expected} should stand; "
-            f"OpenRAVE reads {taken}",
-            element.source,
-        )
+    taken = " ".join(f"{value:g}" for value in values)
+    expected = "a number" if count == 1 else f"{count} numbers separated by spaces"
+    diagnostics.warn(
+        "bad-number" if found < count and rest else "number-count",
+        f"<{element.spelled}> holds '{' '.join(element.text.split())}' where {expected} should stand; "
+        f"OpenRAVE reads {taken}",
+        element.source,
+    )
     return values
 
 
@@ -92,7 +104,7 @@ def vector(element: Element, diagnostics: Diagnostics) -> Vec3:
 def scale_attribute(element: Element) -> Vec3:
     """Return the ``scalegeometry`` of an element: one number for all axes, or three."""
     if "scalegeometry" not in element.attributes:
-        return (1.0, 1.0, 1.0)
+        return UNSCALED
     values, _ = leading_numbers(element.attributes["scalegeometry"])
     if len(values) == 3:
         return (values[0], values[1], values[2])
@@ -127,8 +139,10 @@ class Placement:
     kinds does not matter.
     """
 
-    def __init__(self, start: Pose | None = None, scale: Vec3 = (1.0, 1.0, 1.0)) -> None:
-        self._position, self._wxyz = start or Pose()
+    __slots__ = ("_position", "_scale", "_wxyz")
+
+    def __init__(self, start: Pose = UNMOVED, scale: Vec3 = UNSCALED) -> None:
+        self._position, self._wxyz = start
         self._scale = scale
 
     @property
@@ -161,7 +175,7 @@ def _matrix(element: Element, diagnostics: Diagnostics) -> Wxyz:
     m = numbers(element, 9, diagnostics)
     try:
         return wxyz_from_rows((m[0:3], m[3:6], m[6:9]))
-    except ValueError:
+    except ZeroDivisionError:
         raise SourceError(f"<{element.spelled}> holds no rotation: {element.text.strip()}", element.source) from None
 
 
@@ -169,7 +183,7 @@ def _quaternion(element: Element, diagnostics: Diagnostics) -> Wxyz:
     w, x, y, z = numbers(element, 4, diagnostics)
     try:
         return normalize((w, x, y, z))
-    except ValueError:
+    except ZeroDivisionError:
         raise SourceError(
             f"<{element.spelled}> holds no rotation: {element.text.strip()}",
             element.source,

@@ -1,54 +1,20 @@
 """The configuration of a body as one vector: its joint values, then its pose."""
 
-from abc import ABC, abstractmethod
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import DOFAffine
+from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.specification import ConfigurationSpecification
-from ravemj.simulation import Simulation
 from ravemj.trajectories.bodies import body_groups, configuration_values, split_configuration
 from ravemj.transforms import Floats
 
 
-class Configured(ABC):
-    """What has joint values and a pose."""
-
-    _simulation: Simulation
-
-    @abstractmethod
-    def GetName(self) -> str:
-        """Return the name."""
-
-    @abstractmethod
-    def GetDOF(self) -> int:
-        """Return the number of joint values."""
-
-    @abstractmethod
-    def GetDOFValues(self) -> Floats:
-        """Return the joint values, shape (dof,)."""
-
-    @abstractmethod
-    def SetDOFValues(
-        self, values: ArrayLike, dofindices: ArrayLike | None = None, checklimits: int = CheckLimitsAction.CheckLimits
-    ) -> None:
-        """Set the joint values."""
-
-    @abstractmethod
-    def GetTransform(self) -> Floats:
-        """Return the pose, shape (4, 4)."""
-
-    def SetTransform(self, transform: ArrayLike) -> None:
-        """Set the pose.
-
-        Raises:
-            NotImplementedError: the base of a body cannot move.
-        """
-        raise NotImplementedError(f"SetTransform: the base of '{self.GetName()}' cannot move")
+class Configured(Placement):
+    """The configuration of a body as one vector, and its specification."""
 
     def GetConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
         """Return what the numbers of the body's configuration are: its joint values, then its pose.

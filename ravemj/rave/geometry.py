@@ -1,13 +1,12 @@
 """Shapes of a link."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ravemj import scene
-from ravemj.arrays import checked_numbers
 from ravemj.errors import RavemjError
 from ravemj.rave.enums import GeometryType
-from ravemj.transforms import Floats, Ints
+from ravemj.rave.trimesh import TriMesh, trimesh_of
+from ravemj.transforms import Floats
 
 _TYPES: dict[type[scene.Shape], GeometryType] = {
     scene.Box: GeometryType.Box,
@@ -19,37 +18,6 @@ _TYPES: dict[type[scene.Shape], GeometryType] = {
     scene.TriMesh: GeometryType.Trimesh,
     scene.NoShape: GeometryType.None_,
 }
-
-
-class TriMesh:
-    """Triangles.
-
-    Attributes:
-        vertices: Shape (n, 3) [m]; None in a new mesh.
-        indices: Corners of each triangle, shape (m, 3); None in a new mesh.
-
-    Example:
-        >>> mesh = TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-    """
-
-    vertices: Floats | None
-    indices: Ints | None
-
-    def __init__(self, vertices: ArrayLike | None = None, indices: ArrayLike | None = None) -> None:
-        self.vertices = None if vertices is None else checked_numbers(vertices, "vertices")
-        self.indices = None if indices is None else checked_numbers(indices, "indices").astype(np.int_)
-
-    def toDict(self) -> dict[str, Floats | Ints | None]:
-        """Return the mesh as ``vertices`` and ``indices``."""
-        return {"vertices": self.vertices, "indices": self.indices}
-
-    def __repr__(self) -> str:
-        vertices, indices = ("None" if part is None else part.tolist() for part in (self.vertices, self.indices))
-        return f"TriMesh({vertices},{indices})"
-
-    def __str__(self) -> str:
-        counts = (0 if part is None else len(part) for part in (self.vertices, self.indices))
-        return "<trimesh: verts {}, tris={}>".format(*counts)
 
 
 class Geometry:
@@ -140,7 +108,7 @@ class Geometry:
         shape = self._scene.shape
         if not isinstance(shape, scene.TriMesh):
             raise self._has_none("triangles")
-        return TriMesh(shape.mesh.vertices, shape.mesh.triangles)
+        return trimesh_of(shape.mesh)
 
     def GetDiffuseColor(self) -> Floats:
         """Return the colour: red, green, blue from 0 to 1, shape (3,)."""

@@ -103,6 +103,15 @@ class Joint:
         """Return the joint's value about or along one of its axes [rad or m]."""
         return float(self.GetValues()[axis])
 
+    def GetVelocities(self) -> Floats:
+        """Return the joint's velocities [rad/s or m/s] that those of its links show, shape (axes,)."""
+        with self._state.simulation.lock:
+            return self._state.dynamics.joint_velocities(self._state.link_velocities(), [self._scene])[0]
+
+    def GetVelocity(self, axis: int = 0) -> float:
+        """Return the joint's velocity about or along one of its axes [rad/s or m/s]."""
+        return float(self.GetVelocities()[axis])
+
     def GetLimits(self) -> tuple[Floats, Floats]:
         """Return the lower and the upper limits [rad or m], each of shape (axes,); ±10000 for a circular joint."""
         axes = self._scene.axes
@@ -159,7 +168,7 @@ class Joint:
     def _T_world_parent(self) -> Floats:
         """Return the parent link's pose in the world, shape (3, 4)."""
         with self._state.simulation.lock:
-            return self._state.kinematics.link_transform(self._scene.parent)[:3]
+            return self._state.link_transform(self._scene.parent)[:3]
 
     def GetHierarchyParentLink(self) -> Link:
         """Return the link of the joint that is nearer to the body's first link."""

@@ -3,8 +3,10 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ravemj import scene
+from ravemj.arrays import checked_vector
 from ravemj.rave.geometry import Geometry
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats
@@ -44,7 +46,29 @@ class Link:
             ``T_world_link``, shape (4, 4); a copy.
         """
         with self._state.simulation.lock:
-            return self._state.kinematics.link_transform(self._index)
+            return self._state.link_transform(self._index)
+
+    def GetVelocity(self) -> Floats:
+        """Return the link's velocity, in world axes.
+
+        Returns:
+            That of its origin [m/s] and the angular one [rad/s], shape (6,); a copy.
+        """
+        with self._state.simulation.lock:
+            return self._state.link_velocities()[self._index]
+
+    def SetVelocity(self, linear: ArrayLike, angular: ArrayLike) -> None:
+        """Set the velocity of this link alone; those of the DOFs are read off the differences between links.
+
+        Args:
+            linear: Velocity of its origin in the world [m/s], shape (3,).
+            angular: Angular velocity in the world [rad/s], shape (3,).
+        """
+        moved, turned = checked_vector(linear, 3, "linear"), checked_vector(angular, 3, "angular")
+        with self._state.simulation.lock:
+            velocities = self._state.link_velocities()
+            velocities[self._index] = (*moved, *turned)
+            self._state.set_link_velocities(velocities)
 
     def GetMass(self) -> float:
         """Return the link's mass [kg]."""
@@ -53,6 +77,10 @@ class Link:
     def GetLocalCOM(self) -> Floats:
         """Return the centre of mass in the link frame [m], shape (3,)."""
         return np.array(self._scene.inertial.com)
+
+    def GetGlobalCOM(self) -> Floats:
+        """Return the centre of mass in the world [m], shape (3,)."""
+        return self.GetTransform()[:3] @ (*self._scene.inertial.com, 1.0)
 
     def GetLocalInertia(self) -> Floats:
         """Return the inertia about the centre of mass, in axes parallel to the link's [kg m^2], shape (3, 3)."""

@@ -1,15 +1,19 @@
 """Arms of a robot."""
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ravemj import scene
-from ravemj.errors import RavemjError
+from ravemj.arrays import checked_transform, checked_vector
+from ravemj.errors import ArgumentError, RavemjError
+from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.link import Link
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.simulation import BodyState
-from ravemj.transforms import Floats, Ints
+from ravemj.transforms import Floats, Ints, pose_of, wxyz_from_rows
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -55,10 +59,49 @@ class Manipulator:
         Raises:
             openrave_exception: the manipulator has no effector.
         """
+        return self._effector().GetTransform() @ self.GetLocalToolTransform()
+
+    def _effector(self) -> Link:
         effector = self.GetEndEffector()
         if effector is None:
             raise RavemjError(f"manipulator '{self.GetName()}' has no end effector")
-        return effector.GetTransform() @ self.GetLocalToolTransform()
+        return effector
+
+    def GetVelocity(self) -> Floats:
+        """Return the velocity of the tool, in world axes.
+
+        Returns:
+            That of the tool point [m/s] and the angular one [rad/s], shape (6,).
+        """
+        effector = self._effector()
+        velocity = effector.GetVelocity()
+        arm = self.GetTransform()[:3, 3] - effector.GetTransform()[:3, 3]
+        velocity[:3] += np.cross(velocity[3:], arm)
+        return velocity
+
+    def CalculateJacobian(self) -> Floats:
+        """Return how the tool point moves with the arm's joints.
+
+        Returns:
+            Derivative of its position in the world by the values of ``GetArmIndices()``, shape (3, arm dof).
+        """
+        tool = self.GetTransform()[:3, 3]
+        return self._robot.ComputeJacobianTranslation(self._effector().GetIndex(), tool)[:, self.GetArmIndices()]
+
+    def CalculateAngularVelocityJacobian(self) -> Floats:
+        """Return the angular velocity of the tool, in world axes, per unit of the arm's, shape (3, arm dof)."""
+        return self._robot.ComputeJacobianAxisAngle(self._effector().GetIndex())[:, self.GetArmIndices()]
+
+    def CalculateRotationJacobian(self) -> Floats:
+        """Return how the tool's quaternion [w, x, y, z] changes with the arm's joints, shape (4, arm dof)."""
+        wxyz = wxyz_from_rows(self.GetTransform()[:3, :3].tolist())
+        return self._robot.CalculateRotationJacobian(self._effector().GetIndex(), wxyz)[:, self.GetArmIndices()]
+
+    GetEndEffectorTransform = GetTransform
+
+    def GetTransformPose(self) -> Floats:
+        """Return the pose of the tool in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return pose_from_matrix(self.GetTransform())
 
     def GetLocalToolTransform(self) -> Floats:
         """Return the pose of the tool in the effector.
@@ -72,17 +115,74 @@ class Manipulator:
         """Return the unit vector that the tool points along, in its own frame, shape (3,)."""
         return np.array(self._scene.direction)
 
+    GetDirection = GetPalmDirection = GetLocalToolDirection
+
+    def SetLocalToolTransform(self, transform: ArrayLike) -> None:
+        """Set the pose of the tool in the effector.
+
+        Args:
+            transform: ``T_effector_tool``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
+        """
+        self._edit(T_effector_tool=pose_of(checked_transform(transform, "SetLocalToolTransform: transform")))
+
+    def SetLocalToolDirection(self, direction: ArrayLike) -> None:
+        """Set the direction that the tool points along, in its own frame, shape (3,); it is normalised."""
+        given = checked_vector(direction, 3, "SetLocalToolDirection: direction")
+        length = float(np.linalg.norm(given))
+        if not length:
+            raise ArgumentError("SetLocalToolDirection: direction is zero, and should point somewhere")
+        self._edit(direction=tuple((given / length).tolist()))
+
+    def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Manipulator
+        arms = list(self._state.scene.manipulators)
+        arms[self._index] = replace(arms[self._index], **changes)
+        self._state.edit(manipulators=tuple(arms))
+
     def GetArmIndices(self) -> Ints:
-        """Return the DOF indices of the joints between base and effector, the base first."""
+        """Return the DOF indices of the joints between base and effector, the base first.
+
+        Example:
+            >>> robot.SetActiveDOFs(robot.GetActiveManipulator().GetArmIndices())
+        """
         return np.array(self._scene.arm_dofs, dtype=np.int_)
+
+    GetArmJoints = GetArmIndices
+
+    def GetArmDOF(self) -> int:
+        """Return the number of DOFs of the arm."""
+        return len(self._scene.arm_dofs)
+
+    def GetArmDOFValues(self) -> Floats:
+        """Return the joint values of the arm [rad or m], in the order of ``GetArmIndices()``."""
+        return self._robot.GetDOFValues(self.GetArmIndices())
 
     def GetGripperIndices(self) -> Ints:
         """Return the DOF indices of the gripper's joints."""
         return np.array(self._scene.gripper_dofs, dtype=np.int_)
 
+    GetGripperJoints = GetGripperIndices
+
+    def GetGripperDOF(self) -> int:
+        """Return the number of DOFs of the gripper."""
+        return len(self._scene.gripper_dofs)
+
+    def GetGripperDOFValues(self) -> Floats:
+        """Return the joint values of the gripper [rad or m], in the order of ``GetGripperIndices()``."""
+        return self._robot.GetDOFValues(self.GetGripperIndices())
+
     def GetChuckingDirection(self) -> Floats:
         """Return for each DOF of the gripper the sign of closing: 1, 0 or -1."""
         return np.array(self._scene.chucking_direction)
+
+    GetClosingDirection = GetChuckingDirection
+
+    def SetChuckingDirection(self, chuckingdirection: ArrayLike) -> None:
+        """Set for each DOF of the gripper the sign of closing."""
+        count = len(self._scene.gripper_dofs)
+        signs = checked_vector(chuckingdirection, count, "SetChuckingDirection: chuckingdirection")
+        self._edit(chucking_direction=tuple(signs.tolist()))
+
+    SetClosingDirection = SetChuckingDirection
 
     def GetArmConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
         """Return the specification of the arm's joint values.

@@ -1,27 +1,99 @@
 """Robots: bodies with manipulators and sensors."""
 
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ravemj.geometry_functions import DOFAffine
+from ravemj.rave.body.active import ActiveChoice, ActiveDofs
+from ravemj.rave.body.affine import default_kinds
+from ravemj.rave.body.manipulators import Manipulators
+from ravemj.rave.body.saving import Restorer, StateSaver
+from ravemj.rave.enums import InterfaceType, SaveParameters
 from ravemj.rave.kinbody import KinBody
+from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.sensors import AttachedSensor
-from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.simulation import BodyState
+from ravemj.transforms import Floats
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
 
 
-class Robot(KinBody):
+class Robot(ActiveDofs, Manipulators, KinBody):
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
+    DOFAffine = DOFAffine
     Manipulator = Manipulator
 
-    def GetManipulators(self) -> list[Manipulator]:
-        """Return the manipulators; the first one is the active one."""
-        return [Manipulator(self, self._state, index) for index in range(len(self._state.scene.manipulators))]
+    _interface_type = InterfaceType.robot
+    default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator
 
-    def GetManipulator(self, name: str) -> Manipulator | None:
-        """Return the manipulator of that name, or None."""
-        return next((manipulator for manipulator in self.GetManipulators() if manipulator.GetName() == name), None)
+    def __init__(self, env: "Environment", state: BodyState) -> None:
+        super().__init__(env, state)
+        self.active_choice = ActiveChoice()
+        self.affine_kinds = default_kinds()
+        self._active_manipulator = None
 
-    def GetActiveManipulator(self) -> Manipulator | None:
-        """Return the manipulator that calls without one refer to: the first, or None where there is none."""
-        return next(iter(self.GetManipulators()), None)
+    def GetXMLId(self) -> str:
+        """Return OpenRAVE's name of the kind of robot."""
+        return "GenericRobot"
+
+    def Grab(  # pyright: ignore[reportIncompatibleMethodOverride] - a robot has an arm to grab with
+        self, body: KinBody, *links: "Link | list[Link | int | str]"
+    ) -> bool:
+        """Hold a body: ``Grab(body)``, ``Grab(body, link)``, ``Grab(body, linkstoignore)`` or with both.
+
+        It is held by the given link, else by the active manipulator's end effector. See ``KinBody.Grab``.
+
+        Returns:
+            False if there is neither a link nor an active manipulator with an end effector.
+
+        Example:
+            >>> robot.Grab(mug)
+            True
+            >>> robot.SetDOFValues([0.3], [0])  # the mug moves along
+        """
+        active = self.GetActiveManipulator()
+        link = next((one for one in links if isinstance(one, Link)), active.GetEndEffector() if active else None)
+        ignored = [one for group in links if not isinstance(group, Link) for one in group]
+        return False if link is None else super().Grab(body, link, ignored)
+
+    def CreateRobotStateSaver(self, options: int | None = None) -> StateSaver:
+        """Save the robot's state; see ``CreateKinBodyStateSaver``.
+
+        Args:
+            options: What to save, ``SaveParameters`` combined with ``|``; None: poses, joint values, enabled links,
+                active DOFs and the active manipulator.
+
+        Example:
+            >>> with robot.CreateRobotStateSaver(Robot.SaveParameters.ActiveDOF):
+            ...     robot.SetActiveDOFs([0])
+        """
+        return StateSaver(self, options)
+
+    def take_choices(self, other: "Robot") -> None:
+        """Take over the active DOFs and the active manipulator of another robot like this."""
+        self.active_choice = other.active_choice
+        self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
+        self._active_manipulator = other._active_manipulator
+
+    def restorers(self, options: SaveParameters) -> list[Restorer]:
+        """Return what gives this robot, or one like it, its present state back."""
+        found = super().restorers(options)
+        if options & SaveParameters.ActiveDOF:
+            choice = self.active_choice
+            found.append(lambda body: setattr(body, "active_choice", choice))
+        if options & SaveParameters.ActiveManipulator:
+            name = self._active_manipulator
+            found.append(lambda body: setattr(body, "_active_manipulator", name))
+        tools = self.GetManipulators() if options & SaveParameters.ManipulatorsToolTransform else []
+        active = self.GetActiveManipulator()
+        if options & SaveParameters.ActiveManipulatorToolTransform and active is not None:
+            tools.append(active)
+        for tool, transform in [(tool.GetName(), tool.GetLocalToolTransform()) for tool in tools]:
+            found.append(lambda body, tool=tool, transform=transform: _set_tool(body, tool, transform))
+        return found
 
     def GetAttachedSensors(self) -> list[AttachedSensor]:
         """Return the sensors on the robot's links, in the order of the file."""
@@ -31,10 +103,8 @@ class Robot(KinBody):
         """Return the attached sensor of that name, or None."""
         return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == name), None)
 
-    def GetActiveConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
-        """Return the specification of the active DOFs: all joint values.
 
-        Args:
-            interpolation: How they change between waypoints, for instance ``linear``.
-        """
-        return self.GetConfigurationSpecificationIndices(range(self.GetDOF()), interpolation)
+def _set_tool(body: KinBody, name: str, transform: Floats) -> None:
+    manipulator = body.GetManipulator(name) if isinstance(body, Robot) else None
+    if manipulator is not None:
+        manipulator.SetLocalToolTransform(transform)

@@ -101,3 +101,7 @@ class KinBody:
     def dof_axes(self) -> tuple[Axis, ...]:
         """The axes of all active joints, in DOF order."""
         return tuple(axis for joint in self.joints for axis in joint.axes)
+
+    def joint_of_dof(self, dof: int) -> Joint:
+        """Return the joint that a DOF belongs to."""
+        return [joint for joint in self.joints for _ in joint.axes][dof]

@@ -1,0 +1,1 @@
+"""The API of a body, in parts by topic; ``KinBody`` joins them."""

@@ -1,0 +1,255 @@
+"""Active DOFs: the configuration space that planners and ``…Active…`` calls use."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.arrays import checked_indices, checked_numbers, checked_vector
+from ravemj.errors import ArgumentError
+from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
+from ravemj.rave.body.affine import AffineSettings
+from ravemj.rave.body.limits import Limits
+from ravemj.rave.body.motion import Motion
+from ravemj.rave.body.placement import Placement
+from ravemj.rave.enums import CheckLimitsAction
+from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.trajectories.bodies import body_groups
+from ravemj.transforms import Floats, Ints, Vec3
+
+Z_AXIS: Vec3 = (0.0, 0.0, 1.0)
+
+
+class ActiveChoice(NamedTuple):
+    """Which DOFs are active.
+
+    Attributes:
+        dofs: Indices of the joints' DOFs in the order of their values; None: all.
+        affine: The parts of the base's pose that come after them.
+        axis: Axis of ``DOFAffine.RotationAxis``.
+    """
+
+    dofs: tuple[int, ...] | None = None
+    affine: DOFAffine = DOFAffine.NoTransform
+    axis: Vec3 = Z_AXIS
+
+
+class ActiveDofs(Placement, Limits, Motion, AffineSettings):
+    """The active DOFs of a robot: some of its joints, and parts of its base's pose."""
+
+    active_choice: ActiveChoice
+    """What ``SetActiveDOFs`` chose."""
+
+    def SetActiveDOFs(self, dofindices: ArrayLike, affine: int = 0, rotationaxis: ArrayLike | None = None) -> None:
+        """Choose the DOFs that ``SetActiveDOFValues``, trajectories and planners are about.
+
+        Args:
+            dofindices: Joint DOFs, in the order in which their values will be given.
+            affine: Parts of the base's pose that follow them: ``DOFAffine`` combined with ``|``, always in the order
+                X, Y, Z, rotation.
+            rotationaxis: Axis of ``DOFAffine.RotationAxis`` in the world; None: z.
+
+        Raises:
+            ArgumentError: there is no such DOF. Nothing has changed then.
+
+        Example:
+            >>> robot.SetActiveDOFs([1, 0])
+            >>> robot.SetActiveDOFValues([0.1, 0.2])  # the second joint, then the first
+            >>> robot.SetActiveDOFs([], DOFAffine.X | DOFAffine.Y | DOFAffine.RotationAxis, [0, 0, 1])
+            >>> robot.SetActiveDOFValues([1.0, 2.0, 0.5])  # the base drives
+        """
+        try:
+            dofs = checked_indices(dofindices, self.GetDOF(), "SetActiveDOFs: dofindices").tolist()
+        except IndexError as error:
+            raise ArgumentError(str(error)) from None
+        axis = Z_AXIS
+        if rotationaxis is not None:
+            x, y, z = checked_vector(rotationaxis, 3, "SetActiveDOFs: rotationaxis").tolist()
+            axis = (x, y, z)
+        self.active_choice = ActiveChoice(tuple(dofs), DOFAffine(int(affine)), axis)
+
+    def GetActiveDOF(self) -> int:
+        """Return the number of active values: all DOFs until ``SetActiveDOFs`` was called."""
+        return len(self._active_dofs()) + len(self._affine_numbers("weight"))
+
+    def GetActiveDOFIndices(self) -> Ints:
+        """Return the active joints' DOFs in the order of their values; affine ones are not among them."""
+        return np.array(self._active_dofs(), dtype=np.int_)
+
+    def _active_dofs(self) -> list[int]:
+        chosen = self.active_choice.dofs
+        return list(range(self.GetDOF())) if chosen is None else list(chosen)
+
+    def GetAffineDOF(self) -> int:
+        """Return the active parts of the base's pose, a ``DOFAffine``."""
+        return int(self.active_choice.affine)
+
+    def GetAffineDOFIndex(self, index: int) -> int:
+        """Return where the value of a part of the base's pose is among the active values.
+
+        Args:
+            index: The part, one ``DOFAffine``.
+
+        Raises:
+            ArgumentError: the part is not active.
+        """
+        affine = self.active_choice.affine
+        if not index & affine:
+            raise ArgumentError(f"GetAffineDOFIndex: {DOFAffine(index)!r} is not active")
+        before = DOFAffine(affine & (int(index) - 1) & DOFAffine.Transform)
+        return len(self._active_dofs()) + sum(bool(before & part) for part in (1, 2, 4))
+
+    def GetAffineRotationAxis(self) -> Floats:
+        """Return the axis of ``DOFAffine.RotationAxis``, shape (3,)."""
+        return np.array(self.active_choice.axis)
+
+    def GetActiveDOFValues(self) -> Floats:
+        """Return the active values: joints [rad or m], then the base's X, Y, Z [m] and rotation."""
+        with self._simulation.lock:
+            joints = self.GetDOFValues()[self.GetActiveDOFIndices()]
+            base = affine_values(self._state.pose(), self.active_choice.affine, self.active_choice.axis)
+            return np.concatenate([joints, base])
+
+    def SetActiveDOFValues(self, values: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits) -> None:
+        """Set the active values: joints [rad or m], then the base's X, Y, Z [m] and rotation.
+
+        Args:
+            values: At least as many as there are active values; more are left out. NaN leaves a joint as it is.
+            checklimits: What to do with joint values outside the limits, as in ``SetDOFValues``; those of the base
+                are set as they are.
+
+        Raises:
+            ArgumentError: there are too few values, or one is infinite. Nothing has changed then.
+        """
+        given = checked_numbers(values, "SetActiveDOFValues: values")
+        count = self.GetActiveDOF()
+        if given.ndim != 1 or len(given) < count:
+            message = f"SetActiveDOFValues: values have shape {given.shape}, and should be {count} numbers"
+            raise ArgumentError(message)
+        joints = self._active_dofs()
+        base = checked_vector(given[len(joints) : count], count - len(joints), "SetActiveDOFValues: base's values")
+        with self._simulation.lock:
+            if joints:
+                self.SetDOFValues(given[: len(joints)], joints, checklimits)
+            if self.active_choice.affine:
+                choice = self.active_choice
+                self._state.set_pose(pose_with_values(self._state.pose(), base, choice.affine, choice.axis))
+
+    def GetActiveDOFVelocities(self) -> Floats:
+        """Return the velocities of the active values [rad/s or m/s]; for a rotation of the base its angular one."""
+        with self._simulation.lock:
+            joints = self.GetDOFVelocities()[self.GetActiveDOFIndices()]
+            linear, angular = np.split(self._state.link_velocities()[0], 2)
+            affine = self.active_choice.affine
+            parts = [joints, linear[[i for i in range(3) if affine & 1 << i]]]
+            if affine & DOFAffine.RotationAxis:
+                parts.append(np.array([angular @ self.active_choice.axis]))
+            elif affine & DOFAffine.Rotation3D:
+                parts.append(angular)
+            elif affine & DOFAffine.RotationQuat:
+                parts.append(np.zeros(4))
+            return np.concatenate(parts)
+
+    def SetActiveDOFVelocities(self, velocities: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits) -> None:
+        """Set the velocities of the active values; the other joints keep theirs.
+
+        Args:
+            velocities: As many as there are active values [rad/s or m/s]; those of a rotation of the base are its
+                angular velocity, of which a quaternion has none.
+            checklimits: What to do with joint velocities outside the limits, a ``CheckLimitsAction``.
+
+        Raises:
+            ArgumentError: there are too few or too many velocities, or one is infinite.
+        """
+        count, joints = self.GetActiveDOF(), self._active_dofs()
+        given = checked_vector(velocities, count, "SetActiveDOFVelocities: velocities")
+        with self._simulation.lock:
+            full = self.GetDOFVelocities()
+            full[joints] = given[: len(joints)]
+            linear, angular = np.split(self._state.link_velocities()[0], 2)
+            affine, rest = self.active_choice.affine, given[len(joints) :]
+            moved = [i for i in range(3) if affine & 1 << i]
+            linear[moved] = rest[: len(moved)]
+            if affine & DOFAffine.RotationAxis:
+                angular = rest[-1] * np.array(self.active_choice.axis)
+            elif affine & DOFAffine.Rotation3D:
+                angular = rest[-3:]
+            self.SetDOFVelocities(full, linear, angular, checklimits)
+
+    def GetActiveDOFLimits(self) -> tuple[Floats, Floats]:
+        """Return the lower and upper limits of the active values; ±100 m and ±10000 rad for the base by default."""
+        dofs = self._active_dofs()
+        lower, upper = self.GetDOFLimits(dofs)
+        return self._with_affine(lower, "lower"), self._with_affine(upper, "upper")
+
+    def GetActiveDOFMaxVel(self) -> Floats:
+        """Return the velocity limits of the active values."""
+        return self._with_affine(self.GetDOFVelocityLimits(self._active_dofs()), "max_velocity")
+
+    GetActiveDOFVelocityLimits = GetActiveDOFMaxVel
+
+    def GetActiveDOFMaxAccel(self) -> Floats:
+        """Return the acceleration limits of the active values; for the base its velocity limits, as in OpenRAVE."""
+        return self._with_affine(self.GetDOFAccelerationLimits(self._active_dofs()), "max_velocity")
+
+    GetActiveDOFAccelerationLimits = GetActiveDOFMaxAccel
+
+    def GetActiveDOFResolutions(self) -> Floats:
+        """Return the steps of planners for the active values."""
+        return self._with_affine(self.GetDOFResolutions(self._active_dofs()), "resolution")
+
+    def GetActiveDOFWeights(self) -> Floats:
+        """Return the weights of the active values in distances."""
+        return self._with_affine(self.GetDOFWeights(self._active_dofs()), "weight")
+
+    def _with_affine(self, joints: Floats, name: str) -> Floats:
+        return np.concatenate([joints, self._affine_numbers(name)])
+
+    def _affine_numbers(self, name: str) -> Floats:
+        """Return a setting of all active parts of the base's pose."""
+        affine, kinds = self.active_choice.affine, self.affine_kinds
+        parts = [getattr(kinds["Translation"], name)[[i for i in range(3) if affine & 1 << i]]]
+        if affine & DOFAffine.RotationAxis:
+            parts.append(getattr(kinds["RotationAxis"], name)[self._axis_number() : self._axis_number() + 1])
+        elif affine & DOFAffine.Rotation3D:
+            parts.append(getattr(kinds["Rotation3D"], name))
+        elif affine & DOFAffine.RotationQuat:
+            parts.append(getattr(kinds["RotationQuat"], name))
+        return np.concatenate(parts)
+
+    def _axis_number(self) -> int:
+        """Return 0, 1 or 2 for a rotation about x, y or z, and 3 for any other axis."""
+        axis = self.active_choice.axis
+        return next((number for number in range(3) if axis[number] == 1.0), 3)
+
+    def GetActiveConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
+        """Return what the active values are: the layout of the waypoints of trajectories for them.
+
+        Args:
+            interpolation: How they change between waypoints, for instance ``linear``.
+
+        Example:
+            >>> trajectory = ravemj.RaveCreateTrajectory(env, "")
+            >>> trajectory.Init(robot.GetActiveConfigurationSpecification("linear"))
+        """
+        groups = body_groups(self.GetName(), self._active_dofs(), self.active_choice.affine, interpolation)
+        return ConfigurationSpecification.of(groups)
+
+    def SubtractActiveDOFValues(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
+        """Return the difference of active values; circular joints and the base's angle go the shorter way round.
+
+        Args:
+            values0: Active values.
+            values1: Active values to subtract.
+
+        Raises:
+            ArgumentError: they are not as many as there are active values.
+        """
+        count, joints = self.GetActiveDOF(), self._active_dofs()
+        minuend, subtrahend = (checked_vector(one, count, "SubtractActiveDOFValues") for one in (values0, values1))
+        difference = minuend - subtrahend
+        split = len(joints)
+        difference[:split] = self.SubtractDOFValues(minuend[:split], subtrahend[:split], joints)
+        if self.active_choice.affine & DOFAffine.RotationAxis:
+            difference[-1] = (difference[-1] + np.pi) % (2 * np.pi) - np.pi
+        return difference

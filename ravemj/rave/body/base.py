@@ -1,0 +1,35 @@
+"""What the parts of a body's API share."""
+
+from typing import TYPE_CHECKING
+
+from ravemj.rave.interface import Annotations, Interface
+from ravemj.simulation import BodyState, Simulation
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+
+class BodyPart(Interface):
+    """Part of the API of a body; ``KinBody`` joins the parts."""
+
+    def __init__(self, env: "Environment", state: BodyState) -> None:
+        self._env = env
+        self._state = state
+        self._simulation: Simulation = state.simulation
+        self._annotations = Annotations()
+
+    def GetName(self) -> str:
+        """Return the body's name, unique in its environment."""
+        return self._state.scene.name
+
+    def GetDOF(self) -> int:
+        """Return the number of degrees of freedom: the joint axes that ``SetDOFValues`` sets.
+
+        Passive joints are not counted.
+        """
+        return len(self._state.scene.dof_axes)
+
+    @property
+    def simulation_state(self) -> BodyState:
+        """The body below the OpenRAVE API: its scene and its kinematics."""
+        return self._state

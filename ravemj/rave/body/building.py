@@ -1,0 +1,103 @@
+"""Bodies made in code."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.arrays import checked_numbers
+from ravemj.errors import ErrorCode, RavemjError
+from ravemj.making import body_of_geometries, box_geometries, shape_geometry, sphere_geometries
+from ravemj.rave.body.base import BodyPart
+from ravemj.rave.trimesh import TriMesh, checked_mesh
+from ravemj.scene import Geometry, KinBody
+from ravemj.scene import TriMesh as Triangles
+from ravemj.transforms import Floats, Pose
+
+
+class Building(BodyPart):
+    """Makes the body anew; it must not be in an environment meanwhile."""
+
+    def InitFromBoxes(self, boxes: ArrayLike, draw: bool = True, uri: str = "") -> bool:
+        """Make the body one static link of boxes, in place of what it was.
+
+        Args:
+            boxes: A row for each box: centre x y z and half extents x y z [m], shape (n, 6). Or, for turned boxes,
+                centre, the unit vectors along the box's x, y and z axis, and half extents, shape (n, 15).
+            draw: False: the boxes collide, and are not drawn.
+            uri: Not used.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: the body is in an environment, or the rows are of another length.
+            TypeError: this is no array of rows.
+
+        Example:
+            >>> body = ravemj.RaveCreateKinBody(env, "")
+            >>> body.InitFromBoxes([[0, 0, 0.1, 0.5, 0.5, 0.1]])
+            True
+            >>> body.SetName("table")
+            >>> env.Add(body)
+        """
+        del uri
+        return self._become(box_geometries(_rows(boxes, (6, 15), "InitFromBoxes: boxes"), visible=bool(draw)))
+
+    def InitFromSpheres(self, spherex: ArrayLike, draw: bool = True, uri: str = "") -> bool:
+        """Make the body one static link of spheres.
+
+        Args:
+            spherex: A row for each sphere: centre x y z and radius [m], shape (n, 4); the spelling is OpenRAVE's.
+            draw: False: the spheres collide, and are not drawn.
+            uri: Not used.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: the body is in an environment, or the rows are of another length.
+            TypeError: this is no array of rows.
+        """
+        del uri
+        return self._become(sphere_geometries(_rows(spherex, (4,), "InitFromSpheres: spherex"), visible=bool(draw)))
+
+    def InitFromTrimesh(self, trimesh: TriMesh, draw: bool = True, uri: str = "") -> bool:
+        """Make the body one static link with the triangles of a mesh; they stay as they are.
+
+        Args:
+            trimesh: The triangles.
+            draw: False: the triangles collide, and are not drawn.
+            uri: Not used.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: the body is in an environment, or a triangle has a corner that is not there.
+        """
+        del uri
+        mesh = checked_mesh(trimesh, "InitFromTrimesh: trimesh")
+        return self._become([shape_geometry(Triangles(mesh), Pose(), visible=bool(draw))])
+
+    def _become(self, geometries: Iterable[Geometry]) -> bool:
+        return self._rebuild(body_of_geometries(self._state.scene, geometries))
+
+    def _rebuild(self, body: KinBody) -> bool:
+        with self._simulation.lock:
+            if self._state.index:
+                raise RavemjError(f"'{self.GetName()}' is in an environment; remove it first", ErrorCode.Failed)
+            self._state.rebuild(body)
+        return True
+
+
+def _rows(numbers: ArrayLike, widths: tuple[int, ...], name: str) -> Floats:
+    """Return a finite array of rows."""
+    rows = checked_numbers(numbers, name)
+    wanted = " or ".join(f"(n, {width})" for width in widths)
+    if rows.ndim != 2:
+        raise TypeError(f"{name}: has shape {rows.shape}, and should have {wanted}")
+    if rows.shape[1] not in widths or not np.isfinite(rows).all():
+        message = f"{name}: has shape {rows.shape}, and should be finite and have shape {wanted}"
+        raise RavemjError(message, ErrorCode.Failed)
+    return rows

@@ -1,0 +1,173 @@
+"""Bodies that hold others."""
+
+# The fields of infos have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.rave.body.base import BodyPart
+from ravemj.rave.link import Link
+from ravemj.simulation import BodyState
+from ravemj.simulation.body import GrabbedBody
+from ravemj.transforms import Floats, inverse
+
+if TYPE_CHECKING:
+    from ravemj.rave.kinbody import KinBody
+
+
+@dataclass
+class GrabbedInfo:
+    """What ``ResetGrabbed`` needs to hold a body as before.
+
+    Attributes:
+        _grabbedname: Name of the held body.
+        _robotlinkname: Name of the link that holds it.
+        _trelative: ``T_link_body``, shape (4, 4).
+        _setIgnoreRobotLinkNames: Names of the holder's links that the held body does not collide with.
+    """
+
+    _grabbedname: str = ""
+    _robotlinkname: str = ""
+    _trelative: Floats = field(default_factory=lambda: np.eye(4))
+    _setIgnoreRobotLinkNames: list[str] = field(default_factory=list[str])
+
+
+class Grabbing(BodyPart):
+    """Holds other bodies: they move along, and count as part of this one for collision."""
+
+    def Grab(
+        self,
+        body: "KinBody",
+        grablink: Link,
+        linkstoignore: Iterable[Link | int | str] = (),
+    ) -> bool:
+        """Hold a body by a link, in the pose that both have now.
+
+        From now on it moves with the link. It does not collide with the links that it touches now. Grabbing a body
+        that is held already renews link and pose.
+
+        Args:
+            body: What to hold; it is in the same environment.
+            grablink: The link of this body that holds it.
+            linkstoignore: Further links of this body that it should not collide with.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: the body is in no environment or in another one, is this body itself, or holds this
+                body.
+        """
+        with self._simulation.lock:
+            self._check_holdable(body)
+            held = body.simulation_state
+            link = grablink.GetIndex()
+            ignored = {link, *(self._link_index(one) for one in linkstoignore)}
+            T_link_body = inverse(self._state.link_transform(link)) @ held.link_transform(0)
+            self._state.grab(GrabbedBody(held, link, T_link_body, frozenset(ignored)))
+            return True
+
+    def _check_holdable(self, body: "KinBody") -> None:
+        held = body.simulation_state
+        for state in (self._state, held):
+            if not self._simulation.holds(state):
+                message = f"Grab: '{state.scene.name}' is not in this environment; add it first"
+                raise RavemjError(message, ErrorCode.NotInitialized)
+        if held is self._state or self._state in _attached(held, downwards_only=True):
+            raise ArgumentError(f"Grab: '{self.GetName()}' cannot hold '{body.GetName()}', by which it is held itself")
+
+    def _link_index(self, link: Link | int | str) -> int:
+        if isinstance(link, Link):
+            return link.GetIndex()
+        names = [one.name for one in self._state.scene.links]
+        if isinstance(link, str) and link in names:
+            return names.index(link)
+        if isinstance(link, str) or not 0 <= link < len(names):
+            raise ArgumentError(f"'{self.GetName()}' has no link {link!r}")
+        return link
+
+    def Release(self, body: "KinBody") -> None:
+        """Let go of a body; it stays where it is. Nothing happens if it is not held."""
+        with self._simulation.lock:
+            self._state.release(body.simulation_state)
+
+    def ReleaseAllGrabbed(self) -> None:
+        """Let go of all held bodies."""
+        with self._simulation.lock:
+            self._state.grabs = []
+
+    def RegrabAll(self) -> None:
+        """Put all held bodies back where they were grabbed, relative to their links."""
+        with self._simulation.lock:
+            self._state.moved()
+
+    def GetGrabbed(self) -> "list[KinBody]":
+        """Return the held bodies, in the order of grabbing."""
+        return [self._env.wrap(grab.body) for grab in self._state.grabs]
+
+    def IsGrabbing(self, body: "KinBody") -> Link | None:
+        """Return the link that holds a body, or None."""
+        grab = next((one for one in self._state.grabs if one.body is body.simulation_state), None)
+        return None if grab is None else Link(self._env.wrap(self._state), self._state, grab.link)
+
+    def GetGrabbedInfo(self, grabbedname: str | None = None) -> "list[GrabbedInfo] | GrabbedInfo | None":
+        """Return how bodies are held, for ``ResetGrabbed``.
+
+        Args:
+            grabbedname: Return that of one body, or None if it is not held; left out: a list of all.
+        """
+        links = [link.name for link in self._state.scene.links]
+        infos = [
+            GrabbedInfo(
+                grab.body.scene.name, links[grab.link], grab.T_link_body.copy(), sorted(links[i] for i in grab.ignored)
+            )
+            for grab in self._state.grabs
+        ]
+        if grabbedname is None:
+            return infos
+        return next((info for info in infos if info._grabbedname == grabbedname), None)
+
+    def ResetGrabbed(self, grabbedinfos: Sequence[GrabbedInfo]) -> None:
+        """Hold the bodies that the infos of ``GetGrabbedInfo`` name, each in the pose that it had, and no others.
+
+        Raises:
+            openrave_exception: a body or link is not there. Nothing has changed then.
+        """
+        with self._simulation.lock:
+            self._state.grabs = [self._grab_of(info) for info in grabbedinfos]
+            self._state.moved()
+
+    def _grab_of(self, info: GrabbedInfo) -> GrabbedBody:
+        body = self._simulation.body(info._grabbedname)
+        if body is None:
+            raise ArgumentError(f"ResetGrabbed: there is no body '{info._grabbedname}' in the environment")
+        ignored = frozenset(self._link_index(name) for name in info._setIgnoreRobotLinkNames)
+        return GrabbedBody(body, self._link_index(info._robotlinkname), np.array(info._trelative, dtype=float), ignored)
+
+    def GetAttached(self) -> "list[KinBody]":
+        """Return this body, those that it holds, those that hold it, and so on."""
+        return [self._env.wrap(state) for state in _attached(self._state)]
+
+    def IsAttached(self, body: "KinBody") -> bool:
+        """Return whether a body is among ``GetAttached()``."""
+        return body.simulation_state in _attached(self._state)
+
+
+def _attached(start: BodyState, *, downwards_only: bool = False) -> list[BodyState]:
+    """Return a body and all that are connected to it by grabbing."""
+    found, pending = [start], [start]
+    while pending:
+        body = pending.pop()
+        near = [grab.body for grab in body.grabs]
+        if not downwards_only:
+            near += [one for one in body.simulation.bodies if any(grab.body is body for grab in one.grabs)]
+        for one in near:
+            if one not in found:
+                found.append(one)
+                pending.append(one)
+    return found

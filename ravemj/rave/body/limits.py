@@ -1,0 +1,147 @@
+"""Limits, weights and resolutions of the DOFs."""
+
+from dataclasses import replace
+from types import EllipsisType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.arrays import checked_indices, checked_numbers
+from ravemj.errors import ArgumentError, RavemjError
+from ravemj.rave.body.base import BodyPart
+from ravemj.transforms import Floats
+
+
+class Limits(BodyPart):
+    """Limits, weights and resolutions. Setting them moves nothing."""
+
+    def GetDOFLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> tuple[Floats, Floats]:
+        """Return the joint limits.
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+
+        Returns:
+            Lower and upper limits [rad or m], each of shape (dof,); ±10000 for circular joints.
+
+        Raises:
+            IndexError: there is no such DOF.
+        """
+        return self._of_axes("lower", indices), self._of_axes("upper", indices)
+
+    def SetDOFLimits(self, lower: ArrayLike, upper: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+        """Set joint limits. Nothing moves, not even a joint that is outside now; the next ``SetDOFValues`` limits it.
+
+        Args:
+            lower: Lower limits [rad or m], as many as there are DOFs, or as there are indices.
+            upper: Upper limits, as many.
+            indices: Which DOFs, in which order; None: all.
+
+        Raises:
+            ArgumentError: there are too few or too many limits. Nothing has changed then.
+            IndexError: there is no such DOF.
+        """
+        self._set_axes("SetDOFLimits", {"lower": lower, "upper": upper}, indices)
+
+    def GetDOFVelocityLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the velocity limits, the same in both directions [rad/s or m/s], shape (dof,)."""
+        return self._of_axes("max_velocity", indices)
+
+    GetDOFMaxVel = GetDOFVelocityLimits
+
+    def SetDOFVelocityLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+        """Set the velocity limits [rad/s or m/s], as many as there are DOFs, or as there are indices."""
+        self._set_axes("SetDOFVelocityLimits", {"max_velocity": limits}, indices)
+
+    def GetDOFAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the acceleration limits, the same in both directions [rad/s^2 or m/s^2], shape (dof,)."""
+        return self._of_axes("max_acceleration", indices)
+
+    GetDOFMaxAccel = GetDOFAccelerationLimits
+
+    def SetDOFAccelerationLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+        """Set the acceleration limits [rad/s^2 or m/s^2], as many as there are DOFs, or as there are indices."""
+        self._set_axes("SetDOFAccelerationLimits", {"max_acceleration": limits}, indices)
+
+    def GetDOFTorqueLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the torque limits [N m, for sliders N], shape (dof,); 0 where the file says nothing."""
+        return self._of_axes("max_torque", indices)
+
+    GetDOFMaxTorque = GetDOFTorqueLimits
+
+    def SetDOFTorqueLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+        """Set the torque limits [N m, for sliders N], as many as there are DOFs, or as there are indices."""
+        self._set_axes("SetDOFTorqueLimits", {"max_torque": limits}, indices)
+
+    def GetDOFWeights(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the weights in distances between configurations, shape (dof,)."""
+        return self._of_axes("weight", indices)
+
+    def SetDOFWeights(self, weights: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+        """Set the weights in distances between configurations; all should be positive.
+
+        Raises:
+            openrave_exception: there are too few or too many weights, or one is not positive.
+        """
+        if not np.all(checked_numbers(weights, "SetDOFWeights: weights") > 0):
+            raise RavemjError(f"SetDOFWeights: weights are {weights}, and should be positive")
+        self._set_axes("SetDOFWeights", {"weight": weights}, indices)
+
+    def GetDOFResolutions(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the steps of planners [rad or m], shape (dof,)."""
+        return self._of_axes("resolution", indices)
+
+    def SetDOFResolutions(self, resolutions: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+        """Set the steps of planners [rad or m], as many as there are DOFs, or as there are indices."""
+        self._set_axes("SetDOFResolutions", {"resolution": resolutions}, indices)
+
+    def _of_axes(self, field: str, indices: "ArrayLike | EllipsisType | None") -> Floats:
+        values = np.array([getattr(axis, field) for axis in self._state.scene.dof_axes], dtype=np.float64)
+        return values if indices is ... else values[checked_indices(indices, len(values))]
+
+    def _set_axes(self, caller: str, fields: dict[str, ArrayLike], indices: "ArrayLike | None") -> None:
+        """Set one or more fields of axes, all or nothing."""
+        dof = self.GetDOF()
+        chosen = checked_indices(... if indices is None else indices, dof)
+        axes = list(self._state.scene.dof_axes)
+        given: dict[str, list[float]] = {}
+        for name, values in fields.items():
+            numbers = checked_numbers(values, f"{caller}: values")
+            if numbers.ndim != 1 or (len(numbers) != len(chosen) and numbers.size + len(chosen) > 0):
+                wanted = f"{dof} numbers, one for each DOF" if indices is None else f"{len(chosen)}, as many as indices"
+                raise ArgumentError(f"{caller}: values have shape {numbers.shape}, and should be {wanted}")
+            if np.isnan(numbers).any():
+                raise ArgumentError(f"{caller}: values are {numbers.tolist()}, and should be numbers")
+            given[name] = numbers.tolist()
+        for position, dof_index in enumerate(map(int, chosen)):
+            changes: dict[str, Any] = {name: values[position] for name, values in given.items()}
+            axes[dof_index] = replace(axes[dof_index], **changes)
+        with self._simulation.lock:
+            self._state.edit_axes(axes)
+
+    def SubtractDOFValues(
+        self, values0: ArrayLike, values1: ArrayLike, indices: "ArrayLike | EllipsisType | None" = ...
+    ) -> Floats:
+        """Return the difference of joint values: the way from the second to the first.
+
+        Args:
+            values0: Joint values [rad or m], as many as there are DOFs, or as there are indices.
+            values1: Joint values to subtract, as many.
+            indices: Which DOFs the values are for; left out: all.
+
+        Returns:
+            ``values0 - values1``; for circular joints the shorter way round, from -pi to pi.
+        """
+        chosen = checked_indices(indices, self.GetDOF())
+        minuend, subtrahend = (checked_numbers(values, "SubtractDOFValues") for values in (values0, values1))
+        if not len(minuend) == len(subtrahend) == len(chosen):
+            message = (
+                f"SubtractDOFValues: {len(minuend)} and {len(subtrahend)} values, and should be {len(chosen)} each"
+            )
+            raise ArgumentError(message)
+        axes = self._state.scene.dof_axes
+        circular = np.array([axes[dof].circular for dof in map(int, chosen)], dtype=bool)
+        difference = minuend - subtrahend
+        wrapped = (difference + np.pi) % (2 * np.pi) - np.pi
+        return np.where(circular, wrapped, difference)

@@ -1,0 +1,62 @@
+"""The manipulators of a robot, and which one is active."""
+
+from typing import TYPE_CHECKING, cast
+
+from ravemj.errors import ArgumentError
+from ravemj.rave.body.base import BodyPart
+from ravemj.rave.manipulator import Manipulator
+
+if TYPE_CHECKING:
+    from ravemj.rave.robot import Robot
+
+
+class Manipulators(BodyPart):
+    """The arms of a robot. Calls that name none refer to the active one, which is the first until another is set."""
+
+    _active_manipulator: str | None
+    """Name of the active one; None: the first."""
+
+    def GetManipulators(self, name: str | None = None) -> list[Manipulator]:
+        """Return the manipulators, in the order of the file.
+
+        Args:
+            name: Return the one of that name only.
+        """
+        robot = cast("Robot", self)
+        found = [Manipulator(robot, self._state, index) for index in range(len(self._state.scene.manipulators))]
+        return found if name is None else [one for one in found if one.GetName() == name]
+
+    def GetManipulator(self, name: str) -> Manipulator | None:
+        """Return the manipulator of that name, or None."""
+        return next(iter(self.GetManipulators(name)), None)
+
+    def GetActiveManipulator(self) -> Manipulator | None:
+        """Return the manipulator that calls without one refer to, or None."""
+        return next(iter(self.GetManipulators(self._active_manipulator)), None)
+
+    def GetActiveManipulatorIndex(self) -> int:
+        """Return the active manipulator's place in ``GetManipulators()``; -1 without one."""
+        active = self.GetActiveManipulator()
+        return -1 if active is None else self.GetManipulators().index(active)
+
+    def SetActiveManipulator(self, manip: Manipulator | str | int | None) -> Manipulator | None:
+        """Choose the manipulator that calls without one refer to. The active DOFs stay as they are.
+
+        Args:
+            manip: Its name, the manipulator, or its place in ``GetManipulators()``; '' or None: none.
+
+        Returns:
+            The active manipulator, or None.
+
+        Raises:
+            ArgumentError: there is no such manipulator. Nothing has changed then.
+        """
+        names = [one.name for one in self._state.scene.manipulators]
+        name = manip.GetName() if isinstance(manip, Manipulator) else manip
+        if isinstance(name, int):
+            name = names[name] if 0 <= name < len(names) else None if name == -1 else f"number {name}"
+        if name and name not in names:
+            known = ", ".join(names) or "none"
+            raise ArgumentError(f"SetActiveManipulator: '{self.GetName()}' has no manipulator {name}; it has {known}")
+        self._active_manipulator = name or ""
+        return self.GetActiveManipulator()

@@ -1,0 +1,70 @@
+"""Links and joints of a body."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, cast
+
+from ravemj.adjacency import adjacent_pairs
+from ravemj.arrays import checked_indices
+from ravemj.rave.body.base import BodyPart
+from ravemj.rave.joint import Joint
+from ravemj.rave.link import Link
+
+if TYPE_CHECKING:
+    from ravemj.rave.kinbody import KinBody
+
+
+class Mechanism(BodyPart):
+    """Links, joints and how they hang together."""
+
+    @property
+    def _body(self) -> "KinBody":
+        return cast("KinBody", self)
+
+    def GetLinks(self, indices: Sequence[int] | None = None) -> list[Link]:
+        """Return the links in the order of the file; the first one is the root.
+
+        Args:
+            indices: Which links; None: all.
+        """
+        links = [Link(self._body, self._state, index) for index in range(len(self._state.scene.links))]
+        return links if indices is None else [links[index] for index in indices]
+
+    def GetLink(self, name: str) -> Link | None:
+        """Return the link of that name, or None."""
+        return next((link for link in self.GetLinks() if link.GetName() == name), None)
+
+    def GetJoints(self, indices: Sequence[int] | None = None) -> list[Joint]:
+        """Return the joints that have DOFs, in DOF order.
+
+        Args:
+            indices: Which joints; None: all.
+        """
+        joints = [Joint(self._body, self._state, index) for index in range(len(self._state.scene.joints))]
+        return joints if indices is None else [joints[index] for index in indices]
+
+    def GetPassiveJoints(self) -> list[Joint]:
+        """Return the joints that have no DOF."""
+        body = self._state.scene
+        first = len(body.joints)
+        return [Joint(self._body, self._state, index) for index in range(first, first + len(body.passive_joints))]
+
+    def GetJoint(self, name: str) -> Joint | None:
+        """Return the joint of that name, passive or not, or None."""
+        joints = (*self.GetJoints(), *self.GetPassiveJoints())
+        return next((joint for joint in joints if joint.GetName() == name), None)
+
+    def GetJointFromDOFIndex(self, dofindex: int) -> Joint:
+        """Return the joint that a DOF belongs to.
+
+        Args:
+            dofindex: Position in the vectors of DOF values.
+
+        Raises:
+            IndexError: there is no such DOF.
+        """
+        checked_indices(dofindex, self.GetDOF())
+        return next(joint for joint in reversed(self.GetJoints()) if joint.GetDOFIndex() <= dofindex)
+
+    def GetAdjacentLinks(self) -> set[tuple[int, int]]:
+        """Return the pairs of links, by index, that self-collision leaves out."""
+        return adjacent_pairs(self._state.scene)

@@ -1,0 +1,1 @@
+"""The API of an environment, in parts by topic; ``Environment`` joins them."""

@@ -1,0 +1,47 @@
+"""What the parts of an environment's API share."""
+
+from typing import TYPE_CHECKING, cast
+
+from ravemj.errors import Diagnostics, ErrorCode, RavemjError
+from ravemj.rave.interface import Annotations, UserData
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.robot import Robot
+from ravemj.simulation import BodyState, Simulation
+from ravemj.studio import Studio
+from ravemj.viewers import Viewer
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+
+class EnvironmentPart(UserData):
+    """Part of the API of an environment; ``Environment`` joins the parts."""
+
+    def __init__(self) -> None:
+        self._simulation = Simulation()
+        self._studio = Studio(self._simulation)
+        self._viewer: Viewer | None = None
+        self._found = Diagnostics()
+        self._files: list[str] = []
+        self._annotations = Annotations()
+        self._is_destroyed = False
+
+    def _check_alive(self) -> None:
+        """Check that the environment was not destroyed.
+
+        Raises:
+            RavemjError: it was.
+        """
+        if self._is_destroyed:
+            raise RavemjError(f"{self!r} is destroyed; make a new Environment", ErrorCode.InvalidState)
+
+    @property
+    def _environment(self) -> "Environment":
+        return cast("Environment", self)
+
+    def wrap(self, state: BodyState) -> KinBody:
+        """Return the one object that users have for a body."""
+        if state.api_object is None:
+            state.api_object = (Robot if state.scene.is_robot else KinBody)(self._environment, state)
+        assert isinstance(state.api_object, KinBody)
+        return state.api_object

@@ -1,0 +1,64 @@
+"""Copies of an environment."""
+
+from typing import TYPE_CHECKING
+
+from ravemj.rave.enums import CloningOptions
+from ravemj.rave.env.contents import Contents
+from ravemj.rave.robot import Robot
+from ravemj.simulation import BodyState
+from ravemj.simulation.body import GrabbedBody
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+
+class Cloning(Contents):
+    """Copies the bodies of another environment."""
+
+    def CloneSelf(self, options: int = CloningOptions.Bodies, name: str | None = None) -> "Environment":
+        """Return a new environment with copies of the bodies, in the same state.
+
+        Robots keep their active DOFs and manipulators, and hold what they held.
+
+        Args:
+            options: What to copy, a ``CloningOptions``; bodies, gravity and the view are, whatever it says.
+            name: OpenRAVE's; ignored.
+
+        Example:
+            >>> copy = env.CloneSelf(CloningOptions.Bodies)
+            >>> copy.GetRobots()[0].SetDOFValues([1, 1])  # env's robot stays
+        """
+        del name
+        clone = type(self._environment)()
+        clone.Clone(self._environment, options)
+        return clone
+
+    def Clone(self, reference: "Environment", options: int = CloningOptions.Bodies, name: str | None = None) -> None:
+        """Replace the bodies of this environment by copies of those of another.
+
+        Args:
+            reference: The environment to copy.
+            options: As in ``CloneSelf``.
+            name: OpenRAVE's; ignored.
+        """
+        del options, name
+        self._check_alive()
+        source = reference.simulation
+        with source.lock, self._simulation.lock:
+            self._simulation.clear()
+            self._simulation.view = source.view
+            self._simulation.set_gravity(source.gravity)
+            copies = {body: self._copy(body) for body in source.bodies}
+            for original, copy in copies.items():
+                copy.grabs = [
+                    GrabbedBody(copies[grab.body], grab.link, grab.T_link_body, grab.ignored) for grab in original.grabs
+                ]
+
+    def _copy(self, original: BodyState) -> BodyState:
+        copy = self._simulation.create(original.scene)
+        copy.copy(original)
+        self._simulation.insert(copy)
+        body, other = self.wrap(copy), original.api_object
+        if isinstance(body, Robot) and isinstance(other, Robot):
+            body.take_choices(other)
+        return copy

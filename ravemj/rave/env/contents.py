@@ -1,0 +1,141 @@
+"""Bodies that come and go."""
+
+from typing import Any
+
+from ravemj.errors import ArgumentError
+from ravemj.rave.enums import InterfaceAddMode
+from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.interface import Interface
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.physics import PhysicsEngine
+from ravemj.rave.robot import Robot
+
+
+class Contents(EnvironmentPart):
+    """The bodies of an environment."""
+
+    def Add(self, interface: Interface, addMode: Any = False, cmdargs: str = "") -> None:  # noqa: ANN401 - OpenRAVE's
+        """Add a body or robot to the environment, in the pose that it has.
+
+        Args:
+            interface: What to add; it was made for this environment.
+            addMode: What to do if the name is taken: False or ``InterfaceAddMode.StrictNameChecking`` raises, True or
+                ``AllowRenaming`` gives it a name of its own. OpenRAVE 0.9 calls the argument ``anonymous``.
+            cmdargs: Arguments of modules; not used.
+
+        Raises:
+            openrave_exception: another body has the name (``BodyNameConflict``), the name is empty, or this is no
+                body of this environment. Nothing has changed then.
+
+        Example:
+            >>> box = ravemj.RaveCreateKinBody(env, "")
+            >>> box.InitFromBoxes([[0, 0, 0, 0.1, 0.2, 0.3]])
+            True
+            >>> box.SetName("box")
+            >>> env.Add(box)
+        """
+        del cmdargs
+        if not isinstance(interface, KinBody):
+            self._add_other(interface)
+        else:
+            self.AddKinBody(interface, addMode)
+
+    def _add_other(self, interface: object) -> None:
+        """Take what is no body; other kinds of objects override this for theirs."""
+        kind = "None" if interface is None else type(interface).__name__
+        raise ArgumentError(f"Add: takes a body or robot, not {kind}")
+
+    def AddKinBody(self, body: KinBody, addMode: Any = False) -> None:  # noqa: ANN401 - a number or an enumeration
+        """Add a body to the environment; see ``Add``."""
+        self._check_alive()
+        self._check_ours(body, "Add")
+        state = body.simulation_state
+        with self._simulation.lock:
+            if self._simulation.holds(state):
+                return
+            if int(addMode) & InterfaceAddMode.AllowRenaming:
+                self._simulation.rename(state, self._simulation.free_name(state.scene.name))
+            self._simulation.insert(state)
+
+    AddRobot = AddKinBody
+
+    def Remove(self, obj: object) -> bool:
+        """Take a body or robot out of the environment.
+
+        It stays usable as a body that is not added, and can be added again. What it held, and what held it, let go.
+
+        Returns:
+            False if it was not there.
+        """
+        if not isinstance(obj, KinBody):
+            return self._remove_other(obj)
+        return self._simulation.remove(obj.simulation_state)
+
+    RemoveKinBody = Remove
+
+    def _remove_other(self, interface: object) -> bool:
+        """Take out what is no body; other kinds of objects override this for theirs."""
+        if interface is None:
+            raise ArgumentError("Remove: takes a body or robot, not None")
+        return False
+
+    def _check_ours(self, body: KinBody, caller: str) -> None:
+        if body.simulation_state.simulation is not self._simulation:
+            raise ArgumentError(f"{caller}: '{body.GetName()}' was made for {body.GetEnv()!r}, not for {self!r}")
+
+    def GetBodies(self, checkname: str | None = None) -> list[KinBody]:
+        """Return all bodies, robots included.
+
+        Args:
+            checkname: Return the body of that name only.
+
+        Returns:
+            A new list in the order in which they were added; one that was added after another was removed has that
+            one's place.
+        """
+        bodies = [self.wrap(state) for state in self._simulation.bodies]
+        return bodies if checkname is None else [body for body in bodies if body.GetName() == checkname]
+
+    def GetNumBodies(self) -> int:
+        """Return the number of bodies, robots included."""
+        return len(self._simulation.bodies)
+
+    def GetRobots(self, checkname: str | None = None) -> list[Robot]:
+        """Return the robots, in the order of ``GetBodies``.
+
+        Args:
+            checkname: Return the robot of that name only.
+
+        Example:
+            >>> robot = env.GetRobots()[0]
+        """
+        return [body for body in self.GetBodies(checkname) if isinstance(body, Robot)]
+
+    def GetKinBody(self, name: str) -> KinBody | None:
+        """Return the body or robot of that name, or None."""
+        state = self._simulation.body(name)
+        return None if state is None else self.wrap(state)
+
+    def GetRobot(self, name: str) -> Robot | None:
+        """Return the robot of that name, or None.
+
+        Example:
+            >>> robot = env.GetRobot("Pendulum")
+        """
+        body = self.GetKinBody(name)
+        return body if isinstance(body, Robot) else None
+
+    def GetBodyFromEnvironmentBodyIndex(self, bodyIndex: int) -> KinBody | None:
+        """Return the body with that number, as ``body.GetEnvironmentBodyIndex()`` gives it, or None."""
+        state = self._simulation.body_at(bodyIndex)
+        return None if state is None else self.wrap(state)
+
+    GetBodyFromEnvironmentId = GetBodyFromEnvironmentBodyIndex
+
+    def GetPhysicsEngine(self) -> PhysicsEngine:
+        """Return what holds gravity; never None."""
+        return PhysicsEngine(self._simulation)
+
+    def GetUnit(self) -> tuple[str, float]:
+        """Return the unit of length and how many metres it is: always the metre."""
+        return ("m", 1.0)

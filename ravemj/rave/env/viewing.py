@@ -1,0 +1,133 @@
+"""Viewers and pictures."""
+
+import os
+import weakref
+
+from numpy.typing import ArrayLike
+
+from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rendering import Camera
+from ravemj.studio import Format, Frame, Studio, checked_colour
+from ravemj.viewers import Viewer, open_viewer
+
+
+class Viewing(EnvironmentPart):
+    """Shows the environment."""
+
+    def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
+        """Attach a viewer, in place of the one before.
+
+        With a display a window opens and shows every change from then on, while the script goes on. Without one, as
+        on a server, the viewer draws when it is asked for pictures, so that scripts run there just the same.
+
+        The camera starts with the view that the loaded file asks for, else from above; ``GetViewer().SetCamera``
+        moves it.
+
+        Args:
+            viewername: ``'window'`` or one of OpenRAVE's names, such as ``'qtcoin'``: a window if there is a display.
+                ``'offscreen'``: never a window. ``''`` removes the viewer.
+            showviewer: False: never a window.
+
+        Returns:
+            False for ``''``. True for every other name, as in OpenRAVE; a name that nobody knows is logged as an error,
+            and ``GetViewer`` returns None then.
+
+        Example:
+            >>> env.SetViewer("qtcoin")
+            True
+            >>> viewer = env.GetViewer()
+            >>> viewer.SetBkgndColor([0.8, 0.85, 0.9])
+        """
+        if self._viewer is not None:
+            self._viewer.close()
+            self._viewer = None
+            self._simulation.drawings.clear()
+        if viewername:
+            self._viewer = open_viewer(self._simulation, self._studio, viewername, showviewer)
+        if self._viewer is not None:
+            self._viewer.environment = weakref.ref(self)
+        return bool(viewername)
+
+    def SetDefaultViewer(self, showviewer: bool = True) -> bool:
+        """Attach the viewer that the environment variable ``OPENRAVE_DEFAULT_VIEWER`` names, else a window.
+
+        Args:
+            showviewer: False: never a window.
+
+        Returns:
+            What ``SetViewer`` returns.
+        """
+        return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "window", showviewer)
+
+    def GetViewer(self, name: str | None = None) -> Viewer | None:
+        """Return the viewer, or None where there is none.
+
+        Args:
+            name: None or empty, or the name that ``SetViewer`` was given: None is returned for any other.
+        """
+        viewer = self._viewer
+        return viewer if viewer is None or not name or name == viewer.GetXMLId() else None
+
+    def UpdatePublishedBodies(self, timeout: float = 0.0) -> None:
+        """Do nothing: viewers show every change at once. OpenRAVE's publish the state of the bodies here.
+
+        Args:
+            timeout: Without meaning.
+        """
+        del timeout
+
+    def render(
+        self,
+        width: int = 640,
+        height: int = 480,
+        *,
+        camera: ArrayLike | None = None,
+        background: ArrayLike | None = None,
+    ) -> Frame:
+        """Draw a picture, with or without a display.
+
+        Args:
+            width: Columns [pixels].
+            height: Rows [pixels].
+            camera: ``T_world_camera``, 4x4, z forward and y down; None: the viewer's camera if there is a viewer, else
+                the file's, else a view of the whole scene.
+            background: Red, green, blue from 0 to 1; None: the viewer's, else the file's, else white.
+
+        Returns:
+            The picture, shape (height, width, 3), uint8, top row first.
+
+        Raises:
+            ArgumentError: the camera is no rigid transform, or the background no colour.
+            RenderingError: nothing can draw here; ``ravemj doctor`` says why.
+
+        Example:
+            >>> import imageio.v3
+            >>> imageio.v3.imwrite("pendulum.png", env.render(640, 480))
+        """
+        view = self.default_camera(width / height) if camera is None else Camera.from_matrix(camera)
+        colour = self.background if background is None else checked_colour(background)
+        return self._studio.picture(view, colour, Format(width, height, shadows=True))
+
+    def default_camera(self, aspect: float = 4 / 3) -> Camera:
+        """Return the camera of pictures that name none: the viewer's, else the file's, else one that shows all.
+
+        Args:
+            aspect: Width of the picture divided by its height.
+        """
+        return self._studio.camera_for_stills(aspect) if self._viewer is None else self._viewer.camera
+
+    @property
+    def background(self) -> tuple[float, float, float]:
+        """The background of pictures that name none: the viewer's, else the file's, else white."""
+        return self._simulation.view.background if self._viewer is None else self._viewer.background
+
+    @property
+    def studio(self) -> Studio:
+        """What draws the environment."""
+        return self._studio
+
+    def _repr_png_(self) -> bytes:
+        """Return the picture that notebooks show for an environment."""
+        from ravemj.video import png_bytes  # noqa: PLC0415 - only notebooks want it
+
+        return png_bytes(self.render(480, 360))

@@ -1,0 +1,88 @@
+"""What all objects of an environment have in common."""
+
+from typing import TYPE_CHECKING, Any
+
+from ravemj.errors import ErrorCode, RavemjError
+from ravemj.rave.enums import InterfaceType
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+
+class Annotations:
+    """What users attach to an object: a description and data of their own, under names."""
+
+    def __init__(self) -> None:
+        self.description = ""
+        self.data: dict[str, Any] = {}
+
+
+class UserData:
+    """Keeps data of users."""
+
+    _annotations: Annotations
+
+    def SetUserData(self, *arguments: Any) -> None:  # noqa: ANN401 - any object of the user's
+        """Attach an object of your own: ``SetUserData(data)`` or ``SetUserData(key, data)``.
+
+        It stays as long as the body does. ``GetUserData`` returns it.
+        """
+        key, data = ("", *arguments) if len(arguments) == 1 else arguments
+        self._annotations.data[str(key)] = data
+
+    def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
+        """Return what ``SetUserData`` attached under that name, or None."""
+        return self._annotations.data.get(key)
+
+    def RemoveUserData(self, key: str = "") -> bool:
+        """Forget what is attached under a name; return whether there was something."""
+        return self._annotations.data.pop(key, None) is not None
+
+
+class Interface(UserData):
+    """An object of an environment: a body, a controller, a physics engine, a trajectory, ...
+
+    OpenRAVE calls them interfaces, since its plugins make them.
+    """
+
+    _env: "Environment"
+    _interface_type: InterfaceType
+
+    def GetEnv(self) -> "Environment":
+        """Return the environment that the object was made for, also before it is added."""
+        return self._env
+
+    def GetInterfaceType(self) -> InterfaceType:
+        """Return the kind of object."""
+        return self._interface_type
+
+    def GetXMLId(self) -> str:
+        """Return OpenRAVE's name of the implementation, as it was spelt when the object was made."""
+        return ""
+
+    def GetPluginName(self) -> str:
+        """Return where the implementation comes from."""
+        return "ravemj"
+
+    def GetDescription(self) -> str:
+        """Return the text of ``SetDescription``."""
+        return self._annotations.description
+
+    def SetDescription(self, description: str) -> None:
+        """Attach a text."""
+        self._annotations.description = str(description)
+
+    def SupportsCommand(self, cmd: str) -> bool:
+        """Return whether ``SendCommand`` knows a command; no command is known here."""
+        del cmd
+        return False
+
+    def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str | None:
+        """Run a command of OpenRAVE's plugins by its text.
+
+        Raises:
+            openrave_exception: the command is not known (``CommandNotSupported``); none is, here.
+        """
+        del releasegil, lockenv
+        name = cmd.split(maxsplit=1)[0] if cmd.strip() else ""
+        raise RavemjError(f"{type(self).__name__} knows no command '{name}'", ErrorCode.CommandNotSupported)

@@ -1,0 +1,48 @@
+"""OpenRAVE's functions that make bodies."""
+
+from ravemj.errors import Source
+from ravemj.rave.environment import Environment
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.robot import Robot
+from ravemj.scene import KinBody as SceneBody
+
+_NOWHERE = Source("made by the script")
+
+
+def RaveCreateKinBody(env: Environment, name: str = "") -> KinBody | None:
+    """Make a body without links; ``InitFromBoxes`` and the like fill it, ``env.Add`` adds it.
+
+    Args:
+        env: The environment that it is for.
+        name: OpenRAVE's name of the kind of body, which is empty.
+
+    Returns:
+        The body; None for an unknown kind.
+
+    Example:
+        >>> body = ravemj.RaveCreateKinBody(env, "")
+        >>> body.InitFromBoxes([[0, 0, 0, 0.1, 0.2, 0.3]])
+        True
+        >>> body.SetName("box")
+        >>> env.Add(body)
+    """
+    return _empty(env, is_robot=False) if name == "" else None
+
+
+def RaveCreateRobot(env: Environment, name: str = "") -> Robot | None:
+    """Make a robot without links; see ``RaveCreateKinBody``.
+
+    Args:
+        env: The environment that it is for.
+        name: OpenRAVE's name of the kind of robot: empty or ``GenericRobot``.
+
+    Returns:
+        The robot; None for an unknown kind.
+    """
+    robot = _empty(env, is_robot=True) if name.lower() in {"", "genericrobot"} else None
+    return robot if isinstance(robot, Robot) else None
+
+
+def _empty(env: Environment, *, is_robot: bool) -> KinBody:
+    scene = SceneBody(name="", is_robot=is_robot, links=(), joints=(), passive_joints=(), source=_NOWHERE)
+    return env.wrap(env.simulation.create(scene))

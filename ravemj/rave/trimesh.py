@@ -1,0 +1,64 @@
+"""Triangles as users hand them in and get them."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.arrays import checked_numbers
+from ravemj.errors import ArgumentError
+from ravemj.scene import Mesh
+from ravemj.transforms import Floats, Ints
+
+
+class TriMesh:
+    """Triangles.
+
+    Attributes:
+        vertices: Shape (n, 3) [m]; None in a new mesh.
+        indices: Corners of each triangle, shape (m, 3); None in a new mesh.
+
+    Example:
+        >>> mesh = TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    """
+
+    vertices: Floats | None
+    indices: Ints | None
+
+    def __init__(self, vertices: ArrayLike | None = None, indices: ArrayLike | None = None) -> None:
+        self.vertices = None if vertices is None else checked_numbers(vertices, "vertices")
+        self.indices = None if indices is None else checked_numbers(indices, "indices").astype(np.int_)
+
+    def toDict(self) -> dict[str, Floats | Ints | None]:
+        """Return the mesh as ``vertices`` and ``indices``."""
+        return {"vertices": self.vertices, "indices": self.indices}
+
+    def __repr__(self) -> str:
+        vertices, indices = ("None" if part is None else part.tolist() for part in (self.vertices, self.indices))
+        return f"TriMesh({vertices},{indices})"
+
+    def __str__(self) -> str:
+        counts = (0 if part is None else len(part) for part in (self.vertices, self.indices))
+        return "<trimesh: verts {}, tris={}>".format(*counts)
+
+
+def trimesh_of(mesh: Mesh) -> TriMesh:
+    """Return a copy for users."""
+    return TriMesh(mesh.vertices, mesh.triangles)
+
+
+def checked_mesh(trimesh: object, name: str) -> Mesh:
+    """Return the triangles of a ``TriMesh``; nothing for None.
+
+    Raises:
+        ArgumentError: it is none, its arrays have a wrong shape, or a corner is not there.
+    """
+    if not isinstance(trimesh, TriMesh):
+        raise ArgumentError(f"{name}: is a {type(trimesh).__name__}, and should be a TriMesh")
+    vertices, indices = trimesh.vertices, trimesh.indices
+    points = np.empty((0, 3)) if vertices is None else checked_numbers(vertices, f"{name}.vertices")
+    corners = np.empty((0, 3)) if indices is None else checked_numbers(indices, f"{name}.indices")
+    if points.shape[1:] != (3,) or corners.shape[1:] != (3,) or not np.isfinite(points).all():
+        shapes = f"vertices of shape {points.shape} and indices of shape {corners.shape}"
+        raise ArgumentError(f"{name}: has {shapes}, and should have finite ones of shape (n, 3) and (m, 3)")
+    if corners.size and not (corners.min() >= 0 and corners.max() < len(points)):
+        raise ArgumentError(f"{name}: its indices should be from 0 to {len(points) - 1}")
+    return Mesh(points, corners.astype(np.int_))

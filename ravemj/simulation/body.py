@@ -1,0 +1,292 @@
+"""A body and its state."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ravemj.dynamics import BodyDynamics, Inertias
+from ravemj.errors import ErrorCode, RavemjError
+from ravemj.kinematics import BodyKinematics, Configuration
+from ravemj.placement import place_links
+from ravemj.scene import Axis, KinBody, Link
+from ravemj.transforms import Floats, Pose, inverse, pose_of
+
+if TYPE_CHECKING:
+    from ravemj.simulation.world import Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class GrabbedBody:
+    """One body held by a link of another.
+
+    Attributes:
+        body: The held body.
+        link: Index of the link that holds it.
+        T_link_body: Its pose in the link.
+        ignored: Indices of the holder's links that it does not collide with.
+    """
+
+    body: "BodyState"
+    link: int
+    T_link_body: Floats
+    ignored: frozenset[int] = frozenset()
+
+
+class BodyState:
+    """A body and its state; what the API objects of one body share.
+
+    A body in the world has kinematics in the compiled model. Before that, and after it was taken out, it has poses
+    only.
+
+    Attributes:
+        scene: What it consists of; what files say, and what setters of the API changed since.
+        simulation: The world that it was made for.
+        index: Its index in the world, from 1; 0 while it is not in the world.
+        stamp: Grows with every change of pose.
+        link_enabled: For each link, whether collision checking looks at it.
+        grabs: What it holds, in the order of grabbing.
+        api_object: The object that users have for it; the layer above keeps it here.
+    """
+
+    def __init__(self, scene: KinBody, simulation: "Simulation") -> None:
+        self.simulation = simulation
+        self.index = 0
+        self.stamp = 0
+        self.grabs: list[GrabbedBody] = []
+        self.api_object: object | None = None
+        self._kinematics: BodyKinematics | None = None
+        self._dynamics: BodyDynamics | None = None
+        self._inertias: tuple[tuple[Link, ...], Inertias] | None = None
+        self.rebuild(scene)
+
+    def rebuild(self, scene: KinBody) -> None:
+        """Make the body anew of other links and joints, in the configuration that the scene has.
+
+        Raises:
+            RavemjError: the body is in the world.
+        """
+        if self.index:
+            raise RavemjError(f"'{self.scene.name}' is in an environment; remove it first", ErrorCode.InvalidState)
+        self.scene = scene
+        self.link_enabled = [link.enabled for link in scene.links]
+        self.stamp += 1
+        self._velocities = np.zeros((len(scene.links), 6))
+        self._poses: Floats | None = None
+        self._configuration: Configuration | None = None
+        self._is_moved = False
+
+    @property
+    def kinematics(self) -> BodyKinematics:
+        """Joint values and link poses in the present model, which is compiled if need be.
+
+        Raises:
+            RavemjError: the body is not in the world.
+        """
+        if self._kinematics is None:
+            if not self.index:
+                message = f"'{self.scene.name}' is not in an environment and has no joint values; add it first"
+                raise RavemjError(message, ErrorCode.NotInitialized)
+            self.simulation.compile()
+            assert self._kinematics is not None
+        return self._kinematics
+
+    @property
+    def dynamics(self) -> BodyDynamics:
+        """Jacobians and inverse dynamics in the present model."""
+        if self._dynamics is None:
+            self._dynamics = BodyDynamics(self.kinematics)
+        return self._dynamics
+
+    @property
+    def inertias(self) -> Inertias:
+        """Mass properties of the links, as the scene has them now."""
+        if self._inertias is None or self._inertias[0] is not self.scene.links:
+            self._inertias = (self.scene.links, Inertias.of(self.scene.links))
+        return self._inertias[1]
+
+    def enter_model(self, kinematics: BodyKinematics) -> None:
+        """Take the body's place in a new model, as far as joints and roots tell; ``settle`` does the rest."""
+        if self._configuration is None:
+            kinematics.write_values(np.array([axis.value for axis in self.scene.dof_axes]))
+        elif not kinematics.restore(self._configuration):
+            self._is_moved = True
+        self._kinematics = kinematics
+
+    def settle(self) -> None:
+        """Put the links where they were moved while there was no model."""
+        if self._is_moved and self._poses is not None:
+            kinematics = self.kinematics
+            place_links(kinematics, self._poses, kinematics.values())
+        self._poses, self._is_moved = None, False
+
+    def leave_model(self) -> None:
+        """Keep the state; the model is about to go."""
+        if self._kinematics is not None:
+            self._poses = self._kinematics.link_transforms()
+            self._configuration = self._kinematics.configuration()
+            self._kinematics = None
+        self._dynamics = None
+
+    def link_transforms(self) -> Floats:
+        """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy. This never compiles."""
+        if self._kinematics is not None:
+            return self._kinematics.link_transforms()
+        return self._kept_poses().copy()
+
+    def link_transform(self, link: int) -> Floats:
+        """Return ``T_world_link`` of one link, shape (4, 4); a copy. This never compiles."""
+        if self._kinematics is not None:
+            return self._kinematics.link_transform(link)
+        return self._kept_poses()[link].copy()
+
+    def _kept_poses(self) -> Floats:
+        """Return the poses of the links while there is no model."""
+        if self._poses is None:
+            self._poses = np.array([link.T_world_link.matrix() for link in self.scene.links]).reshape(-1, 4, 4)
+        return self._poses
+
+    def set_values(self, values: Floats, *, limit_followers: bool = True) -> None:
+        """Set the joint values [rad or m], shape (dof,), and place all links by them."""
+        self.kinematics.set_values(values, limit_followers=limit_followers)
+        self.moved()
+
+    def set_transform(self, T_world_link0: Floats) -> None:
+        """Move the body rigidly, with the joint values as they are. This never compiles.
+
+        Args:
+            T_world_link0: Pose of the first link, shape (4, 4).
+        """
+        if self._kinematics is not None:
+            self._kinematics.set_transform(T_world_link0)
+        elif len(poses := self._kept_poses()):
+            self._poses = (T_world_link0 @ inverse(poses[0])) @ poses
+            self._poses[0] = T_world_link0
+            self._is_moved = True
+        self.moved()
+
+    def pose(self) -> Pose:
+        """Return the pose of the first link."""
+        if self._kinematics is not None:
+            return self._kinematics.link_pose(0)
+        return pose_of(self.link_transform(0)) if self.scene.links else Pose()
+
+    def set_pose(self, T_world_link0: Pose) -> None:
+        """Move the body rigidly, as ``set_transform``; ``pose()`` gives back this quaternion, not its negative."""
+        self.set_transform(T_world_link0.matrix())
+        if self._kinematics is not None:
+            self._kinematics.set_root_wxyz(T_world_link0.wxyz)
+
+    def place_links(self, T_world_links: Floats, last_values: Floats | None = None) -> None:
+        """Put every link at a pose; joints get the values that the poses show. This never compiles.
+
+        Args:
+            T_world_links: Shape (links, 4, 4).
+            last_values: Joint values whose full turns are kept [rad or m], shape (dof,); None: the present ones.
+        """
+        if self._kinematics is not None:
+            last = self._kinematics.values() if last_values is None else last_values
+            place_links(self._kinematics, T_world_links, last)
+        else:
+            self._poses, self._is_moved = T_world_links.copy(), True
+        self.moved()
+
+    def moved(self) -> None:
+        """Take note that links were moved: what they hold follows."""
+        self.stamp += 1
+        for grab in self.grabs:
+            grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
+
+    def grab(self, grab: GrabbedBody) -> None:
+        """Hold a body; one that is held already, anew."""
+        places = [number for number, old in enumerate(self.grabs) if old.body is grab.body]
+        if places:
+            self.grabs[places[0]] = grab
+        else:
+            self.grabs.append(grab)
+
+    def release(self, body: "BodyState") -> None:
+        """Let go of a body; nothing happens if it is not held."""
+        self.grabs = [grab for grab in self.grabs if grab.body is not body]
+
+    def link_velocities(self) -> Floats:
+        """Return the velocities of the links, in world axes: of the origin [m/s] and angular [rad/s]; a copy.
+
+        Moving links does not change them, as in OpenRAVE.
+
+        Returns:
+            Shape (links, 6).
+        """
+        return self._velocities.copy()
+
+    def set_link_velocities(self, velocities: Floats) -> None:
+        """Set the velocities of the links, shape (links, 6); what they hold moves with them."""
+        self._velocities = velocities.copy()
+        for grab in self.grabs:
+            carrier = velocities[grab.link]
+            arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
+            grab.body.set_velocity(carrier[:3] + np.cross(carrier[3:], arm), carrier[3:])
+
+    def set_velocity(self, linear: Floats, angular: Floats) -> None:
+        """Let all links move as one.
+
+        Args:
+            linear: Velocity of the first link's origin [m/s], shape (3,).
+            angular: Angular velocity [rad/s], shape (3,).
+        """
+        origins = self.link_transforms()[:, :3, 3]
+        moved = linear + np.cross(angular, origins - origins[:1])
+        self.set_link_velocities(np.column_stack((moved, np.tile(angular, (len(origins), 1)))))
+
+    def configuration(self) -> "tuple[Configuration | None, Floats]":
+        """Return the state of joints and links, for ``restore``."""
+        configuration = self._configuration if self._kinematics is None else self._kinematics.configuration()
+        return configuration, self.link_transforms()
+
+    def restore(self, saved: "tuple[Configuration | None, Floats]") -> None:
+        """Bring joints and links back to a state that ``configuration`` returned, of this body or one like it."""
+        configuration, poses = saved
+        if self._kinematics is not None and configuration is not None and self._kinematics.restore(configuration):
+            self._kinematics.update()
+            self.moved()
+        else:
+            self.place_links(poses)
+
+    def copy(self, other: "BodyState", name: str | None = None) -> None:
+        """Become like another body, its configuration and flags included; what it holds is left out.
+
+        Raises:
+            RavemjError: this body is in the world.
+        """
+        self.rebuild(other.scene if name is None else replace(other.scene, name=name))
+        self.link_enabled = list(other.link_enabled)
+        self._configuration, self._poses = other.configuration()
+        self._is_moved = self._configuration is None
+        self._velocities = other.link_velocities()
+
+    def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
+        """Change the description of the body where links and joints stay the same: names, limits, manipulators."""
+        self.scene = replace(self.scene, **changes)
+        if self._kinematics is not None:
+            self._kinematics.describe(self.scene)
+
+    def edit_link(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Link
+        """Change the description of a link."""
+        links = list(self.scene.links)
+        links[index] = replace(links[index], **changes)
+        self.edit(links=tuple(links))
+
+    def edit_joint(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Joint
+        """Change the description of a joint; the index counts active joints and then passive ones."""
+        joints = [*self.scene.joints, *self.scene.passive_joints]
+        joints[index] = replace(joints[index], **changes)
+        count = len(self.scene.joints)
+        self.edit(joints=tuple(joints[:count]), passive_joints=tuple(joints[count:]))
+
+    def edit_axes(self, axes: "list[Axis]") -> None:
+        """Replace the axes of all active joints, in DOF order."""
+        rest: Iterator[Axis] = iter(axes)
+        self.edit(
+            joints=tuple(replace(joint, axes=tuple(next(rest) for _ in joint.axes)) for joint in self.scene.joints)
+        )

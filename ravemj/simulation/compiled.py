@@ -1,0 +1,85 @@
+"""A scene compiled by MuJoCo."""
+
+import re
+import warnings
+
+import mujoco
+import numpy as np
+
+from ravemj import mjcf
+from ravemj.errors import CompileError, Diagnostics, Source
+from ravemj.mjcf.document import ASSETS
+from ravemj.scene import Scene
+from ravemj.transforms import wxyz_from_rows
+
+_DOF = re.compile(r"DOF (\d+)")
+_LINE = re.compile(r"line (?:number=)?(\d+)", re.IGNORECASE)
+_TOO_DEEP = "XML_ELEMENT_DEPTH_EXCEEDED"
+_LONGEST_CHAIN = 496  # links; MuJoCo's reader of XML takes 500 elements inside one another
+
+
+class Compiled:
+    """A scene in MuJoCo.
+
+    Attributes:
+        mjcf: The text that was compiled.
+        spec: MuJoCo's editable form of it.
+        model: The compiled model, with the true masses and inertias of the scene.
+        data: Its state.
+    """
+
+    def __init__(self, scene: Scene, diagnostics: Diagnostics, options: mjcf.Options | None = None) -> None:
+        self.mjcf = mjcf.write(scene, diagnostics, options)
+        try:
+            with mujoco.MjVfs() as files:
+                for name, content in self.mjcf.assets.items():
+                    files[f"{ASSETS}/{name}"] = content.encode()
+                self.spec = mujoco.MjSpec.from_string(self.mjcf.text, vfs=files)
+                with warnings.catch_warnings(record=True) as complaints:
+                    warnings.simplefilter("always")
+                    self.model = self.spec.compile(vfs=files)
+        except ValueError as error:
+            raise _compile_error(str(error), self.mjcf) from None
+        for complaint in complaints:
+            self._report(str(complaint.message), scene, diagnostics)
+        self._write_true_inertias(scene)
+        self.data = mujoco.MjData(self.model)
+
+    def _report(self, complaint: str, scene: Scene, diagnostics: Diagnostics) -> None:
+        """Record a warning of MuJoCo's, with the link that it is about where it names a DOF."""
+        source, about = Source("the translated model", 0), ""
+        match = _DOF.search(complaint)
+        if match:
+            name = self.model.body(self.model.dof_bodyid[int(match[1])]).name
+            for body, names in zip(scene.bodies, self.mjcf.names, strict=True):
+                if name in names.links:
+                    source, about = body.links[names.links.index(name)].source, f" of '{name}'"
+        hint = "positions are exact; before time runs, give the link more mass or inertia"
+        diagnostics.warn("near-singular", f"MuJoCo warns{about}: {complaint}", source, hint)
+
+    def _write_true_inertias(self, scene: Scene) -> None:
+        """Give the links that MuJoCo's compiler refuses their true values back; inverse dynamics needs them."""
+        for body_index, link_index in self.mjcf.altered:
+            inertial = scene.bodies[body_index].links[link_index].inertial
+            name = self.mjcf.names[body_index].links[link_index]
+            body_id = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, name)
+            inertia = np.array(inertial.inertia)
+            if not (np.isfinite(inertial.mass) and np.isfinite(inertia).all()):
+                continue
+            moments, axes = np.linalg.eigh(inertia)
+            axes[:, 0] *= np.linalg.det(axes)  # a rotation, not a reflection
+            self.model.body_mass[body_id] = inertial.mass
+            self.model.body_inertia[body_id] = moments
+            self.model.body_iquat[body_id] = wxyz_from_rows(axes.tolist())
+
+
+def _compile_error(message: str, text: mjcf.Mjcf) -> CompileError:
+    """Return MuJoCo's complaint with the place in the user's file that it is about."""
+    match = _LINE.search(message)
+    line = int(match[1]) if match else 0
+    source = text.source_of_line(line) or Source("the translated model", line)
+    if _TOO_DEEP in message:
+        reason = f"this link hangs on a chain of {_LONGEST_CHAIN} links, and MuJoCo takes no longer ones"
+        return CompileError(reason, source, "split the chain into several bodies")
+    reason = " ".join(message.split())
+    return CompileError(f"MuJoCo refuses the translated model: {reason}", source)

@@ -1,0 +1,180 @@
+"""The bodies of an environment and the MuJoCo model made of them."""
+
+from threading import RLock
+
+import mujoco
+
+from ravemj.drawing import Drawings
+from ravemj.errors import Diagnostics, ErrorCode, RavemjError, send_warnings
+from ravemj.kinematics import BodyKinematics
+from ravemj.scene import KinBody, Scene, View
+from ravemj.simulation.body import BodyState
+from ravemj.simulation.compiled import Compiled
+from ravemj.transforms import Vec3
+
+DEFAULT_GRAVITY: Vec3 = (0.0, 0.0, -9.797930195020351)
+"""OpenRAVE's, where a file has no physics engine."""
+
+
+class Simulation:
+    """The bodies of an environment, in one MuJoCo model that is compiled when it is first asked for.
+
+    Adding bodies puts the model out of date; the next query of joints compiles it once, and the bodies keep their
+    state. Moving and enabling bodies never compiles.
+
+    Attributes:
+        lock: Held by every reader and writer of the model's state; viewers draw in threads of their own.
+        view: Background and camera that the loaded files ask for.
+        diagnostics: What the last translation to MJCF found.
+        version: Grows by one with each compiled model.
+        gravity: Acceleration of free fall in the world [m/s^2].
+        drawings: What scripts draw beside the bodies; needs no lock.
+    """
+
+    def __init__(self) -> None:
+        self.lock = RLock()
+        self.drawings = Drawings()
+        self.view = View()
+        self.diagnostics = Diagnostics()
+        self.version = 0
+        self.gravity = DEFAULT_GRAVITY
+        self._places: list[BodyState | None] = []
+        self._by_name: dict[str, BodyState] = {}
+        self._compiled: Compiled | None = None
+
+    @property
+    def bodies(self) -> tuple[BodyState, ...]:
+        """The bodies in the order of their index: that in which they were added, except that gaps are filled."""
+        return tuple(body for body in self._places if body is not None)
+
+    def body(self, name: str) -> BodyState | None:
+        """Return the body of that name, or None."""
+        return self._by_name.get(name)
+
+    def body_at(self, index: int) -> BodyState | None:
+        """Return the body with that index, which counts from 1, or None."""
+        return self._places[index - 1] if 0 < index <= len(self._places) else None
+
+    def create(self, scene: KinBody) -> BodyState:
+        """Return a new body that is not in the world."""
+        return BodyState(scene, self)
+
+    def add(self, scene: KinBody) -> BodyState:
+        """Add a new body in its loaded configuration.
+
+        Raises:
+            RavemjError: a body of that name is already there.
+        """
+        body = self.create(scene)
+        self.insert(body)
+        return body
+
+    def insert(self, body: BodyState) -> None:
+        """Take a body into the world, at the first free index, in the pose that it has.
+
+        Raises:
+            RavemjError: a body of that name is already there, or the name is empty.
+        """
+        with self.lock:
+            self.check_name(body, body.scene.name)
+            self.forget_model()
+            if None not in self._places:
+                self._places.append(None)
+            place = self._places.index(None)
+            self._places[place] = self._by_name[body.scene.name] = body
+            body.index = place + 1
+
+    def remove(self, body: BodyState) -> bool:
+        """Take a body out of the world; it keeps its pose. Return False if it was not there."""
+        with self.lock:
+            if not self.holds(body):
+                return False
+            self.forget_model()
+            body.grabs = []
+            for holder in self.bodies:
+                holder.release(body)
+            self._places[body.index - 1] = None
+            while self._places and self._places[-1] is None:
+                self._places.pop()
+            del self._by_name[body.scene.name]
+            body.index = 0
+            return True
+
+    def holds(self, body: BodyState) -> bool:
+        """Return whether a body is in the world."""
+        return body.simulation is self and body.index > 0
+
+    def rename(self, body: BodyState, name: str) -> None:
+        """Give a body another name.
+
+        Raises:
+            RavemjError: another body has the name, or it is empty.
+        """
+        with self.lock:
+            self.check_name(body, name)
+            if self.holds(body):
+                del self._by_name[body.scene.name]
+                self._by_name[name] = body
+            body.edit(name=name)
+
+    def check_name(self, body: BodyState, name: str) -> None:
+        """Check that a body can have a name.
+
+        Raises:
+            RavemjError: another body has it, or it is empty.
+        """
+        if not name:
+            raise RavemjError("a body's name should not be empty", ErrorCode.Assert)
+        if self._by_name.get(name, body) is not body:
+            raise RavemjError(f"there already is a body '{name}' in the environment", ErrorCode.BodyNameConflict)
+
+    def free_name(self, name: str) -> str:
+        """Return the name, or one made of it by a number, that no body has."""
+        number, free = 0, name or "_"
+        while free in self._by_name:
+            free = f"{name}{number}"
+            number += 1
+        return free
+
+    def clear(self) -> None:
+        """Remove all bodies."""
+        with self.lock:
+            for body in self.bodies:
+                self.remove(body)
+
+    def set_gravity(self, gravity: Vec3) -> None:
+        """Set the acceleration of free fall [m/s^2]."""
+        with self.lock:
+            self.gravity = gravity
+            if self._compiled is not None:
+                self._compiled.model.opt.gravity[:] = gravity
+
+    def forget_model(self) -> None:
+        """Put the model out of date: the bodies or what they consist of are about to change."""
+        if self._compiled is not None:
+            self._compiled = None
+            for body in self.bodies:
+                body.leave_model()
+
+    def compile(self) -> Compiled:
+        """Return the model of the present bodies, compiled if it is out of date.
+
+        Raises:
+            CompileError: MuJoCo refuses the model.
+        """
+        if self._compiled is not None:
+            return self._compiled
+        with self.lock:
+            self.diagnostics = Diagnostics()
+            scene = Scene(tuple(body.scene for body in self.bodies), self.view)
+            compiled = Compiled(scene, self.diagnostics)
+            compiled.model.opt.gravity[:] = self.gravity
+            for body, names in zip(self.bodies, compiled.mjcf.names, strict=True):
+                body.enter_model(BodyKinematics(compiled.model, compiled.data, body.scene, names))
+            mujoco.mj_kinematics(compiled.model, compiled.data)
+            for body in self.bodies:
+                body.settle()
+            self._compiled = compiled
+            self.version += 1
+            send_warnings(self.diagnostics)
+            return compiled
