@@ -137,7 +137,7 @@ class Batch:
             return values[index] - step.reference if step.reference else values[index]
         if kind == "follower":
             return followed[index] - step.reference
-        return np.full(values.shape[1], self._kinematics.data.qpos[index] - step.reference)
+        return np.full(values.shape[1], float(self._kinematics.data.qpos[index]) - step.reference)
 
     def _vector(self, step: Step, values: Floats) -> Floats:
         """Return the rotation vector of a spherical joint, shape (3, N)."""
