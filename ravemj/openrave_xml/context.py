@@ -2,14 +2,12 @@
 
 import os
 from collections.abc import Callable, Collection, Mapping, Set
-from dataclasses import replace
 from typing import TypeVar
 
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.meshes import MeshPart
 from ravemj.openrave_xml.tree import Element, parse_file
 from ravemj.openrave_xml.values import UNSCALED
-from ravemj.scene import Mesh
 from ravemj.transforms import Vec3
 
 Target = TypeVar("Target")
@@ -182,7 +180,7 @@ class Context:
             if scale == UNSCALED:
                 parts = self._read_mesh(path, source)
             else:
-                parts = tuple(_scaled(part, scale) for part in self._parts(path, source, UNSCALED))
+                parts = tuple(part.scaled(scale) for part in self._parts(path, source, UNSCALED))
             self._meshes[path, scale] = parts
         return parts
 
@@ -195,10 +193,6 @@ class Context:
         except SourceError as error:
             self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
             return ()
-
-
-def _scaled(part: MeshPart, scale: Vec3) -> MeshPart:
-    return replace(part, mesh=Mesh(part.mesh.vertices * scale, part.mesh.triangles))
 
 
 def _is_same_file(first: str, second: str) -> bool:

@@ -26,6 +26,7 @@ from ravemj.rave.environment import (
     load,
 )
 from ravemj.rave.geometry import Geometry
+from ravemj.rave.infos import ElectricMotorActuatorInfo, ExtractInfoOptions
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
@@ -43,7 +44,9 @@ __all__ = [
     "CheckLimitsAction",
     "CloningOptions",
     "ConfigurationSpecification",
+    "ElectricMotorActuatorInfo",
     "Environment",
+    "ExtractInfoOptions",
     "Geometry",
     "GeometryType",
     "GrabbedInfo",

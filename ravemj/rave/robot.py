@@ -7,8 +7,10 @@ from ravemj.geometry_functions import DOFAffine
 from ravemj.rave.body.active import ActiveChoice, ActiveDofs
 from ravemj.rave.body.affine import default_kinds
 from ravemj.rave.body.manipulators import Manipulators
+from ravemj.rave.body.robot_building import RobotBuilding
 from ravemj.rave.body.saving import Restorer, StateSaver
 from ravemj.rave.enums import InterfaceType, SaveParameters
+from ravemj.rave.infos import AttachedSensorInfo, ManipulatorInfo, RobotBaseInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
@@ -20,11 +22,14 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class Robot(ActiveDofs, Manipulators, KinBody):
+class Robot(ActiveDofs, Manipulators, RobotBuilding, KinBody):  # pyright: ignore[reportIncompatibleMethodOverride]
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine
+    AttachedSensorInfo = AttachedSensorInfo
     Manipulator = Manipulator
+    ManipulatorInfo = ManipulatorInfo
+    RobotBaseInfo = RobotBaseInfo
 
     _interface_type = InterfaceType.robot
     default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator
