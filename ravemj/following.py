@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from ravemj.errors import ArgumentError, Diagnostics, Source
+from ravemj.ordering import dependencies_first
 from ravemj.scene import Joint, KinBody, Mimic
 
 if TYPE_CHECKING:
@@ -120,16 +121,5 @@ def _mimic(index: int, joints: Sequence[Follower], mimics: "dict[int, Expression
 
 def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
     """Return the followers, each behind the followers that it depends on."""
-    order: dict[int, None] = {}
-
-    def visit(index: int) -> None:
-        mimic = mimics.get(index)
-        if mimic is None or mimic.expression is None or index in order:
-            return
-        for leader in leaders(mimic.expression):
-            visit(leader)
-        order.setdefault(index)
-
-    for index in mimics:
-        visit(index)
-    return list(order)
+    moving = {index: mimic.expression for index, mimic in mimics.items() if mimic.expression is not None}
+    return dependencies_first(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])

@@ -78,6 +78,8 @@ def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
 
 def _nearest_turn(axis: Axis, moved: float) -> float:
     """Add full turns to an angle so that the joint's value comes near the middle of its range."""
+    if math.isnan(moved):
+        raise OverflowError("the poses of the links are too far apart to compute with")
     beyond = axis.lower < -math.pi or axis.upper > math.pi
     middle = (axis.lower + axis.upper) / 2 if beyond else 0.0
     return moved - math.tau * round((axis.reference + moved - middle) / math.tau)

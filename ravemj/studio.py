@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.drawing import NOTHING
 from ravemj.errors import ArgumentError
 from ravemj.rendering import Camera, Renderer, bounding_sphere, open_renderer, three_quarter_view, view_from_above
 from ravemj.simulation import Simulation
@@ -34,13 +35,14 @@ class Studio:
         self._simulation = simulation
         self._kept = threading.local()
 
-    def picture(self, camera: Camera, background: ArrayLike, form: Format) -> Frame:
-        """Draw the bodies as they are now.
+    def picture(self, camera: Camera, background: ArrayLike, form: Format, drawings: bool = True) -> Frame:
+        """Draw the bodies and the drawings as they are now.
 
         Args:
             camera: Where the picture is taken from.
             background: Colour where nothing is: red, green, blue from 0 to 1.
             form: Size and quality.
+            drawings: False: bodies only.
 
         Returns:
             Shape (height, width, 3), top row first.
@@ -50,7 +52,8 @@ class Studio:
         """
         with self._simulation.lock:
             compiled = self._simulation.compile()
-            return self._renderer(form).render(compiled.data, camera, background)
+            shapes = self._simulation.drawings.shapes() if drawings else NOTHING
+            return self._renderer(form).render(compiled.data, camera, background, shapes)
 
     def backend(self, form: Format) -> str:
         """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""

@@ -1,13 +1,13 @@
 """What a mesh file becomes: parts, each of one colour, and the bounds that keep hostile files harmless."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.errors import Source, SourceError
 from ravemj.scene import Mesh, Rgb
-from ravemj.transforms import Floats, Vec3
+from ravemj.transforms import Floats
 
 MESH_SUFFIXES = (".iv", ".wrl", ".vrml", ".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf")
 """Ends of the names of files that can be read, in lower case."""
@@ -34,10 +34,6 @@ class MeshPart:
     diffuse: Rgb = WHITE
     ambient: Rgb = BLACK
     transparency: float = 0.0
-
-    def scaled(self, factors: Vec3) -> "MeshPart":
-        """Return the part stretched along x, y and z."""
-        return replace(self, mesh=Mesh(self.mesh.vertices * factors, self.mesh.triangles))
 
 
 def weld(corners: ArrayLike) -> Mesh:

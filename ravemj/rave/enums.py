@@ -121,3 +121,152 @@ class CloningOptions(IntFlag):
     Sensors = 16
     Modules = 32
     PassOnMissingBodyReferences = 0x8000
+
+
+class DebugLevel(IntEnum):
+    """How much is logged; each level includes those before it."""
+
+    Fatal = 0
+    Error = 1
+    Warn = 2
+    Info = 3
+    Debug = 4
+    Verbose = 5
+    VerifyPlans = 0x80000000
+    """A bit beside the level."""
+
+
+class IkParameterizationType(IntEnum):
+    """What of a pose the end of an arm shall reach: the numbers hold DOF, count of values, and a unique number."""
+
+    None_ = 0
+    Transform6D = 0x67000001
+    Rotation3D = 0x34000002
+    Translation3D = 0x33000003
+    Direction3D = 0x23000004
+    Ray4D = 0x46000005
+    Lookat3D = 0x23000006
+    TranslationDirection5D = 0x56000007
+    TranslationXY2D = 0x22000008
+    TranslationXYOrientation3D = 0x33000009
+    TranslationLocalGlobal6D = 0x3600000A
+    TranslationXAxisAngle4D = 0x4400000B
+    TranslationYAxisAngle4D = 0x4400000C
+    TranslationZAxisAngle4D = 0x4400000D
+    TranslationXAxisAngleZNorm4D = 0x4400000E
+    TranslationYAxisAngleXNorm4D = 0x4400000F
+    TranslationZAxisAngleYNorm4D = 0x44000010
+
+
+class IkFilterOptions(IntFlag):
+    """Which solutions of inverse kinematics are left out."""
+
+    CheckEnvCollisions = 1
+    IgnoreSelfCollisions = 2
+    IgnoreJointLimits = 4
+    IgnoreCustomFilters = 8
+    IgnoreEndEffectorEnvCollisions = 0x10
+    IgnoreEndEffectorCollisions = 0x10
+    """The name of version 0.9."""
+    IgnoreEndEffectorSelfCollisions = 0x20
+
+
+class IkReturnAction(IntFlag):
+    """What a filter says about a solution of inverse kinematics, and why it was rejected."""
+
+    Success = 0
+    Reject = 1
+    Quit = 2
+    QuitEndEffectorCollision = 0x82
+    RejectKinematics = 0x11
+    RejectSelfCollision = 0x21
+    RejectEnvCollision = 0x41
+    RejectJointLimits = 0x101
+    RejectKinematicsPrecision = 0x201
+    RejectCustomFilter = 0x8001
+
+
+class CollisionOptions(IntFlag):
+    """What a collision checker reports."""
+
+    Distance = 1
+    UseTolerance = 2
+    Contacts = 4
+    RayAnyHit = 8
+    ActiveDOFs = 0x10
+    AllLinkCollisions = 0x20
+    AllGeometryCollisions = 0x40
+    AllGeometryContacts = 0x80
+    IgnoreCallbacks = 0x100
+
+
+class CollisionAction(IntEnum):
+    """What a collision callback says about a pair."""
+
+    DefaultAction = 0
+    Ignore = 1
+
+
+class TriangulateOptions(IntEnum):
+    """Which bodies ``TriangulateScene`` takes; also called ``SelectionOptions``."""
+
+    Obstacles = 1
+    NoRobots = 1
+    Robots = 2
+    Everything = 3
+    Body = 4
+    AllExceptBody = 5
+
+
+SelectionOptions = TriangulateOptions
+
+
+class SerializationOptions(IntFlag):
+    """What of a body goes into its hash."""
+
+    Kinematics = 1
+    Dynamics = 2
+    BodyState = 4
+    NamesAndFiles = 8
+    RobotManipulators = 0x10
+    RobotSensors = 0x20
+    Geometry = 0x40
+    InverseKinematics = 0x80
+    JointLimits = 0x100
+
+
+class SensorCommand(IntEnum):
+    """What ``sensor.Configure`` is asked to do; ``Sensor.ConfigureCommand``."""
+
+    PowerOn = 0x10
+    PowerOff = 0x11
+    PowerCheck = 0x12
+    RenderDataOn = 0x20
+    RenderDataOff = 0x21
+    RenderDataCheck = 0x23
+    RenderGeometryOn = 0x30
+    RenderGeometryOff = 0x31
+    RenderGeometryCheck = 0x32
+
+
+class PlannerStatusCode(IntFlag):
+    """How planning ended."""
+
+    Failed = 0
+    HasSolution = 1
+    Interrupted = 2
+    InterruptedWithSolution = 3
+
+
+class PlannerStatus(IntFlag):
+    """How planning ended: OpenRAVE 0.9 compares it as a number, later versions look at its ``statusCode``."""
+
+    Failed = 0
+    HasSolution = 1
+    Interrupted = 2
+    InterruptedWithSolution = 3
+
+    @property
+    def statusCode(self) -> PlannerStatusCode:
+        """The same as a ``PlannerStatusCode``."""
+        return PlannerStatusCode(self.value)

@@ -68,13 +68,13 @@ class Joint(JointLimits, JointFollowing):
         return float(self.GetValues()[axis])
 
     def GetVelocities(self) -> Floats:
-        """Return the joint's velocities [rad/s or m/s], shape (axes,); a follower's are those of its equation."""
+        """Return the joint's velocities [rad/s or m/s] that those of its links show, shape (axes,)."""
         with self._state.simulation.lock:
-            dynamics = self._state.dynamics
-            if not self._is_active:
-                return np.full(self.GetDOF(), dynamics.passive_velocity(self._index))
-            first = self.GetDOFIndex()
-            return dynamics.velocities[first : first + self.GetDOF()].copy()
+            return self._state.dynamics.joint_velocities(self._state.link_velocities(), [self._scene])[0]
+
+    def GetVelocity(self, axis: int = 0) -> float:
+        """Return the joint's velocity about or along one of its axes [rad/s or m/s]."""
+        return float(self.GetVelocities()[axis])
 
     def SubtractValue(self, value0: float, value1: float, axis: int = 0) -> float:
         """Return the difference of two values: the way from the second to the first.

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from ravemj import chains
-from ravemj.arrays import checked_transform
+from ravemj.arrays import checked_transform, checked_vector
 from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.geometry import Geometry
@@ -53,6 +53,28 @@ class Link(LinkMass, LinkShapes, LinkParameters):
         """
         with self._state.simulation.lock:
             return self._state.link_transform(self._index)
+
+    def GetVelocity(self) -> Floats:
+        """Return the link's velocity, in world axes.
+
+        Returns:
+            That of its origin [m/s] and the angular one [rad/s], shape (6,); a copy.
+        """
+        with self._state.simulation.lock:
+            return self._state.link_velocities()[self._index]
+
+    def SetVelocity(self, linear: ArrayLike, angular: ArrayLike) -> None:
+        """Set the velocity of this link alone; those of the DOFs are read off the differences between links.
+
+        Args:
+            linear: Velocity of its origin in the world [m/s], shape (3,).
+            angular: Angular velocity in the world [rad/s], shape (3,).
+        """
+        moved, turned = checked_vector(linear, 3, "linear"), checked_vector(angular, 3, "angular")
+        with self._state.simulation.lock:
+            velocities = self._state.link_velocities()
+            velocities[self._index] = (*moved, *turned)
+            self._state.set_link_velocities(velocities)
 
     def GetTransformPose(self) -> Floats:
         """Return the link's pose as [w, x, y, z, tx, ty, tz]: unit quaternion and position [m], shape (7,)."""

@@ -16,7 +16,7 @@ from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.simulation import BodyState
-from ravemj.transforms import Floats, Ints, pose_of
+from ravemj.transforms import Floats, Ints, pose_of, wxyz_from_rows
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -62,12 +62,45 @@ class Manipulator:
         Raises:
             openrave_exception: the manipulator has no effector.
         """
+        return self._effector().GetTransform() @ self.GetLocalToolTransform()
+
+    GetEndEffectorTransform = GetTransform
+
+    def _effector(self) -> Link:
         effector = self.GetEndEffector()
         if effector is None:
             raise RavemjError(f"manipulator '{self.GetName()}' has no end effector")
-        return effector.GetTransform() @ self.GetLocalToolTransform()
+        return effector
 
-    GetEndEffectorTransform = GetTransform
+    def GetVelocity(self) -> Floats:
+        """Return the velocity of the tool, in world axes.
+
+        Returns:
+            That of the tool point [m/s] and the angular one [rad/s], shape (6,).
+        """
+        effector = self._effector()
+        velocity = effector.GetVelocity()
+        arm = self.GetTransform()[:3, 3] - effector.GetTransform()[:3, 3]
+        velocity[:3] += np.cross(velocity[3:], arm)
+        return velocity
+
+    def CalculateJacobian(self) -> Floats:
+        """Return how the tool point moves with the arm's joints.
+
+        Returns:
+            Derivative of its position in the world by the values of ``GetArmIndices()``, shape (3, arm dof).
+        """
+        tool = self.GetTransform()[:3, 3]
+        return self._robot.ComputeJacobianTranslation(self._effector().GetIndex(), tool)[:, self.GetArmIndices()]
+
+    def CalculateAngularVelocityJacobian(self) -> Floats:
+        """Return the angular velocity of the tool, in world axes, per unit of the arm's, shape (3, arm dof)."""
+        return self._robot.ComputeJacobianAxisAngle(self._effector().GetIndex())[:, self.GetArmIndices()]
+
+    def CalculateRotationJacobian(self) -> Floats:
+        """Return how the tool's quaternion [w, x, y, z] changes with the arm's joints, shape (4, arm dof)."""
+        wxyz = wxyz_from_rows(self.GetTransform()[:3, :3].tolist())
+        return self._robot.CalculateRotationJacobian(self._effector().GetIndex(), wxyz)[:, self.GetArmIndices()]
 
     def GetTransformPose(self) -> Floats:
         """Return the pose of the tool in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""

@@ -4,7 +4,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ravemj.geometry_functions import DOFAffine
-from ravemj.rave.body.active import ActiveChoice, ActiveDofs
+from ravemj.rave.body.active import ActiveChoice
+from ravemj.rave.body.active_motion import ActiveMotion
 from ravemj.rave.body.affine import default_kinds
 from ravemj.rave.body.manipulators import Manipulators
 from ravemj.rave.body.robot_building import RobotBuilding
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class Robot(ActiveDofs, Manipulators, RobotBuilding, KinBody):  # pyright: ignore[reportIncompatibleMethodOverride]
+class Robot(ActiveMotion, Manipulators, RobotBuilding, KinBody):  # pyright: ignore[reportIncompatibleMethodOverride]
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine
@@ -30,6 +31,7 @@ class Robot(ActiveDofs, Manipulators, RobotBuilding, KinBody):  # pyright: ignor
     Manipulator = Manipulator
     ManipulatorInfo = ManipulatorInfo
     RobotBaseInfo = RobotBaseInfo
+    RobotStateSaver = StateSaver
 
     _interface_type = InterfaceType.robot
     default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator

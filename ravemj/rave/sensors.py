@@ -6,25 +6,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ravemj import scene
-from ravemj.rave.enums import SensorType
+from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.infos import AttachedSensorInfo
 from ravemj.rave.link import Link
+from ravemj.rendering import CameraIntrinsics
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
-
-
-@dataclass(eq=False)
-class CameraIntrinsics:
-    """A pinhole camera.
-
-    Attributes:
-        K: Camera matrix [pixels], shape (3, 3).
-    """
-
-    K: Floats
 
 
 @dataclass(eq=False)
@@ -51,6 +41,7 @@ class Sensor:
     """A device that measures; ``attached.GetSensor()`` makes it."""
 
     Type = SensorType
+    ConfigureCommand = SensorCommand
 
     def __init__(self, attached: scene.AttachedSensor, kind: str) -> None:
         self._scene = attached

@@ -16,8 +16,16 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.drawing import NOTHING, Shapes
 from ravemj.errors import ArgumentError
-from ravemj.rendering.camera import Camera, bounding_sphere, three_quarter_view, view_from_above
+from ravemj.rendering.camera import (
+    Camera,
+    CameraIntrinsics,
+    Pinhole,
+    bounding_sphere,
+    three_quarter_view,
+    view_from_above,
+)
 from ravemj.rendering.camera_file import read_camera, write_camera
 from ravemj.rendering.contexts import GL_BACKENDS, RAY, make_with_any_backend, make_with_backend, requested_backend
 from ravemj.rendering.frame import WHITE
@@ -27,6 +35,8 @@ from ravemj.rendering.stage import Quality, Stage
 
 __all__ = [
     "Camera",
+    "CameraIntrinsics",
+    "Pinhole",
     "Quality",
     "Renderer",
     "Stage",
@@ -50,7 +60,9 @@ class Renderer(Protocol):
 
     backend: str
 
-    def render(self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE) -> NDArray[np.uint8]:
+    def render(
+        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, shapes: Shapes = NOTHING
+    ) -> NDArray[np.uint8]:
         """Draw a picture.
 
         Args:
@@ -58,6 +70,7 @@ class Renderer(Protocol):
                 model has lights, they are placed (``mj_camlight``).
             camera: Where the picture is taken from.
             background: Colour where nothing is: red, green, blue in 0..1.
+            shapes: What is drawn beside the model's geoms.
 
         Returns:
             A new array (height, width, 3), top row first.
@@ -69,7 +82,7 @@ class Renderer(Protocol):
         ...
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
-        """Say which geom each pixel centre shows.
+        """Say which geom each pixel centre shows; drawings hide nothing.
 
         Args:
             data: State of the model with the poses computed.

@@ -9,6 +9,7 @@ renderers convert, nobody else needs to.
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -27,14 +28,42 @@ RIGIDITY_TOLERANCE = 5e-3
 _SHAPES = "a 4x4 matrix, a 3x4 matrix or a pose [w, x, y, z, tx, ty, tz]"
 
 
+class Pinhole(NamedTuple):
+    """How a camera maps directions to pixels; continuous coordinates, (0, 0) is the top left corner of the image.
+
+    Attributes:
+        fx: Focal length along the columns [pixels].
+        fy: Focal length along the rows [pixels].
+        cx: Column of the principal point [pixels].
+        cy: Row of the principal point [pixels].
+    """
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+
+
+@dataclass(eq=False)
+class CameraIntrinsics:
+    """A pinhole camera, as OpenRAVE's scripts know it.
+
+    Attributes:
+        K: Camera matrix [pixels], shape (3, 3).
+    """
+
+    K: Floats
+
+
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """A pinhole camera with square pixels and the principal point in the middle of the image.
+    """A pinhole camera; by default its pixels are square and the principal point is in the middle of the image.
 
     Attributes:
         T_world_camera: Pose of the camera in the world, (4, 4), read-only. Columns: image right, image down,
             viewing direction, position of the eye [m]. The numbers are kept exactly as they were given.
         fovy: Vertical field of view [rad], between 0 and pi.
+        calibration: Focal lengths and principal point for pictures of one size, in place of the field of view.
 
     Raises:
         ArgumentError: the matrix is no rigid transform, or the field of view is out of range.
@@ -42,6 +71,7 @@ class Camera:
 
     T_world_camera: Floats
     fovy: float = DEFAULT_FOVY
+    calibration: Pinhole | None = None
 
     def __post_init__(self) -> None:
         matrix = _numbers(self.T_world_camera) + 0.0  # a copy, and -0. becomes 0.
@@ -83,9 +113,10 @@ class Camera:
         rotation.flags.writeable = False
         return rotation
 
-    def focal_length(self, height: int) -> float:
-        """Return the distance of the image plane in pixels, for an image of that many rows."""
-        return 0.5 * height / math.tan(0.5 * self.fovy)
+    def pinhole(self, width: int, height: int) -> Pinhole:
+        """Return focal lengths and principal point in an image of that many columns and rows."""
+        focal = 0.5 * height / math.tan(0.5 * self.fovy)
+        return self.calibration or Pinhole(focal, focal, 0.5 * width, 0.5 * height)
 
     def project(self, points: ArrayLike, width: int, height: int) -> tuple[Floats, Floats]:
         """Project points of the world into an image.
@@ -100,11 +131,11 @@ class Camera:
             pixel i covers [i, i + 1); NaN for points that are not in front of the camera. And the depth (N,)
             along the viewing direction [m].
         """
+        fx, fy, cx, cy = self.pinhole(width, height)
         camera_points = (np.asarray(points, dtype=np.float64).reshape(-1, 3) - self.position) @ self.rotation
         depth = camera_points[:, 2]
         in_front = np.where(depth > 0, depth, np.nan)
-        pixels = self.focal_length(height) * camera_points[:, :2] / in_front[:, None] + [0.5 * width, 0.5 * height]
-        return pixels, depth
+        return camera_points[:, :2] * [fx, fy] / in_front[:, None] + [cx, cy], depth
 
     def rays(self, width: int, height: int) -> Floats:
         """Return the directions through the pixel centres, in world coordinates, (height, width, 3).
@@ -117,10 +148,10 @@ class Camera:
 
     def ray_parts(self, width: int, height: int) -> tuple[Floats, Floats]:
         """Return what :meth:`rays` is the sum of: a part by column (1, width, 3) and one by row (height, 1, 3)."""
-        focal = self.focal_length(height)
+        fx, fy, cx, cy = self.pinhole(width, height)
         right, down, forward = self.rotation.T
-        columns = (np.arange(width) + 0.5 - 0.5 * width) / focal
-        rows = (np.arange(height) + 0.5 - 0.5 * height) / focal
+        columns = (np.arange(width) + 0.5 - cx) / fx
+        rows = (np.arange(height) + 0.5 - cy) / fy
         return columns[None, :, None] * right, rows[:, None, None] * down + forward
 
 

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.drawing import NOTHING, Shapes
 from ravemj.errors import RenderingError
 from ravemj.rendering.camera import Camera
 from ravemj.rendering.contexts import OffscreenContext, close_at_exit
@@ -33,24 +34,23 @@ class GlRenderer:
             self._stage = _offscreen_stage(model, quality)
         close_at_exit(self)
 
-    def render(self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE) -> NDArray[np.uint8]:
+    def render(
+        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, shapes: Shapes = NOTHING
+    ) -> NDArray[np.uint8]:
         """See :class:`ravemj.rendering.Renderer`."""
         color = color_bytes(background)
-        stage = self._filled_stage(data, camera)
+        stage = self._filled_stage(data, camera, shapes)
         with self._context.current():
             stage.draw(self._viewport, color)
             picture = self._read(stage)
         if not stage.has_background:
-            picture[self.segment(data, camera) < 0] = color
+            picture[~self._codes(stage).any(axis=2)] = color
         return picture
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
         """See :class:`ravemj.rendering.Renderer`."""
-        stage = self._filled_stage(data, camera)
-        with self._context.current():
-            stage.draw_ids(self._viewport)
-            codes = self._read(stage)
-        return stage.geom_ids(codes)
+        stage = self._filled_stage(data, camera, NOTHING)
+        return stage.geom_ids(self._codes(stage))
 
     def close(self) -> None:
         """Free the context and what is in it; a second call does nothing."""
@@ -72,11 +72,16 @@ class GlRenderer:
     def __del__(self) -> None:
         self.close()
 
-    def _filled_stage(self, data: mujoco.MjData, camera: Camera) -> Stage:
+    def _codes(self, stage: Stage) -> NDArray[np.uint8]:
+        with self._context.current():
+            stage.draw_ids(self._viewport)
+            return self._read(stage)
+
+    def _filled_stage(self, data: mujoco.MjData, camera: Camera, shapes: Shapes) -> Stage:
         if self._stage is None:
             raise RenderingError("this renderer is closed")
         check_data(self._model, data)
-        self._stage.fill(data, camera, *self._size)
+        self._stage.fill(data, camera, *self._size, shapes)
         return self._stage
 
     def _read(self, stage: Stage) -> NDArray[np.uint8]:

@@ -25,7 +25,7 @@ class Lights:
         """
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
-        aim(self._scene, camera, 1.0, depths)
+        aim(self._scene, camera, (1, 1), depths)
         mujoco.mjv_makeLights(self._model, data, self._scene)
 
     def on(self, points: Floats, rays: Floats, normals: Floats) -> Floats:

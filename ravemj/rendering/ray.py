@@ -13,8 +13,10 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.drawing import NOTHING, Shapes
 from ravemj.errors import RenderingError
 from ravemj.rendering.camera import Camera
+from ravemj.rendering.fragments import Fragments, Raster
 from ravemj.rendering.frame import WHITE, check_data, color_bytes
 from ravemj.rendering.lights import Lights
 from ravemj.rendering.stage import near_and_far
@@ -61,16 +63,20 @@ class RayRenderer:
         self._lights = Lights(model)
         self._closed = False
 
-    def render(self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE) -> NDArray[np.uint8]:
+    def render(
+        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, shapes: Shapes = NOTHING
+    ) -> NDArray[np.uint8]:
         """See :class:`ravemj.rendering.Renderer`."""
         width, height = self._size
         color = color_bytes(background)
         picture = np.empty((height, width, 3), dtype=np.uint8)
         with self._scene(data, camera) as scene:
+            drawn = Raster(camera, self._size, self._lights).fragments(shapes)
             for rows, rays in self._bands(camera):
-                picture[rows] = np.rint(scene.colors(rays, color)).reshape(-1, width, 3)
+                here = drawn.between(rows.start * width, rows.stop * width)
+                picture[rows] = np.rint(scene.colors(rays, color, here)).reshape(-1, width, 3)
             if self._samples:
-                self._smooth_edges(picture, scene, camera, color)
+                self._smooth_edges(picture, scene, camera, color, shapes)
         return picture
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
@@ -116,20 +122,27 @@ class RayRenderer:
             yield rows, (by_column + by_row[rows]).reshape(-1, 3)
 
     def _smooth_edges(
-        self, picture: NDArray[np.uint8], scene: "_RayScene", camera: Camera, background: NDArray[np.uint8]
+        self,
+        picture: NDArray[np.uint8],
+        scene: "_RayScene",
+        camera: Camera,
+        background: NDArray[np.uint8],
+        shapes: Shapes,
     ) -> None:
         """Replace pixels that differ from a neighbour by the mean of four rays."""
         rows, columns = np.nonzero(_edges(picture))
-        focal = camera.focal_length(self._size[1])
+        ray_of_pixel = np.full(picture.shape[:2], -1)
+        ray_of_pixel[rows, columns] = np.arange(rows.size)
         by_column, by_row = camera.ray_parts(*self._size)
-        offsets = _SUBPIXELS / focal @ camera.rotation[:, :2].T
-        step = _BAND // len(offsets)
-        for start in range(0, rows.size, step):
-            some = slice(start, start + step)
-            centers = by_column[0, columns[some]] + by_row[rows[some], 0]
-            rays = (centers[:, None] + offsets).reshape(-1, 3)
-            colors = scene.colors(rays, background).reshape(-1, len(offsets), 3)
-            picture[rows[some], columns[some]] = np.rint(colors.mean(axis=1))
+        sums = np.zeros((rows.size, 3))
+        for offset in _SUBPIXELS:
+            aside = offset / camera.pinhole(*self._size)[:2] @ camera.rotation[:, :2].T
+            drawn = Raster(camera, self._size, self._lights, offset, ray_of_pixel.reshape(-1)).fragments(shapes)
+            for start in range(0, rows.size, _BAND):
+                some = slice(start, min(start + _BAND, rows.size))
+                rays = by_column[0, columns[some]] + by_row[rows[some], 0] + aside
+                sums[some] += scene.colors(rays, background, drawn.between(some.start, some.stop))
+        picture[rows, columns] = np.rint(sums / len(_SUBPIXELS))
 
 
 @dataclass
@@ -150,23 +163,27 @@ class _RayScene:
     rgba: Floats
     lights: Lights
 
-    def colors(self, rays: Floats, background: NDArray[np.uint8], layers: int = _LAYERS) -> Floats:
+    def colors(self, rays: Floats, background: NDArray[np.uint8], drawn: Fragments, layers: int = _LAYERS) -> Floats:
         """Return what rays (N, 3) in world coordinates see, as colours (N, 3) in 0..255, not rounded."""
         colors = np.empty(rays.shape)
         colors[:] = background
         geom_ids, depth, normals = self.cast(rays)
         hit = np.flatnonzero(geom_ids >= 0)
-        ids, rays = geom_ids[hit], rays[hit]
-        light = self.lights.on(self.origin + depth[hit, None] * rays, rays, normals[hit])
+        ids = geom_ids[hit]
+        light = self.lights.on(self.origin + depth[hit, None] * rays[hit], rays[hit], normals[hit])
         shaded = 255 * np.minimum(self.rgba[ids, :3] * light, 1)
         opacity = self._opacity(ids)
         colors[hit] = shaded
+        hidden = (geom_ids >= 0)[drawn.ray] & (drawn.depth > depth[drawn.ray])
+        behind_surface = drawn.select(hidden)
         for geom in np.unique(ids[opacity < 1]) if layers else ():
             seen = np.flatnonzero(ids == geom)
             with self._without(geom):
-                behind = self.colors(rays[seen], background, layers - 1)
+                farther = behind_surface.of_rays(hit[seen], len(rays))
+                behind = self.colors(rays[hit[seen]], background, farther, layers - 1)
             weight = opacity[seen, None]
             colors[hit[seen]] = weight * shaded[seen] + (1 - weight) * behind
+        drawn.select(~hidden).over(colors)
         return colors
 
     def cast(self, rays: Floats) -> tuple[NDArray[np.int32], Floats, Floats]:

@@ -5,7 +5,7 @@ calling thread; making it current is the caller's business, which is why a windo
 """
 
 import contextlib
-import math
+import logging
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
@@ -13,8 +13,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from ravemj.drawing import NOTHING, Shapes
 from ravemj.rendering.camera import Camera, bounding_sphere
+from ravemj.rendering.figures import add_figures
 from ravemj.rendering.visibility import DRAWN_GROUPS, drawn_geoms
+from ravemj.transforms import Floats
 
 SHADOW_SIZE = 1024
 """Texels along one side of the shadow map: a quarter of MuJoCo's default, a seventh of its cost on a CPU."""
@@ -23,6 +26,16 @@ _SLICES, _STACKS = 48, 24
 """Facets around and along round shapes; MuJoCo's 28 and 16 show corners on close views."""
 
 _SPARE_GEOMS = 1000
+_MAX_FIGURES = 300_000
+"""Most figures of drawings in one picture: MuJoCo needs a second to make room for so many."""
+
+_SMALLEST = 1e-3
+"""Radius of what has none, such as a single point [m]."""
+
+_WIDEST = 1e-6
+"""Nearest depth, as a part of the farthest one: with less, MuJoCo loses the background."""
+
+_LOG = logging.getLogger("ravemj")
 
 
 @dataclass(frozen=True)
@@ -55,8 +68,9 @@ class Stage:
         self._model = model
         with _quality_of(model, quality):
             self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_150.value)
-        self.scene = mujoco.MjvScene(model, model.ngeom + _SPARE_GEOMS)
-        self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = quality.shadows
+        self._shadows = quality.shadows
+        self._has_warned = False
+        self._make_scene(_SPARE_GEOMS)
         self._option = drawing_option()
         self._skybox = _find_skybox(model)
         self._background: bytes | None = None
@@ -66,17 +80,26 @@ class Stage:
         """Whether the model has the skybox texture that background colours are painted with."""
         return self._skybox is not None
 
-    def fill(self, data: mujoco.MjData, camera: Camera, width: int, height: int) -> None:
-        """Take over the poses of the geoms and the point of view.
+    def _make_scene(self, room: int) -> None:
+        self.scene = mujoco.MjvScene(self._model, self._model.ngeom + room)
+        self._room = room
+
+    def fill(self, data: mujoco.MjData, camera: Camera, width: int, height: int, shapes: Shapes = NOTHING) -> None:
+        """Take over the poses of the geoms, the drawings and the point of view.
 
         Args:
             data: State of the model with the poses computed.
             camera: Where the picture is taken from.
             width: Columns of the viewport.
             height: Rows of the viewport.
+            shapes: What is drawn beside the geoms. With points or lines there are no shadows: MuJoCo would draw these
+                once more for each light that casts some, and add the colours up.
         """
-        depths = near_and_far(self._model, data, camera)
-        aim(self.scene, camera, width / height, depths)
+        self._make_room(len(shapes))
+        has_lines = bool(shapes.points.sizes.size or shapes.lines.sizes.size)
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._shadows and not has_lines
+        depths = near_and_far(self._model, data, camera, shapes)
+        aim(self.scene, camera, (width, height), depths)
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
         user_camera = mujoco.MjvCamera()
@@ -85,6 +108,14 @@ class Stage:
         mujoco.mjv_updateScene(self._model, data, self._option, None, user_camera, everything, self.scene)
         if self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW]:
             self._cover_with_shadows(data, near=depths[0])
+        add_figures(self.scene, shapes, camera, width, height)
+
+    def _make_room(self, figures: int) -> None:
+        if figures > _MAX_FIGURES and not self._has_warned:
+            self._has_warned = True
+            _LOG.warning("%d figures are drawn, and OpenGL shows %d of them", figures, _MAX_FIGURES)
+        if self._room < min(figures, _MAX_FIGURES):
+            self._make_scene(min(2 * figures, _MAX_FIGURES))
 
     def draw(self, viewport: mujoco.MjrRect, background: NDArray[np.uint8]) -> None:
         """Draw into the current framebuffer.
@@ -153,42 +184,54 @@ def drawing_option() -> mujoco.MjvOption:
     return option
 
 
-def aim(scene: mujoco.MjvScene, camera: Camera, aspect: float, depths: tuple[float, float]) -> None:
+def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: tuple[float, float]) -> None:
     """Write a camera into a scene; ``mjv_updateScene`` keeps it for a camera of type ``mjCAMERA_USER``.
 
     Args:
         scene: The scene.
         camera: Where the picture is taken from.
-        aspect: Width of the picture divided by its height.
+        size: Width and height of the picture [pixels].
         depths: Nearest and farthest depth that is drawn [m].
     """
     near, far = depths
     right_down_forward = camera.rotation
-    top = near * math.tan(0.5 * camera.fovy)
+    fx, fy, cx, cy = camera.pinhole(*size)
+    left, right = -cx / fx * near, (size[0] - cx) / fx * near
     for eye in scene.camera:  # two, for stereo; a mono picture takes their mean
         eye.pos = camera.position
         eye.forward = right_down_forward[:, 2]
         eye.up = -right_down_forward[:, 1]
         eye.frustum_near, eye.frustum_far = near, far
-        eye.frustum_top, eye.frustum_bottom = top, -top
-        eye.frustum_center, eye.frustum_width = 0.0, top * aspect  # half the width
+        eye.frustum_top, eye.frustum_bottom = cy / fy * near, (cy - size[1]) / fy * near
+        eye.frustum_center, eye.frustum_width = (left + right) / 2, (right - left) / 2  # half the width
         eye.orthographic = 0
 
 
-def near_and_far(model: mujoco.MjModel, data: mujoco.MjData, camera: Camera) -> tuple[float, float]:
+def near_and_far(
+    model: mujoco.MjModel, data: mujoco.MjData, camera: Camera, shapes: Shapes = NOTHING
+) -> tuple[float, float]:
     """Return depths [m] between which everything lies that the camera can see, wherever it stands.
 
     MuJoCo paints the background on the walls of a cube that fits into the farthest depth, so that has to be
     well behind the scene. Its depth buffer holds floats, 1 for near, so wide ranges cost no precision.
     """
     center, radius = bounding_sphere(model, data)
-    depth = float((center - camera.position) @ camera.rotation[:, 2])
-    near = max(0.9 * (depth - radius), 1e-4 * radius)
-    far = 5 * max(depth + radius, near)
+    near, far = _depths_of_sphere(center, radius, camera)
+    if len(shapes):
+        center_of_drawings, radius_of_drawings = shapes.bounding_sphere()
+        nearer, farther = _depths_of_sphere(center_of_drawings, max(radius_of_drawings, _SMALLEST), camera)
+        far = max(far, farther)
+        near = max(min(near, nearer), _WIDEST * far)
     if (drawn_geoms(model) & (model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)).any():
         near = min(near, 1e-2 * radius)
         far = max(far, 5 * model.vis.map.zfar * model.stat.extent)
     return near, far
+
+
+def _depths_of_sphere(center: Floats, radius: float, camera: Camera) -> tuple[float, float]:
+    depth = float((center - camera.position) @ camera.rotation[:, 2])
+    near = max(0.9 * (depth - radius), 1e-4 * radius)
+    return near, 5 * max(depth + radius, near)
 
 
 def _find_skybox(model: mujoco.MjModel) -> int | None:

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ravemj.dynamics import BodyDynamics
+from ravemj.batch import Batch
+from ravemj.dynamics import BodyDynamics, Inertias
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.kinematics import BodyKinematics, Configuration
 from ravemj.mjcf import rgba
 from ravemj.placement import place_links
-from ravemj.scene import Axis, Geometry, Inertial, KinBody
+from ravemj.scene import Axis, Geometry, Inertial, KinBody, Link
 from ravemj.simulation.compiled import write_inertial
 from ravemj.transforms import Floats, Pose, inverse, pose_of
 
@@ -62,6 +63,8 @@ class BodyState:
         self.api_object: object | None = None
         self._kinematics: BodyKinematics | None = None
         self._dynamics: BodyDynamics | None = None
+        self._batch: Batch | None = None
+        self._inertias: tuple[tuple[Link, ...], Inertias] | None = None
         self.rebuild(scene)
 
     def rebuild(self, scene: KinBody) -> None:
@@ -75,7 +78,7 @@ class BodyState:
         self.scene = scene
         self.link_enabled = [link.enabled for link in scene.links]
         self.stamp += 1
-        self._velocities = np.zeros(len(scene.dof_axes))
+        self._velocities = np.zeros((len(scene.links), 6))
         self._poses: Floats | None = None
         self._configuration: Configuration | None = None
         self._is_moved = False
@@ -97,11 +100,24 @@ class BodyState:
 
     @property
     def dynamics(self) -> BodyDynamics:
-        """Velocities, Jacobians and inverse dynamics in the present model."""
+        """Jacobians and inverse dynamics in the present model."""
         if self._dynamics is None:
             self._dynamics = BodyDynamics(self.kinematics)
-            self._dynamics.velocities = self._velocities
         return self._dynamics
+
+    @property
+    def batch(self) -> Batch:
+        """The chain of links, ready for many configurations."""
+        if self._batch is None:
+            self._batch = Batch(self.kinematics, self.dynamics)
+        return self._batch
+
+    @property
+    def inertias(self) -> Inertias:
+        """Mass properties of the links, as the scene has them now."""
+        if self._inertias is None or self._inertias[0] is not self.scene.links:
+            self._inertias = (self.scene.links, Inertias.of(self.scene.links))
+        return self._inertias[1]
 
     def enter_model(self, kinematics: BodyKinematics) -> None:
         """Take the body's place in a new model, as far as joints and roots tell; ``settle`` does the rest."""
@@ -124,9 +140,7 @@ class BodyState:
             self._poses = self._kinematics.link_transforms()
             self._configuration = self._kinematics.configuration()
             self._kinematics = None
-        if self._dynamics is not None:
-            self._velocities = self._dynamics.velocities
-            self._dynamics = None
+        self._dynamics = self._batch = None
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy. This never compiles."""
@@ -197,6 +211,39 @@ class BodyState:
         for grab in self.grabs:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 
+    def link_velocities(self) -> Floats:
+        """Return the velocities of the links, in world axes: of the origin [m/s] and angular [rad/s]; a copy.
+
+        Moving links does not change them, as in OpenRAVE.
+
+        Returns:
+            Shape (links, 6).
+        """
+        return self._velocities.copy()
+
+    def set_link_velocities(self, velocities: Floats) -> None:
+        """Set the velocities of the links, shape (links, 6); what they hold moves with them."""
+        self._velocities = velocities.copy()
+        for grab in self.grabs:
+            self._carry(grab)
+
+    def _carry(self, grab: GrabbedBody) -> None:
+        """Give a held body the velocity of the link that holds it."""
+        carrier = self._velocities[grab.link]
+        arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
+        grab.body.set_velocity(carrier[:3] + np.cross(carrier[3:], arm), carrier[3:])
+
+    def set_velocity(self, linear: Floats, angular: Floats) -> None:
+        """Let all links move as one.
+
+        Args:
+            linear: Velocity of the first link's origin [m/s], shape (3,).
+            angular: Angular velocity [rad/s], shape (3,).
+        """
+        origins = self.link_transforms()[:, :3, 3]
+        moved = linear + np.cross(angular, origins - origins[:1])
+        self.set_link_velocities(np.column_stack((moved, np.tile(angular, (len(origins), 1)))))
+
     def grab(self, grab: GrabbedBody) -> None:
         """Hold a body; one that is held already, anew."""
         places = [number for number, old in enumerate(self.grabs) if old.body is grab.body]
@@ -204,6 +251,7 @@ class BodyState:
             self.grabs[places[0]] = grab
         else:
             self.grabs.append(grab)
+        self._carry(grab)
 
     def release(self, body: "BodyState") -> None:
         """Let go of a body; nothing happens if it is not held."""
@@ -233,6 +281,7 @@ class BodyState:
         self.link_enabled = list(other.link_enabled)
         self._configuration, self._poses = other.configuration()
         self._is_moved = self._configuration is None
+        self._velocities = other.link_velocities()
 
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
         """Change the description of the body where links and joints stay the same: names, limits, manipulators."""

@@ -13,7 +13,9 @@ from ravemj.mjcf.document import ASSETS
 from ravemj.scene import Inertial, Scene
 
 _DOF = re.compile(r"DOF (\d+)")
-_LINE = re.compile(r"line (\d+)", re.IGNORECASE)
+_LINE = re.compile(r"line (?:number=)?(\d+)", re.IGNORECASE)
+_TOO_DEEP = "XML_ELEMENT_DEPTH_EXCEEDED"
+_LONGEST_CHAIN = 496  # links; MuJoCo's reader of XML takes 500 elements inside one another
 
 
 class Compiled:
@@ -83,5 +85,8 @@ def _compile_error(message: str, text: mjcf.Mjcf) -> CompileError:
     match = _LINE.search(message)
     line = int(match[1]) if match else 0
     source = text.source_of_line(line) or Source("the translated model", line)
+    if _TOO_DEEP in message:
+        reason = f"this link hangs on a chain of {_LONGEST_CHAIN} links, and MuJoCo takes no longer ones"
+        return CompileError(reason, source, "split the chain into several bodies")
     reason = " ".join(message.split())
     return CompileError(f"MuJoCo refuses the translated model: {reason}", source)

@@ -4,6 +4,7 @@ from threading import RLock
 
 import mujoco
 
+from ravemj.drawing import Drawings
 from ravemj.errors import Diagnostics, ErrorCode, RavemjError, send_warnings
 from ravemj.kinematics import BodyKinematics
 from ravemj.scene import KinBody, Scene, View
@@ -27,10 +28,12 @@ class Simulation:
         diagnostics: What the last translation to MJCF found.
         version: Grows by one with each compiled model.
         gravity: Acceleration of free fall in the world [m/s^2].
+        drawings: What scripts draw beside the bodies; needs no lock.
     """
 
     def __init__(self) -> None:
         self.lock = RLock()
+        self.drawings = Drawings()
         self.view = View()
         self.diagnostics = Diagnostics()
         self.version = 0

@@ -13,7 +13,10 @@ from ravemj.studio import Studio
 from ravemj.viewers.viewer import Viewer
 from ravemj.viewers.window import WindowViewer
 
-__all__ = ["Viewer", "WindowViewer", "has_display", "open_viewer"]
+__all__ = ["VIEWERS", "Viewer", "WindowViewer", "has_display", "open_viewer"]
+
+VIEWERS = ("window", "qtcoin", "qtosg", "qtogre", "offscreen")
+"""Names of viewers: ours, and those that OpenRAVE's scripts ask for."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -25,18 +28,22 @@ def has_display() -> bool:
     return sys.platform == "win32" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -> Viewer:
+def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -> Viewer | None:
     """Open the viewer that a name asks for.
 
     Args:
         simulation: What it shows.
         studio: What draws pictures of it.
-        name: ``offscreen``, or anything else (``window``, ``qtcoin``, ``qtosg``) for a window.
+        name: One of ``VIEWERS``: ``offscreen``, or another for a window.
         show: False for a viewer without a window.
 
     Returns:
-        A window where there is a display; else a viewer that draws when it is asked for pictures.
+        A window where there is a display; else a viewer that draws when it is asked for pictures. None, and an error in
+        the log, for an unknown name.
     """
+    if name not in VIEWERS:
+        _LOG.error("there is no viewer '%s'; the viewers are: %s", name, ", ".join(VIEWERS))
+        return None
     if show and name != "offscreen" and has_display():
         try:
             return WindowViewer(simulation, studio, name)

@@ -1,11 +1,22 @@
 """What every viewer can do, and the viewer without a window."""
 
+import weakref
+from typing import Any
+
+import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.rendering import Camera
+from ravemj.arrays import checked_vector
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.handles import Handle
+from ravemj.rendering import Camera, CameraIntrinsics, Pinhole
 from ravemj.simulation import Simulation
 from ravemj.studio import Format, Frame, Studio, checked_colour
 from ravemj.transforms import Floats
+from ravemj.viewers.callbacks import Callback, Callbacks
+
+_SIZE = 640, 480
+_FIGURES = "SetFiguresInCamera"
 
 
 class Viewer:
@@ -19,7 +30,12 @@ class Viewer:
         >>> viewer.SetBkgndColor([0.8, 0.85, 0.9])
         >>> viewer.SetCamera([[0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
         >>> frame = viewer.render(640, 480)
+
+    Attributes:
+        environment: What it was made for; OpenRAVE's scripts ask ``GetEnv``.
     """
+
+    environment: "weakref.ref[Any] | None" = None
 
     def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
         self._simulation = simulation
@@ -27,10 +43,161 @@ class Viewer:
         self._name = name
         self._camera = studio.file_camera() or studio.camera_from_above()
         self._background = simulation.view.background
+        self._title = name
+        self._size = _SIZE
+        self._focal_distance = 0.0
+        self._figures_in_camera = False
+        self._selection_callbacks = Callbacks()
+        self._thread_callbacks = Callbacks()
+        self._image_callbacks = Callbacks()
+
+    def GetEnv(self) -> Any:  # noqa: ANN401 - the API stands above viewers
+        """Return the environment that the viewer was made for."""
+        return None if self.environment is None else self.environment()
+
+    def GetXMLId(self) -> str:
+        """Return the name that ``SetViewer`` was given."""
+        return self._name
 
     def GetName(self) -> str:
-        """Return the name that the viewer was asked for by."""
-        return self._name
+        """Return the viewer's title: at first the name that ``SetViewer`` was given."""
+        return self._title
+
+    def SetName(self, title: str) -> None:
+        """Set the title; a window shows it.
+
+        Args:
+            title: The title.
+        """
+        self._title = str(title)
+
+    def SetTitle(self, title: str) -> None:
+        """Set the title, like ``SetName``.
+
+        Args:
+            title: The title.
+        """
+        self.SetName(title)
+
+    def SetSize(self, w: int, h: int) -> None:
+        """Set the size of the window, and of pictures that name none.
+
+        Args:
+            w: Columns [pixels].
+            h: Rows [pixels].
+
+        Raises:
+            ArgumentError: a size is not positive.
+        """
+        if w < 1 or h < 1:
+            raise ArgumentError(f"SetSize: is {w} x {h}, and should be at least 1 x 1 pixels")
+        self._size = int(w), int(h)
+
+    def Move(self, x: int, y: int) -> None:
+        """Move the window; nothing happens without one.
+
+        Args:
+            x: Where its left edge goes on the screen [pixels].
+            y: Where its upper edge goes on the screen [pixels].
+        """
+
+    def Show(self, showtype: int) -> None:
+        """Hide the window, or show it; nothing happens without one.
+
+        Args:
+            showtype: 0 hides it.
+        """
+
+    def main(self, bShow: bool = True) -> int:
+        """Wait until the window is closed or ``quitmainloop`` is called; without a window, return at once.
+
+        Args:
+            bShow: False hides the window.
+
+        Returns:
+            0.
+        """
+        del bShow
+        return 0
+
+    def quitmainloop(self) -> None:
+        """End ``main``; a window closes."""
+
+    def EnvironmentSync(self) -> None:
+        """Wait until the window shows the environment as it is now. Pictures always do."""
+
+    def RegisterItemSelectionCallback(self, callback: Callback) -> Handle:
+        """Have a function called when the user clicks on a link. It is kept, and not called yet: windows pick no links.
+
+        Args:
+            callback: The function; its arguments will be the link, a position and a direction.
+
+        Returns:
+            A handle; the function is forgotten when it is closed or dropped.
+
+        Raises:
+            ArgumentError: this cannot be called.
+        """
+        return self._selection_callbacks.add(callback)
+
+    def RegisterViewerThreadCallback(self, callback: Callback) -> Handle:
+        """Have a function called in the thread of the window, once for each turn of its loop.
+
+        Args:
+            callback: The function, without arguments.
+
+        Returns:
+            A handle; the function is forgotten when it is closed or dropped.
+
+        Raises:
+            ArgumentError: this cannot be called.
+        """
+        return self._thread_callbacks.add(callback)
+
+    def RegisterViewerImageCallback(self, callback: Callback) -> Handle:
+        """Have a function called with each picture of the window, in its own thread, and with those of ``render``.
+
+        Args:
+            callback: The function; its argument is the picture, (height, width, 3), uint8.
+
+        Returns:
+            A handle; the function is forgotten when it is closed or dropped.
+
+        Raises:
+            ArgumentError: this cannot be called.
+        """
+        return self._image_callbacks.add(callback)
+
+    def SupportsCommand(self, cmd: str) -> bool:
+        """Return whether ``SendCommand`` knows a command.
+
+        Args:
+            cmd: Its name.
+        """
+        return cmd == _FIGURES
+
+    def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str:
+        """Run one of OpenRAVE's commands by its text: ``SetFiguresInCamera 1``, and 0 to undo it.
+
+        Args:
+            cmd: Name and arguments. After ``SetFiguresInCamera 1`` drawings are in pictures of ``GetCameraImage``.
+            releasegil: Without meaning.
+            lockenv: Without meaning.
+
+        Returns:
+            What the command answers: nothing.
+
+        Raises:
+            openrave_exception: the command is not known (``CommandNotSupported``).
+        """
+        del releasegil, lockenv
+        name, *arguments = cmd.split() or [""]
+        if name != _FIGURES:
+            raise RavemjError(f"the viewer knows no command '{name}', only {_FIGURES}", ErrorCode.CommandNotSupported)
+        if arguments not in (["0"], ["1"]):
+            raise ArgumentError(f"{_FIGURES}: is followed by '{' '.join(arguments)}', and should be by 0 or 1")
+        self._figures_in_camera = arguments == ["1"]
+        return ""
 
     def SetCamera(self, transform: ArrayLike, focalDistance: float = 0.0) -> None:
         """Set the camera.
@@ -38,7 +205,8 @@ class Viewer:
         Args:
             transform: ``T_world_camera``, 4x4 or 3x4, or a pose [w, x, y, z, tx, ty, tz]. z looks forward, x is image
                 right, y is image down. ``GetCameraTransform`` returns the same numbers.
-            focalDistance: Distance [m] to the point that the mouse turns the camera about; it changes no picture.
+            focalDistance: Distance [m] to the point that the mouse turns the camera about; it changes no picture. 0
+                keeps the one before.
 
         Raises:
             ArgumentError: this is no rigid transform.
@@ -46,8 +214,9 @@ class Viewer:
         Example:
             >>> viewer.SetCamera(saved)  # what viewer.GetCameraTransform() printed
         """
-        del focalDistance
         self._camera = Camera.from_matrix(transform)
+        if focalDistance > 0:
+            self._focal_distance = float(focalDistance)
 
     def GetCameraTransform(self) -> Floats:
         """Return the camera's pose.
@@ -56,6 +225,44 @@ class Viewer:
             ``T_world_camera``, shape (4, 4): columns image right, image down, viewing direction, eye; a copy.
         """
         return self._camera.T_world_camera.copy()
+
+    def GetCameraDistanceToFocus(self) -> float:
+        """Return the ``focalDistance`` of ``SetCamera`` [m]; 0 before one was set."""
+        return self._focal_distance
+
+    def GetCameraIntrinsics(self) -> CameraIntrinsics:
+        """Return the camera matrix for the viewer's size: ``GetCameraIntrinsics().K``, (3, 3) [pixels]."""
+        fx, fy, cx, cy = self._camera.pinhole(*self._size)
+        return CameraIntrinsics(np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]))
+
+    def GetCameraImage(self, width: int, height: int, transform: ArrayLike, K: ArrayLike) -> Frame:
+        """Draw what a camera sees, anywhere; the viewer's own camera stays as it is.
+
+        Drawings are left out, as in OpenRAVE, until ``SendCommand('SetFiguresInCamera 1')``.
+
+        Args:
+            width: Columns [pixels]; 0: the viewer's.
+            height: Rows [pixels]; 0: the viewer's.
+            transform: ``T_world_camera``, 4x4 or 3x4, or a pose; z forward, x image right, y image down.
+            K: Focal lengths and principal point, [fx, fy, cx, cy] [pixels].
+
+        Returns:
+            The picture, shape (height, width, 3), uint8, top row first.
+
+        Raises:
+            ArgumentError: the transform is not rigid, or K is not four numbers with positive focal lengths.
+            RenderingError: nothing can draw here.
+
+        Example:
+            >>> T = viewer.GetCameraTransform()
+            >>> picture = viewer.GetCameraImage(640, 480, T, [640, 640, 320, 240])
+        """
+        fx, fy, cx, cy = checked_vector(K, 4, "K").tolist()
+        if fx <= 0 or fy <= 0:
+            raise ArgumentError(f"K: the focal lengths are {fx:g} and {fy:g}, and should be positive")
+        camera = Camera(Camera.from_matrix(transform).T_world_camera, calibration=Pinhole(fx, fy, cx, cy))
+        form = Format(width or self._size[0], height or self._size[1])
+        return self._studio.picture(camera, self._background, form, self._figures_in_camera)
 
     def SetBkgndColor(self, color: ArrayLike) -> None:
         """Set the colour behind everything.
@@ -78,12 +285,12 @@ class Viewer:
         """The colour behind everything: red, green, blue from 0 to 1."""
         return self._background
 
-    def render(self, width: int = 640, height: int = 480) -> Frame:
+    def render(self, width: int | None = None, height: int | None = None) -> Frame:
         """Draw what the viewer sees.
 
         Args:
-            width: Columns [pixels].
-            height: Rows [pixels].
+            width: Columns [pixels]; None: as ``SetSize`` says, at first 640.
+            height: Rows [pixels]; None: as ``SetSize`` says, at first 480.
 
         Returns:
             The picture, shape (height, width, 3), uint8, top row first.
@@ -91,7 +298,10 @@ class Viewer:
         Raises:
             RenderingError: nothing can draw here.
         """
-        return self._studio.picture(self._camera, self._background, Format(width, height))
+        form = Format(width or self._size[0], height or self._size[1])
+        picture = self._studio.picture(self._camera, self._background, form)
+        self._image_callbacks.call(picture)
+        return picture
 
     def close(self) -> None:
         """Close the viewer."""

@@ -2,6 +2,8 @@
 
 import atexit
 import threading
+from collections.abc import Callable
+from queue import SimpleQueue
 from typing import Any
 
 import mujoco
@@ -12,10 +14,15 @@ from ravemj.errors import RenderingError
 from ravemj.rendering import Camera, Quality, Stage
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
+from ravemj.viewers.callbacks import Callbacks
 from ravemj.viewers.viewer import Viewer
 
 _WIDTH, _HEIGHT = 960, 720
 _PERIOD = 1 / 60
+_LONGEST_SYNC = 1.0
+
+_Request = Callable[["_Window"], object]
+"""What other threads ask of a window: its methods belong to one thread."""
 
 
 class WindowViewer(Viewer):
@@ -23,6 +30,8 @@ class WindowViewer(Viewer):
 
     def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
         super().__init__(simulation, studio, name)
+        self._size = _WIDTH, _HEIGHT
+        self._requests: SimpleQueue[_Request] = SimpleQueue()
         self._closing = threading.Event()
         self._opened = threading.Event()
         self._failure = ""
@@ -44,6 +53,68 @@ class WindowViewer(Viewer):
         while self.is_open:
             self._thread.join(0.1)  # in slices, so that Ctrl-C gets through
 
+    def SetName(self, title: str) -> None:
+        """Set the title of the window.
+
+        Args:
+            title: The title.
+        """
+        super().SetName(title)
+        self._requests.put(lambda window: window.set_title(str(title)))
+
+    def SetSize(self, w: int, h: int) -> None:
+        """Set the size of the window.
+
+        Args:
+            w: Columns [pixels].
+            h: Rows [pixels].
+
+        Raises:
+            ArgumentError: a size is not positive.
+        """
+        super().SetSize(w, h)
+        self._requests.put(lambda window: window.resize(w, h))
+
+    def Move(self, x: int, y: int) -> None:
+        """Move the window.
+
+        Args:
+            x: Where its left edge goes on the screen [pixels].
+            y: Where its upper edge goes on the screen [pixels].
+        """
+        self._requests.put(lambda window: window.move(x, y))
+
+    def Show(self, showtype: int) -> None:
+        """Hide the window, or show it.
+
+        Args:
+            showtype: 0 hides it.
+        """
+        self._requests.put(lambda window: window.show_or_hide(bool(showtype)))
+
+    def main(self, bShow: bool = True) -> int:
+        """Wait until the user closes the window or ``quitmainloop`` is called.
+
+        Args:
+            bShow: False hides the window.
+
+        Returns:
+            0.
+        """
+        self.Show(int(bShow))
+        self.wait()
+        return 0
+
+    def quitmainloop(self) -> None:
+        """Close the window, which ends ``main``."""
+        self._closing.set()
+
+    def EnvironmentSync(self) -> None:
+        """Wait until the window shows the environment as it is now; at most a second, in which others may hold it."""
+        drawn = threading.Event()
+        self._requests.put(lambda _: self._requests.put(lambda _: drawn.set()))
+        drawn.wait(_LONGEST_SYNC)
+
     def close(self) -> None:
         """Close the window."""
         self._closing.set()
@@ -62,7 +133,11 @@ class WindowViewer(Viewer):
         self._opened.set()
         try:
             while not (self._closing.is_set() or window.is_closed):
-                window.show(self._simulation, self._camera, self._background)
+                for _ in range(self._requests.qsize()):
+                    self._requests.get()(window)
+                self._size = window.size
+                self._thread_callbacks.call()
+                window.show(self._simulation, self._camera, self._background, self._image_callbacks)
         finally:
             window.close()
 
@@ -83,24 +158,55 @@ class _Window:
         self._stage: Stage | None = None
         self._stage_version = 0
         self._shown: object = None
+        glfw.set_window_refresh_callback(self._window, self._forget_picture)
+
+    def _forget_picture(self, window: object) -> None:
+        """Have the window drawn again: what was in it is lost."""
+        del window
+        self._shown = None
 
     @property
     def is_closed(self) -> bool:
         return bool(self._glfw.window_should_close(self._window))
 
-    def show(self, simulation: Simulation, camera: Camera, background: tuple[float, float, float]) -> None:
+    @property
+    def size(self) -> tuple[int, int]:
+        width, height = self._glfw.get_window_size(self._window)
+        return max(width, 1), max(height, 1)
+
+    def set_title(self, title: str) -> None:
+        self._glfw.set_window_title(self._window, title)
+
+    def resize(self, width: int, height: int) -> None:
+        self._glfw.set_window_size(self._window, width, height)
+
+    def move(self, x: int, y: int) -> None:
+        self._glfw.set_window_pos(self._window, x, y)
+
+    def show_or_hide(self, shown: bool) -> None:
+        (self._glfw.show_window if shown else self._glfw.hide_window)(self._window)
+
+    def show(
+        self,
+        simulation: Simulation,
+        camera: Camera,
+        background: tuple[float, float, float],
+        on_picture: Callbacks,
+    ) -> None:
         """Draw a frame if anything has changed, then wait for at most a frame's time."""
         width, height = self._glfw.get_framebuffer_size(self._window)
         if width and height:
             with simulation.lock:
                 compiled = simulation.compile()
-                now = (simulation.version, compiled.data.qpos.tobytes(), camera, background, width, height)
+                shapes = simulation.drawings.shapes()
+                poses = compiled.data.geom_xpos.tobytes(), compiled.data.geom_xmat.tobytes()
+                now = (simulation.version, poses, camera, background, width, height, shapes)
                 changed = now != self._shown
                 if changed:
                     stage = self._prepared_stage(compiled.model, simulation.version)
-                    stage.fill(compiled.data, camera, width, height)
+                    stage.fill(compiled.data, camera, width, height, shapes)
             if changed:
-                self._draw(background, width, height)
+                self._draw(background, width, height, on_picture)
                 self._shown = now
         self._glfw.wait_events_timeout(_PERIOD)
 
@@ -112,12 +218,17 @@ class _Window:
             self._stage_version = version
         return self._stage
 
-    def _draw(self, background: ArrayLike, width: int, height: int) -> None:
+    def _draw(self, background: ArrayLike, width: int, height: int, on_picture: Callbacks) -> None:
         if self._stage is None:
             return
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_WINDOW.value, self._stage.context)
         colour = np.rint(np.multiply(background, 255)).astype(np.uint8)
-        self._stage.draw(mujoco.MjrRect(0, 0, width, height), colour)
+        viewport = mujoco.MjrRect(0, 0, width, height)
+        self._stage.draw(viewport, colour)
+        if on_picture:
+            pixels = np.empty((height, width, 3), dtype=np.uint8)
+            mujoco.mjr_readPixels(pixels, None, viewport, self._stage.context)
+            on_picture.call(pixels[::-1].copy())
         self._glfw.swap_buffers(self._window)
 
     def close(self) -> None:

@@ -1,116 +1,243 @@
-"""Velocities, derivatives and dynamics of a body."""
+"""Derivatives and dynamics of a body."""
 
-from types import EllipsisType
+from collections.abc import Mapping
+from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_indices, checked_vector
+from ravemj.arrays import checked_vector
 from ravemj.errors import ArgumentError
-from ravemj.rave.body.base import BodyPart
-from ravemj.rave.enums import CheckLimitsAction
+from ravemj.rave.body.many import Many
+from ravemj.rave.body.velocities import Velocities
 from ravemj.transforms import Floats
 
 
-class Motion(BodyPart):
-    """Velocities, Jacobians and inverse dynamics."""
+class Motion(Velocities, Many):
+    """Jacobians, Hessians and inverse dynamics."""
 
     def GetCenterOfMass(self) -> Floats:
         """Return the body's centre of mass in the world [m], shape (3,)."""
-        links = self._state.scene.links
-        masses = np.array([link.inertial.mass for link in links])
-        local = np.array([(*link.inertial.com, 1.0) for link in links])
+        inertias = self._state.inertias
         with self._simulation.lock:
             transforms = self._state.link_transforms()
-        return masses @ np.einsum("nij,nj->ni", transforms, local)[:, :3] / masses.sum()
+        coms = np.einsum("nij,nj->ni", transforms[:, :3, :3], inertias.coms) + transforms[:, :3, 3]
+        return inertias.masses @ coms / inertias.masses.sum()
 
-    def GetDOFVelocities(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the joint velocities.
-
-        Args:
-            indices: Which DOFs, in which order; left out: all.
+    def com_jacobian(self) -> Floats:
+        """Return how the body's centre of mass moves with the joint values.
 
         Returns:
-            Velocities [rad/s, for sliders m/s], shape (dof,); a copy.
+            Derivative of ``GetCenterOfMass()`` by the DOF values, shape (3, dof).
         """
-        velocities = self._state.dynamics.velocities.copy()
-        return velocities if indices is ... else velocities[checked_indices(indices, len(velocities))]
-
-    def SetDOFVelocities(
-        self,
-        dofvelocities: ArrayLike,
-        linear: "ArrayLike | int" = 0,
-        angular: "ArrayLike | None" = None,
-        checklimits: int = CheckLimitsAction.CheckLimits,
-    ) -> None:
-        """Set the joint velocities. Nothing moves by it; ``ComputeInverseDynamics`` uses them.
-
-        Args:
-            dofvelocities: Velocities [rad/s, for sliders m/s], shape (dof,).
-            linear: Velocity of the base [m/s], which has to be zero; as in OpenRAVE, a number here is ``checklimits``.
-            angular: Angular velocity of the base [rad/s], which has to be zero.
-            checklimits: What to do with values outside the velocity limits, a ``CheckLimitsAction``.
-
-        Raises:
-            ArgumentError: the number of velocities is wrong, one is infinite, or the base should move.
-        """
-        velocities = checked_vector(dofvelocities, self.GetDOF(), "SetDOFVelocities")
-        if angular is None:
-            checklimits = int(np.asarray(linear).reshape(-1)[0]) if np.ndim(linear) == 0 else checklimits
-        elif np.any(linear) or np.any(angular):
-            raise ArgumentError("SetDOFVelocities: the base cannot move here; give zeros")
-        if checklimits != CheckLimitsAction.Nothing:
-            limits = np.array([axis.max_velocity for axis in self._state.scene.dof_axes])
-            if checklimits == CheckLimitsAction.CheckLimitsThrow and np.any(np.abs(velocities) > limits):
-                raise ArgumentError(f"SetDOFVelocities: {velocities} are outside the limits {limits}")
-            velocities = np.clip(velocities, -limits, limits)
         with self._simulation.lock:
-            self._state.dynamics.velocities = velocities
+            return self._state.dynamics.com_jacobian(self._state.inertias)
 
-    def ComputeJacobianTranslation(self, linkindex: int, position: ArrayLike) -> Floats:
+    def ComputeJacobianTranslation(
+        self, linkindex: int, position: ArrayLike, dofindices: "ArrayLike | None" = None
+    ) -> Floats:
         """Return how a point of a link moves with the joint values.
 
         Args:
             linkindex: Index of the link.
             position: The point, in world coordinates [m], shape (3,).
+            dofindices: The columns, in this order; None and []: all. As in OpenRAVE, an index of no DOF gives zeros.
 
         Returns:
             Derivative of the point's position in the world by the DOF values, shape (3, dof).
-        """
-        return self._jacobian(linkindex, position)[0]
 
-    def ComputeJacobianAxisAngle(self, linkindex: int) -> Floats:
+        Raises:
+            ArgumentError: there is no such link, or the point is none.
+
+        Example:
+            >>> tip = robot.GetLink("Arm1").GetTransform()[0:3, 3]
+            >>> robot.ComputeJacobianTranslation(2, tip) @ robot.GetDOFVelocities()  # the tip's velocity
+        """
+        return _columns(self._jacobian(linkindex, position)[0], dofindices)
+
+    def ComputeJacobianAxisAngle(self, linkindex: int, dofindices: "ArrayLike | None" = None) -> Floats:
         """Return how a link turns with the joint values.
 
         Args:
             linkindex: Index of the link.
+            dofindices: The columns, as in ``ComputeJacobianTranslation``.
 
         Returns:
             Angular velocity of the link, in world axes, per unit of DOF velocity, shape (3, dof).
         """
-        return self._jacobian(linkindex, np.zeros(3))[1]
+        return _columns(self._jacobian(linkindex, np.zeros(3))[1], dofindices)
+
+    def CalculateJacobian(self, linkindex: int, position: ArrayLike) -> Floats:
+        """Return ``ComputeJacobianTranslation`` for all DOFs; its older name."""
+        return self.ComputeJacobianTranslation(linkindex, position)
+
+    def CalculateAngularVelocityJacobian(self, linkindex: int) -> Floats:
+        """Return ``ComputeJacobianAxisAngle`` for all DOFs; its older name."""
+        return self.ComputeJacobianAxisAngle(linkindex)
+
+    def CalculateRotationJacobian(self, linkindex: int, quat: ArrayLike) -> Floats:
+        """Return how a quaternion turns with a link.
+
+        Args:
+            linkindex: Index of the link.
+            quat: The quaternion [w, x, y, z]: the link's orientation, or that of anything fixed to it.
+
+        Returns:
+            Its derivative by the DOF values, shape (4, dof).
+        """
+        return quaternion_rates(quat) @ self.ComputeJacobianAxisAngle(linkindex)
+
+    def ComputeHessianTranslation(
+        self, linkindex: int, position: ArrayLike, dofindices: "ArrayLike | None" = None
+    ) -> Floats:
+        """Return the second derivatives of a link's point by the joint values.
+
+        Args:
+            linkindex: Index of the link.
+            position: The point, in world coordinates [m], shape (3,).
+            dofindices: Which DOFs, as in ``ComputeJacobianTranslation``.
+
+        Returns:
+            Shape (dof, 3, dof): ``[i, :, j]`` is the derivative by DOFs i and j. Twice contracted with the joint
+            velocities it is the part of the point's acceleration that the velocities make.
+        """
+        return _both_columns(self._hessian(linkindex, position)[0], dofindices)
+
+    def ComputeHessianAxisAngle(self, linkindex: int, dofindices: "ArrayLike | None" = None) -> Floats:
+        """Return the derivatives of a link's angular velocity, in OpenRAVE's symmetric form.
+
+        Args:
+            linkindex: Index of the link.
+            dofindices: Which DOFs, as in ``ComputeJacobianTranslation``.
+
+        Returns:
+            Shape (dof, 3, dof): ``[i, :, j]`` is the derivative of the Jacobian's column j by DOF i plus that of
+            column i by DOF j. Twice contracted with the joint velocities it is twice the part of the angular
+            acceleration that the velocities make.
+        """
+        derivatives = self._hessian(linkindex, np.zeros(3))[1]
+        return _both_columns(derivatives + derivatives.transpose(2, 1, 0), dofindices)
 
     def _jacobian(self, link: int, point: ArrayLike) -> tuple[Floats, Floats]:
+        checked = self._checked_link(link), checked_vector(point, 3, "position")
+        with self._simulation.lock:
+            return self._state.dynamics.jacobian(*checked)
+
+    def _hessian(self, link: int, point: ArrayLike) -> tuple[Floats, Floats]:
+        checked = self._checked_link(link), checked_vector(point, 3, "position")
+        with self._simulation.lock:
+            return self._state.dynamics.hessian(*checked)
+
+    def _checked_link(self, link: int) -> int:
         count = len(self._state.scene.links)
         if not 0 <= link < count:
             raise ArgumentError(f"linkindex is {link}, and should be from 0 to {count - 1}")
+        return link
+
+    def GetLinkAccelerations(
+        self, dofaccelerations: "ArrayLike | None", externalaccelerations: "Mapping[int, ArrayLike] | None" = None
+    ) -> Floats:
+        """Return how the links accelerate, at the present values and velocities. Gravity is not in it.
+
+        A link that no joint places goes on turning as it does: its origin accelerates by ``w x v``. Where OpenRAVE
+        errs, about joints that follow others, this is right.
+
+        Args:
+            dofaccelerations: Accelerations of the DOFs [rad/s^2, for sliders m/s^2], shape (dof,); None: none.
+            externalaccelerations: Further accelerations of the first link, and of others that no joint places: link
+                index to [linear, angular], six numbers in world axes.
+
+        Returns:
+            For each link the acceleration of its origin [m/s^2] and the angular one [rad/s^2], in world axes, shape
+            (links, 6).
+        """
+        accelerations = self._checked_accelerations(dofaccelerations, "GetLinkAccelerations")
+        pushes = self._checked_pushes(externalaccelerations, "externalaccelerations")
         with self._simulation.lock:
-            return self._state.dynamics.jacobian(link, checked_vector(point, 3, "position"))
+            return self._state.dynamics.link_accelerations(self._state.link_velocities(), accelerations, pushes)
 
-    def ComputeInverseDynamics(self, dofaccelerations: "ArrayLike | None") -> Floats:
-        """Return the joint torques that accelerate the body as wanted, with its base at rest.
+    @overload
+    def ComputeInverseDynamics(
+        self,
+        dofaccelerations: "ArrayLike | None",
+        externalforcetorque: "Mapping[int, ArrayLike] | None" = None,
+        returncomponents: Literal[False] = False,
+    ) -> Floats: ...
+    @overload
+    def ComputeInverseDynamics(
+        self,
+        dofaccelerations: "ArrayLike | None",
+        externalforcetorque: "Mapping[int, ArrayLike] | None" = None,
+        *,
+        returncomponents: Literal[True],
+    ) -> tuple[Floats, Floats, Floats]: ...
+    @overload
+    def ComputeInverseDynamics(
+        self,
+        dofaccelerations: "ArrayLike | None",
+        externalforcetorque: "Mapping[int, ArrayLike] | None",
+        returncomponents: Literal[True],
+    ) -> tuple[Floats, Floats, Floats]: ...
+    def ComputeInverseDynamics(
+        self,
+        dofaccelerations: "ArrayLike | None",
+        externalforcetorque: "Mapping[int, ArrayLike] | None" = None,
+        returncomponents: bool = False,
+    ) -> Floats | tuple[Floats, Floats, Floats]:
+        """Return the joint torques that accelerate the body as wanted.
 
-        At the present values and velocities, against the environment's gravity. Sliders give forces, and joints that
-        others follow carry these too: where OpenRAVE errs about both, this is right.
+        At the present values and velocities, that of the base included, and against the environment's gravity. OpenRAVE
+        divides the forces of sliders by 2 pi, leaves out part of what joints carry that others follow, and refuses
+        spherical joints; this is right about all of them.
 
         Args:
             dofaccelerations: Accelerations [rad/s^2, for sliders m/s^2], shape (dof,); None: none.
+            externalforcetorque: What acts on links besides: link index to [force, torque], six numbers [N, N m] in
+                world axes, at the link's centre of mass. As in OpenRAVE it is added like the weight of a mass: to hold
+                against a push, give it with the opposite sign.
+            returncomponents: Whether to return the parts.
 
         Returns:
-            Torques [N m, for sliders N], shape (dof,).
+            Torques [N m, for sliders N], shape (dof,). In parts they are three such arrays, which add up to the whole:
+            of the accelerations (``M qdd``), of the joint velocities (Coriolis and centrifugal forces), and of gravity,
+            external forces and the velocity of the base.
+
+        Example:
+            >>> robot.ComputeInverseDynamics([0, 0])  # torques that hold the robot against gravity
+            >>> inertia, coriolis, gravity = robot.ComputeInverseDynamics([1, 0], None, True)
         """
-        dof = self.GetDOF()
-        wanted = np.zeros(dof) if dofaccelerations is None else dofaccelerations
-        accelerations = checked_vector(wanted, dof, "ComputeInverseDynamics")
+        accelerations = self._checked_accelerations(dofaccelerations, "ComputeInverseDynamics")
+        pushes = self._checked_pushes(externalforcetorque, "externalforcetorque")
         with self._simulation.lock:
-            return self._state.dynamics.inverse(accelerations)
+            state = self._state
+            given = state.link_velocities(), accelerations, state.inertias, pushes
+            return state.dynamics.inverse_components(*given) if returncomponents else state.dynamics.inverse(*given)
+
+    def _checked_accelerations(self, accelerations: "ArrayLike | None", name: str) -> Floats:
+        dof = self.GetDOF()
+        return np.zeros(dof) if accelerations is None else checked_vector(accelerations, dof, name)
+
+    def _checked_pushes(self, pushes: "Mapping[int, ArrayLike] | None", name: str) -> dict[int, Floats]:
+        return {self._checked_link(link): checked_vector(push, 6, name) for link, push in (pushes or {}).items()}
+
+
+def quaternion_rates(quat: ArrayLike) -> Floats:
+    """Return the derivative of a quaternion [w, x, y, z] by the angular velocity in world axes, shape (4, 3)."""
+    w, x, y, z = checked_vector(quat, 4, "quat").tolist()
+    return np.array([[-x, -y, -z], [w, z, -y], [-z, w, x], [y, -x, w]]) / 2
+
+
+def _columns(jacobian: Floats, dofindices: "ArrayLike | None") -> Floats:
+    """Return columns of a Jacobian, along the last axis; zeros for an index of no DOF."""
+    chosen = np.array([] if dofindices is None else dofindices, dtype=np.int_).reshape(-1)
+    if not chosen.size:
+        return jacobian
+    count = jacobian.shape[-1]
+    known = (chosen >= 0) & (chosen < count)
+    columns = np.zeros((*jacobian.shape[:-1], len(chosen)))
+    columns[..., known] = jacobian[..., chosen[known]]
+    return columns
+
+
+def _both_columns(hessian: Floats, dofindices: "ArrayLike | None") -> Floats:
+    return _columns(_columns(hessian, dofindices).T, dofindices).T

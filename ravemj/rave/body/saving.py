@@ -54,6 +54,9 @@ class Saving(Placement):
         if options & SaveParameters.LinkTransformation:
             saved = state.configuration()
             found.append(lambda body: body.simulation_state.restore(saved))
+        if options & SaveParameters.LinkVelocities:
+            velocities = state.link_velocities()
+            found.append(lambda body: body.simulation_state.set_link_velocities(velocities))
         if options & SaveParameters.LinkEnable:
             enabled = list(state.link_enabled)
             found.append(lambda body: setattr(body.simulation_state, "link_enabled", list(enabled)))

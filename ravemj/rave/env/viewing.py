@@ -1,5 +1,8 @@
 """Viewers and pictures."""
 
+import os
+import weakref
+
 from numpy.typing import ArrayLike
 
 from ravemj.rave.env.base import EnvironmentPart
@@ -26,7 +29,8 @@ class Viewing(EnvironmentPart):
             showviewer: False: never a window.
 
         Returns:
-            True if there is a viewer now.
+            False for ``''``. True for every other name, as in OpenRAVE; a name that nobody knows is logged as an error,
+            and ``GetViewer`` returns None then.
 
         Example:
             >>> env.SetViewer("qtcoin")
@@ -37,13 +41,40 @@ class Viewing(EnvironmentPart):
         if self._viewer is not None:
             self._viewer.close()
             self._viewer = None
+            self._simulation.drawings.clear()
         if viewername:
             self._viewer = open_viewer(self._simulation, self._studio, viewername, showviewer)
-        return self._viewer is not None
+        if self._viewer is not None:
+            self._viewer.environment = weakref.ref(self)
+        return bool(viewername)
 
-    def GetViewer(self) -> Viewer | None:
-        """Return the viewer, or None before ``SetViewer``."""
-        return self._viewer
+    def SetDefaultViewer(self, showviewer: bool = True) -> bool:
+        """Attach the viewer that the environment variable ``OPENRAVE_DEFAULT_VIEWER`` names, else a window.
+
+        Args:
+            showviewer: False: never a window.
+
+        Returns:
+            What ``SetViewer`` returns.
+        """
+        return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "window", showviewer)
+
+    def GetViewer(self, name: str | None = None) -> Viewer | None:
+        """Return the viewer, or None where there is none.
+
+        Args:
+            name: None or empty, or the name that ``SetViewer`` was given: None is returned for any other.
+        """
+        viewer = self._viewer
+        return viewer if viewer is None or not name or name == viewer.GetXMLId() else None
+
+    def UpdatePublishedBodies(self, timeout: float = 0.0) -> None:
+        """Do nothing: viewers show every change at once. OpenRAVE's publish the state of the bodies here.
+
+        Args:
+            timeout: Without meaning.
+        """
+        del timeout
 
     def render(
         self,

@@ -221,4 +221,4 @@ def _parts(file: scene.MeshFile) -> tuple[MeshPart, ...]:
     path = find(file.name)
     if path is None:
         raise SourceError("there is no such file", Source(file.name), "check the path, or set OPENRAVE_DATA")
-    return tuple(part.scaled(file.scale) for part in read_mesh(path))
+    return read_mesh(path, file.scale)

@@ -1,0 +1,235 @@
+"""Draw calls."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj import drawing
+from ravemj.arrays import checked_numbers, checked_transform, checked_vector
+from ravemj.drawing import Shapes
+from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.graph_handle import GraphHandle
+from ravemj.transforms import Floats, Ints
+
+_DEFAULT_COLOR = (1.0, 0.5, 0.5, 1.0)
+
+
+class Drawing(EnvironmentPart):
+    """Draws what is no body: points, lines, arrows, boxes, planes and triangles.
+
+    Colours are red, green and blue from 0 to 1, and alpha if there is a fourth number; where nothing is given they are
+    OpenRAVE's pink (1, 0.5, 0.5). Without a viewer all calls check their arguments and return None, as in OpenRAVE;
+    ``env.SetViewer('offscreen')`` is enough for drawings to be in ``env.render()`` and in videos.
+    """
+
+    def _draw(self, shapes: Shapes) -> GraphHandle | None:
+        return None if self._viewer is None else GraphHandle(self._simulation.drawings, shapes)
+
+    def plot3(
+        self, points: ArrayLike, pointsize: float, colors: ArrayLike | None = None, drawstyle: int = 0
+    ) -> GraphHandle | None:
+        """Draw points.
+
+        Args:
+            points: One point (3,), or (N, 3), or a flat list of 3 N numbers, in the world [m].
+            pointsize: Width on the screen [pixels]; with ``drawstyle=1`` the radius [m].
+            colors: One colour for all, or one for each point: (3,), (4,), (N, 3) or (N, 4).
+            drawstyle: 0 for points of constant size on the screen, 1 for spheres.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: there are no points, or a shape or a number is wrong.
+
+        Example:
+            >>> handle = env.plot3([[0, 0, 1], [0, 0.1, 1]], 6, [[1, 0, 0], [0, 0, 1]])
+            >>> balls = env.plot3([0, 0, 1], 0.02, drawstyle=1)
+        """
+        positions = _checked_points(points)
+        rgba = _checked_colors(colors, len(positions))
+        size = _checked_size(pointsize, "pointsize")
+        if drawstyle not in (0, 1):
+            raise ArgumentError(f"drawstyle: is {drawstyle!r}, and should be 0 or 1")
+        return self._draw((drawing.spheres if drawstyle else drawing.points)(positions, size, rgba))
+
+    def drawlinestrip(
+        self, points: ArrayLike, linewidth: float, colors: ArrayLike | None = None, drawstyle: int = 0
+    ) -> GraphHandle | None:
+        """Draw a line from point to point.
+
+        Args:
+            points: (N, 3) or a flat list, in the world [m].
+            linewidth: Width on the screen [pixels].
+            colors: One colour, or one for each point, which run into each other.
+            drawstyle: Without meaning, as in OpenRAVE.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: there are no points, or a shape or a number is wrong.
+        """
+        del drawstyle
+        positions = _checked_points(points)
+        rgba = _checked_colors(colors, len(positions))
+        return self._draw(drawing.line_strip(positions, _checked_size(linewidth, "linewidth"), rgba))
+
+    def drawlinelist(
+        self, points: ArrayLike, linewidth: float, colors: ArrayLike | None = None, drawstyle: int = 0
+    ) -> GraphHandle | None:
+        """Draw a line between the first two points, one between the next two, and so on.
+
+        Args:
+            points: (N, 3) or a flat list, in the world [m]; a last point that is alone draws nothing.
+            linewidth: Width on the screen [pixels].
+            colors: One colour, or one for each point, which run into each other.
+            drawstyle: Without meaning, as in OpenRAVE.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: there are no points, or a shape or a number is wrong.
+        """
+        del drawstyle
+        positions = _checked_points(points)
+        rgba = _checked_colors(colors, len(positions))
+        return self._draw(drawing.line_list(positions, _checked_size(linewidth, "linewidth"), rgba))
+
+    def drawarrow(
+        self, p1: ArrayLike, p2: ArrayLike, linewidth: float = 0.002, color: ArrayLike | None = None
+    ) -> GraphHandle | None:
+        """Draw an arrow.
+
+        Args:
+            p1: Where it starts, (3,) [m].
+            p2: Where its tip is, (3,) [m].
+            linewidth: Radius of the shaft [m].
+            color: One colour.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: a shape or a number is wrong.
+
+        Example:
+            >>> force = env.drawarrow([0, 0, 0], [0, 0, 0.5], linewidth=0.01, color=[1, 0, 0])
+        """
+        start, end = checked_vector(p1, 3, "p1"), checked_vector(p2, 3, "p2")
+        rgba = _checked_colors(color, 1)[0]
+        return self._draw(drawing.arrow(start, end, _checked_size(linewidth, "linewidth"), rgba))
+
+    def drawbox(self, pos: ArrayLike, extents: ArrayLike, color: ArrayLike | None = None) -> GraphHandle | None:
+        """Draw a box along the axes of the world.
+
+        Args:
+            pos: Centre, (3,) [m].
+            extents: Half of its sides, (3,) [m].
+            color: One colour.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer. ``SetTransform`` turns it.
+
+        Raises:
+            ArgumentError: a shape or a number is wrong.
+        """
+        center, half = checked_vector(pos, 3, "pos"), checked_vector(extents, 3, "extents")
+        return self._draw(drawing.box(center, half, _checked_colors(color, 1)[0]))
+
+    def drawplane(self, transform: ArrayLike, extents: ArrayLike, texture: ArrayLike) -> GraphHandle | None:
+        """Draw an image on a rectangle, in at most 64 x 64 cells of one colour.
+
+        Args:
+            transform: Frame of the rectangle, which lies in its plane of x and y around its origin: 4x4, 3x4 or a pose.
+            extents: Half of its sides along x and y, (2,) [m]; a third number means nothing.
+            texture: Image (H, W), (H, W, 1), (H, W, 3) or (H, W, 4): integers up to 255, or floats from 0 to 1. Columns
+                run along x and rows along y.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: a shape or a number is wrong.
+        """
+        frame = checked_transform(transform, "transform")
+        sides = checked_numbers(extents, "extents")
+        half = checked_vector(sides[:2] if sides.shape == (3,) else sides, 2, "extents")
+        return self._draw(drawing.plane(frame, half, _checked_texture(texture)))
+
+    def drawtrimesh(
+        self, points: ArrayLike, indices: ArrayLike | None = None, colors: ArrayLike | None = None
+    ) -> GraphHandle | None:
+        """Draw triangles; both of their sides show.
+
+        Args:
+            points: Corners, (N, 3) or a flat list, in the world [m].
+            indices: Three corners for each triangle, (M, 3) or a flat list of integers; None: corners 0, 1, 2, then
+                3, 4, 5, and so on.
+            colors: One colour, or one for each corner: (3,), (4,), (N, 3) or (N, 4).
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+
+        Raises:
+            ArgumentError: there are no points, a shape or a number is wrong, or an index has no point.
+        """
+        corners = _checked_points(points)
+        rgba = _checked_colors(colors, len(corners))
+        return self._draw(drawing.mesh(corners, _checked_triangles(indices, len(corners)), rgba))
+
+
+def _checked_points(points: ArrayLike) -> Floats:
+    numbers = checked_numbers(points, "points")
+    if numbers.size == 0 or numbers.ndim > 2 or numbers.shape[-1] % 3 or (numbers.ndim == 2 and numbers.shape[1] != 3):
+        raise ArgumentError(f"points: has shape {numbers.shape}, and should have shape (3,) or (N, 3), and N > 0")
+    if not np.isfinite(numbers).all():
+        raise ArgumentError("points: should be finite numbers")
+    return numbers.reshape(-1, 3)
+
+
+def _checked_colors(colors: ArrayLike | None, count: int) -> Floats:
+    """Return as many colours with alpha, (count, 4)."""
+    numbers = np.atleast_2d(checked_numbers(_DEFAULT_COLOR if colors is None else colors, "colors"))
+    if numbers.ndim > 2 or numbers.shape[1] not in (3, 4) or len(numbers) not in (1, count):
+        message = f"colors: has shape {numbers.shape}, and should be one colour or {count}, of 3 or 4 numbers each"
+        raise ArgumentError(message, ErrorCode.Failed)
+    if not np.isfinite(numbers).all():
+        raise ArgumentError("colors: should be finite numbers")
+    rgba = np.ones((count, 4))
+    rgba[:, : numbers.shape[1]] = np.clip(numbers, 0, 1)
+    return rgba
+
+
+def _checked_size(size: float, name: str) -> float:
+    (number,) = checked_vector(size, 1, name)
+    if number < 0:
+        raise ArgumentError(f"{name}: is {number:g}, and should not be negative")
+    return float(number)
+
+
+def _checked_triangles(indices: ArrayLike | None, count: int) -> Ints:
+    if indices is None:
+        return np.arange(count // 3 * 3).reshape(-1, 3)
+    numbers = checked_numbers(indices, "indices")
+    if numbers.ndim > 2 or numbers.shape[-1] % 3 or (numbers.ndim == 2 and numbers.shape[1] != 3):
+        raise ArgumentError(f"indices: has shape {numbers.shape}, and should have shape (M, 3)")
+    if not np.isin(numbers, np.arange(count)).all():
+        raise ArgumentError(f"indices: should be integers from 0 to {count - 1}")
+    return numbers.astype(np.int_).reshape(-1, 3)
+
+
+def _checked_texture(texture: ArrayLike) -> Floats:
+    """Return an image as colours with alpha, (H, W, 4) in 0..1."""
+    numbers = checked_numbers(texture, "texture")
+    if np.issubdtype(np.asarray(texture).dtype, np.integer):
+        numbers /= 255
+    image = numbers[:, :, None] if numbers.ndim == 2 else numbers
+    if image.ndim != 3 or image.size == 0 or image.shape[2] not in (1, 3, 4) or not np.isfinite(image).all():
+        raise ArgumentError(f"texture: has shape {numbers.shape}, and should be an image (H, W, 3) or (H, W, 4)")
+    rgba = np.ones((*image.shape[:2], 4))
+    rgba[:, :, :3] = image[:, :, :3]
+    if image.shape[2] == 4:
+        rgba[:, :, 3] = image[:, :, 3]
+    return np.clip(rgba, 0, 1)

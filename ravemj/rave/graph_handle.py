@@ -1,0 +1,41 @@
+"""What draw calls return."""
+
+from numpy.typing import ArrayLike
+
+from ravemj.arrays import checked_transform
+from ravemj.drawing import Drawings, Shapes
+from ravemj.handles import Handle
+
+
+class GraphHandle(Handle):
+    """A drawing; it vanishes with the last reference to its handle, so keep the handle for as long as it should show.
+
+    Example:
+        >>> handle = env.plot3([0, 0, 1], 8)
+        >>> handle.SetShow(False)
+        >>> handle = None  # gone
+    """
+
+    def __init__(self, drawings: Drawings, shapes: Shapes) -> None:
+        key, self._drawing = drawings.add(shapes)
+        super().__init__(drawings.remove, key)
+
+    def SetTransform(self, transform: ArrayLike) -> None:
+        """Place the drawing.
+
+        Args:
+            transform: ``T_world_drawing``, where the frame goes in which the drawing was made: 4x4 or 3x4, or a pose
+                [w, x, y, z, tx, ty, tz]. Every call starts from what was drawn first.
+
+        Raises:
+            ArgumentError: this is no rigid transform.
+        """
+        self._drawing.place(checked_transform(transform, "SetTransform: transform"))
+
+    def SetShow(self, show: bool) -> None:
+        """Show the drawing, or hide it for a while.
+
+        Args:
+            show: False hides it.
+        """
+        self._drawing.show(bool(show))
