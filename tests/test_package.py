@@ -32,6 +32,7 @@ LEVELS: list[set[str]] = [
     {"geometry_functions", "scene", "video"},
     {
         "adjacency",
+        "bounds",
         "following",
         "hierarchy",
         "inertia",
@@ -47,7 +48,7 @@ LEVELS: list[set[str]] = [
     {"coverage", "dynamics", "placement", "readers", "rendering", "trajectories"},
     {"batch"},
     {"simulation"},
-    {"export", "studio"},
+    {"collision", "export", "studio"},
     {"viewers"},
     {"extension", "rave"},
     {"checking", "databases", "interfaces", "misc", "openravepy_int", "planningutils", "recording"},
@@ -59,7 +60,7 @@ LEVELS: list[set[str]] = [
 ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
-    "adjacency", "alias", "arrays", "builder", "chains", "coverage", "drawing", "errors", "expressions",
+    "adjacency", "alias", "arrays", "bounds", "builder", "chains", "coverage", "drawing", "errors", "expressions",
     "fingerprints", "following", "geometry_functions", "handles", "hierarchy", "inertia", "joints", "making",
     "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "ordering", "output", "readers", "scene",
     "tessellation", "trajectories", "transforms", "video",

@@ -7,8 +7,10 @@ objects is ravemj's own.
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.body.grabbing import GrabbedInfo
 from ravemj.rave.body.saving import StateSaver
+from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
 from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
 from ravemj.rave.enums import (
+    AdjacentOptions,
     CheckLimitsAction,
     CloningOptions,
     CollisionAction,
@@ -85,6 +87,7 @@ from ravemj.rave.plugins import (
     RaveCreateViewer,
     RaveGetLoadedInterfaces,
 )
+from ravemj.rave.report import CollisionReport
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
 from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
@@ -96,13 +99,17 @@ KinBodyStateSaver = RobotStateSaver = StateSaver
 OpenRAVEException = openrave_exception = RavemjError
 
 __all__ = [
+    "AdjacentOptions",
     "AttachedSensor",
     "CameraGeomData",
     "CameraIntrinsics",
     "CheckLimitsAction",
     "CloningOptions",
     "CollisionAction",
+    "CollisionChecker",
     "CollisionOptions",
+    "CollisionOptionsStateSaver",
+    "CollisionReport",
     "ConfigurationSpecification",
     "DebugLevel",
     "ElectricMotorActuatorInfo",
@@ -131,6 +138,7 @@ __all__ = [
     "PlannerStatus",
     "PlannerStatusCode",
     "PlanningError",
+    "RaveCreateCollisionChecker",
     "RaveCreateIkSolver",
     "RaveCreateKinBody",
     "RaveCreateModule",

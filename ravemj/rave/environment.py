@@ -8,6 +8,7 @@ import mujoco
 
 from ravemj.errors import SourceError
 from ravemj.rave.env.cloning import Cloning
+from ravemj.rave.env.collision import Collision
 from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.locking import Locking
@@ -20,7 +21,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Cloning, Drawing, Loading, Locking, Meshing, Viewing):
+class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Viewing):
     """A world with robots and other bodies.
 
     Example:

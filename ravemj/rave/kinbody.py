@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from ravemj.rave.body.building import Building
+from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.body.grabbing import Grabbing
 from ravemj.rave.body.graph import Graph
 from ravemj.rave.body.limits import Limits
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class KinBody(Saving, Configured, Grabbing, Limits, Graph, Substance, Motion, Building):
+class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substance, Motion, Building):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ravemj.collision.questions import moved_links
 from ravemj.geometry_functions import DOFAffine
 from ravemj.rave.body.active import ActiveChoice
 from ravemj.rave.body.active_motion import ActiveMotion
@@ -101,6 +102,12 @@ class Robot(ActiveMotion, Manipulators, RobotBuilding, KinBody):  # pyright: ign
         for tool, transform in [(tool.GetName(), tool.GetLocalToolTransform()) for tool in tools]:
             found.append(lambda body, tool=tool, transform=transform: _set_tool(body, tool, transform))
         return found
+
+    def active_links(self) -> frozenset[int] | None:
+        """Return the indices of the links that the active DOFs move; None: all."""
+        return (
+            None if self.active_choice.affine else moved_links(self._state.scene, self.GetActiveDOFIndices().tolist())
+        )
 
     def GetAttachedSensors(self) -> list[AttachedSensor]:
         """Return the sensors on the robot's links, in the order of the file."""
