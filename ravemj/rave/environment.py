@@ -13,6 +13,7 @@ from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.locking import Locking
 from ravemj.rave.env.meshing import Meshing
+from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
 from ravemj.readers import read_file
 from ravemj.simulation import Simulation
@@ -21,7 +22,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Viewing):
+class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Running, Viewing):
     """A world with robots and other bodies.
 
     Example:
@@ -54,7 +55,8 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Viewin
         self._simulation.clear()
 
     def Destroy(self) -> None:
-        """Close the viewer and remove all bodies; nothing can be added afterwards. A second time does nothing."""
+        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm."""
+        self.StopSimulation()
         self.SetViewer("")
         self.Reset()
         self._studio.close()

@@ -173,6 +173,7 @@ class Simulation:
             self.diagnostics = Diagnostics()
             scene = Scene(tuple(body.scene for body in self.bodies), self.view)
             compiled = Compiled(scene, self.diagnostics)
+            compiled.write_true_inertias(scene)
             compiled.model.opt.gravity[:] = self.gravity
             for body, names in zip(self.bodies, compiled.mjcf.names, strict=True):
                 body.enter_model(BodyKinematics(compiled.model, compiled.data, body.scene, names))
