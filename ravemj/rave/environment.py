@@ -15,6 +15,7 @@ from ravemj.rave.env.locking import Locking
 from ravemj.rave.env.meshing import Meshing
 from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
+from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
 from ravemj.readers import read_file
 from ravemj.simulation import Simulation
 
@@ -49,6 +50,14 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Runnin
     def GetId(self) -> int:
         """Return the environment's number, as ``repr(env)`` shows it."""
         return self._number
+
+    def SetDebugLevel(self, level: int) -> None:
+        """Set how much is logged, for all environments; see ``RaveSetDebugLevel``."""
+        RaveSetDebugLevel(level)
+
+    def GetDebugLevel(self) -> int:
+        """Return how much is logged, a ``DebugLevel``."""
+        return RaveGetDebugLevel()
 
     def Reset(self) -> None:
         """Remove all bodies."""

@@ -113,13 +113,15 @@ class Simulation:
         """Give a body another name.
 
         Raises:
-            RavemjError: another body has the name, or it is empty.
+            RavemjError: the name is empty, or both bodies are in the world and another one has it.
         """
         with self.lock:
-            self.check_name(body, name)
             if self.holds(body):
+                self.check_name(body, name)
                 del self._by_name[body.scene.name]
                 self._by_name[name] = body
+            elif not name:
+                raise RavemjError("a body's name should not be empty", ErrorCode.Assert)
             body.edit(name=name)
 
     def check_name(self, body: BodyState, name: str) -> None:
