@@ -19,6 +19,7 @@ Wxyz = tuple[float, float, float, float]
 Rows = tuple[Vec3, Vec3, Vec3]
 
 ZERO: Vec3 = (0.0, 0.0, 0.0)
+UNSCALED: Vec3 = (1.0, 1.0, 1.0)
 UNIT_WXYZ: Wxyz = (1.0, 0.0, 0.0, 0.0)
 
 

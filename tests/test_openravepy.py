@@ -3,13 +3,14 @@
 import builtins
 import logging
 import sys
+import weakref
 
 import numpy as np
 import pytest
 
 import ravemj
 from ravemj import alias
-from ravemj.rave import creation, library
+from ravemj.rave import environment, library, plugins
 
 
 @pytest.fixture
@@ -24,6 +25,12 @@ def openravepy(monkeypatch):
     for name in set(sys.modules) - known:
         if name.partition(".")[0] == "openravepy":
             del sys.modules[name]
+
+
+@pytest.fixture(autouse=True)
+def _environments(monkeypatch):
+    """Keep those of other tests from being destroyed."""
+    monkeypatch.setattr(environment, "_environments", weakref.WeakValueDictionary())
 
 
 @pytest.fixture(autouse=True)
@@ -144,7 +151,7 @@ def test_native_plugins_and_unknown_things_fail_softly(env, caplog):
 
 @pytest.mark.parametrize(
     ("kind", "name", "capability"),
-    [(kind, name, capability) for kind, names in creation.MISSING.items() for name, capability in names.items()],
+    [(kind, name, capability) for kind, names in plugins.MISSING.items() for name, capability in names.items()],
 )
 def test_openraves_own_plugins_say_what_is_missing(env, kind, name, capability):
     create = {

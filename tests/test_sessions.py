@@ -138,8 +138,8 @@ def test_shell_has_env_robot_and_viewer(folder):
 def test_shell_completes_at_a_real_prompt(folder):
     terminal = on_terminal(folder, "-m", "ravemj", "shell", "env.xml", simple=False, PROMPT_TOOLKIT_NO_CPR="1")
     terminal.expect("In .*1.*: ")
-    terminal.send("viewer.\t")
-    for name in ("GetCameraTransform", "SetCamera"):
+    terminal.send("viewer.Set\t")
+    for name in ("SetBkgndColor", "SetCamera"):
         terminal.expect(name)
     terminal.send("\x15exit\r")
     assert finish(terminal)[1] == 0

@@ -3,15 +3,12 @@
 import functools
 import os
 from collections.abc import Callable, Collection, Mapping, Set
-from dataclasses import replace
 from typing import TypeVar
 
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.meshes import MeshPart
 from ravemj.openrave_xml.tree import Element, parse_file
-from ravemj.openrave_xml.values import UNSCALED
-from ravemj.scene import Mesh
-from ravemj.transforms import Vec3
+from ravemj.transforms import UNSCALED, Vec3
 
 Target = TypeVar("Target")
 
@@ -19,6 +16,8 @@ IGNORED = "OpenRAVE reads it and makes nothing of it"
 MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
 COLLADA_SUFFIXES = (".dae", ".zae")
+_LONGEST_NAME = 80
+"""No known name is anywhere near as long."""
 NO_EFFECT_HERE = "it has no effect on the model"
 
 
@@ -171,31 +170,23 @@ class Context:
         The parts are the same objects at every use with the same scale.
         """
         path = self.find(name, source, *folders)
-        return () if path is None else self._parts(path, source, scale)
-
-    def _parts(self, path: str, source: Source, scale: Vec3) -> tuple[MeshPart, ...]:
+        if path is None:
+            return ()
         parts = self._meshes.get((path, scale))
         if parts is None:
-            if scale == UNSCALED:
-                parts = self._read_mesh(path, source)
-            else:
-                parts = tuple(_scaled(part, scale) for part in self._parts(path, source, UNSCALED))
-            self._meshes[path, scale] = parts
+            parts = self._meshes[path, scale] = self._read_mesh(path, source, scale)
         return parts
 
-    def _read_mesh(self, path: str, source: Source) -> tuple[MeshPart, ...]:
-        self.files.append(path)
+    def _read_mesh(self, path: str, source: Source, scale: Vec3) -> tuple[MeshPart, ...]:
+        if path not in self.files:
+            self.files.append(path)
         from ravemj.meshes.reading import read_mesh  # noqa: PLC0415 - most models have no meshes
 
         try:
-            return read_mesh(path)
+            return read_mesh(path, scale)
         except SourceError as error:
             self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
             return ()
-
-
-def _scaled(part: MeshPart, scale: Vec3) -> MeshPart:
-    return replace(part, mesh=Mesh(part.mesh.vertices * scale, part.mesh.triangles))
 
 
 def _is_same_file(first: str, second: str) -> bool:
@@ -225,7 +216,7 @@ def _belongs(element: Element) -> str:
 
 def did_you_mean(name: str, known: Collection[str]) -> str:
     """Return a hint with the known name that looks most like the one given, or nothing."""
-    return _closest(name, tuple(known))
+    return _closest(name, tuple(known)) if len(name) < _LONGEST_NAME else ""
 
 
 @functools.lru_cache(maxsize=1000)  # slow, and who spells a tag wrongly does so many times

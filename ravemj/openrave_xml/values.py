@@ -10,6 +10,7 @@ from ravemj.openrave_xml.tree import Element
 from ravemj.transforms import (
     UNIT_WXYZ,
     UNMOVED,
+    UNSCALED,
     ZERO,
     Pose,
     Vec3,
@@ -20,8 +21,6 @@ from ravemj.transforms import (
     wxyz_from_axis_angle,
     wxyz_from_rows,
 )
-
-UNSCALED: Vec3 = (1.0, 1.0, 1.0)
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))")
 

@@ -7,16 +7,7 @@ objects is ravemj's own.
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.body.grabbing import GrabbedInfo
 from ravemj.rave.body.saving import StateSaver
-from ravemj.rave.creation import (
-    RaveCreateIkSolver,
-    RaveCreateModule,
-    RaveCreatePlanner,
-    RaveCreateProblem,
-    RaveCreateSensor,
-    RaveCreateSpaceSampler,
-    RaveCreateViewer,
-    RaveGetLoadedInterfaces,
-)
+from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
 from ravemj.rave.enums import (
     CheckLimitsAction,
     CloningOptions,
@@ -80,15 +71,25 @@ from ravemj.rave.logs import (
     raveLogWarn,
 )
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.new_bodies import RaveCreateKinBody, RaveCreateRobot
 from ravemj.rave.physics import PhysicsEngine
 from ravemj.rave.planning import Planner, PlanningError, planning_error
+from ravemj.rave.plugins import (
+    RaveCreateIkSolver,
+    RaveCreateModule,
+    RaveCreatePlanner,
+    RaveCreateProblem,
+    RaveCreateSensor,
+    RaveCreateSpaceSampler,
+    RaveCreateViewer,
+    RaveGetLoadedInterfaces,
+)
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
 from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
 from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 from ravemj.rave.trimesh import TriMesh
 
+KinBodyStateSaver = RobotStateSaver = StateSaver
 OpenRAVEException = openrave_exception = RavemjError
 
 __all__ = [
@@ -115,6 +116,7 @@ __all__ = [
     "Joint",
     "JointType",
     "KinBody",
+    "KinBodyStateSaver",
     "Link",
     "Manipulator",
     "OpenRAVEException",
@@ -156,6 +158,7 @@ __all__ = [
     "RaveReloadPlugins",
     "RaveSetDebugLevel",
     "Robot",
+    "RobotStateSaver",
     "SaveParameters",
     "SelectionOptions",
     "Sensor",

@@ -1,162 +1,48 @@
-"""``RaveCreate…`` of what OpenRAVE's plugins provide and ravemj does not: None, or which capability is missing."""
+"""OpenRAVE's functions that make bodies."""
 
-import logging
-from collections.abc import Mapping
-from types import MappingProxyType
-
-from ravemj.errors import UnsupportedError
-from ravemj.rave.enums import InterfaceType
+from ravemj.errors import Source
 from ravemj.rave.environment import Environment
-from ravemj.rave.planning import PLANNING, Planner
-from ravemj.rave.sensors import Sensor
-from ravemj.viewers import Viewer
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.robot import Robot
+from ravemj.scene import KinBody as SceneBody
 
-INVERSE_KINEMATICS = "inverse kinematics"
-_GRASPING = "planning of grasps"
-_SAMPLING = "sampling of spaces"
-_SENSORS = "simulation of sensors"
-
-_LOG = logging.getLogger("ravemj")
-_VIEWERS = ("qtcoin", "qtosg", "qtcameraviewer", "window", "offscreen")
-
-MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
-    {
-        InterfaceType.planner: {
-            "basicrrt": PLANNING,
-            "birrt": PLANNING,
-            "constraintparabolicsmoother": PLANNING,
-            "cubictrajectoryretimer": PLANNING,
-            "explorationrrt": PLANNING,
-            "graspgradient": _GRASPING,
-            "grasper": _GRASPING,
-            "linearsmoother": PLANNING,
-            "lineartrajectoryretimer": PLANNING,
-            "parabolicsmoother": PLANNING,
-            "parabolictrajectoryretimer": PLANNING,
-            "ra*": PLANNING,
-            "rastar": PLANNING,
-            "shortcut_linear": PLANNING,
-            "workspacetrajectorytracker": PLANNING,
-        },
-        InterfaceType.module: {
-            "basemanipulation": PLANNING,
-            "grasper": _GRASPING,
-            "ikfast": INVERSE_KINEMATICS,
-            "taskcaging": PLANNING,
-            "taskmanipulation": PLANNING,
-            "visualfeedback": "visual feedback",
-        },
-        InterfaceType.iksolver: {
-            "genericiksolver": INVERSE_KINEMATICS,
-            "ikfast": INVERSE_KINEMATICS,
-        },
-        InterfaceType.sensor: {
-            "basecamera": _SENSORS,
-            "baseflashlidar3d": _SENSORS,
-            "baseforce6d": _SENSORS,
-            "baseimu": _SENSORS,
-            "basejointencoder": _SENSORS,
-            "baselaser2d": _SENSORS,
-            "baseodometry": _SENSORS,
-            "basetactile": _SENSORS,
-        },
-        InterfaceType.spacesampler: {
-            "bodyconfiguration": _SAMPLING,
-            "halton": _SAMPLING,
-            "mt19937": _SAMPLING,
-            "robotconfiguration": _SAMPLING,
-        },
-    }
-)
-"""Names of OpenRAVE's own plugins, in lower case, with what ravemj lacks to have them."""
+_NOWHERE = Source("made by the script")
 
 
-def RaveCreateModule(env: Environment, name: str) -> None:
-    """Refuse to make a module, a native program that takes commands.
+def RaveCreateKinBody(env: Environment, name: str = "") -> KinBody | None:
+    """Make a body without links; ``InitFromBoxes`` and the like fill it, ``env.Add`` adds it.
+
+    Args:
+        env: The environment that it is for.
+        name: OpenRAVE's name of the kind of body, which is empty.
 
     Returns:
-        None, as in OpenRAVE where no plugin has a module of that name; a warning is logged.
-
-    Raises:
-        UnsupportedError: the module is one of OpenRAVE's own.
+        The body; None for an unknown kind.
 
     Example:
-        >>> RaveCreateModule(env, "urdf") is None
+        >>> body = ravemj.RaveCreateKinBody(env, "")
+        >>> body.InitFromBoxes([[0, 0, 0, 0.1, 0.2, 0.3]])
         True
+        >>> body.SetName("box")
+        >>> env.Add(body)
     """
-    return _refuse(env, InterfaceType.module, name)
+    return _empty(env, is_robot=False) if name == "" else None
 
 
-RaveCreateProblem = RaveCreateModule
+def RaveCreateRobot(env: Environment, name: str = "") -> Robot | None:
+    """Make a robot without links; see ``RaveCreateKinBody``.
 
-
-def RaveCreatePlanner(env: Environment, name: str) -> Planner | None:
-    """Refuse to make a planner: None where OpenRAVE does not know the name either.
-
-    Raises:
-        UnsupportedError: the planner is one of OpenRAVE's own.
-    """
-    return _refuse(env, InterfaceType.planner, name)
-
-
-def RaveCreateIkSolver(env: Environment, name: str) -> None:
-    """Refuse to make a solver of inverse kinematics: None where OpenRAVE does not know the name either.
-
-    Raises:
-        UnsupportedError: the solver is one of OpenRAVE's own.
-    """
-    return _refuse(env, InterfaceType.iksolver, name)
-
-
-def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
-    """Refuse to make a sensor: None where OpenRAVE does not know the name either.
-
-    Raises:
-        UnsupportedError: the sensor is one of OpenRAVE's own.
-    """
-    return _refuse(env, InterfaceType.sensor, name)
-
-
-def RaveCreateSpaceSampler(env: Environment, name: str) -> None:
-    """Refuse to make a sampler: None where OpenRAVE does not know the name either.
-
-    Raises:
-        UnsupportedError: the sampler is one of OpenRAVE's own.
-    """
-    return _refuse(env, InterfaceType.spacesampler, name)
-
-
-def RaveCreateViewer(env: Environment, name: str) -> Viewer | None:
-    """Attach a viewer to the environment, as ``env.SetViewer`` does.
+    Args:
+        env: The environment that it is for.
+        name: OpenRAVE's name of the kind of robot: empty or ``GenericRobot``.
 
     Returns:
-        The viewer, or None for a name that is no viewer's.
+        The robot; None for an unknown kind.
     """
-    if name.lower() not in _VIEWERS:
-        return None
-    env.SetViewer(name)
-    return env.GetViewer()
+    robot = _empty(env, is_robot=True) if name.lower() in {"", "genericrobot"} else None
+    return robot if isinstance(robot, Robot) else None
 
 
-def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
-    """Return the names that ``RaveCreate…`` of each kind makes something for."""
-    made: dict[InterfaceType, list[str]] = {
-        InterfaceType.collisionchecker: ["ode"],
-        InterfaceType.controller: ["IdealController"],
-        InterfaceType.kinbody: [""],
-        InterfaceType.physicsengine: ["GenericPhysicsEngine"],
-        InterfaceType.robot: ["GenericRobot"],
-        InterfaceType.trajectory: ["GenericTrajectory"],
-        InterfaceType.viewer: list(_VIEWERS),
-    }
-    return {kind: made.get(kind, []) for kind in InterfaceType}
-
-
-def _refuse(env: Environment, kind: InterfaceType, name: str) -> None:
-    """Return None with a warning, or say what is missing."""
-    del env
-    words = name.split() or [""]
-    capability = MISSING[kind].get(words[0].lower())
-    if capability is not None:
-        raise UnsupportedError(f"{kind.name} '{words[0]}'", capability)
-    _LOG.warning("there is no %s '%s'", kind.name, name)
+def _empty(env: Environment, *, is_robot: bool) -> KinBody:
+    scene = SceneBody(name="", is_robot=is_robot, links=(), joints=(), passive_joints=(), source=_NOWHERE)
+    return env.wrap(env.simulation.create(scene))

@@ -19,8 +19,13 @@ class CheckLimitsAction(IntEnum):
 class JointType(IntEnum):
     """Kinds of joints."""
 
-    Hinge = 0x01
-    Slider = 0x11
+    vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
+    Hinge = Revolute = 0x01
+    Slider = Prismatic = 0x11
+    RR = 0x02
+    RP = 0x12
+    PR = 0x22
+    PP = 0x32
     Universal = 0x80000001
     Hinge2 = 0x80000002
     Spherical = 0x80000003
@@ -30,6 +35,7 @@ class JointType(IntEnum):
 class GeometryType(IntEnum):
     """Kinds of shapes."""
 
+    vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
     None_ = 0
     Box = 1
     Sphere = 2
@@ -103,6 +109,18 @@ class SaveParameters(IntFlag):
     GrabbedBodies = 0x40000
     ActiveManipulatorToolTransform = 0x80000
     ManipulatorsToolTransform = 0x100000
+
+
+class CloningOptions(IntFlag):
+    """What a clone of an environment takes over."""
+
+    Bodies = 1
+    Viewer = 2
+    Simulation = 4
+    RealControllers = 8
+    Sensors = 16
+    Modules = 32
+    PassOnMissingBodyReferences = 0x8000
 
 
 class DebugLevel(IntEnum):
@@ -187,18 +205,6 @@ class CollisionAction(IntEnum):
 
     DefaultAction = 0
     Ignore = 1
-
-
-class CloningOptions(IntFlag):
-    """What a clone of an environment takes over."""
-
-    Bodies = 1
-    Viewer = 2
-    Simulation = 4
-    RealControllers = 8
-    Sensors = 16
-    Modules = 32
-    PassOnMissingBodyReferences = 0x8000
 
 
 class TriangulateOptions(IntEnum):

@@ -1,4 +1,4 @@
-"""The library as a whole: starting and ending it, its environments, folders and plugins."""
+"""The library as a whole: starting and ending it, its folders and plugins."""
 
 import logging
 import os

@@ -25,6 +25,7 @@ class Robot(ActiveDofs, Manipulators, KinBody):
 
     DOFAffine = DOFAffine
     Manipulator = Manipulator
+    RobotStateSaver = StateSaver
 
     _interface_type = InterfaceType.robot
     default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator

@@ -5,7 +5,7 @@ angles radians, masses kilograms. Links are referred to by their index in ``KinB
 """
 
 from ravemj.scene.body import AttachedSensor, Intrinsics, KinBody, Manipulator
-from ravemj.scene.mechanism import UNLIMITED, Axis, Inertial, Joint, JointKind, Link, Mimic
+from ravemj.scene.mechanism import UNLIMITED, Axis, Inertial, Joint, JointKind, Link, Mimic, Parameters
 from ravemj.scene.shapes import (
     Box,
     Capsule,
@@ -42,6 +42,7 @@ __all__ = [
     "Mesh",
     "Mimic",
     "NoShape",
+    "Parameters",
     "Prism",
     "Rgb",
     "Scene",

@@ -1,6 +1,6 @@
 """A body and its state."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -9,12 +9,16 @@ import numpy as np
 from ravemj.dynamics import BodyDynamics, Inertias
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.kinematics import BodyKinematics, Configuration
+from ravemj.mjcf import rgba
 from ravemj.placement import place_links
-from ravemj.scene import Axis, KinBody, Link
+from ravemj.scene import Axis, Geometry, Inertial, KinBody, Link
+from ravemj.simulation.compiled import write_inertial
 from ravemj.transforms import Floats, Pose, inverse, pose_of
 
 if TYPE_CHECKING:
     from ravemj.simulation.world import Simulation
+
+_LOOKS = {"name", "diffuse", "ambient", "transparency"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,6 +280,38 @@ class BodyState:
         links = list(self.scene.links)
         links[index] = replace(links[index], **changes)
         self.edit(links=tuple(links))
+
+    def set_inertial(self, link: int, inertial: Inertial) -> None:
+        """Give a link other mass properties, without compiling."""
+        self.edit_link(link, inertial=inertial)
+        if self._kinematics is not None:
+            write_inertial(self._kinematics.model, int(self._kinematics.body_ids[link]), inertial)
+            self._kinematics.update()
+
+    def set_geometries(self, link: int, geometries: "Sequence[Geometry]") -> None:
+        """Give a link other shapes; the model is compiled anew when it is next asked for."""
+        if self._kinematics is not None:
+            self.simulation.forget_model()
+        self.edit_link(link, geometries=tuple(geometries))
+
+    def edit_geometry(self, link: int, index: int, **changes: Any) -> None:  # noqa: ANN401 - of a scene.Geometry
+        """Change the description of a shape; colours do not make the model compile anew."""
+        geometries = list(self.scene.links[link].geometries)
+        geometries[index] = replace(geometries[index], **changes)
+        if changes.keys() <= _LOOKS:
+            self.edit_link(link, geometries=tuple(geometries))
+            self._paint(link, index)
+        else:
+            self.set_geometries(link, geometries)
+
+    def _paint(self, link: int, index: int) -> None:
+        """Give the geoms of a shape its colour; what is drawn in its place keeps its own."""
+        geometry = self.scene.links[link].geometries[index]
+        if self._kinematics is None or geometry.display is not None:
+            return
+        model, counts = self._kinematics.model, self._kinematics.names.geoms[link]
+        first = model.body_geomadr[self._kinematics.body_ids[link]] + sum(counts[:index])
+        model.geom_rgba[first : first + counts[index]] = rgba(geometry.diffuse, geometry.transparency)
 
     def edit_joint(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Joint
         """Change the description of a joint; the index counts active joints and then passive ones."""

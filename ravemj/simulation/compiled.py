@@ -8,9 +8,9 @@ import numpy as np
 
 from ravemj import mjcf
 from ravemj.errors import CompileError, Diagnostics, Source
+from ravemj.inertia import principal_frame, principal_moments
 from ravemj.mjcf.document import ASSETS
-from ravemj.scene import Scene
-from ravemj.transforms import wxyz_from_rows
+from ravemj.scene import Inertial, Scene
 
 _DOF = re.compile(r"DOF (\d+)")
 _LINE = re.compile(r"line (?:number=)?(\d+)", re.IGNORECASE)
@@ -63,14 +63,21 @@ class Compiled:
             inertial = scene.bodies[body_index].links[link_index].inertial
             name = self.mjcf.names[body_index].links[link_index]
             body_id = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, name)
-            inertia = np.array(inertial.inertia)
-            if not (np.isfinite(inertial.mass) and np.isfinite(inertia).all()):
-                continue
-            moments, axes = np.linalg.eigh(inertia)
-            axes[:, 0] *= np.linalg.det(axes)  # a rotation, not a reflection
-            self.model.body_mass[body_id] = inertial.mass
-            self.model.body_inertia[body_id] = moments
-            self.model.body_iquat[body_id] = wxyz_from_rows(axes.tolist())
+            if np.isfinite(inertial.mass) and np.isfinite(inertial.inertia).all():
+                write_inertial(self.model, body_id, inertial)
+
+
+def write_inertial(model: mujoco.MjModel, body_id: int, inertial: Inertial) -> None:
+    """Give a body of a model other mass properties."""
+    frame = principal_frame(inertial)
+    added = inertial.mass - model.body_mass[body_id]
+    model.body_mass[body_id] = inertial.mass
+    model.body_inertia[body_id] = principal_moments(inertial)
+    model.body_ipos[body_id] = frame.position
+    model.body_iquat[body_id] = frame.wxyz
+    while body_id:
+        model.body_subtreemass[body_id] += added
+        body_id = model.body_parentid[body_id]
 
 
 def _compile_error(message: str, text: mjcf.Mjcf) -> CompileError:

@@ -9,7 +9,7 @@ from ravemj.arrays import checked_indices, checked_numbers, checked_vector
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
 from ravemj.rave.body.affine import AffineSettings
-from ravemj.rave.body.limits import Limits
+from ravemj.rave.body.limits import Limits, wrapped_angle
 from ravemj.rave.body.motion import Motion
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import CheckLimitsAction
@@ -251,5 +251,5 @@ class ActiveDofs(Placement, Limits, Motion, AffineSettings):
         split = len(joints)
         difference[:split] = self.SubtractDOFValues(minuend[:split], subtrahend[:split], joints)
         if self.active_choice.affine & DOFAffine.RotationAxis:
-            difference[-1] = (difference[-1] + np.pi) % (2 * np.pi) - np.pi
+            difference[-1:] = wrapped_angle(difference[-1:])
         return difference

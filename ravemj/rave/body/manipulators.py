@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, cast
 
+from ravemj import fingerprints
 from ravemj.errors import ArgumentError
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.manipulator import Manipulator
@@ -33,6 +34,10 @@ class Manipulators(BodyPart):
     def GetActiveManipulator(self) -> Manipulator | None:
         """Return the manipulator that calls without one refer to, or None."""
         return next(iter(self.GetManipulators(self._active_manipulator)), None)
+
+    def GetRobotStructureHash(self) -> str:
+        """Return a text that is the same for robots of the same structure, arms and sensors: 32 hexadecimal digits."""
+        return fingerprints.of_robot(self._state.scene)
 
     def GetActiveManipulatorIndex(self) -> int:
         """Return the active manipulator's place in ``GetManipulators()``; -1 without one."""
