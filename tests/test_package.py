@@ -47,6 +47,7 @@ LEVELS: list[set[str]] = [
     {"builder", "mjcf"},
     {"kinematics", "openrave_xml", "tessellation"},
     {"coverage", "dynamics", "placement", "readers", "rendering", "trajectories"},
+    {"batch"},
     {"simulation"},
     {"export", "studio"},
     {"viewers"},

@@ -61,6 +61,8 @@ class Manipulator:
         """
         return self._effector().GetTransform() @ self.GetLocalToolTransform()
 
+    GetEndEffectorTransform = GetTransform
+
     def _effector(self) -> Link:
         effector = self.GetEndEffector()
         if effector is None:
@@ -96,8 +98,6 @@ class Manipulator:
         """Return how the tool's quaternion [w, x, y, z] changes with the arm's joints, shape (4, arm dof)."""
         wxyz = wxyz_from_rows(self.GetTransform()[:3, :3].tolist())
         return self._robot.CalculateRotationJacobian(self._effector().GetIndex(), wxyz)[:, self.GetArmIndices()]
-
-    GetEndEffectorTransform = GetTransform
 
     def GetTransformPose(self) -> Floats:
         """Return the pose of the tool in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""

@@ -4,7 +4,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ravemj.geometry_functions import DOFAffine
-from ravemj.rave.body.active import ActiveChoice, ActiveDofs
+from ravemj.rave.body.active import ActiveChoice
+from ravemj.rave.body.active_motion import ActiveMotion
 from ravemj.rave.body.affine import default_kinds
 from ravemj.rave.body.manipulators import Manipulators
 from ravemj.rave.body.saving import Restorer, StateSaver
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class Robot(ActiveDofs, Manipulators, KinBody):
+class Robot(ActiveMotion, Manipulators, KinBody):
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ravemj.batch import Batch
 from ravemj.dynamics import BodyDynamics, Inertias
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.kinematics import BodyKinematics, Configuration
@@ -62,6 +63,7 @@ class BodyState:
         self.api_object: object | None = None
         self._kinematics: BodyKinematics | None = None
         self._dynamics: BodyDynamics | None = None
+        self._batch: Batch | None = None
         self._inertias: tuple[tuple[Link, ...], Inertias] | None = None
         self.rebuild(scene)
 
@@ -104,6 +106,13 @@ class BodyState:
         return self._dynamics
 
     @property
+    def batch(self) -> Batch:
+        """The chain of links, ready for many configurations."""
+        if self._batch is None:
+            self._batch = Batch(self.kinematics, self.dynamics)
+        return self._batch
+
+    @property
     def inertias(self) -> Inertias:
         """Mass properties of the links, as the scene has them now."""
         if self._inertias is None or self._inertias[0] is not self.scene.links:
@@ -131,7 +140,7 @@ class BodyState:
             self._poses = self._kinematics.link_transforms()
             self._configuration = self._kinematics.configuration()
             self._kinematics = None
-        self._dynamics = None
+        self._dynamics = self._batch = None
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy. This never compiles."""
@@ -202,18 +211,6 @@ class BodyState:
         for grab in self.grabs:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 
-    def grab(self, grab: GrabbedBody) -> None:
-        """Hold a body; one that is held already, anew."""
-        places = [number for number, old in enumerate(self.grabs) if old.body is grab.body]
-        if places:
-            self.grabs[places[0]] = grab
-        else:
-            self.grabs.append(grab)
-
-    def release(self, body: "BodyState") -> None:
-        """Let go of a body; nothing happens if it is not held."""
-        self.grabs = [grab for grab in self.grabs if grab.body is not body]
-
     def link_velocities(self) -> Floats:
         """Return the velocities of the links, in world axes: of the origin [m/s] and angular [rad/s]; a copy.
 
@@ -228,9 +225,13 @@ class BodyState:
         """Set the velocities of the links, shape (links, 6); what they hold moves with them."""
         self._velocities = velocities.copy()
         for grab in self.grabs:
-            carrier = velocities[grab.link]
-            arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
-            grab.body.set_velocity(carrier[:3] + np.cross(carrier[3:], arm), carrier[3:])
+            self._carry(grab)
+
+    def _carry(self, grab: GrabbedBody) -> None:
+        """Give a held body the velocity of the link that holds it."""
+        carrier = self._velocities[grab.link]
+        arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
+        grab.body.set_velocity(carrier[:3] + np.cross(carrier[3:], arm), carrier[3:])
 
     def set_velocity(self, linear: Floats, angular: Floats) -> None:
         """Let all links move as one.
@@ -242,6 +243,19 @@ class BodyState:
         origins = self.link_transforms()[:, :3, 3]
         moved = linear + np.cross(angular, origins - origins[:1])
         self.set_link_velocities(np.column_stack((moved, np.tile(angular, (len(origins), 1)))))
+
+    def grab(self, grab: GrabbedBody) -> None:
+        """Hold a body; one that is held already, anew."""
+        places = [number for number, old in enumerate(self.grabs) if old.body is grab.body]
+        if places:
+            self.grabs[places[0]] = grab
+        else:
+            self.grabs.append(grab)
+        self._carry(grab)
+
+    def release(self, body: "BodyState") -> None:
+        """Let go of a body; nothing happens if it is not held."""
+        self.grabs = [grab for grab in self.grabs if grab.body is not body]
 
     def configuration(self) -> "tuple[Configuration | None, Floats]":
         """Return the state of joints and links, for ``restore``."""

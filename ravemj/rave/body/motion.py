@@ -8,11 +8,12 @@ from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_vector
 from ravemj.errors import ArgumentError
+from ravemj.rave.body.many import Many
 from ravemj.rave.body.velocities import Velocities
 from ravemj.transforms import Floats
 
 
-class Motion(Velocities):
+class Motion(Velocities, Many):
     """Jacobians, Hessians and inverse dynamics."""
 
     def GetCenterOfMass(self) -> Floats:
@@ -84,9 +85,7 @@ class Motion(Velocities):
         Returns:
             Its derivative by the DOF values, shape (4, dof).
         """
-        w, x, y, z = checked_vector(quat, 4, "quat").tolist()
-        rates = np.array([[-x, -y, -z], [w, z, -y], [-z, w, x], [y, -x, w]]) / 2
-        return rates @ self.ComputeJacobianAxisAngle(linkindex)
+        return quaternion_rates(quat) @ self.ComputeJacobianAxisAngle(linkindex)
 
     def ComputeHessianTranslation(
         self, linkindex: int, position: ArrayLike, dofindices: "ArrayLike | None" = None
@@ -220,6 +219,12 @@ class Motion(Velocities):
 
     def _checked_pushes(self, pushes: "Mapping[int, ArrayLike] | None", name: str) -> dict[int, Floats]:
         return {self._checked_link(link): checked_vector(push, 6, name) for link, push in (pushes or {}).items()}
+
+
+def quaternion_rates(quat: ArrayLike) -> Floats:
+    """Return the derivative of a quaternion [w, x, y, z] by the angular velocity in world axes, shape (4, 3)."""
+    w, x, y, z = checked_vector(quat, 4, "quat").tolist()
+    return np.array([[-x, -y, -z], [w, z, -y], [-z, w, x], [y, -x, w]]) / 2
 
 
 def _columns(jacobian: Floats, dofindices: "ArrayLike | None") -> Floats:
