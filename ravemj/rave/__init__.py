@@ -39,6 +39,7 @@ from ravemj.rave.environment import (
 )
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.graph_handle import GraphHandle
+from ravemj.rave.ikparameterization import IkParameterization
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.library import (
@@ -109,6 +110,7 @@ __all__ = [
     "GrabbedInfo",
     "GraphHandle",
     "IkFilterOptions",
+    "IkParameterization",
     "IkParameterizationType",
     "IkReturnAction",
     "InterfaceAddMode",

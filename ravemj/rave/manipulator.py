@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from ravemj import scene
 from ravemj.arrays import checked_transform, checked_vector
 from ravemj.errors import ArgumentError, RavemjError
+from ravemj.rave.arm_goals import ArmGoals
 from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.link import Link
 from ravemj.rave.specification import ConfigurationSpecification
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Manipulator:
+class Manipulator(ArmGoals):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
     def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
