@@ -30,7 +30,7 @@ def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
         (axis,), (value,) = joint.axes, values
         motion = Pose(scale(axis.direction, value - axis.reference))
     else:
-        motion = _about(joint.anchor, rotation(joint, values))
+        motion = about(joint.anchor, rotation(joint, values))
     return motion @ joint.T_parent_child
 
 
@@ -44,7 +44,7 @@ def rotation(joint: Joint, values: Sequence[float]) -> Wxyz:
     return turned
 
 
-def _about(anchor: Vec3, wxyz: Wxyz) -> Pose:
+def about(anchor: Vec3, wxyz: Wxyz) -> Pose:
     """Return the motion that turns about a point."""
     return Pose(add(anchor, scale(rotate(wxyz, anchor), -1.0)), wxyz)
 

@@ -40,6 +40,7 @@ from ravemj.rave.environment import (
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.graph_handle import GraphHandle
 from ravemj.rave.ikparameterization import IkParameterization
+from ravemj.rave.infos import ElectricMotorActuatorInfo, ExtractInfoOptions
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.library import (
@@ -91,6 +92,7 @@ from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 from ravemj.rave.trimesh import TriMesh
 
 KinBodyStateSaver = RobotStateSaver = StateSaver
+
 OpenRAVEException = openrave_exception = RavemjError
 
 __all__ = [
@@ -103,8 +105,10 @@ __all__ = [
     "CollisionOptions",
     "ConfigurationSpecification",
     "DebugLevel",
+    "ElectricMotorActuatorInfo",
     "Environment",
     "ErrorCode",
+    "ExtractInfoOptions",
     "Geometry",
     "GeometryType",
     "GrabbedInfo",

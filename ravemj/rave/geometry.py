@@ -1,5 +1,6 @@
 """Shapes of a link."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,21 +11,11 @@ from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.enums import GeometryType
+from ravemj.rave.infos.geometry import TYPES, GeometryInfo
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 from ravemj.simulation import BodyState
 from ravemj.tessellation import triangulated
 from ravemj.transforms import Floats
-
-TYPES: dict[type[scene.Shape], GeometryType] = {
-    scene.Box: GeometryType.Box,
-    scene.Sphere: GeometryType.Sphere,
-    scene.Cylinder: GeometryType.Cylinder,
-    scene.Capsule: GeometryType.Capsule,
-    scene.Container: GeometryType.Container,
-    scene.Prism: GeometryType.Prism,
-    scene.TriMesh: GeometryType.Trimesh,
-    scene.NoShape: GeometryType.None_,
-}
 
 
 class Geometry:
@@ -39,18 +30,27 @@ class Geometry:
 
     Type = GeometryType
 
-    def __init__(self, state: BodyState, link: int, index: int) -> None:
+    def __init__(self, state: BodyState, link: int, index: int, group: str | None = None) -> None:
         self._state = state
         self._link = link
         self._index = index
+        self._group = group
 
     @property
     def _scene(self) -> scene.Geometry:
-        return self._state.scene.links[self._link].geometries[self._index]
+        link = self._state.scene.links[self._link]
+        return (link.geometries if self._group is None else dict(link.groups)[self._group])[self._index]
 
     def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Geometry
         with self._state.simulation.lock:
-            self._state.edit_geometry(self._link, self._index, **changes)
+            if self._group is None:
+                self._state.edit_geometry(self._link, self._index, **changes)
+                return
+            groups = dict(self._state.scene.links[self._link].groups)
+            members = list(groups[self._group])
+            members[self._index] = replace(members[self._index], **changes)
+            groups[self._group] = tuple(members)
+            self._state.edit_link(self._link, groups=tuple(groups.items()))
 
     def GetName(self) -> str:
         """Return the geometry's name; often empty."""
@@ -213,6 +213,36 @@ class Geometry:
         """Return whether planners may change the geometry."""
         return self._scene.modifiable
 
+    def GetRenderFilename(self) -> str:
+        """Return the path of the mesh file that is drawn in place of the shape; empty without one."""
+        file = self._scene.render_file
+        return "" if file is None else file.name
+
+    def GetRenderScale(self) -> Floats:
+        """Return the factors along x, y and z for that file, shape (3,)."""
+        file = self._scene.render_file
+        return np.array((1.0, 1.0, 1.0) if file is None else file.scale)
+
+    def SetRenderFilename(self, filename: str) -> None:
+        """Draw a mesh file in place of the shape.
+
+        Args:
+            filename: The file; '' draws the shape itself.
+
+        Raises:
+            SourceError: the file is not there, or broken. Nothing has changed then.
+        """
+        info = self.GetInfo()
+        info.draw(filename)
+        changed = info.geometry()
+        self._edit(render_file=changed.render_file, display=changed.display)
+
+    def GetInfo(self) -> GeometryInfo:
+        """Return the description of the shape, a copy."""
+        return GeometryInfo.of(self._scene)
+
+    UpdateAndGetInfo = GetInfo
+
     def _has_none(self, what: str) -> RavemjError:
         return RavemjError(f"a geometry of type {self.GetType().name} has no {what}")
 
@@ -223,8 +253,8 @@ class Geometry:
         return hash((id(self._state), *self._place))
 
     @property
-    def _place(self) -> tuple[int, int]:
-        return self._link, self._index
+    def _place(self) -> tuple[int, int, str | None]:
+        return self._link, self._index, self._group
 
     def __repr__(self) -> str:
         return f"<geometry:{self.GetName()}, type={self.GetType().name}>"

@@ -7,12 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_vector
-from ravemj.joints import relative_pose
+from ravemj.joints import measured_values, relative_pose
 from ravemj.rave.enums import JointType
+from ravemj.rave.infos import JointInfo
 from ravemj.rave.joints.following import JointFollowing
 from ravemj.rave.joints.limits import JointLimits
 from ravemj.rave.link import Link
-from ravemj.transforms import Floats, Pose, add, rotate, scale, wxyz_from_axis_angle
+from ravemj.transforms import Floats, Pose, add, pose_of, rotate, scale, wxyz_from_axis_angle
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -206,6 +207,23 @@ class Joint(JointLimits, JointFollowing):
 
     def _left(self) -> Pose:
         return Pose(self._scene.anchor)
+
+    def GetInfo(self) -> JointInfo:
+        """Return the description of the joint at its present value, a copy."""
+        with self._state.simulation.lock:
+            return JointInfo.of(self._state.scene, self._index, self._shown_values())
+
+    UpdateAndGetInfo = GetInfo
+
+    def UpdateInfo(self) -> None:
+        """Do nothing: ``GetInfo`` always gives the present state."""
+
+    def _shown_values(self) -> list[float]:
+        """Return the values, also of a body that is in no world: what its links show."""
+        if self._state.index:
+            return self.GetValues().tolist()
+        parent, child = (pose_of(self._state.link_transform(i)) for i in (self._scene.parent, self._scene.child))
+        return list(measured_values(self._scene, parent.inverse() @ child))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Joint) and self._state is other._state and self._index == other._index

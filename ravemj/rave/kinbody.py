@@ -12,6 +12,7 @@ from ravemj.rave.body.substance import Substance
 from ravemj.rave.configured import Configured
 from ravemj.rave.enums import CheckLimitsAction, InterfaceType, JointType, SaveParameters
 from ravemj.rave.geometry import Geometry
+from ravemj.rave.infos import GeometryInfo, JointInfo, KinBodyInfo, LinkInfo
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 from ravemj.simulation import BodyState
@@ -32,9 +33,13 @@ class KinBody(Saving, Configured, Grabbing, Limits, Graph, Substance, Motion, Bu
 
     CheckLimitsAction = CheckLimitsAction
     Geometry = Geometry
+    GeometryInfo = GeometryInfo
     Joint = Joint
+    JointInfo = JointInfo
     JointType = JointType
+    KinBodyInfo = KinBodyInfo
     Link = Link
+    LinkInfo = LinkInfo
     KinBodyStateSaver = StateSaver
     SaveParameters = SaveParameters
 

@@ -7,7 +7,9 @@ from numpy.typing import ArrayLike
 from ravemj import chains
 from ravemj.arrays import checked_transform, checked_vector
 from ravemj.rave.body.placement import pose_from_matrix
+from ravemj.rave.enums import GeometryType
 from ravemj.rave.geometry import Geometry
+from ravemj.rave.infos import GeometryInfo, LinkInfo
 from ravemj.rave.links.mass import LinkMass
 from ravemj.rave.links.parameters import LinkParameters
 from ravemj.rave.links.shapes import LinkShapes
@@ -21,6 +23,10 @@ class Link(LinkMass, LinkShapes, LinkParameters):
     """A rigid part of a body; ``body.GetLinks()`` makes it."""
 
     Geometry = Geometry
+    GeometryInfo = GeometryInfo
+    GeomType = GeometryType
+    GeomProperties = Geometry
+    LinkInfo = LinkInfo
 
     def GetName(self) -> str:
         """Return the link's name."""
@@ -134,6 +140,17 @@ class Link(LinkMass, LinkShapes, LinkParameters):
 
     def _other(self, index: int) -> "Link":
         return Link(self._parent, self._state, index)
+
+    def GetInfo(self) -> LinkInfo:
+        """Return the description of the link as it stands, a copy."""
+        with self._state.simulation.lock:
+            enabled = self._state.link_enabled[self._index]
+            return LinkInfo.of(self._state.scene, self._index, self.GetTransform(), enabled=enabled)
+
+    UpdateAndGetInfo = GetInfo
+
+    def UpdateInfo(self) -> None:
+        """Do nothing: ``GetInfo`` always gives the present state."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Link) and self._state is other._state and self._index == other._index

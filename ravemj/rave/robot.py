@@ -8,8 +8,10 @@ from ravemj.rave.body.active import ActiveChoice
 from ravemj.rave.body.active_motion import ActiveMotion
 from ravemj.rave.body.affine import default_kinds
 from ravemj.rave.body.manipulators import Manipulators
+from ravemj.rave.body.robot_building import RobotBuilding
 from ravemj.rave.body.saving import Restorer, StateSaver
 from ravemj.rave.enums import InterfaceType, SaveParameters
+from ravemj.rave.infos import AttachedSensorInfo, ManipulatorInfo, RobotBaseInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
@@ -21,11 +23,14 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class Robot(ActiveMotion, Manipulators, KinBody):
+class Robot(ActiveMotion, Manipulators, RobotBuilding, KinBody):  # pyright: ignore[reportIncompatibleMethodOverride]
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine
+    AttachedSensorInfo = AttachedSensorInfo
     Manipulator = Manipulator
+    ManipulatorInfo = ManipulatorInfo
+    RobotBaseInfo = RobotBaseInfo
     RobotStateSaver = StateSaver
 
     _interface_type = InterfaceType.robot

@@ -7,6 +7,7 @@ import numpy as np
 
 from ravemj import scene
 from ravemj.rave.enums import SensorCommand, SensorType
+from ravemj.rave.infos import AttachedSensorInfo
 from ravemj.rave.link import Link
 from ravemj.rendering import CameraIntrinsics
 from ravemj.simulation import BodyState
@@ -103,6 +104,12 @@ class AttachedSensor:
     def GetSensor(self) -> Sensor | None:
         """Return the device, or None for a mere frame."""
         return None if self._scene.type is None else Sensor(self._scene, self._scene.type)
+
+    def GetInfo(self) -> AttachedSensorInfo:
+        """Return the description of the attached sensor, a copy."""
+        return AttachedSensorInfo.of(self._state.scene, self._scene)
+
+    UpdateAndGetInfo = GetInfo
 
     def __repr__(self) -> str:
         return f"{self._robot!r}.GetAttachedSensor('{self.GetName()}')"

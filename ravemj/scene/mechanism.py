@@ -42,6 +42,9 @@ class Parameters:
     texts: tuple[tuple[str, str], ...] = ()
 
 
+NO_PARAMETERS = Parameters()
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Link:
     """A rigid part of a body.
@@ -65,7 +68,7 @@ class Link:
     static: bool
     enabled: bool
     groups: tuple[tuple[str, tuple[Geometry, ...]], ...] = ()
-    parameters: Parameters = Parameters()
+    parameters: Parameters = NO_PARAMETERS
     source: Source
 
 
@@ -152,7 +155,7 @@ class Joint:
     axes: tuple[Axis, ...]
     places_child: bool
     mimic: Mimic | None = None
-    parameters: Parameters = Parameters()
+    parameters: Parameters = NO_PARAMETERS
     source: Source
 
     @property
