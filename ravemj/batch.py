@@ -17,7 +17,7 @@ from ravemj.kinematics import BodyKinematics
 from ravemj.scene import Joint
 from ravemj.transforms import Floats, inverse, rows_from_wxyz
 
-CHUNK = 40_000
+CHUNK = 60_000
 """Poses of links that are worked out together: few enough for the cache, many enough for numpy."""
 
 Source = tuple[Literal["dof", "follower", "fixed"], int]
@@ -37,6 +37,9 @@ class Step:
         reference: What is subtracted from the value.
         mover: Its first mover.
         child: The link that it moves.
+        crosswise: Coordinates in the parent's frame of x, y, y and -x: times cosine and sine of an angle, the first
+            two and the last two add up to x and y behind a hinge.
+        lengthwise: Those of z and of the origin, which no hinge moves.
     """
 
     kind: str
@@ -47,6 +50,8 @@ class Step:
     reference: float
     mover: int
     child: int
+    crosswise: Floats
+    lengthwise: Floats
 
 
 class Batch:
@@ -99,14 +104,17 @@ class Batch:
         mover = self._dynamics.tree.dofs.tolist().index(int(model.jnt_dofadr[found]))
         kind = "hinge" if joint.kind == "hinge2" else joint.kind
         reference = joint.axes[axis].reference
-        self._steps.append(Step(kind, parent, root, T_parent_frame, source, reference, mover, joint.child))
+        x, y, z, origin = T_parent_frame.T
+        across, lengthwise = np.array((x, y, y, -x)), np.array((z, origin))
+        frame = (T_parent_frame, source, reference, mover, joint.child, across, lengthwise)
+        self._steps.append(Step(kind, parent, root, *frame))
         return len(self._steps) - 1
 
     def chunks(self, count: int) -> Iterator[slice]:
-        """Yield slices of that many configurations."""
-        size = max(200, min(1000, CHUNK // len(self._step_of)))
-        for start in range(0, count, size):
-            yield slice(start, min(start + size, count))
+        """Yield slices of like size that cover that many configurations."""
+        parts = -(-count // max(400, min(1000, CHUNK // len(self._step_of))))
+        for part in range(parts):
+            yield slice(part * count // parts, (part + 1) * count // parts)
 
     def frames(self, values: Floats) -> tuple[list[Floats], dict[int, Floats]]:
         """Return the frame of each step, and of each root link.
@@ -129,7 +137,7 @@ class Batch:
             elif step.kind == "slider":
                 frames.append(_slid(parent, step.T_parent_frame, self._value(step, values, followed)))
             else:
-                frames.append(_hinged(parent, step.T_parent_frame, self._value(step, values, followed)))
+                frames.append(_hinged(parent, step, self._value(step, values, followed)))
         return frames, roots
 
     def _value(self, step: Step, values: Floats, followed: dict[int, Floats]) -> Floats:
@@ -184,10 +192,10 @@ class Batch:
         for part in self.chunks(len(values)):
             frames = self.frames(np.ascontiguousarray(values[part].T))
             poses = out[part]
-            poses[:, :, 3] = (0.0, 0.0, 0.0, 1.0)
             for link, T_step_link in enumerate(self._T_step_link):
                 frame = self._frame_of(frames, link).transpose(1, 2, 0)  # component, configuration, axis
                 np.matmul(frame, T_step_link, out=poses[:, link, :3].transpose(1, 0, 2))
+                poses[:, link, 3] = (0.0, 0.0, 0.0, 1.0)
 
     def posture(self, values: Floats, *, second: bool = False) -> Posture:
         """Return where links and axes are, in the world.
@@ -263,17 +271,14 @@ def _axis_frame(joint: Joint, axis: int) -> Floats:
     return frame
 
 
-def _hinged(parent: Floats, T_parent_frame: Floats, angles: Floats) -> Floats:
+def _hinged(parent: Floats, step: Step, angles: Floats) -> Floats:
     """Return frames behind a hinge: parents of shape (4, 3 N) to (4, 3, N)."""
-    count = len(angles)
-    x, y, z, origin = T_parent_frame.T
-    frames = np.empty((4, 3, count))
-    flat = frames.reshape(4, -1)
-    crosswise = (np.array((x, y, y, -x)) @ parent).reshape(2, 2, 3, count)
+    frames = np.empty((4, 3, len(angles)))
+    crosswise = (step.crosswise @ parent).reshape(2, 2, 3, -1)
     np.multiply(crosswise[0], np.cos(angles), out=frames[:2])
-    crosswise[1] *= np.sin(angles)
+    np.multiply(crosswise[1], np.sin(angles), out=crosswise[1])
     frames[:2] += crosswise[1]
-    np.matmul(np.array((z, origin)), parent, out=flat[2:])
+    np.matmul(step.lengthwise, parent, out=frames.reshape(4, -1)[2:])
     return frames
 
 
