@@ -1,7 +1,6 @@
 """Joint values in, link poses out: one configuration after the other, and many at once."""
 
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 
 import mujoco
@@ -12,7 +11,7 @@ from benchmarks.measure import MODEL, Row, microseconds, take_turns
 from ravemj.transforms import Floats
 
 AXES = ("1 0 0", "0 1 0", "0 0 1")
-MANY = 2000
+MANY = 600
 """Configurations of a batch."""
 
 
@@ -47,28 +46,30 @@ def _link(name: str, before: str) -> str:
 
 
 def _of(what: str, path: Path, limit: float) -> list[Row]:
-    env = ravemj.load(path)
-    robot = env.GetRobots()[0]
-    model, data = env.model, mujoco.MjData(env.model)
-    qpos, xpos, xmat = data.qpos, data.xpos[1:], data.xmat[1:]
-    moving = robot.qpos_indices >= 0
-    values = np.where(moving, 0.5, 0.0)
-    places = robot.qpos_indices[moving]
-    place: slice | np.ndarray = slice(None) if np.array_equal(places, np.arange(model.nq)) else places
+    robot = ravemj.load(path).GetRobots()[0]
+    return [*_one(what, robot, limit), _many(what, robot)]
 
-    def bare_of(values: Floats) -> Callable[[], Floats]:
-        own = values[moving]
 
-        def bare() -> Floats:
-            qpos[place] = own
-            mujoco.mj_kinematics(model, data)
-            transforms = np.zeros((len(xpos), 4, 4))
-            transforms[:, :3, 3] = xpos
-            transforms[:, :3, :3] = xmat.reshape(-1, 3, 3)
-            transforms[:, 3, 3] = 1
-            return transforms
+class Bare:
+    """MuJoCo without us."""
 
-        return bare
+    def __init__(self, robot: ravemj.Robot) -> None:
+        self.model = robot.GetEnv().model
+        self.data = mujoco.MjData(self.model)
+        self.qpos, self.xpos, self.xmat = self.data.qpos, self.data.xpos[1:], self.data.xmat[1:]
+
+    def place(self, qpos: Floats, transforms: Floats) -> None:
+        """Write the poses of the links, without the last rows."""
+        self.qpos[:] = qpos
+        mujoco.mj_kinematics(self.model, self.data)
+        transforms[:, :3, 3] = self.xpos
+        transforms[:, :3, :3] = self.xmat.reshape(-1, 3, 3)
+
+
+def _one(what: str, robot: ravemj.Robot, limit: float) -> list[Row]:
+    bare, moving = Bare(robot), robot.qpos_indices >= 0
+    values, qpos = np.where(moving, 0.5, 0.0), np.full(moving.sum(), 0.5)
+    count = len(bare.xpos)
 
     def as_list() -> list[Floats]:
         robot.SetDOFValues(values)
@@ -78,38 +79,41 @@ def _of(what: str, path: Path, limit: float) -> list[Row]:
         robot.SetDOFValues(values)
         return robot.link_transforms()
 
-    many = np.random.default_rng(1).uniform(-1, 1, (MANY, robot.GetDOF())) * moving
-    out = np.empty((MANY, len(xpos), 4, 4))
+    def floor() -> Floats:
+        transforms = np.zeros((count, 4, 4))
+        bare.place(qpos, transforms)
+        transforms[:, 3, 3] = 1
+        return transforms
 
-    def batch() -> Floats:
-        return robot.batch_link_transforms(many, out)
+    if not np.allclose(as_list(), floor(), rtol=0, atol=1e-13):
+        raise RuntimeError("the poses differ")
+    calls = max(1, 100 // count)  # short runs, which other programs seldom interrupt
+    listed, arrayed, bared = take_turns(
+        [microseconds(function, calls) for function in (as_list, as_array, floor)], 1000
+    )
+    return [
+        Row(f"{what}: SetDOFValues + GetLinkTransformations : mj_kinematics, poses", "µs", listed, bared, limit),
+        Row(f"{what}: SetDOFValues + link_transforms : mj_kinematics, poses", "µs", arrayed, bared, 2.5),
+    ]
+
+
+def _many(what: str, robot: ravemj.Robot) -> Row:
+    bare, moving = Bare(robot), robot.qpos_indices >= 0
+    values = np.random.default_rng(1).uniform(-1, 1, (MANY, robot.GetDOF())) * moving
+    qpos = values[:, moving]
+    out = np.zeros((MANY, len(bare.xpos), 4, 4))
+    out[:, :, 3, 3] = 1
 
     def loop() -> Floats:
-        own = many[:, moving]
-        for index in range(MANY):
-            qpos[place] = own[index]
-            mujoco.mj_kinematics(model, data)
-            transforms = out[index]
-            transforms[:, :3, 3] = xpos
-            transforms[:, :3, :3] = xmat.reshape(-1, 3, 3)
+        for own, transforms in zip(qpos, out, strict=True):
+            bare.place(own, transforms)
         return out
 
-    bare = bare_of(values)
-    if not (np.allclose(as_list(), bare(), rtol=0, atol=1e-13) and np.allclose(batch().copy(), loop(), atol=1e-12)):
+    def batch() -> Floats:
+        return robot.batch_link_transforms(values, out)
+
+    if not np.allclose(loop().copy(), batch(), rtol=0, atol=1e-12):
         raise RuntimeError("the poses differ")
-    calls = max(1, 800 // len(xpos) // 8)  # short runs, which other programs seldom interrupt
-    timed = [microseconds(function, calls) for function in (as_list, as_array, bare)]
-    listed, arrayed, floor = take_turns(timed, 1000)
-    batched, looped = take_turns([microseconds(batch), microseconds(loop)], 20)
-    return [
-        Row(f"{what}: SetDOFValues + GetLinkTransformations : mj_kinematics, poses", "µs", listed, floor, limit),
-        Row(f"{what}: SetDOFValues + link_transforms : mj_kinematics, poses", "µs", arrayed, floor, 2.5),
-        Row(
-            f"{what}: configurations a second, batch_link_transforms : a loop over mj_kinematics, poses",
-            "1/s",
-            MANY / batched * 1e6,
-            MANY / looped * 1e6,
-            1.5,
-            more_is_better=True,
-        ),
-    ]
+    batched, looped = (MANY / time * 1e6 for time in take_turns([microseconds(batch), microseconds(loop)], 50))
+    label = f"{what}: configurations a second, batch_link_transforms : a loop over mj_kinematics, poses"
+    return Row(label, "1/s", batched, looped, 1.5, more_is_better=True)
