@@ -9,53 +9,62 @@
 ``CamelCase`` names are OpenRAVE's, with OpenRAVE's meaning; ``snake_case`` names are ravemj's own.
 """
 
+import importlib
+from types import ModuleType
+
 import ravemj._mujoco  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco
 from ravemj import geometry_functions, rave
 from ravemj.errors import (
     ArgumentError,
     CompileError,
     Diagnostic,
-    ErrorCode,
     OutputError,
     RavemjError,
     RavemjWarning,
     RenderingError,
     Source,
     SourceError,
+    UnsupportedError,
 )
 from ravemj.extension import load_ipython_extension
 from ravemj.geometry_functions import *  # noqa: F403 - as its __all__ lists them
 from ravemj.motion import Motion, read_motion
-from ravemj.rave import *  # noqa: F403 - the OpenRAVE API, as its __all__ lists it
+from ravemj.rave import *  # noqa: F403 - OpenRAVE's names, which ravemj/rave/__init__.py lists
 from ravemj.recording import record
 from ravemj.viewers import Viewer
 
 __version__ = "0.1.0"
 
-OpenRAVEException = openrave_exception = RavemjError
+_MODULES = ["databases", "examples", "interfaces", "metaclass", "misc", "openravepy_int", "planningutils"]
 
 __all__ = [
     "ArgumentError",
     "CompileError",
     "Diagnostic",
-    "ErrorCode",
     "Motion",
-    "OpenRAVEException",
     "OutputError",
     "RavemjError",
     "RavemjWarning",
     "RenderingError",
     "Source",
     "SourceError",
+    "UnsupportedError",
     "Viewer",
     "__version__",
     "load_ipython_extension",
-    "openrave_exception",
     "read_motion",
     "record",
 ]
 __all__ += geometry_functions.__all__
 __all__ += rave.__all__
+__all__ += _MODULES  # noqa: PLE0605  # pyright: ignore[reportUnsupportedDunderAll] - __getattr__ imports them
+
+
+def __getattr__(name: str) -> ModuleType:
+    """Import a module of OpenRAVE's when it is asked for."""
+    if name in _MODULES:
+        return importlib.import_module(f"ravemj.{name}")
+    raise AttributeError(f"module 'ravemj' has no attribute '{name}'")
 
 
 def __dir__() -> list[str]:

@@ -58,7 +58,8 @@ def take_over(name: str) -> None:
 
 
 def _translated(name: str) -> str:
-    return "ravemj" + name.removeprefix(NAME)
+    """Return ravemj's module for a name of openravepy's."""
+    return "ravemj.openravepy" if name == NAME else "ravemj" + name.removeprefix(NAME)
 
 
 def _exists(name: str) -> bool:

@@ -31,6 +31,8 @@ class LinkBuilder:
     inertial: scene.Inertial = DEFAULT_INERTIAL
     static: bool = False
     enabled: bool = True
+    groups: tuple[tuple[str, tuple[scene.Geometry, ...]], ...] = ()
+    parameters: scene.Parameters = scene.NO_PARAMETERS
 
 
 @dataclass(slots=True, kw_only=True)
@@ -45,6 +47,7 @@ class JointBuilder:
     axes: tuple[scene.Axis, ...]
     enabled: bool
     equations: Equations | None = None
+    parameters: scene.Parameters = scene.NO_PARAMETERS
     source: Source
 
     @property
@@ -229,6 +232,7 @@ def _directed(
         axes=axes,
         places_child=places_child,
         mimic=mimic,
+        parameters=joint.parameters,
         source=joint.source,
     )
 
@@ -264,5 +268,7 @@ def _frozen_link(link: LinkBuilder, pose: Pose) -> scene.Link:
         geometries=tuple(link.geometries),
         static=link.static,
         enabled=link.enabled,
+        groups=link.groups,
+        parameters=link.parameters,
         source=link.source,
     )

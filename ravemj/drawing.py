@@ -18,7 +18,9 @@ _TIP_OF_ARROW = 0.1
 """Length of an arrow's tip as a part of the whole, as in OpenRAVE."""
 
 _SIDES_OF_ARROW = 12
-_PIECES_OF_GRADIENT = 8
+_SHADES = 16
+"""Pieces of a line along which a colour goes from 0 to 1."""
+
 _TEXTURE_CELLS = 64
 """Most cells along a side of a plane; finer textures are averaged."""
 
@@ -110,7 +112,7 @@ def line_list(positions: Floats, width: float, rgba: Floats) -> Shapes:
 
 def _lines(positions: Floats, width: float, rgba: Floats, ends: Ints) -> Shapes:
     """Cut lines whose ends differ in colour into pieces of one colour."""
-    pieces = _PIECES_OF_GRADIENT if np.any(rgba[ends[:, 0]] != rgba[ends[:, 1]]) else 1
+    pieces = max(1, int(np.ceil(_SHADES * np.abs(np.diff(rgba[ends], axis=1)).max(initial=0))))
     cuts = np.arange(pieces + 1) / pieces
     at = positions[ends[:, 0], None] + cuts[:, None] * np.diff(positions[ends], axis=1)
     middles = 0.5 * (cuts[:-1] + cuts[1:])

@@ -7,11 +7,13 @@
     │   └── CompileError        MuJoCo refuses the translated model
     ├── ArgumentError           a wrong argument of a call
     ├── OutputError             also an OSError: a file that cannot be written
-    └── RenderingError          no picture can be drawn
+    ├── RenderingError          no picture can be drawn
+    └── UnsupportedError        also a NotImplementedError: .capability that ravemj does not have
 
     RavemjWarning               .code .diagnostic: read, but not as the author may think
 """
 
+import re
 import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -86,6 +88,16 @@ class RavemjError(Exception):
         return self._code.name
 
 
+_LONG_QUOTATION = re.compile("'([^']{80})[^']{2,}'")
+_LONGEST = 2000  # characters of a message
+
+
+def shortened(message: str) -> str:
+    """Return a message without most of the text that it quotes, which may be megabytes of a damaged file."""
+    message = _LONG_QUOTATION.sub(r"'\1…'", message)
+    return message if len(message) <= _LONGEST else f"{message[: _LONGEST // 2]} … {message[-_LONGEST // 2 :]}"
+
+
 _CAUSES = {"missing-file", "broken-file", "unsupported-file", "bad-number"}
 
 
@@ -99,9 +111,9 @@ class SourceError(RavemjError):
     """
 
     def __init__(self, message: str, source: Source, hint: str = "") -> None:
-        super().__init__(message)
+        super().__init__(shortened(message))
         self.source = source
-        self.hint = hint
+        self.hint = shortened(hint)
         self.diagnostics: tuple[Diagnostic, ...] = ()
 
     def __str__(self) -> str:
@@ -137,6 +149,20 @@ class RenderingError(RavemjError):
 
     def __str__(self) -> str:
         return self.message
+
+
+class UnsupportedError(RavemjError, NotImplementedError):
+    """A name of OpenRAVE's that stands for something ravemj does not do.
+
+    Attributes:
+        capability: What is missing, for instance ``inverse kinematics``.
+    """
+
+    _code = ErrorCode.NotImplemented
+
+    def __init__(self, name: str, capability: str, code: ErrorCode | None = None) -> None:
+        super().__init__(f"{name}: ravemj does no {capability} yet", code)
+        self.capability = capability
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,11 +222,11 @@ class Diagnostics:
 
     def warn(self, code: str, message: str, source: Source, hint: str = "") -> None:
         """Record something that OpenRAVE lets pass in silence or with a log line."""
-        self._found.append(Diagnostic("warning", code, message, source, hint))
+        self._found.append(Diagnostic("warning", code, shortened(message), source, shortened(hint)))
 
     def error(self, code: str, message: str, source: Source, hint: str = "") -> None:
         """Record something for which OpenRAVE's ``Load`` returns False though it goes on."""
-        self._found.append(Diagnostic("error", code, message, source, hint))
+        self._found.append(Diagnostic("error", code, shortened(message), source, shortened(hint)))
 
 
 def _places(source: Source | None) -> Iterator[tuple[str, int]]:

@@ -1,10 +1,12 @@
 """Mimic joints: from the equations of a file to expressions over the joints of a body."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from ravemj.errors import Diagnostics, Source
-from ravemj.scene import Mimic
+from ravemj.errors import ArgumentError, Diagnostics, Source
+from ravemj.ordering import dependencies_first
+from ravemj.scene import Joint, KinBody, Mimic
 
 if TYPE_CHECKING:
     from ravemj.expressions import Expression
@@ -64,6 +66,34 @@ def resolve(joints: Sequence[Follower], diagnostics: Diagnostics) -> dict[int, M
     return {index: _mimic(index, joints, mimics, diagnostics) for index in mimics}
 
 
+def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[Joint, ...]:
+    """Return the passive joints of a body where one of them follows by other equations.
+
+    Args:
+        body: The body.
+        index: Index of the joint among the active joints followed by the passive ones.
+        equations: How it should follow.
+
+    Raises:
+        ArgumentError: these equations cannot be used.
+    """
+    followers: list[Follower] = []
+    dof = 0
+    for place, joint in enumerate((*body.joints, *body.passive_joints)):
+        count = len(joint.axes) if place < len(body.joints) else 0
+        mimic = joint.mimic
+        own = None if mimic is None else Equations(mimic.position, mimic.velocity, mimic.acceleration)
+        chosen = equations if place == index else own
+        followers.append(Follower(joint.name, tuple(range(dof, dof + count)), chosen, joint.source))
+        dof += count
+    diagnostics = Diagnostics()
+    mimics = resolve(followers, diagnostics)
+    for finding in diagnostics:
+        raise ArgumentError(finding.message)
+    first = len(body.joints)
+    return tuple(replace(joint, mimic=mimics.get(first + i)) for i, joint in enumerate(body.passive_joints))
+
+
 def leaders(expression: "Expression") -> tuple[int, ...]:
     """Return the indices of the joints that an expression depends on."""
     return tuple(int(name.removeprefix("joint")) for name in expression.variables)
@@ -91,16 +121,5 @@ def _mimic(index: int, joints: Sequence[Follower], mimics: "dict[int, Expression
 
 def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
     """Return the followers, each behind the followers that it depends on."""
-    order: dict[int, None] = {}
-
-    def visit(index: int) -> None:
-        mimic = mimics.get(index)
-        if mimic is None or mimic.expression is None or index in order:
-            return
-        for leader in leaders(mimic.expression):
-            visit(leader)
-        order.setdefault(index)
-
-    for index in mimics:
-        visit(index)
-    return list(order)
+    moving = {index: mimic.expression for index, mimic in mimics.items() if mimic.expression is not None}
+    return dependencies_first(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])

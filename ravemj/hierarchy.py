@@ -10,6 +10,8 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from ravemj.ordering import dependencies_first
+
 
 class Edge(NamedTuple):
     """A joint as an edge of the graph.
@@ -68,34 +70,18 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
 
 def _leaders_first(order: Sequence[int], edges: Sequence[Edge]) -> list[int]:
     """Move each joint behind the passive joints that it follows."""
-    moved: dict[int, None] = {}
-
-    def visit(index: int, waiting: frozenset[int]) -> None:
-        for leader in edges[index].follows:
-            if leader not in waiting:
-                visit(leader, waiting | {index})
-        moved.setdefault(index)
-
-    for index in order:
-        visit(index, frozenset({index}))
-    return list(moved)
+    return dependencies_first(order, lambda index: edges[index].follows)
 
 
 def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Sequence[int]) -> tuple[int, ...]:
     """Sort the joints that place a link so that each comes behind the one that places its parent."""
     placed_by = {ends[index][1]: index for index in placing}
-    done: dict[int, None] = {}
 
-    def visit(index: int) -> None:
+    def carrying(index: int) -> list[int]:
         parent = ends[index][0]
-        if parent in placed_by and placed_by[parent] not in done:
-            visit(placed_by[parent])
-        done.setdefault(index)
+        return [placed_by[parent]] if parent in placed_by else []
 
-    for index in order:
-        if index in placing:
-            visit(index)
-    return tuple(done)
+    return tuple(dependencies_first([index for index in order if index in placing], carrying))
 
 
 def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int | None]:

@@ -30,7 +30,7 @@ def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
         (axis,), (value,) = joint.axes, values
         motion = Pose(scale(axis.direction, value - axis.reference))
     else:
-        motion = _about(joint.anchor, rotation(joint, values))
+        motion = about(joint.anchor, rotation(joint, values))
     return motion @ joint.T_parent_child
 
 
@@ -44,7 +44,7 @@ def rotation(joint: Joint, values: Sequence[float]) -> Wxyz:
     return turned
 
 
-def _about(anchor: Vec3, wxyz: Wxyz) -> Pose:
+def about(anchor: Vec3, wxyz: Wxyz) -> Pose:
     """Return the motion that turns about a point."""
     return Pose(add(anchor, scale(rotate(wxyz, anchor), -1.0)), wxyz)
 
@@ -78,6 +78,8 @@ def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
 
 def _nearest_turn(axis: Axis, moved: float) -> float:
     """Add full turns to an angle so that the joint's value comes near the middle of its range."""
+    if math.isnan(moved):
+        raise OverflowError("the poses of the links are too far apart to compute with")
     beyond = axis.lower < -math.pi or axis.upper > math.pi
     middle = (axis.lower + axis.upper) / 2 if beyond else 0.0
     return moved - math.tau * round((axis.reference + moved - middle) / math.tau)

@@ -19,6 +19,7 @@ Wxyz = tuple[float, float, float, float]
 Rows = tuple[Vec3, Vec3, Vec3]
 
 ZERO: Vec3 = (0.0, 0.0, 0.0)
+UNSCALED: Vec3 = (1.0, 1.0, 1.0)
 UNIT_WXYZ: Wxyz = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -118,12 +119,10 @@ def normalize(wxyz: Wxyz) -> Wxyz:
     """Return the quaternion with unit length.
 
     Raises:
-        ValueError: all four numbers are zero.
+        ZeroDivisionError: all four numbers are zero.
     """
     w, x, y, z = wxyz
     length = math.sqrt(w * w + x * x + y * y + z * z)
-    if length == 0.0:
-        raise ValueError("a quaternion of zeros is no rotation")
     return (w / length, x / length, y / length, z / length)
 
 
@@ -131,10 +130,15 @@ def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
     """Return the right-handed rotation by an angle [rad] about an axis of any length; no axis, no rotation.
 
     Quarter and half turns come out without rounding, since models are full of them.
+
+    Raises:
+        OverflowError: the angle is infinite.
     """
     length = math.sqrt(dot(axis, axis))
     if length == 0.0:
         return UNIT_WXYZ
+    if math.isinf(angle):
+        raise OverflowError("there is no turn by an infinite angle")
     cosine, sine = math.cos(angle / 2), math.sin(angle / 2)
     if abs(abs(cosine) - abs(sine)) < 1e-15:
         cosine, sine = math.copysign(math.sqrt(0.5), cosine), math.copysign(math.sqrt(0.5), sine)

@@ -6,7 +6,8 @@ import shlex
 import pytest
 from conftest import REPOSITORY
 
-from ravemj import coverage
+from ravemj import api_coverage, coverage
+from ravemj.api_names import BEHIND, PYMANOID, SCRIPTS
 from ravemj.cli import reference
 from ravemj.cli.parser import make_parser
 from ravemj.coverage_notes import NOTES
@@ -31,6 +32,24 @@ WAYS_IN = {
 @pytest.mark.parametrize(("page", "made"), [("coverage.md", coverage.markdown), ("cli.md", reference.markdown)])
 def test_the_page_is_up_to_date(page, made):
     assert (REPOSITORY / "docs" / page).read_text(encoding="utf-8") == made(), "run scripts/docs"
+
+
+def test_the_page_of_the_api_is_up_to_date():
+    page = (REPOSITORY / "docs" / "api-coverage.md").read_text(encoding="utf-8")
+    assert page == api_coverage.markdown(), "run python -m ravemj.api_coverage > docs/api-coverage.md"
+
+
+def test_names_of_the_api_are_found_where_they_are():
+    assert len(set(SCRIPTS)) == 250
+    assert set(BEHIND) <= {*SCRIPTS, *PYMANOID}
+    found = {name: [tuple(place) for place in api_coverage.find(name)] for name in ("with_robot", "plot4", *SCRIPTS)}
+    assert found["with_robot"] == [("KinBody", "")]
+    assert found["plot4"] == []
+    assert found["GetRobots"] == [("Environment", "")]
+    assert found["DrawAxes"] == [("misc", "")]
+    assert found["BaseManipulation"] == [("interfaces", "motion planning")]
+    assert found["RetimeTrajectory"] == [("planningutils", "retiming of trajectories")]
+    assert {"Link", "KinBody", "Manipulator"} <= {owner for owner, _ in found["GetTransform"]}
 
 
 @pytest.mark.parametrize("section", coverage.sections(), ids=lambda section: section.element)

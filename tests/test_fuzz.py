@@ -251,6 +251,38 @@ class TestFound:
 
         assert size(200) < 3 * size(100)
 
+    def test_long_chains_of_followers(self, run):
+        links = "".join(f"<Body name='l{i}'/>" for i in range(1202))
+        joint = "<Joint name='j{0}' mimic_pos='{1}'><Body>l0</Body><Body>l{0}</Body></Joint>"
+        joints = "".join(joint.format(i, f"j{i + 1}") for i in range(1, 1201))
+        assert run(body(links + joints + joint.format(1201, "").replace("mimic_pos=''", "")), 60).links == 1202
+
+    @pytest.mark.parametrize("links", [496, 497])
+    def test_long_chains_of_links(self, tmp_path, links):
+        joint = "<Joint name='j{0}'><Body>l{0}</Body><Body>l{1}</Body></Joint>"
+        content = "\n".join(f"<Body name='l{i}'/>" for i in range(links))
+        content += "".join(joint.format(i, i + 1) for i in range(links - 1))
+        (tmp_path / MAIN).write_text(body(content))
+        if links <= 496:
+            assert ravemj.load(tmp_path / MAIN).model.nbody == links + 1
+            return
+        with pytest.raises(ravemj.CompileError, match="chain of 496 links") as caught:
+            ravemj.load(tmp_path / MAIN)
+        assert caught.value.source == (str(tmp_path / MAIN), links, None)
+
+    def test_many_misspelt_tags(self, run):
+        assert run(body(LINK + "<Bodey/>" * 100_000)).links == 1
+
+    @pytest.mark.parametrize(
+        ("text", "most"), [("x" * 10**6, 400), ("it's " * 10**6, 3000)], ids=["word", "apostrophes"]
+    )
+    def test_messages_stay_short(self, tmp_path, text, most):
+        tags = '<Translation>{0}</Translation><Mass type="{0}"/><Geom type="{0}"/><offsetfrom>{0}</offsetfrom>'
+        (tmp_path / MAIN).write_text(body(f"<Body name='A'>{tags.format(text)}</Body>"))
+        findings = [str(finding) for finding in read_file(tmp_path / MAIN).diagnostics]
+        assert len(findings) == 4
+        assert max(map(len, findings)) < most
+
     @pytest.mark.parametrize("name", ["a---b.xml", "a--->b.xml", "new\nline.xml", "control\x01.xml", "\udcff.xml"])
     def test_strange_paths(self, tmp_path, name):
         (tmp_path / name).write_text(body(LINK))

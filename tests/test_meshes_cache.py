@@ -97,6 +97,18 @@ def test_every_format_comes_back_the_same(folder, path):
         assert len(entries(folder)) == 1
 
 
+@pytest.mark.parametrize("scale", [(0.001, 0.001, 0.001), (2.0, 1.0, -3.0), (1e39, 1.0, 1.0)])
+def test_scaled_meshes_come_from_the_cache(folder, later, mesh, reads, scale):
+    plain = read_mesh(mesh)
+    first, second = read_mesh(mesh, scale), read_mesh(mesh, scale)
+    assert [len(reads), len(entries(folder)), len(shortcuts(folder))] == [2, 2, 2]
+    for one, other, unscaled in zip(first, second, plain, strict=True):
+        np.testing.assert_array_equal(one.mesh.vertices, unscaled.mesh.vertices * scale)
+        np.testing.assert_array_equal(one.mesh.vertices, other.mesh.vertices)
+        assert one == other
+        assert Mesh(one.mesh.vertices.copy(), one.mesh.triangles).digest == other.mesh.digest
+
+
 def test_content_and_kind_decide_not_the_name(folder, mesh, reads, tmp_path):
     read_mesh(mesh)
     (tmp_path / "other.OBJ").write_text(OBJ)

@@ -131,7 +131,7 @@ class TestText:
     def test_str(self, env, robot):
         assert str(robot.GetLink("Arm1")) == "<link:Arm1 (2), parent=Pendulum>"
         assert str(robot.GetJoint("Joint1")) == "<joint:Joint1 (1), dof=1, parent=Pendulum>"
-        assert str(robot) == "<robot:Pendulum, dof=2, links=3>"
+        assert str(robot) == f"<robot:GenericRobot - Pendulum ({robot.GetKinematicsGeometryHash()})>"
         assert str(env).startswith("<environment:")
 
     def test_objects_are_equal_across_calls(self, env, robot):

@@ -295,3 +295,54 @@ def test_a_display_that_is_not_there_is_said_and_the_script_goes_on(folder):
     assert (done.returncode, done.stdout) == (0, PRINTED_BY_THE_SCRIPT)
     (line,) = done.stderr.splitlines()
     assert line.startswith("ravemj: no window can be opened")
+
+
+def test_drawings_and_viewer_calls_reach_the_window(display, folder):
+    (folder / "draws.py").write_text("""
+import threading, time, openravepy
+env = openravepy.Environment()
+env.SetViewer('qtcoin')
+viewer = env.GetViewer()
+viewer.SetCamera([[0, 0, 1, -3], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+viewer.SetSize(320, 240)
+viewer.Move(30, 40)
+viewer.SetTitle('ravemj draws')
+pictures, turns = [], []
+kept = [viewer.RegisterViewerImageCallback(pictures.append),
+        viewer.RegisterViewerThreadCallback(lambda: turns.append(threading.current_thread().name))]
+handle = env.plot3([0, 0, 0], 40, [1, 0, 0])
+viewer.EnvironmentSync()
+viewer.EnvironmentSync()
+print(set(turns), pictures[-1].shape, pictures[-1][120, 160])
+input()
+handle.SetTransform([1, 0, 0, 0, 0, 0.5, 0])
+input()
+del handle
+input()
+viewer.Show(0)
+input()
+viewer.Show(1)
+input()
+threading.Timer(0.5, viewer.quitmainloop).start()
+print('main', viewer.main(True), viewer.is_open)
+""")
+    red, white = [255, 0, 0], [255, 255, 255]
+    terminal = on_terminal(folder, "-m", "ravemj", "run", "draws.py", DISPLAY=display.name)
+    terminal.expect(r"{'ravemj window'} \(240, 320, 3\) \[255\s+0\s+0\]")
+    window = display.await_window()
+    assert display.picture(window).shape == (240, 320, 3)
+    assert "X=30" in display.tool("getwindowgeometry", "--shell", str(window))
+    assert "ravemj draws" in display.tool("getwindowname", str(window))
+    await_that(lambda: display.picture(window)[120, 160].tolist() == red, "the point does not come")
+    terminal.sendline("")
+    await_that(lambda: display.picture(window)[120, 160].tolist() == white, "the point does not move")
+    assert (display.picture(window) == red).all(axis=2).sum() == pytest.approx(1600, abs=160)
+    terminal.sendline("")
+    await_that(lambda: display.picture(window).min() == 255, "the point stays")
+    terminal.sendline("")
+    await_that(lambda: not display.windows(), "the window does not hide")
+    terminal.sendline("")
+    display.await_window()
+    terminal.sendline("")
+    terminal.expect("main 0 False")
+    assert finish(terminal)[1] == 0

@@ -197,8 +197,12 @@ def _add_run(commands: Commands) -> None:
         "ravemj run myscript.py",
         "ravemj run -i myscript.py      # stays in IPython",
         "ravemj run myscript.py --robot arm.xml",
+        "ravemj run --py2 oldscript.py",
     )
     parser.add_argument("-i", "--interactive", action="store_true", help="stay in IPython when the script ends")
+    parser.add_argument(
+        "--py2", action="store_true", help="the script, and the modules beside it, are written for Python 2"
+    )
     parser.add_argument("script", metavar="SCRIPT", help="Python file")
     parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="arguments of the script")
     parser.set_defaults(run=sessions.run)

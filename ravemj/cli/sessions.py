@@ -1,19 +1,22 @@
 """Commands that give ravemj to scripts and to people at a prompt: ``run``, ``shell`` and ``alias``."""
 
 import argparse
+import itertools
 import os
-import runpy
 import sys
 import traceback
 from collections.abc import Mapping
-from types import TracebackType
+from types import ModuleType
 
 import numpy as np
 
 import ravemj
 from ravemj import alias as openravepy_alias
+from ravemj import python2
 from ravemj.cli.models import load_model
 from ravemj.errors import Source, SourceError
+
+_OUR_FILES = {__file__, python2.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
 
 
 def run(options: argparse.Namespace) -> int:
@@ -22,24 +25,43 @@ def run(options: argparse.Namespace) -> int:
     if not os.path.isfile(script):
         raise SourceError("there is no such script", Source(script))
     openravepy_alias.install_finder()
-    if options.interactive:
+    if options.interactive and not options.py2:
         return _start_ipython(["-i", script, "--", *options.arguments])
     sys.argv = [script, *options.arguments]
-    sys.path.insert(0, os.path.dirname(os.path.abspath(script)))
+    folder = os.path.dirname(os.path.abspath(script))
+    sys.path.insert(0, folder)
+    main = sys.modules["__main__"] = ModuleType("__main__")
+    main.__file__ = script
+    if options.py2:
+        python2.install_finder(folder)
+        main.__dict__.update(python2.HELPERS)
+    status = _execute(script, main, options.py2)
+    if options.interactive:
+        return _start_ipython(["--no-banner"], main.__dict__)
+    return status
+
+
+def _execute(script: str, main: ModuleType, py2: bool) -> int:
+    """Run a script as the main module; what it raises is shown as Python does, and gives 1."""
     try:
-        runpy.run_path(script, run_name="__main__")
+        with open(script, "rb") as file:
+            source = file.read()
+        code = python2.compile_script(source, script) if py2 else compile(source, script, "exec", dont_inherit=True)
+        exec(code, main.__dict__)
     except Exception as error:  # whatever the user's script raises
-        traceback.print_exception(type(error), error, _from_script(error.__traceback__, script))
+        _print_traceback(error, script)
+        if isinstance(error, SyntaxError) and error.filename and not py2 and python2.is_python2(error.filename):
+            print(f"ravemj: {error.filename} is Python 2; ravemj run --py2 {script} translates it", file=sys.stderr)
         return 1
     return 0
 
 
-def _from_script(trace: TracebackType | None, script: str) -> TracebackType | None:
-    """Return the traceback without our own frames at its start."""
-    inner = trace
-    while inner is not None and inner.tb_frame.f_code.co_filename != script:
-        inner = inner.tb_next
-    return inner  # None: the script could not even be parsed, and the error itself says where
+def _print_traceback(error: Exception, script: str) -> None:
+    """Print what Python prints, without our own frames."""
+    shown = traceback.TracebackException.from_exception(error)
+    inner = itertools.dropwhile(lambda frame: frame.filename != script, shown.stack)
+    shown.stack[:] = [frame for frame in inner if frame.filename not in _OUR_FILES]
+    sys.stderr.writelines(shown.format())
 
 
 def shell(options: argparse.Namespace) -> int:

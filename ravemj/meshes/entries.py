@@ -19,8 +19,7 @@ Parts = tuple[MeshPart, ...]
 _MAGIC = b"ravemj\x00\x01"
 _START = len(_MAGIC) + 4
 _ARRAYS = 8  # at multiples of this
-_VERTEX, _TRIANGLE = np.dtype("<f4"), np.dtype("<i4")  # single precision is what the readers round to
-_ROW = 12  # bytes of a vertex or a triangle
+_SINGLE, _DOUBLE, _TRIANGLE = np.dtype("<f4"), np.dtype("<f8"), np.dtype("<i4")
 
 
 def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
@@ -34,9 +33,13 @@ def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
     arrays: list[bytes] = []
     for part in parts:
         mesh = part.mesh
-        counts = len(mesh.vertices), len(mesh.triangles)
+        with np.errstate(over="ignore"):
+            points = mesh.vertices.astype(_SINGLE)  # the readers round to it, and scaling leads away from it
+        is_single = np.array_equal(points, mesh.vertices)
+        counts = len(mesh.vertices), len(mesh.triangles), is_single
         about.append((counts, part.diffuse, part.ambient, part.transparency, collision_form(mesh), mesh.digest))
-        arrays += [mesh.vertices.astype(_VERTEX).tobytes(), mesh.triangles.astype(_TRIANGLE).tobytes()]
+        arrays += [points.tobytes() if is_single else mesh.vertices.astype(_DOUBLE).tobytes()]
+        arrays += [mesh.triangles.astype(_TRIANGLE).tobytes()]
     header = json.dumps((digests, about)).encode()
     header += b" " * (-(_START + 4 + len(header)) % _ARRAYS)
     return _sealed(b"".join([len(header).to_bytes(4, "little"), header, *arrays]))
@@ -52,11 +55,12 @@ def unpack_entry(content: bytes) -> tuple[Parts, dict[str, str]]:
     position = _START + 4 + int.from_bytes(content[_START : _START + 4], "little")
     digests, about = json.loads(content[_START + 4 : position].decode())
     parts: list[MeshPart] = []
-    for (vertices, triangles), diffuse, ambient, transparency, form, digest in about:
-        middle = position + _ROW * vertices
-        points = np.ndarray((vertices, 3), _VERTEX, content, position).astype(np.float64)
+    for (vertices, triangles, is_single), diffuse, ambient, transparency, form, digest in about:
+        kind = _SINGLE if is_single else _DOUBLE
+        middle = position + 3 * kind.itemsize * vertices
+        points = np.ndarray((vertices, 3), kind, content, position).astype(np.float64)
         corners = np.ndarray((triangles, 3), _TRIANGLE, content, middle).astype(np.int_)
-        position = middle + _ROW * triangles
+        position = middle + 3 * _TRIANGLE.itemsize * triangles
         for numbers in (points, corners):
             numbers.flags.writeable = False  # so that the mesh takes them as they are
         mesh = Mesh(points, corners)

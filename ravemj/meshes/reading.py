@@ -1,6 +1,7 @@
 """A mesh file to its parts: the reader is chosen by the file's name, as OpenRAVE does it."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,6 +9,8 @@ from ravemj.errors import Source, SourceError
 from ravemj.meshes import cache
 from ravemj.meshes.files import MeshFile, References, unpacked
 from ravemj.meshes.parts import MESH_SUFFIXES, MeshPart
+from ravemj.scene import Mesh
+from ravemj.transforms import UNSCALED, Vec3
 
 _Reader = Callable[[MeshFile], tuple[MeshPart, ...]]
 
@@ -56,7 +59,7 @@ _READERS: dict[str, _Reader] = {
 }
 
 
-def read_mesh(path: str) -> tuple[MeshPart, ...]:
+def read_mesh(path: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
     """Read a mesh file as OpenRAVE does it for the ``<data>`` of a trimesh.
 
     Vertices are in metres, in the frame of the file; a COLLADA file is scaled by its unit and turned to y up.
@@ -64,6 +67,7 @@ def read_mesh(path: str) -> tuple[MeshPart, ...]:
 
     Args:
         path: The file; the end of its name decides how it is read, in upper or lower case.
+        scale: Factors along x, y and z.
 
     Returns:
         Its parts, none of them without triangles.
@@ -75,7 +79,13 @@ def read_mesh(path: str) -> tuple[MeshPart, ...]:
     if suffix is None:
         known = " ".join(MESH_SUFFIXES)
         raise SourceError("no mesh format that ravemj knows", Source(path), hint=f"it reads {known}")
-    return cache.remembered_file(path, suffix, lambda raw: _read(MeshFile(path, unpacked(raw, path)), _READERS[suffix]))
+    kind = suffix if scale == UNSCALED else f"{suffix} {scale}"
+
+    def read(raw: bytes) -> tuple[tuple[MeshPart, ...], References]:
+        parts, references = _read(MeshFile(path, unpacked(raw, path)), _READERS[suffix])
+        return parts if scale == UNSCALED else tuple(_scaled(part, scale) for part in parts), references
+
+    return cache.remembered_file(path, kind, read)
 
 
 def _read(file: MeshFile, reader: _Reader) -> tuple[tuple[MeshPart, ...], References]:
@@ -85,3 +95,7 @@ def _read(file: MeshFile, reader: _Reader) -> tuple[tuple[MeshPart, ...], Refere
             return reader(file), file.references
     except (RecursionError, MemoryError, OverflowError) as error:
         raise SourceError(f"the file is too large or nested too deep ({type(error).__name__})", file.source) from error
+
+
+def _scaled(part: MeshPart, scale: Vec3) -> MeshPart:
+    return replace(part, mesh=Mesh(part.mesh.vertices * scale, part.mesh.triangles))

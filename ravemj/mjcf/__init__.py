@@ -5,6 +5,7 @@ keep all their digits, every element has its own line, and names stay as they ar
 """
 
 from ravemj.mjcf.document import BodyNames, Mjcf, Options, write
+from ravemj.mjcf.geometry import rgba, solids
 from ravemj.mjcf.inertia import legal_inertial
 
-__all__ = ["BodyNames", "Mjcf", "Options", "legal_inertial", "write"]
+__all__ = ["BodyNames", "Mjcf", "Options", "legal_inertial", "rgba", "solids", "write"]

@@ -44,10 +44,12 @@ class BodyNames(NamedTuple):
         links: Name of the MuJoCo body of each link.
         joints: For each joint, active ones and then passive ones, the names of the MuJoCo joints that it became; none
             for one that moves no link: a weld, a passive one that follows nothing, and one that closes a loop.
+        geoms: For each link, how many geoms each of its geometries became; they stand in this order.
     """
 
     links: tuple[str, ...]
     joints: tuple[tuple[str, ...], ...]
+    geoms: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -172,9 +174,10 @@ class _Writer:
                 self._joint_names(body, joint, i < len(body.joints), joint.name or f"joint{i}")
                 for i, joint in enumerate(joints)
             ),
+            geoms=(),
         )
-        self.names.append(names)
-        welds = self._write_tree(index, body, names, joints)
+        welds = WeldGroups()
+        self.names.append(names._replace(geoms=self._write_tree(index, body, names, joints, welds)))
         if self.options.excludes:
             for first, second in excluded_pairs(body, welds):
                 self.excludes.element("exclude", body1=names.links[first], body2=names.links[second])
@@ -190,8 +193,11 @@ class _Writer:
         first = self._given.give("joint", body, name)
         return (first, self._given.give("joint", body, f"{name}_1")) if joint.kind == "hinge2" else (first,)
 
-    def _write_tree(self, index: int, body: KinBody, names: BodyNames, joints: tuple[Joint, ...]) -> WeldGroups:
-        welds = WeldGroups()
+    def _write_tree(
+        self, index: int, body: KinBody, names: BodyNames, joints: tuple[Joint, ...], welds: WeldGroups
+    ) -> tuple[tuple[int, ...], ...]:
+        """Write the links; return for each how many geoms its geometries became."""
+        geoms: list[tuple[int, ...]] = [()] * len(body.links)
         placing = {joint.child: number for number, joint in enumerate(joints) if joint.places_child}
         children: dict[int, list[int]] = {}
         for child, number in placing.items():
@@ -213,13 +219,15 @@ class _Writer:
             self._write_inertial(index, link, body.links[link])
             if joint is not None:
                 self._write_joint(joint, joint_names)
-            solid = [self.geometries.write(geometry, self.bodies) for geometry in body.links[link].geometries]
+            written = [self.geometries.write(geometry, self.bodies) for geometry in body.links[link].geometries]
+            geoms[link] = tuple(count for count, _ in written)
             parent = None if joint is None else joint.parent
-            welds.add(link, parent, moves=is_free or bool(joint_names), solid=any(solid))
+            solid = any(collides for _, collides in written)
+            welds.add(link, parent, moves=is_free or bool(joint_names), solid=solid)
             pending.append((link, True))
             if link in children:
                 pending.extend((child, False) for child in sorted(children[link], reverse=True))
-        return welds
+        return tuple(geoms)
 
     def _open_link(self, body: KinBody, index: int, name: str, joint: Joint | None, moves: bool) -> None:
         link = body.links[index]

@@ -78,8 +78,9 @@ def excluded_pairs(body: KinBody, welds: WeldGroups) -> list[Pair]:
         return []
     joints = (*body.joints, *body.passive_joints)
     count = len(body.links)
-    pairs = {pair for pair in body.adjacent if set(pair) <= set(welds.solid)}
-    pairs = {(one, other) for one, other in pairs if welds.are_tested(welds.group[one], welds.group[other])}
+    solid = set(welds.solid)
+    named = [(one, other) for one, other in body.adjacent if one in solid and other in solid]
+    pairs = {(one, other) for one, other in named if welds.are_tested(welds.group[one], welds.group[other])}
     if body.joined_links_adjacent:
         rigid = components(count, ((joint.parent, joint.child) for joint in joints if joint.static))
         parts = _cells(rigid, welds)

@@ -40,9 +40,11 @@ class GeometryWriter:
         self.meshes: dict[str, Mesh] = {}
         self.lines = Lines(2)
         self._decomposed = decomposed
+        self._written = 0
 
-    def write(self, geometry: Geometry, out: Lines) -> bool:
-        """Write the geoms of a geometry; return whether one of them collides."""
+    def write(self, geometry: Geometry, out: Lines) -> tuple[int, bool]:
+        """Write the geoms of a geometry; return how many there are, and whether one of them collides."""
+        before = self._written
         seen = geometry.visible and geometry.display is None
         if isinstance(geometry.shape, TriMesh):
             collides = self._write_mesh(geometry, geometry.shape.mesh, out, seen=seen)
@@ -55,7 +57,7 @@ class GeometryWriter:
                 self._write_solid(geometry, solid, out, seen=seen)
         for surface in geometry.display or () if geometry.visible else ():
             self._write_surface(geometry, surface, out)
-        return collides
+        return self._written - before, collides
 
     def _write_solid(self, geometry: Geometry, solid: Solid, out: Lines, *, seen: bool) -> None:
         kind, size, centre = solid
@@ -65,7 +67,7 @@ class GeometryWriter:
             message = f"MuJoCo refuses a {kind} of size {attribute_text(size)}; the MJCF has {attribute_text(legal)}"
             self.diagnostics.warn("raised-size", message, geometry.source)
         pose = geometry.T_link_geometry @ Pose(centre) if any(centre) else geometry.T_link_geometry
-        colour = _rgba(geometry.diffuse, geometry.transparency)
+        self._written += 1
         out.element(
             "geom",
             geometry.source,
@@ -73,7 +75,7 @@ class GeometryWriter:
             type=kind,
             size=legal,
             **pose_attributes(pose),
-            rgba=colour,
+            rgba=rgba(geometry.diffuse, geometry.transparency),
         )
 
     def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: Lines, *, seen: bool) -> bool:
@@ -107,17 +109,18 @@ class GeometryWriter:
     def _write_surface(self, geometry: Geometry, surface: Surface, out: Lines) -> None:
         name = self._mesh_name(surface.mesh)
         if name is not None:
-            colour = _rgba(surface.diffuse, surface.transparency)
+            colour = rgba(surface.diffuse, surface.transparency)
             self._write_geom(geometry, name, "visual", colour, out)
 
     def _write_mesh_geom(self, geometry: Geometry, mesh: Mesh, role: str | None, out: Lines) -> None:
         name = self._mesh_name(mesh)
         if name is not None:
-            self._write_geom(geometry, name, role, _rgba(geometry.diffuse, geometry.transparency), out)
+            self._write_geom(geometry, name, role, rgba(geometry.diffuse, geometry.transparency), out)
 
     def _write_geom(
         self, geometry: Geometry, mesh_name: str, role: str | None, colour: tuple[float, ...], out: Lines
     ) -> None:
+        self._written += 1
         attributes: dict[str, Attribute | None] = {"class": role, "type": "mesh", "mesh": mesh_name}
         out.element("geom", geometry.source, **attributes, **pose_attributes(geometry.T_link_geometry), rgba=colour)
 
@@ -168,7 +171,7 @@ def _container(shape: Container) -> list[Solid]:
     return solids
 
 
-def _rgba(colour: Rgb, transparency: float) -> tuple[float, ...]:
+def rgba(colour: Rgb, transparency: float) -> tuple[float, ...]:
     """Return colour and opacity in the range from 0 to 1, beyond which nothing looks different."""
     rgba = (*colour, 1.0 - transparency)
     return rgba if min(rgba) >= 0.0 and max(rgba) <= 1.0 else tuple(min(max(part, 0.0), 1.0) for part in rgba)

@@ -1,6 +1,6 @@
 """``<actuator>``: the motor of a joint, of which the torque limit comes."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -66,9 +66,14 @@ def read_motor(element: Element, context: Context) -> Motor:
         raise SourceError(f"OpenRAVE knows no actuator of type '{kind}'", element.source, "write electric_motor")
     motor = _Data(context)
     context.walk(element, ACTUATOR_TAGS, ACTUATOR_IGNORED, motor)
-    gear_ratio = motor.numbers.get("gear_ratio", 0.0)
-    inertia = motor.numbers.get("rotor_inertia", 0.0) * gear_ratio**2
+    return motor_of(motor.numbers)
+
+
+def motor_of(numbers: Mapping[str, float]) -> Motor:
+    """Return the motor behind its gear; what the numbers leave out is 0."""
+    gear_ratio = numbers.get("gear_ratio", 0.0)
+    inertia = numbers.get("rotor_inertia", 0.0) * gear_ratio**2
     for name in ("max_instantaneous_torque", "nominal_torque"):
-        if motor.numbers.get(name, 0.0) > 0:
-            return Motor(motor.numbers[name] * gear_ratio, inertia)
+        if numbers.get(name, 0.0) > 0:
+            return Motor(numbers[name] * gear_ratio, inertia)
     return Motor(None, inertia)

@@ -1,16 +1,14 @@
 """What every part of the reader needs: where to report, where files are, and how to walk over an element."""
 
+import functools
 import os
 from collections.abc import Callable, Collection, Mapping, Set
-from dataclasses import replace
 from typing import TypeVar
 
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.meshes import MeshPart
 from ravemj.openrave_xml.tree import Element, parse_file
-from ravemj.openrave_xml.values import UNSCALED
-from ravemj.scene import Mesh
-from ravemj.transforms import Vec3
+from ravemj.transforms import UNSCALED, Vec3
 
 Target = TypeVar("Target")
 
@@ -18,16 +16,14 @@ IGNORED = "OpenRAVE reads it and makes nothing of it"
 MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
 COLLADA_SUFFIXES = (".dae", ".zae")
+_LONGEST_NAME = 80
+"""No known name is anywhere near as long."""
 NO_EFFECT_HERE = "it has no effect on the model"
 
 
 def reasons(reason: str, *names: str) -> dict[str, str]:
     """Return a table that gives one reason for each name."""
     return dict.fromkeys(names, reason)
-
-
-UNCOMPUTABLE = (ArithmeticError, ValueError)
-"""What arithmetic raises at numbers such as 1e200."""
 
 
 def uncomputable(element: Element) -> SourceError:
@@ -70,7 +66,7 @@ class Context:
                 if child.complete:
                     try:
                         handler(target, child)
-                    except UNCOMPUTABLE as error:
+                    except ArithmeticError as error:
                         raise uncomputable(child) from error
             elif child.tag in ignored:
                 self.leave_out(child, ignored[child.tag])
@@ -174,31 +170,23 @@ class Context:
         The parts are the same objects at every use with the same scale.
         """
         path = self.find(name, source, *folders)
-        return () if path is None else self._parts(path, source, scale)
-
-    def _parts(self, path: str, source: Source, scale: Vec3) -> tuple[MeshPart, ...]:
+        if path is None:
+            return ()
         parts = self._meshes.get((path, scale))
         if parts is None:
-            if scale == UNSCALED:
-                parts = self._read_mesh(path, source)
-            else:
-                parts = tuple(_scaled(part, scale) for part in self._parts(path, source, UNSCALED))
-            self._meshes[path, scale] = parts
+            parts = self._meshes[path, scale] = self._read_mesh(path, source, scale)
         return parts
 
-    def _read_mesh(self, path: str, source: Source) -> tuple[MeshPart, ...]:
-        self.files.append(path)
+    def _read_mesh(self, path: str, source: Source, scale: Vec3) -> tuple[MeshPart, ...]:
+        if path not in self.files:
+            self.files.append(path)
         from ravemj.meshes.reading import read_mesh  # noqa: PLC0415 - most models have no meshes
 
         try:
-            return read_mesh(path)
+            return read_mesh(path, scale)
         except SourceError as error:
             self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
             return ()
-
-
-def _scaled(part: MeshPart, scale: Vec3) -> MeshPart:
-    return replace(part, mesh=Mesh(part.mesh.vertices * scale, part.mesh.triangles))
 
 
 def _is_same_file(first: str, second: str) -> bool:
@@ -228,7 +216,12 @@ def _belongs(element: Element) -> str:
 
 def did_you_mean(name: str, known: Collection[str]) -> str:
     """Return a hint with the known name that looks most like the one given, or nothing."""
+    return _closest(name, tuple(known)) if len(name) < _LONGEST_NAME else ""
+
+
+@functools.lru_cache(maxsize=1000)  # slow, and who spells a tag wrongly does so many times
+def _closest(name: str, known: tuple[str, ...]) -> str:
     import difflib  # noqa: PLC0415 - slow to import
 
-    similar = difflib.get_close_matches(name, list(known), n=1)
+    similar = difflib.get_close_matches(name, known, n=1)
     return f"did you mean '{similar[0]}'?" if similar else ""

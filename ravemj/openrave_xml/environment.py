@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.openrave_xml.body import read_body
-from ravemj.openrave_xml.context import IGNORED, NO_EFFECT_HERE, UNCOMPUTABLE, Context, uncomputable
+from ravemj.openrave_xml.context import IGNORED, NO_EFFECT_HERE, Context, uncomputable
 from ravemj.openrave_xml.tree import Document, Element, parse, parse_file
 from ravemj.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.scene import KinBody, Scene, View
@@ -134,7 +134,7 @@ class _Document:
         """Read a body and give it its place among the others."""
         try:
             body, refusal = read_body(element, self.context)
-        except UNCOMPUTABLE as error:
+        except ArithmeticError as error:
             raise uncomputable(element) from error
         check_name(body.name, element)
         if body.name in self._names:

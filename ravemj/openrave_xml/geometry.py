@@ -27,6 +27,7 @@ from ravemj.scene import (
     Cylinder,
     Geometry,
     Mesh,
+    MeshFile,
     NoShape,
     Prism,
     Rgb,
@@ -55,11 +56,6 @@ class GeometryScope(NamedTuple):
     scale: Vec3 = (1.0, 1.0, 1.0)
 
 
-class _MeshFile(NamedTuple):
-    name: str
-    scale: Vec3
-
-
 @dataclass(slots=True)
 class _Geom:
     """What the children of a ``<Geom>`` have said so far."""
@@ -73,8 +69,8 @@ class _Geom:
     container: dict[str, Vec3] = field(default_factory=lambda: {})
     cross_section: Sequence[float] = ()
     vertices: Sequence[float] = ()
-    collision: _MeshFile | None = None
-    render: _MeshFile | None = None
+    collision: MeshFile | None = None
+    render: MeshFile | None = None
     diffuse: Rgb | None = None
     ambient: Rgb | None = None
     transparency: float | None = None
@@ -230,13 +226,13 @@ def _geometry(
         visible=not is_false(element.attributes.get("render", "true")),
         modifiable=not is_false(element.attributes.get("modifiable", "true")),
         display=display,
+        render_file=_found(geom, geom.render, element, scope),
+        collision_file=_found(geom, geom.collision, element, scope),
         source=element.source,
     )
 
 
-def _surfaces(
-    geom: _Geom, file: _MeshFile | None, element: Element, scope: GeometryScope
-) -> tuple[Surface, ...] | None:
+def _surfaces(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> tuple[Surface, ...] | None:
     """Return what a render file draws in place of the shape; None without one that can be drawn."""
     parts = _parts(geom, file, element, scope)
     if not parts:
@@ -251,13 +247,24 @@ def _surfaces(
     )
 
 
-def _parts(geom: _Geom, file: _MeshFile | None, element: Element, scope: GeometryScope) -> tuple[MeshPart, ...]:
+def _parts(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> tuple[MeshPart, ...]:
     """Return the parts of a mesh file, with the file's own scale."""
     if file is None or not file.name:
         return ()
+    return geom.context.mesh(file.name, element.source, *_folders(element, scope), scale=file.scale)
+
+
+def _found(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> MeshFile | None:
+    """Return a mesh file with its path; None where it has no part."""
+    if not _parts(geom, file, element, scope) or file is None:
+        return None
+    return file._replace(name=geom.context.find(file.name, element.source, *_folders(element, scope)) or file.name)
+
+
+def _folders(element: Element, scope: GeometryScope) -> list[str]:
+    """Return where meshes are looked for first."""
     folder = scope.models_folder
-    folders = [] if folder is None else [os.path.join(os.path.dirname(element.source.file), folder)]
-    return geom.context.mesh(file.name, element.source, *folders, scale=file.scale)
+    return [] if folder is None else [os.path.join(os.path.dirname(element.source.file), folder)]
 
 
 def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
@@ -269,7 +276,7 @@ def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
     return Mesh(mesh.vertices @ in_geometry.T, mesh.triangles)
 
 
-def _mesh_file(element: Element) -> _MeshFile:
+def _mesh_file(element: Element) -> MeshFile:
     """Read ``file [sx [sy [sz]]]``: one number is a uniform scale, a missing sz is sx."""
     words = element.text.split(maxsplit=1)
     name, numbers = (words[0] if words else ""), (words[1] if len(words) > 1 else "")
@@ -279,5 +286,5 @@ def _mesh_file(element: Element) -> _MeshFile:
     values, _ = leading_numbers(numbers)
     if len(values) < 2:
         uniform = values[0] if values else 1.0
-        return _MeshFile(name, (uniform, uniform, uniform))
-    return _MeshFile(name, (values[0], values[1], values[2] if len(values) > 2 else values[0]))
+        return MeshFile(name, (uniform, uniform, uniform))
+    return MeshFile(name, (values[0], values[1], values[2] if len(values) > 2 else values[0]))

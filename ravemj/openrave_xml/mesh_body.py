@@ -8,7 +8,7 @@ from ravemj.errors import Source
 from ravemj.making import MASSLESS
 from ravemj.meshes import MESH_SUFFIXES
 from ravemj.openrave_xml.context import COLLADA_SUFFIXES, Context
-from ravemj.scene import Geometry, Mesh, TriMesh
+from ravemj.scene import Geometry, TriMesh
 from ravemj.transforms import Pose, Vec3
 
 
@@ -30,7 +30,7 @@ def add_mesh(body: BodyBuilder, path: str, scale: Vec3, source: Source, context:
     """
     geometries = [
         Geometry(
-            shape=TriMesh(Mesh(part.mesh.vertices * scale, part.mesh.triangles)),
+            shape=TriMesh(part.mesh),
             T_link_geometry=Pose(),
             name="",
             diffuse=part.diffuse,
@@ -39,7 +39,7 @@ def add_mesh(body: BodyBuilder, path: str, scale: Vec3, source: Source, context:
             visible=True,
             source=source,
         )
-        for part in context.mesh(os.path.abspath(path), source)
+        for part in context.mesh(os.path.abspath(path), source, scale=scale)
     ]
     body.links.append(LinkBuilder("base", source, geometries=geometries, inertial=MASSLESS, static=True))
     body.name = Path(path).stem

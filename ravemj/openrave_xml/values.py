@@ -10,6 +10,7 @@ from ravemj.openrave_xml.tree import Element
 from ravemj.transforms import (
     UNIT_WXYZ,
     UNMOVED,
+    UNSCALED,
     ZERO,
     Pose,
     Vec3,
@@ -20,8 +21,6 @@ from ravemj.transforms import (
     wxyz_from_axis_angle,
     wxyz_from_rows,
 )
-
-UNSCALED: Vec3 = (1.0, 1.0, 1.0)
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))")
 
@@ -175,7 +174,7 @@ def _matrix(element: Element, diagnostics: Diagnostics) -> Wxyz:
     m = numbers(element, 9, diagnostics)
     try:
         return wxyz_from_rows((m[0:3], m[3:6], m[6:9]))
-    except ValueError:
+    except ZeroDivisionError:
         raise SourceError(f"<{element.spelled}> holds no rotation: {element.text.strip()}", element.source) from None
 
 
@@ -183,7 +182,7 @@ def _quaternion(element: Element, diagnostics: Diagnostics) -> Wxyz:
     w, x, y, z = numbers(element, 4, diagnostics)
     try:
         return normalize((w, x, y, z))
-    except ValueError:
+    except ZeroDivisionError:
         raise SourceError(
             f"<{element.spelled}> holds no rotation: {element.text.strip()}",
             element.source,

@@ -4,18 +4,32 @@
 objects is ravemj's own.
 """
 
+from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.body.grabbing import GrabbedInfo
 from ravemj.rave.body.saving import StateSaver
+from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
 from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
 from ravemj.rave.enums import (
+    AdjacentOptions,
     CheckLimitsAction,
     CloningOptions,
+    CollisionAction,
+    CollisionOptions,
+    DebugLevel,
     GeometryType,
+    IkFilterOptions,
+    IkParameterizationType,
+    IkReturnAction,
     InterfaceAddMode,
     InterfaceType,
     JointType,
+    PlannerStatus,
+    PlannerStatusCode,
     SaveParameters,
+    SelectionOptions,
     SensorType,
+    SerializationOptions,
+    TriangulateOptions,
 )
 from ravemj.rave.environment import (
     Environment,
@@ -27,48 +41,156 @@ from ravemj.rave.environment import (
 )
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.graph_handle import GraphHandle
+from ravemj.rave.ikparameterization import IkParameterization
+from ravemj.rave.infos import ElectricMotorActuatorInfo, ExtractInfoOptions
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
+from ravemj.rave.library import (
+    RaveFindDatabaseFile,
+    RaveFindLocalFile,
+    RaveGetHomeDirectory,
+    RaveGetPluginInfo,
+    RaveInitialize,
+    RaveLoadPlugin,
+    RaveReloadPlugins,
+    with_destroy,
+)
 from ravemj.rave.link import Link
+from ravemj.rave.logs import (
+    RaveGetDebugLevel,
+    RaveLog,
+    RaveLogDebug,
+    RaveLogError,
+    RaveLogFatal,
+    RaveLogInfo,
+    RaveLogVerbose,
+    RaveLogWarn,
+    RaveSetDebugLevel,
+    raveLog,
+    raveLogDebug,
+    raveLogError,
+    raveLogFatal,
+    raveLogInfo,
+    raveLogVerbose,
+    raveLogWarn,
+)
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.physics import PhysicsEngine
+from ravemj.rave.planning import Planner, PlanningError, planning_error
+from ravemj.rave.plugins import (
+    RaveCreateIkSolver,
+    RaveCreateModule,
+    RaveCreatePlanner,
+    RaveCreateProblem,
+    RaveCreateSensor,
+    RaveCreateSpaceSampler,
+    RaveCreateViewer,
+    RaveGetLoadedInterfaces,
+)
+from ravemj.rave.report import CollisionReport
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
 from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
+from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 from ravemj.rave.trimesh import TriMesh
 
+KinBodyStateSaver = RobotStateSaver = StateSaver
+
+OpenRAVEException = openrave_exception = RavemjError
+
 __all__ = [
+    "AdjacentOptions",
     "AttachedSensor",
     "CameraGeomData",
     "CameraIntrinsics",
     "CheckLimitsAction",
     "CloningOptions",
+    "CollisionAction",
+    "CollisionChecker",
+    "CollisionOptions",
+    "CollisionOptionsStateSaver",
+    "CollisionReport",
     "ConfigurationSpecification",
+    "DebugLevel",
+    "ElectricMotorActuatorInfo",
     "Environment",
+    "ErrorCode",
+    "ExtractInfoOptions",
     "Geometry",
     "GeometryType",
     "GrabbedInfo",
     "GraphHandle",
+    "IkFilterOptions",
+    "IkParameterization",
+    "IkParameterizationType",
+    "IkReturnAction",
     "InterfaceAddMode",
     "InterfaceType",
     "Joint",
     "JointType",
     "KinBody",
+    "KinBodyStateSaver",
     "Link",
     "Manipulator",
+    "OpenRAVEException",
     "PhysicsEngine",
+    "Planner",
+    "PlannerStatus",
+    "PlannerStatusCode",
+    "PlanningError",
+    "RaveCreateCollisionChecker",
+    "RaveCreateIkSolver",
     "RaveCreateKinBody",
+    "RaveCreateModule",
+    "RaveCreatePlanner",
+    "RaveCreateProblem",
     "RaveCreateRobot",
+    "RaveCreateSensor",
+    "RaveCreateSpaceSampler",
+    "RaveCreateTrajectory",
+    "RaveCreateViewer",
     "RaveDestroy",
+    "RaveFindDatabaseFile",
+    "RaveFindLocalFile",
     "RaveGetAffineConfigurationSpecification",
+    "RaveGetDebugLevel",
     "RaveGetEnvironment",
     "RaveGetEnvironmentId",
     "RaveGetEnvironments",
+    "RaveGetHomeDirectory",
+    "RaveGetLoadedInterfaces",
+    "RaveGetPluginInfo",
+    "RaveInitialize",
+    "RaveLoadPlugin",
+    "RaveLog",
+    "RaveLogDebug",
+    "RaveLogError",
+    "RaveLogFatal",
+    "RaveLogInfo",
+    "RaveLogVerbose",
+    "RaveLogWarn",
+    "RaveReloadPlugins",
+    "RaveSetDebugLevel",
     "Robot",
+    "RobotStateSaver",
     "SaveParameters",
+    "SelectionOptions",
     "Sensor",
     "SensorType",
+    "SerializationOptions",
     "StateSaver",
+    "Trajectory",
     "TriMesh",
+    "TriangulateOptions",
     "load",
+    "openrave_exception",
+    "planning_error",
+    "raveLog",
+    "raveLogDebug",
+    "raveLogError",
+    "raveLogFatal",
+    "raveLogInfo",
+    "raveLogVerbose",
+    "raveLogWarn",
+    "with_destroy",
 ]

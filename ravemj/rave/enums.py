@@ -19,8 +19,13 @@ class CheckLimitsAction(IntEnum):
 class JointType(IntEnum):
     """Kinds of joints."""
 
-    Hinge = 0x01
-    Slider = 0x11
+    vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
+    Hinge = Revolute = 0x01
+    Slider = Prismatic = 0x11
+    RR = 0x02
+    RP = 0x12
+    PR = 0x22
+    PP = 0x32
     Universal = 0x80000001
     Hinge2 = 0x80000002
     Spherical = 0x80000003
@@ -30,6 +35,7 @@ class JointType(IntEnum):
 class GeometryType(IntEnum):
     """Kinds of shapes."""
 
+    vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
     None_ = 0
     Box = 1
     Sphere = 2
@@ -115,3 +121,172 @@ class CloningOptions(IntFlag):
     Sensors = 16
     Modules = 32
     PassOnMissingBodyReferences = 0x8000
+
+
+class DebugLevel(IntEnum):
+    """How much is logged; each level includes those before it."""
+
+    Fatal = 0
+    Error = 1
+    Warn = 2
+    Info = 3
+    Debug = 4
+    Verbose = 5
+    VerifyPlans = 0x80000000
+    """A bit beside the level."""
+
+
+class IkParameterizationType(IntEnum):
+    """What of a pose the end of an arm shall reach: the numbers hold DOF, count of values, and a unique number."""
+
+    None_ = 0
+    Transform6D = 0x67000001
+    Rotation3D = 0x34000002
+    Translation3D = 0x33000003
+    Direction3D = 0x23000004
+    Ray4D = 0x46000005
+    Lookat3D = 0x23000006
+    TranslationDirection5D = 0x56000007
+    TranslationXY2D = 0x22000008
+    TranslationXYOrientation3D = 0x33000009
+    TranslationLocalGlobal6D = 0x3600000A
+    TranslationXAxisAngle4D = 0x4400000B
+    TranslationYAxisAngle4D = 0x4400000C
+    TranslationZAxisAngle4D = 0x4400000D
+    TranslationXAxisAngleZNorm4D = 0x4400000E
+    TranslationYAxisAngleXNorm4D = 0x4400000F
+    TranslationZAxisAngleYNorm4D = 0x44000010
+
+
+class IkFilterOptions(IntFlag):
+    """Which solutions of inverse kinematics are left out."""
+
+    CheckEnvCollisions = 1
+    IgnoreSelfCollisions = 2
+    IgnoreJointLimits = 4
+    IgnoreCustomFilters = 8
+    IgnoreEndEffectorEnvCollisions = 0x10
+    IgnoreEndEffectorCollisions = 0x10
+    """The name of version 0.9."""
+    IgnoreEndEffectorSelfCollisions = 0x20
+
+
+class IkReturnAction(IntFlag):
+    """What a filter says about a solution of inverse kinematics, and why it was rejected."""
+
+    Success = 0
+    Reject = 1
+    Quit = 2
+    QuitEndEffectorCollision = 0x82
+    RejectKinematics = 0x11
+    RejectSelfCollision = 0x21
+    RejectEnvCollision = 0x41
+    RejectJointLimits = 0x101
+    RejectKinematicsPrecision = 0x201
+    RejectCustomFilter = 0x8001
+
+
+class CollisionOptions(IntFlag):
+    """What collision checking looks for and reports; combine them with ``|``."""
+
+    Distance = 0x1
+    """``report.minDistance`` is the least distance of what is tested."""
+    UseTolerance = 0x2
+    """``report.numWithinTol`` is the number of pairs of shapes that are nearer than the tolerance."""
+    Contacts = 0x4
+    """Reports have contact points."""
+    RayAnyHit = 0x8
+    """For rays any hit will do; here it is the nearest all the same."""
+    ActiveDOFs = 0x10
+    """Only links that the robot's active DOFs move are tested."""
+    AllLinkCollisions = 0x20
+    """Reports have all pairs of links that collide, not only the first."""
+    AllGeometryCollisions = 0x40
+    """Reports have each pair of geometries by itself."""
+    AllGeometryContacts = 0x80
+    """Reports have contact points of all pairs of geometries."""
+    IgnoreCallbacks = 0x100
+    """Functions of ``env.RegisterCollisionCallback`` are not called."""
+
+
+class CollisionAction(IntEnum):
+    """What a function of ``env.RegisterCollisionCallback`` says about a collision."""
+
+    DefaultAction = 0
+    """It counts."""
+    Ignore = 1
+    """It does not count."""
+
+
+class AdjacentOptions(IntFlag):
+    """Which pairs of links ``GetNonAdjacentLinks`` returns; combine them with ``|``."""
+
+    Enabled = 1
+    """Those of enabled links."""
+    ActiveDOFs = 2
+    """Those that the active DOFs move against each other."""
+
+
+class TriangulateOptions(IntEnum):
+    """Which bodies ``TriangulateScene`` takes; also called ``SelectionOptions``."""
+
+    Obstacles = 1
+    NoRobots = 1
+    Robots = 2
+    Everything = 3
+    Body = 4
+    AllExceptBody = 5
+
+
+SelectionOptions = TriangulateOptions
+
+
+class SerializationOptions(IntFlag):
+    """What of a body goes into its hash."""
+
+    Kinematics = 1
+    Dynamics = 2
+    BodyState = 4
+    NamesAndFiles = 8
+    RobotManipulators = 0x10
+    RobotSensors = 0x20
+    Geometry = 0x40
+    InverseKinematics = 0x80
+    JointLimits = 0x100
+
+
+class SensorCommand(IntEnum):
+    """What ``sensor.Configure`` is asked to do; ``Sensor.ConfigureCommand``."""
+
+    PowerOn = 0x10
+    PowerOff = 0x11
+    PowerCheck = 0x12
+    RenderDataOn = 0x20
+    RenderDataOff = 0x21
+    RenderDataCheck = 0x23
+    RenderGeometryOn = 0x30
+    RenderGeometryOff = 0x31
+    RenderGeometryCheck = 0x32
+
+
+class PlannerStatusCode(IntFlag):
+    """How planning ended."""
+
+    Failed = 0
+    HasSolution = 1
+    Interrupted = 2
+    InterruptedWithSolution = 3
+
+
+class PlannerStatus(IntFlag):
+    """How planning ended: OpenRAVE 0.9 compares it as a number, later versions look at its ``statusCode``."""
+
+    Failed = 0
+    HasSolution = 1
+    Interrupted = 2
+    InterruptedWithSolution = 3
+
+    @property
+    def statusCode(self) -> PlannerStatusCode:
+        """The same as a ``PlannerStatusCode``."""
+        return PlannerStatusCode(self.value)

@@ -8,9 +8,11 @@ import mujoco
 
 from ravemj.errors import SourceError
 from ravemj.rave.env.cloning import Cloning
+from ravemj.rave.env.collision import Collision
 from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.locking import Locking
+from ravemj.rave.env.meshing import Meshing
 from ravemj.rave.env.viewing import Viewing
 from ravemj.readers import read_file
 from ravemj.simulation import Simulation
@@ -19,7 +21,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Cloning, Drawing, Loading, Locking, Viewing):
+class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Viewing):
     """A world with robots and other bodies.
 
     Example:

@@ -1,38 +1,70 @@
 """Shapes of a link."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ravemj import scene
-from ravemj.errors import RavemjError
+from ravemj.arrays import checked_numbers, checked_transform
+from ravemj.bounds import geometry_bounds
+from ravemj.errors import ArgumentError, RavemjError
+from ravemj.geometry_functions import AABB
+from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.enums import GeometryType
-from ravemj.rave.trimesh import TriMesh, trimesh_of
+from ravemj.rave.infos.geometry import TYPES, GeometryInfo
+from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
+from ravemj.simulation import BodyState
+from ravemj.tessellation import triangulated
 from ravemj.transforms import Floats
-
-_TYPES: dict[type[scene.Shape], GeometryType] = {
-    scene.Box: GeometryType.Box,
-    scene.Sphere: GeometryType.Sphere,
-    scene.Cylinder: GeometryType.Cylinder,
-    scene.Capsule: GeometryType.Capsule,
-    scene.Container: GeometryType.Container,
-    scene.Prism: GeometryType.Prism,
-    scene.TriMesh: GeometryType.Trimesh,
-    scene.NoShape: GeometryType.None_,
-}
 
 
 class Geometry:
-    """A shape of a link; ``link.GetGeometries()`` makes it. What it does not have, its getters raise for."""
+    """A shape of a link; ``link.GetGeometries()`` makes it. What it does not have, its getters raise for.
 
-    def __init__(self, geometry: scene.Geometry) -> None:
-        self._scene = geometry
+    Setters act at once, also in viewers and in pictures.
+
+    Example:
+        >>> for geometry in link.GetGeometries():
+        ...     geometry.SetDiffuseColor([1, 0, 0])
+    """
+
+    Type = GeometryType
+
+    def __init__(self, state: BodyState, link: int, index: int, group: str | None = None) -> None:
+        self._state = state
+        self._link = link
+        self._index = index
+        self._group = group
+
+    @property
+    def _scene(self) -> scene.Geometry:
+        link = self._state.scene.links[self._link]
+        return (link.geometries if self._group is None else dict(link.groups)[self._group])[self._index]
+
+    def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Geometry
+        with self._state.simulation.lock:
+            if self._group is None:
+                self._state.edit_geometry(self._link, self._index, **changes)
+                return
+            groups = dict(self._state.scene.links[self._link].groups)
+            members = list(groups[self._group])
+            members[self._index] = replace(members[self._index], **changes)
+            groups[self._group] = tuple(members)
+            self._state.edit_link(self._link, groups=tuple(groups.items()))
 
     def GetName(self) -> str:
         """Return the geometry's name; often empty."""
         return self._scene.name
 
+    def SetName(self, name: str) -> None:
+        """Give the geometry another name."""
+        self._edit(name=str(name))
+
     def GetType(self) -> GeometryType:
         """Return the kind of shape."""
-        return _TYPES[type(self._scene.shape)]
+        return TYPES[type(self._scene.shape)]
 
     def GetTransform(self) -> Floats:
         """Return the pose in the link.
@@ -41,6 +73,10 @@ class Geometry:
             ``T_link_geometry``, shape (4, 4).
         """
         return self._scene.T_link_geometry.matrix()
+
+    def GetTransformPose(self) -> Floats:
+        """Return the pose in the link as [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return pose_from_matrix(self.GetTransform())
 
     def GetBoxExtents(self) -> Floats:
         """Return half the edge lengths of a box [m], shape (3,)."""
@@ -104,34 +140,144 @@ class Geometry:
         return np.array(self._container().bottom)
 
     def GetCollisionMesh(self) -> TriMesh:
-        """Return the triangles of a trimesh, in the geometry's frame; copies."""
-        shape = self._scene.shape
-        if not isinstance(shape, scene.TriMesh):
-            raise self._has_none("triangles")
-        return trimesh_of(shape.mesh)
+        """Return the shape as triangles, in the geometry's own frame, seen from outside counter-clockwise; copies.
+
+        Those of a trimesh are as the file has them. Round shapes have their corners on the surface.
+        """
+        return trimesh_of(triangulated(self._scene.shape))
+
+    def InitCollisionMesh(self, fTessellation: float = 1.0) -> bool:
+        """Return True; the triangles of ``GetCollisionMesh`` are always there, in one fineness."""
+        del fTessellation
+        return True
+
+    def SetCollisionMesh(self, mesh: TriMesh) -> None:
+        """Give a trimesh other triangles: for collisions and for pictures.
+
+        Args:
+            mesh: The triangles, in the geometry's frame [m].
+
+        Raises:
+            openrave_exception: the geometry is no trimesh, is not modifiable, or a triangle has a corner that is not
+                there. Nothing has changed then.
+        """
+        if not isinstance(self._scene.shape, scene.TriMesh):
+            raise self._has_none("triangles of its own")
+        if not self._scene.modifiable:
+            raise RavemjError(f"geometry '{self.GetName()}' is not modifiable")
+        self._edit(shape=scene.TriMesh(checked_mesh(mesh, "SetCollisionMesh: mesh")))
+
+    def ComputeAABB(self, transform: ArrayLike) -> AABB:
+        """Return the smallest box along the axes that holds the geometry, its link standing at a pose.
+
+        Args:
+            transform: ``T_a_link``: 4x4, 3x4 or 7 numbers.
+
+        Returns:
+            The box in frame a, with methods ``pos()`` and ``extents()``.
+        """
+        low, high = geometry_bounds(self._scene, checked_transform(transform, "ComputeAABB: transform"))
+        return AABB((low + high) / 2, (high - low) / 2)
 
     def GetDiffuseColor(self) -> Floats:
         """Return the colour: red, green, blue from 0 to 1, shape (3,)."""
         return np.array(self._scene.diffuse)
 
+    def SetDiffuseColor(self, color: ArrayLike) -> None:
+        """Set the colour: red, green, blue from 0 to 1. What a render file draws keeps its own colours."""
+        self._edit(diffuse=_checked_colour(color, "SetDiffuseColor"))
+
     def GetAmbientColor(self) -> Floats:
         """Return the colour in the shade: red, green, blue from 0 to 1, shape (3,)."""
         return np.array(self._scene.ambient)
+
+    def SetAmbientColor(self, color: ArrayLike) -> None:
+        """Set the colour in the shade: red, green, blue from 0 to 1. Pictures do not use it."""
+        self._edit(ambient=_checked_colour(color, "SetAmbientColor"))
 
     def GetTransparency(self) -> float:
         """Return the transparency: 0 is opaque, 1 invisible."""
         return self._scene.transparency
 
+    def SetTransparency(self, transparency: float) -> None:
+        """Set the transparency: 0 is opaque, 1 invisible."""
+        (value,) = checked_numbers(float(transparency), "SetTransparency").tolist()
+        if not np.isfinite(value):
+            raise ArgumentError(f"SetTransparency: transparency is {value}, and should be from 0 to 1")
+        self._edit(transparency=value)
+
     def IsVisible(self) -> bool:
         """Return whether the geometry is drawn."""
         return self._scene.visible
+
+    IsDraw = IsVisible
+
+    def SetVisible(self, visible: bool) -> bool:
+        """Draw the geometry or not; it collides all the same. Return whether that changed something."""
+        changed = self._scene.visible != bool(visible)
+        if changed:
+            self._edit(visible=bool(visible))
+        return changed
+
+    def SetDraw(self, draw: bool) -> None:
+        """Draw the geometry or not: an old name of ``SetVisible``."""
+        self.SetVisible(draw)
 
     def IsModifiable(self) -> bool:
         """Return whether planners may change the geometry."""
         return self._scene.modifiable
 
+    def GetRenderFilename(self) -> str:
+        """Return the path of the mesh file that is drawn in place of the shape; empty without one."""
+        file = self._scene.render_file
+        return "" if file is None else file.name
+
+    def GetRenderScale(self) -> Floats:
+        """Return the factors along x, y and z for that file, shape (3,)."""
+        file = self._scene.render_file
+        return np.array((1.0, 1.0, 1.0) if file is None else file.scale)
+
+    def SetRenderFilename(self, filename: str) -> None:
+        """Draw a mesh file in place of the shape.
+
+        Args:
+            filename: The file; '' draws the shape itself.
+
+        Raises:
+            SourceError: the file is not there, or broken. Nothing has changed then.
+        """
+        info = self.GetInfo()
+        info.draw(filename)
+        changed = info.geometry()
+        self._edit(render_file=changed.render_file, display=changed.display)
+
+    def GetInfo(self) -> GeometryInfo:
+        """Return the description of the shape, a copy."""
+        return GeometryInfo.of(self._scene)
+
+    UpdateAndGetInfo = GetInfo
+
     def _has_none(self, what: str) -> RavemjError:
-        return RavemjError(f"a geometry of type {self.GetType().name.rstrip('_')} has no {what}")
+        return RavemjError(f"a geometry of type {self.GetType().name} has no {what}")
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Geometry) and self._place == other._place and self._state is other._state
+
+    def __hash__(self) -> int:
+        return hash((id(self._state), *self._place))
+
+    @property
+    def _place(self) -> tuple[int, int, str | None]:
+        return self._link, self._index, self._group
 
     def __repr__(self) -> str:
-        return f"<geometry:{self.GetName()}, type={self.GetType().name.rstrip('_')}>"
+        return f"<geometry:{self.GetName()}, type={self.GetType().name}>"
+
+
+def _checked_colour(color: ArrayLike, caller: str) -> scene.Rgb:
+    """Return red, green and blue of a colour; a fourth number is left out."""
+    numbers = checked_numbers(color, caller)
+    if numbers.shape not in {(3,), (4,)} or not np.isfinite(numbers).all():
+        raise ArgumentError(f"{caller}: color is {numbers.tolist()}, and should be three numbers from 0 to 1")
+    red, green, blue = numbers.tolist()[:3]
+    return (red, green, blue)

@@ -33,5 +33,9 @@ class GraphHandle(Handle):
         self._drawing.place(checked_transform(transform, "SetTransform: transform"))
 
     def SetShow(self, show: bool) -> None:
-        """Show the drawing, or hide it for a while."""
+        """Show the drawing, or hide it for a while.
+
+        Args:
+            show: False hides it.
+        """
         self._drawing.show(bool(show))

@@ -1,81 +1,45 @@
 """Joints of a body."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ravemj import scene
-from ravemj.following import leaders
-from ravemj.manipulators import joint_dofs
+from ravemj.arrays import checked_vector
+from ravemj.joints import measured_values, relative_pose
 from ravemj.rave.enums import JointType
+from ravemj.rave.infos import JointInfo
+from ravemj.rave.joints.following import JointFollowing
+from ravemj.rave.joints.limits import JointLimits
 from ravemj.rave.link import Link
-from ravemj.simulation import BodyState
-from ravemj.transforms import Floats, Ints, add, rotate, scale, wxyz_from_axis_angle
+from ravemj.transforms import Floats, Pose, add, pose_of, rotate, scale, wxyz_from_axis_angle
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Joint:
+class Joint(JointLimits, JointFollowing):
     """A joint between two links; ``body.GetJoints()`` makes it."""
 
     Type = JointType
-
-    def __init__(self, parent: "KinBody", state: BodyState, index: int) -> None:
-        self._parent = parent
-        self._state = state
-        self._index = index
-
-    @property
-    def _scene(self) -> scene.Joint:
-        body = self._state.scene
-        return (*body.joints, *body.passive_joints)[self._index]
-
-    @property
-    def _is_active(self) -> bool:
-        return self._index < len(self._state.scene.joints)
 
     def GetName(self) -> str:
         """Return the joint's name."""
         return self._scene.name
 
-    def GetParent(self) -> "KinBody":
-        """Return the body that the joint belongs to."""
+    def GetParent(self, returnexist: bool = False) -> "KinBody":
+        """Return the body that the joint belongs to.
+
+        Args:
+            returnexist: Not used: the body always exists.
+        """
+        del returnexist
         return self._parent
 
     def GetType(self) -> JointType:
         """Return the kind of joint."""
         return JointType[self._scene.kind.capitalize()]
-
-    def IsMimic(self, axis: int = 0) -> bool:
-        """Return whether an axis follows other joints."""
-        return self._scene.mimic is not None and axis == 0
-
-    def GetMimicEquation(self, axis: int = 0, itype: int = 0, format: str = "") -> str:  # OpenRAVE's names
-        """Return how the joint follows others, as the file has it.
-
-        Args:
-            axis: Which axis; only the first one can follow.
-            itype: 0 the position, 1 the partial derivatives for velocities, 2 those for accelerations.
-            format: OpenRAVE's choice of notation; only the plain one is known here.
-
-        Returns:
-            The equation, with the names of joints; empty for a joint that follows none.
-        """
-        del format
-        mimic = self._scene.mimic
-        if mimic is None or axis != 0:
-            return ""
-        return (mimic.position, mimic.velocity, mimic.acceleration)[itype]
-
-    def GetMimicDOFIndices(self, axis: int = 0) -> Ints:
-        """Return the DOFs in the joint's own equation; as in OpenRAVE, not those of other followers in it."""
-        mimic = self._scene.mimic
-        if mimic is None or axis or mimic.expression is None:
-            return np.array([], dtype=np.int_)
-        active = [leader for leader in leaders(mimic.expression) if leader < len(self._state.scene.joints)]
-        dofs = {dof for leader in active for dof in joint_dofs(self._state.scene, leader)}
-        return np.array(sorted(dofs), dtype=np.int_)
 
     def GetJointIndex(self) -> int:
         """Return the joint's position in ``body.GetJoints()``; -1 for a passive joint."""
@@ -112,32 +76,69 @@ class Joint:
         """Return the joint's velocity about or along one of its axes [rad/s or m/s]."""
         return float(self.GetVelocities()[axis])
 
-    def GetLimits(self) -> tuple[Floats, Floats]:
-        """Return the lower and the upper limits [rad or m], each of shape (axes,); ±10000 for a circular joint."""
-        axes = self._scene.axes
-        return np.array([axis.lower for axis in axes]), np.array([axis.upper for axis in axes])
+    def SubtractValue(self, value0: float, value1: float, axis: int = 0) -> float:
+        """Return the difference of two values: the way from the second to the first.
 
-    def GetWeights(self) -> Floats:
-        """Return the weights in distances between configurations, shape (axes,)."""
-        return np.array([axis.weight for axis in self._scene.axes])
+        Args:
+            value0: A value [rad or m].
+            value1: The value to subtract.
+            axis: Which axis they are of.
 
-    def GetResolution(self, axis: int = 0) -> float:
-        """Return the step of planners [rad or m]."""
-        return self._scene.axes[axis].resolution
+        Returns:
+            ``value0 - value1``; for a circular joint the shorter way round, from -pi to pi.
+        """
+        difference = float(value0) - float(value1)
+        return (difference + np.pi) % (2 * np.pi) - np.pi if self._scene.axes[axis].circular else difference
 
-    def GetMaxVel(self, axis: int = 0) -> float:
-        """Return the velocity limit [rad/s or m/s]."""
-        return self._scene.axes[axis].max_velocity
+    def SubtractValues(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
+        """Return the differences of the values of all axes, as ``SubtractValue``.
 
-    def GetMaxAccel(self, axis: int = 0) -> float:
-        """Return the acceleration limit [rad/s^2 or m/s^2]."""
-        return self._scene.axes[axis].max_acceleration
+        Args:
+            values0: Values [rad or m], shape (axes,).
+            values1: Values to subtract, shape (axes,).
 
-    def GetMaxTorque(self, axis: int = 0) -> float:
-        """Return the torque or force limit [N m or N]; 0 where the file says nothing."""
-        return self._scene.axes[axis].max_torque
+        Returns:
+            Differences, shape (axes,).
+        """
+        count = self.GetDOF()
+        pairs = zip(*(checked_vector(values, count, "SubtractValues") for values in (values0, values1)), strict=True)
+        return np.array([self.SubtractValue(first, second, axis) for axis, (first, second) in enumerate(pairs)])
 
-    def IsCircular(self, axis: int) -> bool:
+    def GetWrapOffset(self, axis: int = 0) -> float:
+        """Return the value about which ``SetWrapOffset`` chose the turn that the joint's value is in [rad]."""
+        return self._scene.axes[axis].wrap_offset
+
+    def SetWrapOffset(self, offset: float, axis: int = 0) -> None:
+        """Count full turns so that the joint's value is at most half a turn from another value. Nothing moves.
+
+        Args:
+            offset: The other value [rad].
+            axis: Which axis.
+        """
+        (chosen,) = checked_vector([offset], 1, "SetWrapOffset: offset").tolist()
+        with self._state.simulation.lock:
+            axes = list(self._scene.axes)
+            axes[axis] = replace(axes[axis], wrap_offset=chosen)
+            self._state.edit_joint(self._index, axes=tuple(axes))
+            if self._is_active and self.IsRevolute(axis):
+                values = self._state.kinematics.values()
+                dof = self.GetDOFIndex() + axis
+                values[dof] -= 2 * np.pi * np.round((values[dof] - chosen) / (2 * np.pi))
+                self._state.set_values(values, limit_followers=False)
+
+    def IsActive(self) -> bool:
+        """Return whether the joint has DOFs of its own: it is enabled and follows no other."""
+        return self._is_active
+
+    def IsRevolute(self, axis: int = 0) -> bool:
+        """Return whether an axis turns; as in OpenRAVE, a spherical joint has none that does."""
+        return 0 <= axis < len(self._scene.axes) and self._scene.kind in {"hinge", "hinge2"}
+
+    def IsPrismatic(self, axis: int = 0) -> bool:
+        """Return whether an axis slides."""
+        return 0 <= axis < len(self._scene.axes) and self._scene.kind == "slider"
+
+    def IsCircular(self, axis: int = 0) -> bool:
         """Return whether the joint turns without end."""
         return self._scene.axes[axis].circular
 
@@ -178,6 +179,52 @@ class Joint:
         """Return the link of the joint that is farther from the body's first link."""
         return Link(self._parent, self._state, self._scene.child)
 
+    GetFirstAttached = GetHierarchyParentLink
+    GetSecondAttached = GetHierarchyChildLink
+
+    def GetInternalHierarchyAxis(self, axis: int = 0) -> Floats:
+        """Return the direction of an axis in the joint's frame, which is parallel to the parent link, shape (3,)."""
+        return np.array(self._scene.axes[axis].direction)
+
+    def GetInternalHierarchyLeftTransform(self) -> Floats:
+        """Return the joint's frame in the parent link: parallel to it, at the anchor.
+
+        The child is at ``left @ motion @ right``, where ``motion`` turns about or slides along the axis by the joint's
+        value.
+
+        Returns:
+            ``T_parent_joint``, shape (4, 4).
+        """
+        return self._left().matrix()
+
+    def GetInternalHierarchyRightTransform(self) -> Floats:
+        """Return the pose of the child link in the joint's frame at the value 0.
+
+        Returns:
+            ``T_joint_child``, shape (4, 4).
+        """
+        return (self._left().inverse() @ relative_pose(self._scene, [0.0] * self.GetDOF())).matrix()
+
+    def _left(self) -> Pose:
+        return Pose(self._scene.anchor)
+
+    def GetInfo(self) -> JointInfo:
+        """Return the description of the joint at its present value, a copy."""
+        with self._state.simulation.lock:
+            return JointInfo.of(self._state.scene, self._index, self._shown_values())
+
+    UpdateAndGetInfo = GetInfo
+
+    def UpdateInfo(self) -> None:
+        """Do nothing: ``GetInfo`` always gives the present state."""
+
+    def _shown_values(self) -> list[float]:
+        """Return the values, also of a body that is in no world: what its links show."""
+        if self._state.index:
+            return self.GetValues().tolist()
+        parent, child = (pose_of(self._state.link_transform(i)) for i in (self._scene.parent, self._scene.child))
+        return list(measured_values(self._scene, parent.inverse() @ child))
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Joint) and self._state is other._state and self._index == other._index
 
@@ -185,7 +232,7 @@ class Joint:
         return hash((id(self._state), self._index))
 
     def __repr__(self) -> str:
-        return f"{self._parent!r}.GetJoint('{self.GetName()}')"
+        return f"{self._parent.GetEnv()!r}.GetKinBody('{self._parent.GetName()}').GetJoint('{self.GetName()}')"
 
     def __str__(self) -> str:
         place = f"({self.GetJointIndex()}), dof={self.GetDOFIndex()}"

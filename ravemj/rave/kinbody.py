@@ -3,14 +3,17 @@
 from typing import TYPE_CHECKING
 
 from ravemj.rave.body.building import Building
+from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.body.grabbing import Grabbing
+from ravemj.rave.body.graph import Graph
 from ravemj.rave.body.limits import Limits
-from ravemj.rave.body.mechanism import Mechanism
 from ravemj.rave.body.motion import Motion
 from ravemj.rave.body.saving import Saving, StateSaver
+from ravemj.rave.body.substance import Substance
 from ravemj.rave.configured import Configured
 from ravemj.rave.enums import CheckLimitsAction, InterfaceType, JointType, SaveParameters
 from ravemj.rave.geometry import Geometry
+from ravemj.rave.infos import GeometryInfo, JointInfo, KinBodyInfo, LinkInfo
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 from ravemj.simulation import BodyState
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class KinBody(Saving, Configured, Grabbing, Limits, Mechanism, Motion, Building):
+class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substance, Motion, Building):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:
@@ -31,9 +34,13 @@ class KinBody(Saving, Configured, Grabbing, Limits, Mechanism, Motion, Building)
 
     CheckLimitsAction = CheckLimitsAction
     Geometry = Geometry
+    GeometryInfo = GeometryInfo
     Joint = Joint
+    JointInfo = JointInfo
     JointType = JointType
+    KinBodyInfo = KinBodyInfo
     Link = Link
+    LinkInfo = LinkInfo
     KinBodyStateSaver = StateSaver
     SaveParameters = SaveParameters
 
@@ -84,5 +91,5 @@ class KinBody(Saving, Configured, Grabbing, Limits, Mechanism, Motion, Building)
         return f"{self._env!r}.Get{'Robot' if self.IsRobot() else 'KinBody'}('{self.GetName()}')"
 
     def __str__(self) -> str:
-        kind = "robot" if self.IsRobot() else "body"
-        return f"<{kind}:{self.GetName()}, dof={self.GetDOF()}, links={len(self._state.scene.links)}>"
+        kind = self._interface_type.name
+        return f"<{kind}:{self.GetXMLId()} - {self.GetName()} ({self.GetKinematicsGeometryHash()})>"

@@ -2,30 +2,32 @@
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj import scene
-from ravemj.arrays import checked_vector
+from ravemj import chains
+from ravemj.arrays import checked_transform, checked_vector
+from ravemj.rave.body.placement import pose_from_matrix
+from ravemj.rave.enums import GeometryType
 from ravemj.rave.geometry import Geometry
-from ravemj.simulation import BodyState
+from ravemj.rave.infos import GeometryInfo, LinkInfo
+from ravemj.rave.links.collision import LinkCollision
+from ravemj.rave.links.mass import LinkMass
+from ravemj.rave.links.parameters import LinkParameters
+from ravemj.rave.links.shapes import LinkShapes
 from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Link:
+class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters):
     """A rigid part of a body; ``body.GetLinks()`` makes it."""
 
-    def __init__(self, parent: "KinBody", state: BodyState, index: int) -> None:
-        self._parent = parent
-        self._state = state
-        self._index = index
-
-    @property
-    def _scene(self) -> scene.Link:
-        return self._state.scene.links[self._index]
+    Geometry = Geometry
+    GeometryInfo = GeometryInfo
+    GeomType = GeometryType
+    GeomProperties = Geometry
+    LinkInfo = LinkInfo
 
     def GetName(self) -> str:
         """Return the link's name."""
@@ -35,8 +37,13 @@ class Link:
         """Return the link's position in ``body.GetLinks()``."""
         return self._index
 
-    def GetParent(self) -> "KinBody":
-        """Return the body that the link belongs to."""
+    def GetParent(self, returnexist: bool = False) -> "KinBody":
+        """Return the body that the link belongs to.
+
+        Args:
+            returnexist: Not used: the body always exists.
+        """
+        del returnexist
         return self._parent
 
     def GetTransform(self) -> Floats:
@@ -70,33 +77,77 @@ class Link:
             velocities[self._index] = (*moved, *turned)
             self._state.set_link_velocities(velocities)
 
-    def GetMass(self) -> float:
-        """Return the link's mass [kg]."""
-        return self._scene.inertial.mass
+    def GetTransformPose(self) -> Floats:
+        """Return the link's pose as [w, x, y, z, tx, ty, tz]: unit quaternion and position [m], shape (7,)."""
+        return pose_from_matrix(self.GetTransform())
 
-    def GetLocalCOM(self) -> Floats:
-        """Return the centre of mass in the link frame [m], shape (3,)."""
-        return np.array(self._scene.inertial.com)
+    def SetTransform(self, transform: ArrayLike) -> None:
+        """Move this link only; the joints at it get the values that the poses of the links show.
 
-    def GetGlobalCOM(self) -> Floats:
-        """Return the centre of mass in the world [m], shape (3,)."""
-        return self.GetTransform()[:3] @ (*self._scene.inertial.com, 1.0)
+        The next ``SetDOFValues`` puts all links where the joint values say.
 
-    def GetLocalInertia(self) -> Floats:
-        """Return the inertia about the centre of mass, in axes parallel to the link's [kg m^2], shape (3, 3)."""
-        return np.array(self._scene.inertial.inertia)
+        Args:
+            transform: ``T_world_link``: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
+
+        Raises:
+            ArgumentError: this is no rigid transform. Nothing has moved then.
+        """
+        checked = checked_transform(transform, "SetTransform: transform")
+        with self._state.simulation.lock:
+            transforms = self._state.link_transforms()
+            transforms[self._index] = checked
+            self._state.place_links(transforms)
 
     def IsStatic(self) -> bool:
-        """Return whether the file calls the link static."""
+        """Return whether the link is called static, by its file or by ``SetStatic``."""
         return self._scene.static
 
-    def IsEnabled(self) -> bool:
-        """Return whether collision checking looks at the link."""
-        return self._scene.enabled
+    def SetStatic(self, bStatic: bool) -> None:
+        """Call the link static or not. What moves it stays as it is.
 
-    def GetGeometries(self) -> list[Geometry]:
-        """Return the link's shapes, in the order of the file."""
-        return [Geometry(geometry) for geometry in self._scene.geometries]
+        Args:
+            bStatic: Whether it is static.
+        """
+        with self._state.simulation.lock:
+            self._state.edit_link(self._index, static=bool(bStatic))
+
+    def GetParentLinks(self) -> "list[Link]":
+        """Return the links that joints hang this one on."""
+        return [self._other(link) for link in chains.parents(self._state.scene, self._index)]
+
+    def IsParentLink(self, link: "Link") -> bool:
+        """Return whether a joint hangs this link on another one.
+
+        Args:
+            link: The other link.
+        """
+        return link in self.GetParentLinks()
+
+    def GetRigidlyAttachedLinks(self) -> "list[Link]":
+        """Return the links that never move against this one; this one is the first."""
+        return [self._other(link) for link in chains.rigidly_attached(self._state.scene, self._index)]
+
+    def IsRigidlyAttached(self, link: "Link") -> bool:
+        """Return whether another link never moves against this one.
+
+        Args:
+            link: The other link.
+        """
+        return link in self.GetRigidlyAttachedLinks()
+
+    def _other(self, index: int) -> "Link":
+        return Link(self._parent, self._state, index)
+
+    def GetInfo(self) -> LinkInfo:
+        """Return the description of the link as it stands, a copy."""
+        with self._state.simulation.lock:
+            enabled = self._state.link_enabled[self._index]
+            return LinkInfo.of(self._state.scene, self._index, self.GetTransform(), enabled=enabled)
+
+    UpdateAndGetInfo = GetInfo
+
+    def UpdateInfo(self) -> None:
+        """Do nothing: ``GetInfo`` always gives the present state."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Link) and self._state is other._state and self._index == other._index
@@ -105,7 +156,7 @@ class Link:
         return hash((id(self._state), self._index))
 
     def __repr__(self) -> str:
-        return f"{self._parent!r}.GetLink('{self.GetName()}')"
+        return f"{self._parent.GetEnv()!r}.GetKinBody('{self._parent.GetName()}').GetLink('{self.GetName()}')"
 
     def __str__(self) -> str:
         return f"<link:{self.GetName()} ({self._index}), parent={self._parent.GetName()}>"

@@ -6,10 +6,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj import scene
+from ravemj import chains, fingerprints, scene
 from ravemj.arrays import checked_transform, checked_vector
 from ravemj.errors import ArgumentError, RavemjError
+from ravemj.manipulators import joint_dofs
+from ravemj.rave.arm_goals import ArmGoals
 from ravemj.rave.body.placement import pose_from_matrix
+from ravemj.rave.infos import ManipulatorInfo
+from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.simulation import BodyState
@@ -19,7 +23,7 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Manipulator:
+class Manipulator(ArmGoals):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
     def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
@@ -183,6 +187,41 @@ class Manipulator:
         self._edit(chucking_direction=tuple(signs.tolist()))
 
     SetClosingDirection = SetChuckingDirection
+
+    def GetChildJoints(self) -> list[Joint]:
+        """Return the joints beyond the arm, for instance those of fingers."""
+        return self._robot.GetJoints(chains.joints_beyond(self._state.scene, self._scene))
+
+    def GetChildDOFIndices(self) -> list[int]:
+        """Return the DOFs of ``GetChildJoints()``."""
+        joints = chains.joints_beyond(self._state.scene, self._scene)
+        return [dof for joint in joints for dof in joint_dofs(self._state.scene, joint)]
+
+    def GetChildLinks(self) -> list[Link]:
+        """Return the effector, the links that are fixed to it, and those beyond."""
+        return self._robot.GetLinks(chains.links_beyond(self._state.scene, self._scene))
+
+    def IsChildLink(self, link: Link) -> bool:
+        """Return whether a link is among ``GetChildLinks()``."""
+        return link in self.GetChildLinks()
+
+    def GetIndependentLinks(self) -> list[Link]:
+        """Return the links that neither the arm nor the gripper moves."""
+        return self._robot.GetLinks(chains.independent_links(self._state.scene, self._scene))
+
+    def GetKinematicsStructureHash(self) -> str:
+        """Return a text that is the same for arms of the same joints and tool: 32 hexadecimal digits."""
+        return fingerprints.of_arm(self._state.scene, self._scene)
+
+    def GetStructureHash(self) -> str:
+        """Return a text that is the same for manipulators of the same kind in the same robot: 32 hexadecimal digits."""
+        return fingerprints.of_manipulator(self._state.scene, self._scene)
+
+    def GetInfo(self) -> ManipulatorInfo:
+        """Return the description of the manipulator, a copy."""
+        return ManipulatorInfo.of(self._state.scene, self._scene)
+
+    UpdateAndGetInfo = GetInfo
 
     def GetArmConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
         """Return the specification of the arm's joint values.

@@ -3,13 +3,16 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ravemj.collision.questions import moved_links
 from ravemj.geometry_functions import DOFAffine
 from ravemj.rave.body.active import ActiveChoice
 from ravemj.rave.body.active_motion import ActiveMotion
 from ravemj.rave.body.affine import default_kinds
 from ravemj.rave.body.manipulators import Manipulators
+from ravemj.rave.body.robot_building import RobotBuilding
 from ravemj.rave.body.saving import Restorer, StateSaver
 from ravemj.rave.enums import InterfaceType, SaveParameters
+from ravemj.rave.infos import AttachedSensorInfo, ManipulatorInfo, RobotBaseInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
@@ -21,11 +24,15 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class Robot(ActiveMotion, Manipulators, KinBody):
+class Robot(ActiveMotion, Manipulators, RobotBuilding, KinBody):  # pyright: ignore[reportIncompatibleMethodOverride]
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine
+    AttachedSensorInfo = AttachedSensorInfo
     Manipulator = Manipulator
+    ManipulatorInfo = ManipulatorInfo
+    RobotBaseInfo = RobotBaseInfo
+    RobotStateSaver = StateSaver
 
     _interface_type = InterfaceType.robot
     default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator
@@ -95,6 +102,12 @@ class Robot(ActiveMotion, Manipulators, KinBody):
         for tool, transform in [(tool.GetName(), tool.GetLocalToolTransform()) for tool in tools]:
             found.append(lambda body, tool=tool, transform=transform: _set_tool(body, tool, transform))
         return found
+
+    def active_links(self) -> frozenset[int] | None:
+        """Return the indices of the links that the active DOFs move; None: all."""
+        return (
+            None if self.active_choice.affine else moved_links(self._state.scene, self.GetActiveDOFIndices().tolist())
+        )
 
     def GetAttachedSensors(self) -> list[AttachedSensor]:
         """Return the sensors on the robot's links, in the order of the file."""

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ravemj import scene
-from ravemj.rave.enums import SensorType
+from ravemj.rave.enums import SensorCommand, SensorType
+from ravemj.rave.infos import AttachedSensorInfo
 from ravemj.rave.link import Link
 from ravemj.rendering import CameraIntrinsics
 from ravemj.simulation import BodyState
@@ -40,6 +41,7 @@ class Sensor:
     """A device that measures; ``attached.GetSensor()`` makes it."""
 
     Type = SensorType
+    ConfigureCommand = SensorCommand
 
     def __init__(self, attached: scene.AttachedSensor, kind: str) -> None:
         self._scene = attached
@@ -102,6 +104,12 @@ class AttachedSensor:
     def GetSensor(self) -> Sensor | None:
         """Return the device, or None for a mere frame."""
         return None if self._scene.type is None else Sensor(self._scene, self._scene.type)
+
+    def GetInfo(self) -> AttachedSensorInfo:
+        """Return the description of the attached sensor, a copy."""
+        return AttachedSensorInfo.of(self._state.scene, self._scene)
+
+    UpdateAndGetInfo = GetInfo
 
     def __repr__(self) -> str:
         return f"{self._robot!r}.GetAttachedSensor('{self.GetName()}')"

@@ -32,6 +32,9 @@ _MAX_FIGURES = 300_000
 _SMALLEST = 1e-3
 """Radius of what has none, such as a single point [m]."""
 
+_WIDEST = 1e-6
+"""Nearest depth, as a part of the farthest one: with less, MuJoCo loses the background."""
+
 _LOG = logging.getLogger("ravemj")
 
 
@@ -66,6 +69,7 @@ class Stage:
         with _quality_of(model, quality):
             self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_150.value)
         self._shadows = quality.shadows
+        self._has_warned = False
         self._make_scene(_SPARE_GEOMS)
         self._option = drawing_option()
         self._skybox = _find_skybox(model)
@@ -78,7 +82,6 @@ class Stage:
 
     def _make_scene(self, room: int) -> None:
         self.scene = mujoco.MjvScene(self._model, self._model.ngeom + room)
-        self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._shadows
         self._room = room
 
     def fill(self, data: mujoco.MjData, camera: Camera, width: int, height: int, shapes: Shapes = NOTHING) -> None:
@@ -89,9 +92,12 @@ class Stage:
             camera: Where the picture is taken from.
             width: Columns of the viewport.
             height: Rows of the viewport.
-            shapes: What is drawn beside the geoms.
+            shapes: What is drawn beside the geoms. With points or lines there are no shadows: MuJoCo would draw these
+                once more for each light that casts some, and add the colours up.
         """
         self._make_room(len(shapes))
+        has_lines = bool(shapes.points.sizes.size or shapes.lines.sizes.size)
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._shadows and not has_lines
         depths = near_and_far(self._model, data, camera, shapes)
         aim(self.scene, camera, (width, height), depths)
         if self._model.nlight:
@@ -105,7 +111,8 @@ class Stage:
         add_figures(self.scene, shapes, camera, width, height)
 
     def _make_room(self, figures: int) -> None:
-        if figures > _MAX_FIGURES:
+        if figures > _MAX_FIGURES and not self._has_warned:
+            self._has_warned = True
             _LOG.warning("%d figures are drawn, and OpenGL shows %d of them", figures, _MAX_FIGURES)
         if self._room < min(figures, _MAX_FIGURES):
             self._make_scene(min(2 * figures, _MAX_FIGURES))
@@ -213,7 +220,8 @@ def near_and_far(
     if len(shapes):
         center_of_drawings, radius_of_drawings = shapes.bounding_sphere()
         nearer, farther = _depths_of_sphere(center_of_drawings, max(radius_of_drawings, _SMALLEST), camera)
-        near, far = min(near, nearer), max(far, farther)
+        far = max(far, farther)
+        near = max(min(near, nearer), _WIDEST * far)
     if (drawn_geoms(model) & (model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)).any():
         near = min(near, 1e-2 * radius)
         far = max(far, 5 * model.vis.map.zfar * model.stat.extent)

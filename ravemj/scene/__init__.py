@@ -5,7 +5,7 @@ angles radians, masses kilograms. Links are referred to by their index in ``KinB
 """
 
 from ravemj.scene.body import AttachedSensor, Intrinsics, KinBody, Manipulator
-from ravemj.scene.mechanism import UNLIMITED, Axis, Inertial, Joint, JointKind, Link, Mimic
+from ravemj.scene.mechanism import NO_PARAMETERS, UNLIMITED, Axis, Inertial, Joint, JointKind, Link, Mimic, Parameters
 from ravemj.scene.shapes import (
     Box,
     Capsule,
@@ -13,6 +13,7 @@ from ravemj.scene.shapes import (
     Cylinder,
     Geometry,
     Mesh,
+    MeshFile,
     NoShape,
     Prism,
     Rgb,
@@ -24,6 +25,7 @@ from ravemj.scene.shapes import (
 from ravemj.scene.world import Scene, View
 
 __all__ = [
+    "NO_PARAMETERS",
     "UNLIMITED",
     "AttachedSensor",
     "Axis",
@@ -40,8 +42,10 @@ __all__ = [
     "Link",
     "Manipulator",
     "Mesh",
+    "MeshFile",
     "Mimic",
     "NoShape",
+    "Parameters",
     "Prism",
     "Rgb",
     "Scene",

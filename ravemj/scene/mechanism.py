@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Literal
 
 from ravemj.errors import Source
 from ravemj.scene.shapes import Geometry
-from ravemj.transforms import Pose, Rows, Vec3
+from ravemj.transforms import Pose, Rows, Vec3, Wxyz
 
 if TYPE_CHECKING:
     from ravemj.expressions import Expression
@@ -24,11 +24,25 @@ class Inertial:
         mass: Mass [kg].
         com: Centre of mass in the link frame [m].
         inertia: Inertia tensor about the centre of mass, in axes parallel to the link's [kg m^2].
+        axes: Orientation in the link of the principal axes that a script chose; None: any that fit the tensor.
     """
 
     mass: float
     com: Vec3
     inertia: Rows
+    axes: Wxyz | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """What scripts attach to a link or a joint: names, and what they stand for."""
+
+    floats: tuple[tuple[str, tuple[float, ...]], ...] = ()
+    integers: tuple[tuple[str, tuple[int, ...]], ...] = ()
+    texts: tuple[tuple[str, str], ...] = ()
+
+
+NO_PARAMETERS = Parameters()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +56,9 @@ class Link:
         geometries: Its shapes, in document order.
         static: True for ``type="static"``.
         enabled: False where collision checking leaves it out.
+        groups: Other sets of shapes that scripts can swap in, by name.
+        parameters: What scripts attach to it.
+        self_collision_ignored: True where it is not tested against other links of its body.
         source: The element that it comes from.
     """
 
@@ -51,6 +68,9 @@ class Link:
     geometries: tuple[Geometry, ...]
     static: bool
     enabled: bool
+    groups: tuple[tuple[str, tuple[Geometry, ...]], ...] = ()
+    parameters: Parameters = NO_PARAMETERS
+    self_collision_ignored: bool = False
     source: Source
 
 
@@ -71,6 +91,7 @@ class Axis:
         max_acceleration: Acceleration limit [rad/s^2 or m/s^2].
         max_torque: Torque or force limit [N m or N]; 0 where the file says nothing.
         armature: Inertia of a motor behind its gear [kg m^2].
+        wrap_offset: The value about which scripts chose the turn that the value is in [rad].
     """
 
     direction: Vec3
@@ -85,6 +106,7 @@ class Axis:
     max_acceleration: float = 50.0
     max_torque: float = 0.0
     armature: float = 0.0
+    wrap_offset: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +144,7 @@ class Joint:
         axes: Its degrees of freedom.
         places_child: False for a joint that closes a loop: another joint places its child.
         mimic: How it follows other joints, or None.
+        parameters: What scripts attach to it.
         source: The element that it comes from.
     """
 
@@ -134,6 +157,7 @@ class Joint:
     axes: tuple[Axis, ...]
     places_child: bool
     mimic: Mimic | None = None
+    parameters: Parameters = NO_PARAMETERS
     source: Source
 
     @property

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -154,6 +154,13 @@ class Surface:
     transparency: float
 
 
+class MeshFile(NamedTuple):
+    """A mesh file, and factors along x, y and z."""
+
+    name: str
+    scale: Vec3 = (1.0, 1.0, 1.0)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Geometry:
     """A shape fixed to a link.
@@ -168,6 +175,8 @@ class Geometry:
         visible: False where it only collides.
         modifiable: Whether planners may change it.
         display: What is drawn in place of the shape; None: the shape itself.
+        render_file: Where this comes from, or None.
+        collision_file: Where the triangles of the shape come from, or None.
         source: The element that it comes from.
     """
 
@@ -180,4 +189,6 @@ class Geometry:
     visible: bool
     modifiable: bool = True
     display: tuple[Surface, ...] | None = None
+    render_file: MeshFile | None = None
+    collision_file: MeshFile | None = None
     source: Source

@@ -8,12 +8,14 @@ import numpy as np
 
 from ravemj import mjcf
 from ravemj.errors import CompileError, Diagnostics, Source
+from ravemj.inertia import principal_frame, principal_moments
 from ravemj.mjcf.document import ASSETS
-from ravemj.scene import Scene
-from ravemj.transforms import wxyz_from_rows
+from ravemj.scene import Inertial, Scene
 
 _DOF = re.compile(r"DOF (\d+)")
-_LINE = re.compile(r"line (\d+)", re.IGNORECASE)
+_LINE = re.compile(r"line (?:number=)?(\d+)", re.IGNORECASE)
+_TOO_DEEP = "XML_ELEMENT_DEPTH_EXCEEDED"
+_LONGEST_CHAIN = 496  # links; MuJoCo's reader of XML takes 500 elements inside one another
 
 
 class Compiled:
@@ -61,14 +63,21 @@ class Compiled:
             inertial = scene.bodies[body_index].links[link_index].inertial
             name = self.mjcf.names[body_index].links[link_index]
             body_id = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, name)
-            inertia = np.array(inertial.inertia)
-            if not (np.isfinite(inertial.mass) and np.isfinite(inertia).all()):
-                continue
-            moments, axes = np.linalg.eigh(inertia)
-            axes[:, 0] *= np.linalg.det(axes)  # a rotation, not a reflection
-            self.model.body_mass[body_id] = inertial.mass
-            self.model.body_inertia[body_id] = moments
-            self.model.body_iquat[body_id] = wxyz_from_rows(axes.tolist())
+            if np.isfinite(inertial.mass) and np.isfinite(inertial.inertia).all():
+                write_inertial(self.model, body_id, inertial)
+
+
+def write_inertial(model: mujoco.MjModel, body_id: int, inertial: Inertial) -> None:
+    """Give a body of a model other mass properties."""
+    frame = principal_frame(inertial)
+    added = inertial.mass - model.body_mass[body_id]
+    model.body_mass[body_id] = inertial.mass
+    model.body_inertia[body_id] = principal_moments(inertial)
+    model.body_ipos[body_id] = frame.position
+    model.body_iquat[body_id] = frame.wxyz
+    while body_id:
+        model.body_subtreemass[body_id] += added
+        body_id = model.body_parentid[body_id]
 
 
 def _compile_error(message: str, text: mjcf.Mjcf) -> CompileError:
@@ -76,5 +85,8 @@ def _compile_error(message: str, text: mjcf.Mjcf) -> CompileError:
     match = _LINE.search(message)
     line = int(match[1]) if match else 0
     source = text.source_of_line(line) or Source("the translated model", line)
+    if _TOO_DEEP in message:
+        reason = f"this link hangs on a chain of {_LONGEST_CHAIN} links, and MuJoCo takes no longer ones"
+        return CompileError(reason, source, "split the chain into several bodies")
     reason = " ".join(message.split())
     return CompileError(f"MuJoCo refuses the translated model: {reason}", source)

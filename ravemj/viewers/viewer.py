@@ -64,11 +64,19 @@ class Viewer:
         return self._title
 
     def SetName(self, title: str) -> None:
-        """Set the title; a window shows it."""
+        """Set the title; a window shows it.
+
+        Args:
+            title: The title.
+        """
         self._title = str(title)
 
     def SetTitle(self, title: str) -> None:
-        """Set the title, like ``SetName``."""
+        """Set the title, like ``SetName``.
+
+        Args:
+            title: The title.
+        """
         self.SetName(title)
 
     def SetSize(self, w: int, h: int) -> None:
@@ -86,10 +94,19 @@ class Viewer:
         self._size = int(w), int(h)
 
     def Move(self, x: int, y: int) -> None:
-        """Move the window's upper left corner to a place on the screen [pixels]; nothing happens without a window."""
+        """Move the window; nothing happens without one.
+
+        Args:
+            x: Where its left edge goes on the screen [pixels].
+            y: Where its upper edge goes on the screen [pixels].
+        """
 
     def Show(self, showtype: int) -> None:
-        """Hide the window (0) or show it; nothing happens without a window."""
+        """Hide the window, or show it; nothing happens without one.
+
+        Args:
+            showtype: 0 hides it.
+        """
 
     def main(self, bShow: bool = True) -> int:
         """Wait until the window is closed or ``quitmainloop`` is called; without a window, return at once.
@@ -110,9 +127,10 @@ class Viewer:
         """Wait until the window shows the environment as it is now. Pictures always do."""
 
     def RegisterItemSelectionCallback(self, callback: Callback) -> Handle:
-        """Have a function called when the user clicks on a link: ``callback(link, position, direction)``.
+        """Have a function called when the user clicks on a link. It is kept, and not called yet: windows pick no links.
 
-        It is kept, and not called yet: windows do not pick links so far.
+        Args:
+            callback: The function; its arguments will be the link, a position and a direction.
 
         Returns:
             A handle; the function is forgotten when it is closed or dropped.
@@ -123,7 +141,10 @@ class Viewer:
         return self._selection_callbacks.add(callback)
 
     def RegisterViewerThreadCallback(self, callback: Callback) -> Handle:
-        """Have a function called in the thread of the window, once for each turn of its loop: ``callback()``.
+        """Have a function called in the thread of the window, once for each turn of its loop.
+
+        Args:
+            callback: The function, without arguments.
 
         Returns:
             A handle; the function is forgotten when it is closed or dropped.
@@ -134,9 +155,10 @@ class Viewer:
         return self._thread_callbacks.add(callback)
 
     def RegisterViewerImageCallback(self, callback: Callback) -> Handle:
-        """Have a function called with each picture that the viewer draws: ``callback(picture)``.
+        """Have a function called with each picture of the window, in its own thread, and with those of ``render``.
 
-        These are the window's, in its own thread, and those of ``render``. A picture is (height, width, 3), uint8.
+        Args:
+            callback: The function; its argument is the picture, (height, width, 3), uint8.
 
         Returns:
             A handle; the function is forgotten when it is closed or dropped.
@@ -147,7 +169,11 @@ class Viewer:
         return self._image_callbacks.add(callback)
 
     def SupportsCommand(self, cmd: str) -> bool:
-        """Return whether ``SendCommand`` knows a command."""
+        """Return whether ``SendCommand`` knows a command.
+
+        Args:
+            cmd: Its name.
+        """
         return cmd == _FIGURES
 
     def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str:

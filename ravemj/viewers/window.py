@@ -54,12 +54,20 @@ class WindowViewer(Viewer):
             self._thread.join(0.1)  # in slices, so that Ctrl-C gets through
 
     def SetName(self, title: str) -> None:
-        """Set the title of the window."""
+        """Set the title of the window.
+
+        Args:
+            title: The title.
+        """
         super().SetName(title)
         self._requests.put(lambda window: window.set_title(str(title)))
 
     def SetSize(self, w: int, h: int) -> None:
-        """Set the size of the window [pixels].
+        """Set the size of the window.
+
+        Args:
+            w: Columns [pixels].
+            h: Rows [pixels].
 
         Raises:
             ArgumentError: a size is not positive.
@@ -68,11 +76,20 @@ class WindowViewer(Viewer):
         self._requests.put(lambda window: window.resize(w, h))
 
     def Move(self, x: int, y: int) -> None:
-        """Move the window's upper left corner to a place on the screen [pixels]."""
+        """Move the window.
+
+        Args:
+            x: Where its left edge goes on the screen [pixels].
+            y: Where its upper edge goes on the screen [pixels].
+        """
         self._requests.put(lambda window: window.move(x, y))
 
     def Show(self, showtype: int) -> None:
-        """Hide the window (0) or show it."""
+        """Hide the window, or show it.
+
+        Args:
+            showtype: 0 hides it.
+        """
         self._requests.put(lambda window: window.show_or_hide(bool(showtype)))
 
     def main(self, bShow: bool = True) -> int:
@@ -141,6 +158,12 @@ class _Window:
         self._stage: Stage | None = None
         self._stage_version = 0
         self._shown: object = None
+        glfw.set_window_refresh_callback(self._window, self._forget_picture)
+
+    def _forget_picture(self, window: object) -> None:
+        """Have the window drawn again: what was in it is lost."""
+        del window
+        self._shown = None
 
     @property
     def is_closed(self) -> bool:

@@ -9,7 +9,8 @@ from ravemj.arrays import checked_indices, checked_numbers, checked_vector
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
 from ravemj.rave.body.affine import AffineSettings
-from ravemj.rave.body.limits import Limits
+from ravemj.rave.body.limits import Limits, wrapped_angle
+from ravemj.rave.body.motion import Motion
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.specification import ConfigurationSpecification
@@ -33,7 +34,7 @@ class ActiveChoice(NamedTuple):
     axis: Vec3 = Z_AXIS
 
 
-class ActiveDofs(Placement, Limits, AffineSettings):
+class ActiveDofs(Placement, Limits, Motion, AffineSettings):
     """The active DOFs of a robot: some of its joints, and parts of its base's pose."""
 
     active_choice: ActiveChoice
@@ -134,6 +135,47 @@ class ActiveDofs(Placement, Limits, AffineSettings):
                 choice = self.active_choice
                 self._state.set_pose(pose_with_values(self._state.pose(), base, choice.affine, choice.axis))
 
+    def GetActiveDOFVelocities(self) -> Floats:
+        """Return the velocities of the active values [rad/s or m/s]; for a rotation of the base its angular one."""
+        with self._simulation.lock:
+            joints = self.GetDOFVelocities()[self.GetActiveDOFIndices()]
+            linear, angular = np.split(self._state.link_velocities()[0], 2)
+            affine = self.active_choice.affine
+            parts = [joints, linear[[i for i in range(3) if affine & 1 << i]]]
+            if affine & DOFAffine.RotationAxis:
+                parts.append(np.array([angular @ self.active_choice.axis]))
+            elif affine & DOFAffine.Rotation3D:
+                parts.append(angular)
+            elif affine & DOFAffine.RotationQuat:
+                parts.append(np.zeros(4))
+            return np.concatenate(parts)
+
+    def SetActiveDOFVelocities(self, velocities: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits) -> None:
+        """Set the velocities of the active values; the other joints keep theirs.
+
+        Args:
+            velocities: As many as there are active values [rad/s or m/s]; those of a rotation of the base are its
+                angular velocity, of which a quaternion has none.
+            checklimits: What to do with joint velocities outside the limits, a ``CheckLimitsAction``.
+
+        Raises:
+            ArgumentError: there are too few or too many velocities, or one is infinite.
+        """
+        count, joints = self.GetActiveDOF(), self._active_dofs()
+        given = checked_vector(velocities, count, "SetActiveDOFVelocities: velocities")
+        with self._simulation.lock:
+            full = self.GetDOFVelocities()
+            full[joints] = given[: len(joints)]
+            linear, angular = np.split(self._state.link_velocities()[0], 2)
+            affine, rest = self.active_choice.affine, given[len(joints) :]
+            moved = [i for i in range(3) if affine & 1 << i]
+            linear[moved] = rest[: len(moved)]
+            if affine & DOFAffine.RotationAxis:
+                angular = rest[-1] * np.array(self.active_choice.axis)
+            elif affine & DOFAffine.Rotation3D:
+                angular = rest[-3:]
+            self.SetDOFVelocities(full, linear, angular, checklimits)
+
     def GetActiveDOFLimits(self) -> tuple[Floats, Floats]:
         """Return the lower and upper limits of the active values; ±100 m and ±10000 rad for the base by default."""
         dofs = self._active_dofs()
@@ -209,5 +251,5 @@ class ActiveDofs(Placement, Limits, AffineSettings):
         split = len(joints)
         difference[:split] = self.SubtractDOFValues(minuend[:split], subtrahend[:split], joints)
         if self.active_choice.affine & DOFAffine.RotationAxis:
-            difference[-1] = (difference[-1] + np.pi) % (2 * np.pi) - np.pi
+            difference[-1:] = wrapped_angle(difference[-1:])
         return difference

@@ -1,6 +1,7 @@
 """Bodies made in code."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,14 +9,16 @@ from numpy.typing import ArrayLike
 from ravemj.arrays import checked_numbers
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.making import body_of_geometries, box_geometries, shape_geometry, sphere_geometries
-from ravemj.rave.body.base import BodyPart
+from ravemj.rave.body.mechanism import Mechanism
+from ravemj.rave.infos import ExtractInfoOptions, GeometryInfo, JointInfo, KinBodyInfo, LinkInfo, body_of
+from ravemj.rave.infos.link import geometries_of
 from ravemj.rave.trimesh import TriMesh, checked_mesh
 from ravemj.scene import Geometry, KinBody
 from ravemj.scene import TriMesh as Triangles
 from ravemj.transforms import Floats, Pose
 
 
-class Building(BodyPart):
+class Building(Mechanism):
     """Makes the body anew; it must not be in an environment meanwhile."""
 
     def InitFromBoxes(self, boxes: ArrayLike, draw: bool = True, uri: str = "") -> bool:
@@ -79,6 +82,99 @@ class Building(BodyPart):
         del uri
         mesh = checked_mesh(trimesh, "InitFromTrimesh: trimesh")
         return self._become([shape_geometry(Triangles(mesh), Pose(), visible=bool(draw))])
+
+    def InitFromGeometries(self, geometries: Sequence[GeometryInfo], uri: str = "") -> bool:
+        """Make the body one static link of shapes.
+
+        Args:
+            geometries: Their descriptions.
+            uri: Not used.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: the body is in an environment, or an info describes nothing that can be. Nothing has
+                changed then.
+        """
+        del uri
+        return self._become(geometries_of(geometries))
+
+    def Init(self, linkinfos: Sequence[LinkInfo], jointinfos: Sequence[JointInfo], uri: str = "") -> bool:
+        """Make the body of links and joints.
+
+        Args:
+            linkinfos: The descriptions of the links; the first one is the root.
+            jointinfos: The descriptions of the joints; those with DOFs in DOF order.
+            uri: Not used.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: the body is in an environment, or an info describes nothing that can be. Nothing has
+                changed then.
+        """
+        del uri
+        return self.InitFromKinBodyInfo(KinBodyInfo(_vLinkInfos=linkinfos, _vJointInfos=jointinfos))
+
+    def InitFromLinks(self, linkinfos: Sequence[LinkInfo], uri: str = "") -> bool:
+        """Make the body of links without joints.
+
+        Args:
+            linkinfos: The descriptions of the links.
+            uri: Not used.
+        """
+        return self.Init(linkinfos, [], uri)
+
+    def InitFromKinBodyInfo(self, info: KinBodyInfo) -> bool:
+        """Make the body, its name included, of a description.
+
+        Args:
+            info: The description, for instance of ``ExtractInfo``.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: the body is in an environment, or the info describes nothing that can be. Nothing has
+                changed then.
+
+        Example:
+            >>> copy = ravemj.RaveCreateKinBody(env, "")
+            >>> copy.InitFromKinBodyInfo(body.ExtractInfo())
+            True
+        """
+        T_world_link0 = info.transform()
+        self._rebuild(body_of(info, self._state.scene))
+        if T_world_link0 is not None:
+            self._state.set_transform(T_world_link0)
+        return True
+
+    def ExtractInfo(self, options: int = ExtractInfoOptions.Everything) -> KinBodyInfo:
+        """Return the description of the body as it stands, a copy.
+
+        Args:
+            options: What to take, ``ExtractInfoOptions``.
+
+        Returns:
+            A ``KinBodyInfo``; of a robot a ``RobotBaseInfo``.
+        """
+        return KinBodyInfo(**self.extracted(options))
+
+    def extracted(self, options: int) -> dict[str, Any]:
+        """Return the fields of ``ExtractInfo``."""
+        with self._simulation.lock:
+            joints = [joint.GetInfo() for joint in self.GetJoints()]
+            skip = options & ExtractInfoOptions.SkipDOFValues
+            return {
+                "_name": self.GetName(),
+                "_vLinkInfos": [link.GetInfo() for link in self.GetLinks()],
+                "_vJointInfos": [*joints, *(joint.GetInfo() for joint in self.GetPassiveJoints())],
+                "_transform": self._state.link_transform(0) if self._state.scene.links else np.eye(4),
+                "_dofValues": [] if skip else [value for joint in joints for value in joint.named_values()],
+                "_isRobot": self._state.scene.is_robot,
+            }
 
     def _become(self, geometries: Iterable[Geometry]) -> bool:
         return self._rebuild(body_of_geometries(self._state.scene, geometries))

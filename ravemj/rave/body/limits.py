@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_indices, checked_numbers
-from ravemj.errors import ArgumentError, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.rave.body.base import BodyPart
 from ravemj.transforms import Floats
 
@@ -39,7 +39,7 @@ class Limits(BodyPart):
             indices: Which DOFs, in which order; None: all.
 
         Raises:
-            ArgumentError: there are too few or too many limits. Nothing has changed then.
+            openrave_exception: there are too few or too many limits. Nothing has changed then.
             IndexError: there is no such DOF.
         """
         self._set_axes("SetDOFLimits", {"lower": lower, "upper": upper}, indices)
@@ -84,8 +84,7 @@ class Limits(BodyPart):
         Raises:
             openrave_exception: there are too few or too many weights, or one is not positive.
         """
-        if not np.all(checked_numbers(weights, "SetDOFWeights: weights") > 0):
-            raise RavemjError(f"SetDOFWeights: weights are {weights}, and should be positive")
+        self._check_positive(weights, "SetDOFWeights: weights")
         self._set_axes("SetDOFWeights", {"weight": weights}, indices)
 
     def GetDOFResolutions(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
@@ -93,8 +92,14 @@ class Limits(BodyPart):
         return self._of_axes("resolution", indices)
 
     def SetDOFResolutions(self, resolutions: ArrayLike, indices: "ArrayLike | None" = None) -> None:
-        """Set the steps of planners [rad or m], as many as there are DOFs, or as there are indices."""
+        """Set the steps of planners [rad or m], as many as there are DOFs, or as there are indices; all positive."""
+        self._check_positive(resolutions, "SetDOFResolutions: resolutions")
         self._set_axes("SetDOFResolutions", {"resolution": resolutions}, indices)
+
+    def _check_positive(self, values: ArrayLike, name: str) -> None:
+        numbers = checked_numbers(values, name)
+        if not np.all(numbers > 0):
+            raise ArgumentError(f"{name}: are {numbers.tolist()}, and should be positive")
 
     def _of_axes(self, field: str, indices: "ArrayLike | EllipsisType | None") -> Floats:
         values = np.array([getattr(axis, field) for axis in self._state.scene.dof_axes], dtype=np.float64)
@@ -110,7 +115,8 @@ class Limits(BodyPart):
             numbers = checked_numbers(values, f"{caller}: values")
             if numbers.ndim != 1 or (len(numbers) != len(chosen) and numbers.size + len(chosen) > 0):
                 wanted = f"{dof} numbers, one for each DOF" if indices is None else f"{len(chosen)}, as many as indices"
-                raise ArgumentError(f"{caller}: values have shape {numbers.shape}, and should be {wanted}")
+                message = f"{caller}: values have shape {numbers.shape}, and should be {wanted}"
+                raise ArgumentError(message, ErrorCode.Failed)
             if np.isnan(numbers).any():
                 raise ArgumentError(f"{caller}: values are {numbers.tolist()}, and should be numbers")
             given[name] = numbers.tolist()
@@ -139,9 +145,13 @@ class Limits(BodyPart):
             message = (
                 f"SubtractDOFValues: {len(minuend)} and {len(subtrahend)} values, and should be {len(chosen)} each"
             )
-            raise ArgumentError(message)
+            raise ArgumentError(message, ErrorCode.Assert)
         axes = self._state.scene.dof_axes
         circular = np.array([axes[dof].circular for dof in map(int, chosen)], dtype=bool)
         difference = minuend - subtrahend
-        wrapped = (difference + np.pi) % (2 * np.pi) - np.pi
-        return np.where(circular, wrapped, difference)
+        return np.where(circular, wrapped_angle(difference), difference)
+
+
+def wrapped_angle(angle: Floats) -> Floats:
+    """Return angles with full turns added so that they lie in (-pi, pi]."""
+    return np.pi - (np.pi - angle) % (2 * np.pi)

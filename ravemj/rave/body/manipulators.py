@@ -2,8 +2,11 @@
 
 from typing import TYPE_CHECKING, cast
 
-from ravemj.errors import ArgumentError
+from ravemj import fingerprints
+from ravemj.errors import ArgumentError, Diagnostics, send_warnings
+from ravemj.manipulators import freeze_manipulator
 from ravemj.rave.body.base import BodyPart
+from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.manipulator import Manipulator
 
 if TYPE_CHECKING:
@@ -34,10 +37,62 @@ class Manipulators(BodyPart):
         """Return the manipulator that calls without one refer to, or None."""
         return next(iter(self.GetManipulators(self._active_manipulator)), None)
 
+    def GetRobotStructureHash(self) -> str:
+        """Return a text that is the same for robots of the same structure, arms and sensors: 32 hexadecimal digits."""
+        return fingerprints.of_robot(self._state.scene)
+
     def GetActiveManipulatorIndex(self) -> int:
         """Return the active manipulator's place in ``GetManipulators()``; -1 without one."""
         active = self.GetActiveManipulator()
         return -1 if active is None else self.GetManipulators().index(active)
+
+    def AddManipulator(self, manipinfo: ManipulatorInfo, removeduplicate: bool = False) -> Manipulator:
+        """Add an arm; it does not become the active one, unless there was none.
+
+        Args:
+            manipinfo: Its description.
+            removeduplicate: Whether it replaces one of the same name.
+
+        Raises:
+            openrave_exception: there is one of that name, or no joints lead from its base to its effector. Nothing has
+                changed then.
+
+        Example:
+            >>> info = robot.GetManipulators()[0].GetInfo()
+            >>> info._name = "long"
+            >>> info._tLocalTool = ravemj.matrixFromPose([1, 0, 0, 0, 0, 0, 0.3])
+            >>> robot.AddManipulator(info).GetTransform()
+        """
+        body = self._state.scene
+        diagnostics = Diagnostics()
+        made = freeze_manipulator(manipinfo.manipulator(), body, diagnostics)
+        arms, names = list(body.manipulators), [arm.name for arm in body.manipulators]
+        index = names.index(made.name) if made.name in names else len(names)
+        if index < len(names) and not removeduplicate:
+            raise ArgumentError(f"AddManipulator: '{self.GetName()}' has a manipulator '{made.name}' already")
+        with self._simulation.lock:
+            self._state.edit(manipulators=(*arms[:index], made, *arms[index + 1 :]))
+        send_warnings(diagnostics)
+        return self.GetManipulators()[index]
+
+    def RemoveManipulator(self, manip: Manipulator) -> bool:
+        """Remove an arm; the ones behind it move up. If it was the active one, none is active then.
+
+        Args:
+            manip: The arm.
+
+        Returns:
+            Whether it was there.
+        """
+        if manip not in self.GetManipulators():
+            return False
+        with self._simulation.lock:
+            name, active = manip.GetName(), self.GetActiveManipulator()
+            if active is not None:
+                self._active_manipulator = "" if active == manip else active.GetName()
+            kept = tuple(arm for arm in self._state.scene.manipulators if arm.name != name)
+            self._state.edit(manipulators=kept)
+        return True
 
     def SetActiveManipulator(self, manip: Manipulator | str | int | None) -> Manipulator | None:
         """Choose the manipulator that calls without one refer to. The active DOFs stay as they are.

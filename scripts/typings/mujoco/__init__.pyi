@@ -619,6 +619,8 @@ class MjModel:
     mesh_facenormal: Ints
     mesh_facenum: Ints
     mesh_facetexcoord: Ints
+    mesh_graph: Ints
+    mesh_graphadr: Ints
     mesh_pos: Floats
     mesh_quat: Floats
     mesh_vert: Floats32
@@ -1226,6 +1228,18 @@ def mj_integratePos(m: MjModel, qpos: Floats, qvel: ArrayLike, dt: float) -> Non
 def mj_normalizeQuat(m: MjModel, qpos: Floats) -> None: ...
 def mj_geomDistance(
     m: MjModel, d: MjData, geom1: SupportsInt, geom2: SupportsInt, distmax: float, fromto: Floats | None
+) -> float: ...
+def mj_rayMesh(
+    m: MjModel, d: MjData, geomid: SupportsInt, pnt: ArrayLike, vec: ArrayLike, normal: Floats | None = None
+) -> float: ...
+def mju_rayGeom(
+    pos: ArrayLike,
+    mat: ArrayLike,
+    size: ArrayLike,
+    pnt: ArrayLike,
+    vec: ArrayLike,
+    geomtype: SupportsInt,
+    normal: Floats | None = None,
 ) -> float: ...
 def mj_ray(
     m: MjModel,

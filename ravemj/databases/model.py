@@ -1,0 +1,49 @@
+"""What all models of ``openravepy.databases`` have in common."""
+
+from typing import NoReturn
+
+from ravemj.errors import UnsupportedError
+from ravemj.rave.environment import Environment
+from ravemj.rave.robot import Robot
+
+
+class DatabaseGenerator:
+    """Something that is computed once for a robot.
+
+    Args:
+        robot: The robot; its active manipulator is the model's.
+    """
+
+    capability = "building of databases"
+    """What ravemj lacks to compute it."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        self.manip = robot.GetActiveManipulator()
+
+    @property
+    def env(self) -> Environment:
+        """The robot's environment."""
+        return self.robot.GetEnv()
+
+    def load(self) -> bool:
+        """Return whether there is something to use: False."""
+        return False
+
+    def has(self) -> bool:
+        """Return whether there is something to use."""
+        return self.load()
+
+    def autogenerate(self, options: object = None) -> None:
+        """Compute the model.
+
+        Raises:
+            UnsupportedError: ravemj lacks what that takes; ``capability`` says what.
+        """
+        raise UnsupportedError(f"{type(self).__name__}.autogenerate", self.capability)
+
+    def __getattr__(self, name: str) -> NoReturn:
+        """Say what is missing, for all other methods that OpenRAVE's model has."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise UnsupportedError(f"{type(self).__name__}.{name}", self.capability)

@@ -1,0 +1,1 @@
+"""OpenRAVE's example programs are not part of ravemj; the module is here for scripts that import it."""

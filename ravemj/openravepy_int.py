@@ -1,0 +1,3 @@
+"""``openravepy.openravepy_int``: OpenRAVE's classes and functions, which old scripts import from here."""
+
+from ravemj.rave import *  # noqa: F403 - what ravemj/rave/__init__.py lists

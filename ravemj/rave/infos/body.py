@@ -1,0 +1,127 @@
+"""The description of a body."""
+
+# The fields have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import IntFlag
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj import scene
+from ravemj.arrays import checked_transform
+from ravemj.builder import BodyBuilder
+from ravemj.errors import ArgumentError, Diagnostics, send_warnings
+from ravemj.making import MADE
+from ravemj.rave.infos.joint import JointInfo
+from ravemj.rave.infos.link import LinkInfo
+from ravemj.rave.infos.numbers import identity
+from ravemj.rave.infos.robot import AttachedSensorInfo, ManipulatorInfo
+from ravemj.transforms import Floats
+
+T = TypeVar("T")
+
+
+class ExtractInfoOptions(IntFlag):
+    """What ``body.ExtractInfo`` takes."""
+
+    Everything = 0
+    SkipDOFValues = 1
+    """Leave the joint values out."""
+
+
+@dataclass(eq=False)
+class KinBodyInfo:
+    """A body.
+
+    Attributes:
+        _name: Its name.
+        _vLinkInfos: Its links, a list of ``LinkInfo``.
+        _vJointInfos: Its joints, a list of ``JointInfo``; those with DOFs in DOF order.
+        _transform: ``T_world_link0``; the identity leaves the links where their infos say.
+        _dofValues: Joint values that differ from ``JointInfo._vcurrentvalues``: a list of ((name, axis), value).
+        _isRobot: Whether it is a robot.
+    """
+
+    _name: str = ""
+    _vLinkInfos: Sequence[LinkInfo] = field(default_factory=list[LinkInfo])
+    _vJointInfos: Sequence[JointInfo] = field(default_factory=list[JointInfo])
+    _vGrabbedInfos: Sequence[object] = field(default_factory=list[object])
+    _transform: ArrayLike = field(default_factory=identity)
+    _dofValues: Sequence[tuple[tuple[str, int], float]] = field(default_factory=list[tuple[tuple[str, int], float]])
+    _isRobot: bool = False
+    _uri: str = ""
+    _referenceUri: str = ""
+    _id: str = ""
+
+    def transform(self) -> Floats | None:
+        """Return ``T_world_link0``, or None where the links stay as they are described."""
+        T_world_link0 = checked_transform(self._transform, "KinBodyInfo._transform")
+        return None if np.array_equal(T_world_link0, np.eye(4)) else T_world_link0
+
+    def values_by_axis(self) -> dict[tuple[str, int], float]:
+        """Return the joint values that are asked for, by the joint's name and the axis."""
+        return {(str(name), int(axis)): float(value) for (name, axis), value in self._dofValues}
+
+
+@dataclass(eq=False)
+class RobotBaseInfo(KinBodyInfo):
+    """A robot.
+
+    Attributes:
+        _vManipInfos: Its arms, a list of ``ManipulatorInfo``.
+        _vAttachedSensorInfos: Its sensors, a list of ``AttachedSensorInfo``.
+    """
+
+    _isRobot: bool = True
+    _vManipInfos: Sequence[ManipulatorInfo] = field(default_factory=list[ManipulatorInfo])
+    _vAttachedSensorInfos: Sequence[AttachedSensorInfo] = field(default_factory=list[AttachedSensorInfo])
+
+
+def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
+    """Return the body that an info describes.
+
+    Args:
+        info: The description.
+        like: Says whether it is a robot, and the name where the info has none.
+
+    Raises:
+        RavemjError: something is described by a thing of another kind, has no name, or cannot be.
+    """
+    builder = BodyBuilder(is_robot=like.is_robot, source=MADE, name=info._name or like.name)
+    for one in _checked(info._vLinkInfos, LinkInfo):
+        builder.links.append(one.link())
+    names = [link.name for link in builder.links]
+    if len(set(names)) < len(names):
+        raise ArgumentError(f"the links are called {', '.join(names)}; each should have a name of its own")
+    for index, one in enumerate(info._vLinkInfos):
+        builder.adjacent += [(index, other) for other in one.adjacent(names)]
+    builder.joints = [one.joint(builder.links) for one in _checked(info._vJointInfos, JointInfo)]
+    builder.joint_values = _asked(builder, info.values_by_axis())
+    if isinstance(info, RobotBaseInfo) and like.is_robot:
+        builder.manipulators = [one.manipulator() for one in _checked(info._vManipInfos, ManipulatorInfo)]
+        builder.sensors = [one.sensor(names) for one in _checked(info._vAttachedSensorInfos, AttachedSensorInfo)]
+    diagnostics = Diagnostics()
+    body = builder.freeze(diagnostics)
+    send_warnings(diagnostics)
+    return body
+
+
+def _checked(infos: Sequence[T], kind: type[T]) -> Sequence[T]:
+    for info in infos:
+        if not isinstance(info, kind):  # what users hand in
+            raise ArgumentError(f"a {type(info).__name__} stands where a {kind.__name__} should")
+    return infos
+
+
+def _asked(builder: BodyBuilder, values: dict[tuple[str, int], float]) -> list[float] | None:
+    """Return the value of each DOF; None where none is asked for."""
+    active = [joint for joint in builder.joints if joint.active]
+    if not values:
+        return None
+    return [
+        values.get((joint.name, index), axis.reference) for joint in active for index, axis in enumerate(joint.axes)
+    ]

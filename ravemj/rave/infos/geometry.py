@@ -1,0 +1,224 @@
+"""The description of a shape."""
+
+# The fields have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj import scene
+from ravemj.arrays import checked_numbers
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceError
+from ravemj.making import MADE
+from ravemj.meshes import MeshPart, read_mesh
+from ravemj.rave.enums import GeometryType
+from ravemj.rave.infos.numbers import filled, identity, pose, vector
+from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
+from ravemj.readers import find
+from ravemj.tessellation import merged
+from ravemj.transforms import Floats
+
+TYPES: dict[type[scene.Shape], GeometryType] = {
+    scene.Box: GeometryType.Box,
+    scene.Sphere: GeometryType.Sphere,
+    scene.Cylinder: GeometryType.Cylinder,
+    scene.Capsule: GeometryType.Capsule,
+    scene.Container: GeometryType.Container,
+    scene.Prism: GeometryType.Prism,
+    scene.TriMesh: GeometryType.Trimesh,
+    scene.NoShape: GeometryType.None_,
+}
+
+
+@dataclass(eq=False)
+class GeometryInfo:
+    """A shape of a link.
+
+    Attributes:
+        _type: The kind of shape, a ``GeometryType``.
+        _t: ``T_link_geometry``, shape (4, 4).
+        _vGeomData: Half extents of a box; radius of a sphere; radius and height, along z, of a cylinder or capsule;
+            outer size of a container; height of a prism [m].
+        _vGeomData2: Inner size of a container [m].
+        _vGeomData3: Size of the cross on a container's bottom [m].
+        _vGeomData4: Size of the plate on a container's bottom [m].
+        _vCrossSection: Corners x y of a prism [m], shape (n, 2).
+        _meshcollision: The triangles of a trimesh, a ``TriMesh``.
+        _vDiffuseColor: Red, green, blue from 0 to 1.
+        _vAmbientColor: The same in the shade.
+        _fTransparency: 0 is opaque, 1 invisible.
+        _bVisible: Whether it is drawn.
+        _bModifiable: Whether planners may change it.
+        _name: Its name, or None.
+        _filenamerender: A mesh file that is drawn in its place, or None.
+        _filenamecollision: The mesh file of a trimesh that has no ``_meshcollision``, or None.
+        _vRenderScale: Factors along x, y, z for the one file.
+        _vCollisionScale: Factors for the other.
+
+    Example:
+        >>> info = ravemj.KinBody.GeometryInfo()
+        >>> info._type = ravemj.GeometryType.Box
+        >>> info._vGeomData = [0.1, 0.2, 0.3]
+        >>> body.InitFromGeometries([info])
+        True
+    """
+
+    _type: GeometryType = GeometryType.None_
+    _t: ArrayLike = field(default_factory=identity)
+    _vGeomData: ArrayLike = field(default_factory=filled(0, 4))
+    _vGeomData2: ArrayLike = field(default_factory=filled(0, 4))
+    _vGeomData3: ArrayLike = field(default_factory=filled(0, 4))
+    _vGeomData4: ArrayLike = field(default_factory=filled(0, 4))
+    _vCrossSection: ArrayLike = field(default_factory=lambda: np.zeros((0, 2)))
+    _meshcollision: TriMesh | None = None
+    _vDiffuseColor: ArrayLike = field(default_factory=filled(1))
+    _vAmbientColor: ArrayLike = field(default_factory=filled(0))
+    _fTransparency: float = 0.0
+    _bVisible: bool = True
+    _bModifiable: bool = True
+    _id: str | None = None
+    _name: str | None = None
+    _filenamerender: str | None = None
+    _filenamecollision: str | None = None
+    _vRenderScale: ArrayLike = field(default_factory=filled(1))
+    _vCollisionScale: ArrayLike = field(default_factory=filled(1))
+    _drawn: "tuple[str | None, tuple[scene.Surface, ...] | None]" = (None, None)
+
+    @classmethod
+    def of(cls, geometry: scene.Geometry) -> Self:
+        """Return the description of a shape."""
+        render, collision = geometry.render_file, geometry.collision_file
+        info = cls(
+            _type=TYPES[type(geometry.shape)],
+            _t=geometry.T_link_geometry.matrix(),
+            _vDiffuseColor=np.array(geometry.diffuse),
+            _vAmbientColor=np.array(geometry.ambient),
+            _fTransparency=geometry.transparency,
+            _bVisible=geometry.visible,
+            _bModifiable=geometry.modifiable,
+            _name=geometry.name,
+            _filenamerender=render.name if render else None,
+            _filenamecollision=collision.name if collision else None,
+            _vRenderScale=np.array(render.scale if render else (1.0, 1.0, 1.0)),
+            _vCollisionScale=np.array(collision.scale if collision else (1.0, 1.0, 1.0)),
+            _drawn=(render.name if render else None, geometry.display),
+        )
+        info._take(geometry.shape)
+        return info
+
+    def _take(self, shape: scene.Shape) -> None:
+        """Take over the numbers of a shape."""
+        match shape:
+            case scene.Box(half_extents):
+                self._vGeomData = _four(*half_extents)
+            case scene.Sphere(radius):
+                self._vGeomData = _four(radius)
+            case scene.Cylinder(radius, height) | scene.Capsule(radius, height):
+                self._vGeomData = _four(radius, height)
+            case scene.Container(outer, inner, cross, bottom):
+                self._vGeomData, self._vGeomData2 = _four(*outer), _four(*inner)
+                self._vGeomData3, self._vGeomData4 = _four(*cross), _four(*bottom)
+            case scene.Prism(corners, height):
+                self._vCrossSection, self._vGeomData = np.array(corners).reshape(-1, 2), _four(height)
+            case scene.TriMesh(mesh):
+                self._meshcollision = trimesh_of(mesh)
+            case scene.NoShape():
+                pass
+
+    def geometry(self, *, visible: bool = True) -> scene.Geometry:
+        """Return what the fields describe.
+
+        Args:
+            visible: False hides it.
+
+        Raises:
+            RavemjError: a number is wrong, a file cannot be read, or there is no such kind of shape here.
+        """
+        make = _SHAPES.get(GeometryType(self._type))
+        if make is None:
+            message = f"GeometryInfo: a shape of type {GeometryType(self._type).name} cannot be made here"
+            raise RavemjError(message, ErrorCode.NotImplemented)
+        return scene.Geometry(
+            shape=make(self),
+            T_link_geometry=pose(self._t, "GeometryInfo._t"),
+            name=self._name or "",
+            diffuse=vector(self._vDiffuseColor, "GeometryInfo._vDiffuseColor"),
+            ambient=vector(self._vAmbientColor, "GeometryInfo._vAmbientColor"),
+            transparency=float(self._fTransparency),
+            visible=visible and bool(self._bVisible),
+            modifiable=bool(self._bModifiable),
+            display=self._display(),
+            render_file=_file(self._filenamerender, self._vRenderScale),
+            collision_file=_file(self._filenamecollision, self._vCollisionScale),
+            source=MADE,
+        )
+
+    def draw(self, filename: str) -> None:
+        """Draw a mesh file in place of the shape; '' draws the shape itself."""
+        self._filenamerender, self._drawn = filename or None, (None, None)
+
+    def _display(self) -> tuple[scene.Surface, ...] | None:
+        """Return what is drawn in place of the shape: what the shape that this describes had, or that of a file."""
+        name, surfaces = self._drawn
+        file = _file(self._filenamerender, self._vRenderScale)
+        if file is None or name == file.name:
+            return surfaces if file is not None or name is None else None
+        return tuple(scene.Surface(part.mesh, part.diffuse, part.transparency) for part in _parts(file))
+
+
+def _data(info: GeometryInfo, count: int) -> list[float]:
+    """Return the first numbers of ``_vGeomData``."""
+    numbers = checked_numbers(info._vGeomData, "GeometryInfo._vGeomData").ravel()
+    if len(numbers) < count or not np.isfinite(numbers[:count]).all():
+        raise ArgumentError(f"GeometryInfo._vGeomData: is {numbers.tolist()}, and should have {count} finite numbers")
+    return numbers[:count].tolist()
+
+
+def _container(info: GeometryInfo) -> scene.Shape:
+    sizes = (info._vGeomData, info._vGeomData2, info._vGeomData3, info._vGeomData4)
+    return scene.Container(*(vector(size, "GeometryInfo._vGeomData") for size in sizes))
+
+
+def _prism(info: GeometryInfo) -> scene.Shape:
+    corners = checked_numbers(info._vCrossSection, "GeometryInfo._vCrossSection").reshape(-1, 2)
+    return scene.Prism(tuple((x, y) for x, y in corners.tolist()), *_data(info, 1))
+
+
+def _trimesh(info: GeometryInfo) -> scene.Shape:
+    if info._meshcollision is not None:
+        return scene.TriMesh(checked_mesh(info._meshcollision, "GeometryInfo._meshcollision"))
+    file = _file(info._filenamecollision, info._vCollisionScale) or _file(info._filenamerender, info._vRenderScale)
+    return scene.TriMesh(merged(part.mesh for part in _parts(file)) if file else merged([]))
+
+
+_SHAPES: dict[GeometryType, Callable[[GeometryInfo], scene.Shape]] = {
+    GeometryType.None_: lambda info: scene.NoShape(),
+    GeometryType.Box: lambda info: scene.Box(vector(info._vGeomData, "GeometryInfo._vGeomData")),
+    GeometryType.Sphere: lambda info: scene.Sphere(*_data(info, 1)),
+    GeometryType.Cylinder: lambda info: scene.Cylinder(*_data(info, 2)),
+    GeometryType.Capsule: lambda info: scene.Capsule(*_data(info, 2)),
+    GeometryType.Container: _container,
+    GeometryType.Prism: _prism,
+    GeometryType.Trimesh: _trimesh,
+}
+
+
+def _four(*numbers: float) -> Floats:
+    """Return the numbers as an array of four, with zeros for the rest."""
+    return np.array([*numbers, 0.0, 0.0, 0.0, 0.0])[:4]
+
+
+def _file(name: str | None, scale: ArrayLike) -> scene.MeshFile | None:
+    return scene.MeshFile(str(name), vector(scale, "GeometryInfo: scale of a file")) if name else None
+
+
+def _parts(file: scene.MeshFile) -> tuple[MeshPart, ...]:
+    """Read a mesh file."""
+    path = find(file.name)
+    if path is None:
+        raise SourceError("there is no such file", Source(file.name), "check the path, or set OPENRAVE_DATA")
+    return read_mesh(path, file.scale)

@@ -1,0 +1,261 @@
+"""The description of a joint."""
+
+# The fields have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj import scene
+from ravemj.builder import JointBuilder, LinkBuilder
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.following import Equations
+from ravemj.joints import about, wxyz_from_rotation_vector
+from ravemj.making import MADE
+from ravemj.openrave_xml.actuator import Motor, motor_of
+from ravemj.rave.enums import JointType
+from ravemj.rave.infos.numbers import filled, per_axis, vector
+from ravemj.rave.infos.parameters import ParameterFields
+from ravemj.transforms import Vec3, add, conjugate, dot, rotate, scale, wxyz_from_axis_angle
+
+_KINDS: dict[JointType, scene.JointKind] = {
+    JointType.Hinge: "hinge",
+    JointType.Slider: "slider",
+    JointType.Hinge2: "hinge2",
+    JointType.Spherical: "spherical",
+}
+_AXES: dict[scene.JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "spherical": 3}
+_UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(eq=False)
+class ElectricMotorActuatorInfo:
+    """An electric motor behind a gear. Its torque wins over ``JointInfo._vmaxtorque``.
+
+    Attributes:
+        gear_ratio: Turns of the motor for one of the joint.
+        max_instantaneous_torque: Torque of the motor for a moment [N m].
+        nominal_torque: Torque of the motor for long [N m]; taken where the other is 0.
+        rotor_inertia: Inertia of the rotor [kg m^2].
+    """
+
+    model_type: str = ""
+    gear_ratio: float = 0.0
+    assigned_power_rating: float = 0.0
+    max_speed: float = 0.0
+    no_load_speed: float = 0.0
+    stall_torque: float = 0.0
+    max_instantaneous_torque: float = 0.0
+    nominal_speed_torque_points: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
+    max_speed_torque_points: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
+    nominal_torque: float = 0.0
+    rotor_inertia: float = 0.0
+    torque_constant: float = 0.0
+    nominal_voltage: float = 0.0
+    speed_constant: float = 0.0
+    starting_current: float = 0.0
+    terminal_resistance: float = 0.0
+    coloumb_friction: float = 0.0
+    viscous_friction: float = 0.0
+
+    def motor(self) -> Motor:
+        """Return torque and inertia at the joint."""
+        names = ("gear_ratio", "max_instantaneous_torque", "nominal_torque", "rotor_inertia")
+        return motor_of({name: float(getattr(self, name)) for name in names})
+
+
+@dataclass(eq=False)
+class JointInfo(ParameterFields):
+    """A joint between two links. Fields with a number for each axis may be longer than there are axes.
+
+    Attributes:
+        _type: The kind of joint, a ``JointType``: Hinge, Slider, Hinge2 or Spherical.
+        _name: Its name.
+        _linkname0: Name of the one link; anchor and axes are in its frame.
+        _linkname1: Name of the other.
+        _vanchor: A point on the axis [m], shape (3,).
+        _vaxes: The directions of the axes, a list of three numbers each.
+        _vcurrentvalues: The values at which the links stand where their infos say [rad or m]; None: 0.
+        _vlowerlimit: Lower limits [rad or m]; where they equal the upper ones, the joint is a weld.
+        _vupperlimit: Upper limits.
+        _vmaxvel: Velocity limits; _vmaxaccel, _vmaxtorque, _vweights and _vresolution likewise.
+        _voffsets: See ``Joint.SetWrapOffset``.
+        _bIsCircular: Whether the axis turns without end; limits do not count then.
+        _bIsActive: Whether it has DOFs.
+        _vmimic: How it follows others: a list with the equations of position, velocity and acceleration for each axis.
+        _infoElectricMotor: Its motor, or None.
+
+    Example:
+        >>> info = ravemj.KinBody.JointInfo()
+        >>> info._type, info._name = ravemj.JointType.Hinge, "elbow"
+        >>> info._linkname0, info._linkname1 = "upper", "lower"
+        >>> info._vaxes, info._vlowerlimit, info._vupperlimit = [[0, 0, 1]], [-1], [1]
+        >>> body.Init([upper, lower], [info])
+        True
+    """
+
+    _type: JointType = field(default_factory=lambda: JointType(0))
+    _name: str | None = None
+    _linkname0: str | None = None
+    _linkname1: str | None = None
+    _vanchor: ArrayLike = field(default_factory=filled(0))
+    _vaxes: Sequence[ArrayLike] = field(default_factory=list[ArrayLike])
+    _vcurrentvalues: ArrayLike | None = None
+    _vresolution: ArrayLike = field(default_factory=filled(0.02))
+    _vmaxvel: ArrayLike = field(default_factory=filled(10))
+    _vhardmaxvel: ArrayLike = field(default_factory=filled(0))
+    _vmaxaccel: ArrayLike = field(default_factory=filled(50))
+    _vhardmaxaccel: ArrayLike = field(default_factory=filled(0))
+    _vmaxjerk: ArrayLike = field(default_factory=filled(5e4))
+    _vhardmaxjerk: ArrayLike = field(default_factory=filled(0))
+    _vmaxtorque: ArrayLike = field(default_factory=filled(0))
+    _vmaxinertia: ArrayLike = field(default_factory=filled(0))
+    _vweights: ArrayLike = field(default_factory=filled(1))
+    _voffsets: ArrayLike = field(default_factory=filled(0))
+    _vlowerlimit: ArrayLike = field(default_factory=filled(0))
+    _vupperlimit: ArrayLike = field(default_factory=filled(0))
+    _bIsCircular: ArrayLike = field(default_factory=list[bool])
+    _bIsActive: bool = True
+    _vmimic: Sequence[Sequence[str] | None] = field(default_factory=list[Sequence[str] | None])
+    _infoElectricMotor: ElectricMotorActuatorInfo | None = None
+    _id: str | None = None
+
+    @classmethod
+    def of(cls, body: scene.KinBody, index: int, values: Sequence[float]) -> Self:
+        """Return the description of a joint with its links at some values.
+
+        Args:
+            body: The body.
+            index: Index of the joint among the active joints followed by the passive ones.
+            values: The values of its axes [rad or m].
+        """
+        joint = (*body.joints, *body.passive_joints)[index]
+        mimic = joint.mimic
+        axes = joint.axes
+        return cls(
+            _type=JointType[joint.kind.capitalize()],
+            _name=joint.name,
+            _linkname0=body.links[joint.parent].name,
+            _linkname1=body.links[joint.child].name,
+            _vanchor=np.array(_anchor(joint)),
+            _vaxes=[np.array(direction) for direction in _directions(body, joint, values)],
+            _vcurrentvalues=np.array(values),
+            _vresolution=np.array([axis.resolution for axis in axes]),
+            _vmaxvel=np.array([axis.max_velocity for axis in axes]),
+            _vmaxaccel=np.array([axis.max_acceleration for axis in axes]),
+            _vmaxtorque=np.array([axis.max_torque for axis in axes]),
+            _vweights=np.array([axis.weight for axis in axes]),
+            _voffsets=np.array([axis.wrap_offset for axis in axes]),
+            _vlowerlimit=np.array([axis.lower for axis in axes]),
+            _vupperlimit=np.array([axis.upper for axis in axes]),
+            _bIsCircular=np.array([axis.circular for axis in axes]),
+            _bIsActive=index < len(body.joints) or mimic is not None,
+            _vmimic=[] if mimic is None else [[mimic.position, mimic.velocity, mimic.acceleration]],
+        ).with_parameters(joint.parameters)
+
+    def named_values(self) -> list[tuple[tuple[str, int], float]]:
+        """Return the present values, each with the joint's name and the axis."""
+        values = np.ravel(() if self._vcurrentvalues is None else self._vcurrentvalues)
+        return [((self._name or "", axis), float(value)) for axis, value in enumerate(values)]
+
+    def joint(self, links: Sequence[LinkBuilder]) -> JointBuilder:
+        """Return what the fields describe.
+
+        Args:
+            links: The links of the body; two of them are named.
+
+        Raises:
+            RavemjError: a link is not there, a number is wrong, or there is no such kind of joint here.
+        """
+        kind = _KINDS.get(JointType(self._type))
+        if kind is None:
+            message = f"joint '{self._name}' is of type {JointType(self._type).name}; ravemj has hinge, slider, hinge2 "
+            raise RavemjError(f"{message}and spherical", ErrorCode.NotImplemented)
+        names = [link.name for link in links]
+        for name in (self._linkname0, self._linkname1):
+            if name not in names:
+                raise ArgumentError(f"joint '{self._name}' names a link '{name}'; there are {', '.join(names)}")
+        first, second = names.index(self._linkname0 or ""), names.index(self._linkname1 or "")
+        values = per_axis(self._vcurrentvalues, _AXES[kind], 0.0, "JointInfo._vcurrentvalues")
+        axes = self._made_axes(kind, values)
+        anchor = vector(self._vanchor, "JointInfo._vanchor")
+        T_first_second = links[first].pose.inverse() @ links[second].pose
+        if kind == "spherical":
+            T_first_second = about(anchor, wxyz_from_rotation_vector((values[0], values[1], values[2]))).inverse() @ (
+                T_first_second
+            )
+        if kind == "slider":
+            anchor = add(anchor, scale(axes[0].direction, values[0]))
+        return JointBuilder(
+            name=self._name or "",
+            kind=kind,
+            links=(first, second),
+            T_first_second=T_first_second,
+            anchor=anchor,
+            axes=axes,
+            enabled=bool(self._bIsActive),
+            equations=self._equations(),
+            parameters=self.parameters(),
+            source=MADE,
+        )
+
+    def _made_axes(self, kind: scene.JointKind, values: Sequence[float]) -> tuple[scene.Axis, ...]:
+        count = len(values)
+        directions = [vector(axis, "JointInfo._vaxes") for axis in self._vaxes[:count]]
+        directions += [(0.0, 0.0, 1.0)] * (count - len(directions))
+        motor = None if self._infoElectricMotor is None else self._infoElectricMotor.motor()
+        circular = per_axis(self._bIsCircular, count, 0.0, "JointInfo._bIsCircular")
+        lower = per_axis(self._vlowerlimit, count, 0.0, "JointInfo._vlowerlimit")
+        upper = per_axis(self._vupperlimit, count, 0.0, "JointInfo._vupperlimit")
+        torque = per_axis(self._vmaxtorque, count, 0.0, "JointInfo._vmaxtorque")
+        return tuple(
+            scene.Axis(
+                direction=_UNIT[i] if kind == "spherical" else _unit(directions[i]),
+                reference=0.0 if kind == "spherical" else values[i],
+                lower=-scene.UNLIMITED if circular[i] else lower[i],
+                upper=scene.UNLIMITED if circular[i] else upper[i],
+                circular=bool(circular[i]),
+                weight=per_axis(self._vweights, count, 1.0, "JointInfo._vweights")[i],
+                resolution=per_axis(self._vresolution, count, 0.02, "JointInfo._vresolution")[i],
+                max_velocity=per_axis(self._vmaxvel, count, 10.0, "JointInfo._vmaxvel")[i],
+                max_acceleration=per_axis(self._vmaxaccel, count, 50.0, "JointInfo._vmaxaccel")[i],
+                max_torque=torque[i] if motor is None or motor.torque is None else motor.torque,
+                armature=0.0 if motor is None else motor.inertia,
+                wrap_offset=per_axis(self._voffsets, count, 0.0, "JointInfo._voffsets")[i],
+            )
+            for i in range(count)
+        )
+
+    def _equations(self) -> Equations | None:
+        first = self._vmimic[0] if self._vmimic else None
+        return Equations(*map(str, first)) if first and any(first) else None
+
+
+def _unit(direction: Vec3) -> Vec3:
+    length = math.sqrt(dot(direction, direction))
+    if length == 0.0:
+        raise ArgumentError("JointInfo._vaxes: an axis is 0 0 0, and should point somewhere")
+    return scale(direction, 1 / length)
+
+
+def _anchor(joint: scene.Joint) -> Vec3:
+    """Return the anchor that OpenRAVE reports: for sliders that of the value 0."""
+    if joint.kind != "slider":
+        return joint.anchor
+    return add(joint.anchor, scale(joint.axes[0].direction, -joint.axes[0].reference))
+
+
+def _directions(body: scene.KinBody, joint: scene.Joint, values: Sequence[float]) -> list[Vec3]:
+    """Return the directions of the axes at some values, in the frame of the first link."""
+    directions = [axis.direction for axis in joint.axes]
+    if joint.static and body.joints:  # the builder turns those of a weld
+        return [rotate(conjugate(joint.T_parent_child.wxyz), direction) for direction in directions]
+    if joint.kind == "hinge2":
+        first = joint.axes[0]
+        directions[1] = rotate(wxyz_from_axis_angle(first.direction, values[0] - first.reference), directions[1])
+    return directions

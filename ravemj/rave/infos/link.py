@@ -1,0 +1,114 @@
+"""The description of a link."""
+
+# The fields have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Self
+
+from numpy.typing import ArrayLike
+
+from ravemj import scene
+from ravemj.arrays import checked_vector
+from ravemj.builder import LinkBuilder
+from ravemj.errors import ArgumentError
+from ravemj.inertia import inertial_about, principal_frame, principal_moments
+from ravemj.making import MADE
+from ravemj.rave.infos.geometry import GeometryInfo
+from ravemj.rave.infos.numbers import filled, identity, pose
+from ravemj.rave.infos.parameters import ParameterFields
+from ravemj.transforms import Floats
+
+
+@dataclass(eq=False)
+class LinkInfo(ParameterFields):
+    """A link of a body.
+
+    Attributes:
+        _name: Its name.
+        _t: ``T_world_link``, shape (4, 4).
+        _mass: Mass [kg].
+        _tMassFrame: Frame of the principal axes of inertia at the centre of mass, in the link, shape (4, 4).
+        _vinertiamoments: Moments of inertia about these axes [kg m^2], shape (3,).
+        _vgeometryinfos: Its shapes, a list of ``GeometryInfo``.
+        _mapExtraGeometries: Other sets of shapes by name, each a list of ``GeometryInfo``.
+        _vForcedAdjacentLinks: Names of links that it is never tested against.
+        _mapFloatParameters: Numbers of your own, by name; ``_mapIntParameters`` and ``_mapStringParameters`` likewise.
+        _bStatic: Whether it is called static.
+        _bIsEnabled: Whether collision checking looks at it.
+        _bVisible: False hides all its shapes.
+    """
+
+    _name: str | None = None
+    _t: ArrayLike = field(default_factory=identity)
+    _mass: float = 1e-10
+    _tMassFrame: ArrayLike = field(default_factory=identity)
+    _vinertiamoments: ArrayLike = field(default_factory=filled(1))
+    _vgeometryinfos: Sequence[GeometryInfo] = field(default_factory=list[GeometryInfo])
+    _mapExtraGeometries: dict[str, Sequence[GeometryInfo]] = field(default_factory=dict[str, Sequence[GeometryInfo]])
+    _vForcedAdjacentLinks: Sequence[str] = field(default_factory=list[str])
+    _bStatic: bool = False
+    _bIsEnabled: bool = True
+    _bVisible: bool = True
+    _id: str | None = None
+
+    @classmethod
+    def of(cls, body: scene.KinBody, index: int, T_world_link: Floats, *, enabled: bool) -> Self:
+        """Return the description of a link as it stands."""
+        link = body.links[index]
+        pairs = [pair for pair in body.adjacent if pair[0] == index]
+        return cls(
+            _name=link.name,
+            _t=T_world_link,
+            _mass=link.inertial.mass,
+            _tMassFrame=principal_frame(link.inertial).matrix(),
+            _vinertiamoments=principal_moments(link.inertial),
+            _vgeometryinfos=[GeometryInfo.of(geometry) for geometry in link.geometries],
+            _mapExtraGeometries={name: [GeometryInfo.of(one) for one in group] for name, group in link.groups},
+            _vForcedAdjacentLinks=[body.links[other].name for _, other in pairs],
+            _bStatic=link.static,
+            _bIsEnabled=enabled,
+            _bVisible=any(geometry.visible for geometry in link.geometries) or not link.geometries,
+        ).with_parameters(link.parameters)
+
+    def link(self) -> LinkBuilder:
+        """Return what the fields describe.
+
+        Raises:
+            RavemjError: it has no name, or a number is wrong.
+        """
+        if not self._name:
+            raise ArgumentError("LinkInfo._name: is empty, and should name the link")
+        (mass,) = checked_vector([self._mass], 1, "LinkInfo._mass").tolist()
+        T_link_mass = pose(self._tMassFrame, "LinkInfo._tMassFrame")
+        moments = checked_vector(self._vinertiamoments, 3, "LinkInfo._vinertiamoments")
+        return LinkBuilder(
+            name=self._name,
+            source=MADE,
+            pose=pose(self._t, "LinkInfo._t"),
+            geometries=list(geometries_of(self._vgeometryinfos, visible=self._bVisible)),
+            inertial=inertial_about(mass, T_link_mass, moments),
+            static=bool(self._bStatic),
+            enabled=bool(self._bIsEnabled),
+            groups=tuple((name, geometries_of(infos)) for name, infos in self._mapExtraGeometries.items()),
+            parameters=self.parameters(),
+        )
+
+    def adjacent(self, names: Sequence[str]) -> list[int]:
+        """Return the indices of the links that it is never tested against."""
+        return [names.index(name) for name in self._vForcedAdjacentLinks if name in names]
+
+
+def geometries_of(infos: Sequence[GeometryInfo], *, visible: bool = True) -> tuple[scene.Geometry, ...]:
+    """Return the shapes that some infos describe; hidden if the link is.
+
+    Raises:
+        ArgumentError: one is no ``GeometryInfo``, or describes nothing that can be.
+    """
+    found: list[scene.Geometry] = []
+    for info in infos:
+        if not isinstance(info, GeometryInfo):  # pyright: ignore[reportUnnecessaryIsInstance] - what users hand in
+            raise ArgumentError(f"a geometry is described by a {type(info).__name__}, and should be by a GeometryInfo")
+        found.append(info.geometry(visible=visible))
+    return tuple(found)

@@ -1,0 +1,134 @@
+"""The descriptions of what robots have besides."""
+
+# The fields have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj import scene
+from ravemj.arrays import checked_numbers
+from ravemj.errors import ArgumentError
+from ravemj.making import MADE
+from ravemj.manipulators import ManipulatorBuilder
+from ravemj.rave.infos.numbers import identity, pose, vector
+
+
+def _ahead() -> ArrayLike:
+    return np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(eq=False)
+class ManipulatorInfo:
+    """An arm of a robot.
+
+    Attributes:
+        _name: Its name.
+        _sBaseLinkName: Name of the link that it starts from.
+        _sEffectorLinkName: Name of the link that carries the tool.
+        _tLocalTool: ``T_effector_tool``, shape (4, 4).
+        _vdirection: Where the tool points, in its own frame, shape (3,).
+        _vGripperJointNames: Names of the gripper's joints.
+        _vChuckingDirection: For each of their DOFs the sign of closing; OpenRAVE 0.9 calls it ``_vClosingDirection``.
+        _sIkSolverXMLId: Name of an IK solver; not used.
+    """
+
+    _name: str | None = None
+    _sBaseLinkName: str | None = None
+    _sEffectorLinkName: str | None = None
+    _tLocalTool: ArrayLike = field(default_factory=identity)
+    _vChuckingDirection: ArrayLike = field(default_factory=list[float])
+    _vdirection: ArrayLike = field(default_factory=_ahead)
+    _sIkSolverXMLId: str = ""
+    _vGripperJointNames: Sequence[str] = field(default_factory=list[str])
+    _grippername: str = ""
+    _id: str | None = None
+
+    @property
+    def _vClosingDirection(self) -> ArrayLike:
+        return self._vChuckingDirection
+
+    @_vClosingDirection.setter
+    def _vClosingDirection(self, signs: ArrayLike) -> None:
+        self._vChuckingDirection = signs
+
+    @classmethod
+    def of(cls, body: scene.KinBody, arm: scene.Manipulator) -> Self:
+        """Return the description of an arm."""
+        return cls(
+            _name=arm.name,
+            _sBaseLinkName="" if arm.base is None else body.links[arm.base].name,
+            _sEffectorLinkName="" if arm.effector is None else body.links[arm.effector].name,
+            _tLocalTool=arm.T_effector_tool.matrix(),
+            _vChuckingDirection=np.array(arm.chucking_direction),
+            _vdirection=np.array(arm.direction),
+            _vGripperJointNames=[body.joints[joint].name for joint in arm.gripper_joints],
+        )
+
+    def manipulator(self) -> ManipulatorBuilder:
+        """Return what the fields describe.
+
+        Raises:
+            ArgumentError: it has no name, or a number is wrong.
+        """
+        if not self._name:
+            raise ArgumentError("ManipulatorInfo._name: is empty, and should name the manipulator")
+        return ManipulatorBuilder(
+            name=self._name,
+            source=MADE,
+            base=self._sBaseLinkName or "",
+            effector=self._sEffectorLinkName or "",
+            T_effector_tool=pose(self._tLocalTool, "ManipulatorInfo._tLocalTool"),
+            direction=vector(self._vdirection, "ManipulatorInfo._vdirection"),
+            gripper_joints=list(self._vGripperJointNames),
+            closing_direction=checked_numbers(self._vChuckingDirection, "_vChuckingDirection").ravel().tolist(),
+        )
+
+
+@dataclass(eq=False)
+class AttachedSensorInfo:
+    """A sensor on a link.
+
+    Attributes:
+        _name: Its name.
+        _linkname: Name of the link that carries it.
+        _trelative: ``T_link_sensor``, shape (4, 4).
+        _sensorname: OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``; empty for a mere frame.
+    """
+
+    _name: str | None = None
+    _linkname: str | None = None
+    _trelative: ArrayLike = field(default_factory=identity)
+    _sensorname: str | None = None
+    _camera: scene.Intrinsics | None = None
+    _id: str | None = None
+
+    @classmethod
+    def of(cls, body: scene.KinBody, sensor: scene.AttachedSensor) -> Self:
+        """Return the description of a sensor."""
+        return cls(
+            _name=sensor.name,
+            _linkname="" if sensor.link is None else body.links[sensor.link].name,
+            _trelative=sensor.T_link_sensor.matrix(),
+            _sensorname=sensor.type,
+            _camera=sensor.camera,
+        )
+
+    def sensor(self, links: Sequence[str]) -> scene.AttachedSensor:
+        """Return what the fields describe.
+
+        Args:
+            links: The names of the robot's links.
+        """
+        return scene.AttachedSensor(
+            name=self._name or "",
+            link=links.index(self._linkname) if self._linkname in links else None,
+            T_link_sensor=pose(self._trelative, "AttachedSensorInfo._trelative"),
+            type=self._sensorname or None,
+            camera=self._camera,
+            source=MADE,
+        )

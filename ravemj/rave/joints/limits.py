@@ -1,0 +1,132 @@
+"""Limits, weights and resolutions of a joint."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.arrays import checked_numbers
+from ravemj.errors import ArgumentError
+from ravemj.rave.joints.base import JointPart
+from ravemj.transforms import Floats
+
+
+class JointLimits(JointPart):
+    """Limits, weights and resolutions, one number for each axis of the joint. Setting them moves nothing."""
+
+    def GetLimits(self) -> tuple[Floats, Floats]:
+        """Return the lower and the upper limits [rad or m], each of shape (axes,); ±10000 for a circular joint."""
+        return self._of_axes("lower"), self._of_axes("upper")
+
+    def SetLimits(self, lower: ArrayLike, upper: ArrayLike) -> None:
+        """Set the limits; a joint outside them stays there until it is next set.
+
+        Args:
+            lower: Lower limits [rad or m], shape (axes,).
+            upper: Upper limits, shape (axes,).
+
+        Raises:
+            ArgumentError: there are too few or too many. Nothing has changed then.
+        """
+        self._set_axes("SetLimits", lower=lower, upper=upper)
+
+    def GetVelocityLimits(self) -> tuple[Floats, Floats]:
+        """Return the lowest and the highest velocities [rad/s or m/s], each of shape (axes,)."""
+        limits = self._of_axes("max_velocity")
+        return -limits, limits
+
+    def SetVelocityLimits(self, maxlimits: ArrayLike) -> None:
+        """Set the velocity limits, the same in both directions.
+
+        Args:
+            maxlimits: Limits [rad/s or m/s], shape (axes,).
+        """
+        self._set_axes("SetVelocityLimits", max_velocity=maxlimits)
+
+    def GetAccelerationLimits(self) -> Floats:
+        """Return the acceleration limits, the same in both directions [rad/s^2 or m/s^2], shape (axes,)."""
+        return self._of_axes("max_acceleration")
+
+    def SetAccelerationLimits(self, maxlimits: ArrayLike) -> None:
+        """Set the acceleration limits, the same in both directions.
+
+        Args:
+            maxlimits: Limits [rad/s^2 or m/s^2], shape (axes,).
+        """
+        self._set_axes("SetAccelerationLimits", max_acceleration=maxlimits)
+
+    def GetTorqueLimits(self) -> Floats:
+        """Return the torque or force limits [N m or N], shape (axes,); 0 where the file says nothing."""
+        return self._of_axes("max_torque")
+
+    def SetTorqueLimits(self, maxlimits: ArrayLike) -> None:
+        """Set the torque or force limits.
+
+        Args:
+            maxlimits: Limits [N m or N], shape (axes,).
+        """
+        self._set_axes("SetTorqueLimits", max_torque=maxlimits)
+
+    def GetMaxVel(self, axis: int = 0) -> float:
+        """Return the velocity limit [rad/s or m/s]."""
+        return self._scene.axes[axis].max_velocity
+
+    def GetMaxAccel(self, axis: int = 0) -> float:
+        """Return the acceleration limit [rad/s^2 or m/s^2]."""
+        return self._scene.axes[axis].max_acceleration
+
+    def GetMaxTorque(self, axis: int = 0) -> float:
+        """Return the torque or force limit [N m or N]; 0 where the file says nothing."""
+        return self._scene.axes[axis].max_torque
+
+    def GetWeights(self) -> Floats:
+        """Return the weights in distances between configurations, shape (axes,)."""
+        return self._of_axes("weight")
+
+    def GetWeight(self, axis: int = 0) -> float:
+        """Return the weight in distances between configurations."""
+        return self._scene.axes[axis].weight
+
+    def SetWeights(self, weights: ArrayLike) -> None:
+        """Set the weights in distances between configurations; all should be positive.
+
+        Args:
+            weights: Weights, shape (axes,).
+        """
+        if not np.all(checked_numbers(weights, "SetWeights: weights") > 0):
+            raise ArgumentError(f"SetWeights: weights are {weights}, and should be positive")
+        self._set_axes("SetWeights", weight=weights)
+
+    def GetResolutions(self) -> Floats:
+        """Return the steps of planners [rad or m], shape (axes,)."""
+        return self._of_axes("resolution")
+
+    def GetResolution(self, axis: int = 0) -> float:
+        """Return the step of planners [rad or m]."""
+        return self._scene.axes[axis].resolution
+
+    def SetResolution(self, resolution: float) -> None:
+        """Set the step of planners, the same for all axes.
+
+        Args:
+            resolution: Step [rad or m].
+        """
+        self._set_axes("SetResolution", resolution=[resolution] * len(self._scene.axes))
+
+    def _of_axes(self, field: str) -> Floats:
+        return np.array([getattr(axis, field) for axis in self._scene.axes], dtype=np.float64)
+
+    def _set_axes(self, caller: str, **fields: ArrayLike) -> None:
+        """Set one or more fields of the axes, all or nothing."""
+        axes = list(self._scene.axes)
+        for field, values in fields.items():
+            numbers = checked_numbers(values, f"{caller}: values")
+            if numbers.shape != (len(axes),) or np.isnan(numbers).any():
+                wanted = f"{len(axes)} numbers, one for each axis"
+                raise ArgumentError(f"{caller}: values are {numbers.tolist()}, and should be {wanted}")
+            for index, number in enumerate(numbers.tolist()):
+                changes: dict[str, Any] = {field: number}
+                axes[index] = replace(axes[index], **changes)
+        with self._state.simulation.lock:
+            self._state.edit_joint(self._index, axes=tuple(axes))

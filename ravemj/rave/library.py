@@ -1,0 +1,102 @@
+"""The library as a whole: starting and ending it, its folders and plugins."""
+
+import logging
+import os
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import ParamSpec, TypeVar
+
+from ravemj import readers
+from ravemj.rave import logs
+from ravemj.rave.enums import DebugLevel
+from ravemj.rave.environment import RaveDestroy
+
+Parameters = ParamSpec("Parameters")
+Result = TypeVar("Result")
+
+_LOG = logging.getLogger("ravemj")
+
+
+def RaveInitialize(load_all_plugins: bool = True, level: int = DebugLevel.Info) -> int:
+    """Get ready; importing has done so already, but for the level of the log.
+
+    Args:
+        load_all_plugins: For OpenRAVE; there are no plugins.
+        level: As of ``RaveSetDebugLevel``.
+
+    Returns:
+        0, which stands for success.
+    """
+    del load_all_plugins
+    logs.RaveSetDebugLevel(level)
+    return 0
+
+
+def with_destroy(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
+    """Make a function destroy all environments when it ends.
+
+    Example:
+        >>> @with_destroy
+        ... def main():
+        ...     env = Environment()
+    """
+
+    @wraps(function)
+    def run(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Result:
+        try:
+            return function(*args, **kwargs)
+        finally:
+            RaveDestroy()
+
+    return run
+
+
+def RaveLoadPlugin(filename: str) -> bool:
+    """Say that there is no way to load OpenRAVE's native plugins.
+
+    Returns:
+        False, as OpenRAVE does when it cannot load a plugin; a warning is logged.
+    """
+    _LOG.warning("RaveLoadPlugin: native plugins cannot be loaded, and %s is not", filename)
+    return False
+
+
+def RaveReloadPlugins() -> None:
+    """Do nothing; there are no plugins."""
+
+
+def RaveGetPluginInfo() -> list[tuple[str, object]]:
+    """Return the plugins, of which there are none."""
+    return []
+
+
+def RaveGetHomeDirectory() -> str:
+    """Return the folder for what is kept between runs: ``OPENRAVE_HOME``, or ``.openrave`` at home."""
+    return os.environ.get("OPENRAVE_HOME") or str(Path.home() / ".openrave")
+
+
+def RaveFindDatabaseFile(filename: str, bRead: bool = True) -> str:
+    """Return the path of a file in the folders of ``OPENRAVE_DATABASE``, or else in ``RaveGetHomeDirectory()``.
+
+    Args:
+        filename: Path relative to one of these folders.
+        bRead: True: the file must be there. False: a path to write it to, in the first folder.
+
+    Returns:
+        The path, or an empty text.
+    """
+    folders = [*filter(None, os.environ.get("OPENRAVE_DATABASE", "").split(os.pathsep)), RaveGetHomeDirectory()]
+    paths = [os.path.join(folder, filename) for folder in folders]
+    return next((path for path in paths if not bRead or os.path.exists(path)), "")
+
+
+def RaveFindLocalFile(filename: str, curdir: str = "") -> str:
+    """Return the path of a file in a folder, else in the working folder or those of ``OPENRAVE_DATA``.
+
+    Returns:
+        The absolute path, or an empty text.
+    """
+    beside = os.path.join(curdir, filename)
+    found = beside if curdir and os.path.exists(beside) else readers.find(filename)
+    return os.path.abspath(found) if found else ""

@@ -1,0 +1,161 @@
+"""``RaveCreate…`` of what OpenRAVE's plugins provide and ravemj does not: None, or which capability is missing."""
+
+import logging
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from ravemj.errors import UnsupportedError
+from ravemj.rave.arm_goals import INVERSE_KINEMATICS
+from ravemj.rave.enums import InterfaceType
+from ravemj.rave.environment import Environment
+from ravemj.rave.planning import PLANNING, Planner
+from ravemj.rave.sensors import Sensor
+from ravemj.viewers import VIEWERS, Viewer
+
+_GRASPING = "planning of grasps"
+_SAMPLING = "sampling of spaces"
+_SENSORS = "simulation of sensors"
+
+_LOG = logging.getLogger("ravemj")
+
+MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
+    {
+        InterfaceType.planner: {
+            "basicrrt": PLANNING,
+            "birrt": PLANNING,
+            "constraintparabolicsmoother": PLANNING,
+            "cubictrajectoryretimer": PLANNING,
+            "explorationrrt": PLANNING,
+            "graspgradient": _GRASPING,
+            "grasper": _GRASPING,
+            "linearsmoother": PLANNING,
+            "lineartrajectoryretimer": PLANNING,
+            "parabolicsmoother": PLANNING,
+            "parabolictrajectoryretimer": PLANNING,
+            "ra*": PLANNING,
+            "rastar": PLANNING,
+            "shortcut_linear": PLANNING,
+            "workspacetrajectorytracker": PLANNING,
+        },
+        InterfaceType.module: {
+            "basemanipulation": PLANNING,
+            "grasper": _GRASPING,
+            "ikfast": INVERSE_KINEMATICS,
+            "taskcaging": PLANNING,
+            "taskmanipulation": PLANNING,
+            "visualfeedback": "visual feedback",
+        },
+        InterfaceType.iksolver: {
+            "genericiksolver": INVERSE_KINEMATICS,
+            "ikfast": INVERSE_KINEMATICS,
+        },
+        InterfaceType.sensor: {
+            "basecamera": _SENSORS,
+            "baseflashlidar3d": _SENSORS,
+            "baseforce6d": _SENSORS,
+            "baseimu": _SENSORS,
+            "basejointencoder": _SENSORS,
+            "baselaser2d": _SENSORS,
+            "baseodometry": _SENSORS,
+            "basetactile": _SENSORS,
+        },
+        InterfaceType.spacesampler: {
+            "bodyconfiguration": _SAMPLING,
+            "halton": _SAMPLING,
+            "mt19937": _SAMPLING,
+            "robotconfiguration": _SAMPLING,
+        },
+    }
+)
+"""Names of OpenRAVE's own plugins, in lower case, with what ravemj lacks to have them."""
+
+
+def RaveCreateModule(env: Environment, name: str) -> None:
+    """Refuse to make a module, a native program that takes commands.
+
+    Returns:
+        None, as in OpenRAVE where no plugin has a module of that name; a warning is logged.
+
+    Raises:
+        UnsupportedError: the module is one of OpenRAVE's own.
+
+    Example:
+        >>> RaveCreateModule(env, "urdf") is None
+        True
+    """
+    return _refuse(env, InterfaceType.module, name)
+
+
+RaveCreateProblem = RaveCreateModule
+
+
+def RaveCreatePlanner(env: Environment, name: str) -> Planner | None:
+    """Refuse to make a planner: None where OpenRAVE does not know the name either.
+
+    Raises:
+        UnsupportedError: the planner is one of OpenRAVE's own.
+    """
+    return _refuse(env, InterfaceType.planner, name)
+
+
+def RaveCreateIkSolver(env: Environment, name: str) -> None:
+    """Refuse to make a solver of inverse kinematics: None where OpenRAVE does not know the name either.
+
+    Raises:
+        UnsupportedError: the solver is one of OpenRAVE's own.
+    """
+    return _refuse(env, InterfaceType.iksolver, name)
+
+
+def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
+    """Refuse to make a sensor: None where OpenRAVE does not know the name either.
+
+    Raises:
+        UnsupportedError: the sensor is one of OpenRAVE's own.
+    """
+    return _refuse(env, InterfaceType.sensor, name)
+
+
+def RaveCreateSpaceSampler(env: Environment, name: str) -> None:
+    """Refuse to make a sampler: None where OpenRAVE does not know the name either.
+
+    Raises:
+        UnsupportedError: the sampler is one of OpenRAVE's own.
+    """
+    return _refuse(env, InterfaceType.spacesampler, name)
+
+
+def RaveCreateViewer(env: Environment, name: str) -> Viewer | None:
+    """Attach a viewer to the environment, as ``env.SetViewer`` does.
+
+    Returns:
+        The viewer, or None for a name that is no viewer's.
+    """
+    if name.lower() not in VIEWERS:
+        return None
+    env.SetViewer(name.lower())
+    return env.GetViewer()
+
+
+def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
+    """Return the names that ``RaveCreate…`` of each kind makes something for."""
+    made: dict[InterfaceType, list[str]] = {
+        InterfaceType.collisionchecker: ["ode"],
+        InterfaceType.controller: ["IdealController"],
+        InterfaceType.kinbody: [""],
+        InterfaceType.physicsengine: ["GenericPhysicsEngine"],
+        InterfaceType.robot: ["GenericRobot"],
+        InterfaceType.trajectory: ["GenericTrajectory"],
+        InterfaceType.viewer: list(VIEWERS),
+    }
+    return {kind: made.get(kind, []) for kind in InterfaceType}
+
+
+def _refuse(env: Environment, kind: InterfaceType, name: str) -> None:
+    """Return None with a warning, or say what is missing."""
+    del env
+    words = name.split() or [""]
+    capability = MISSING[kind].get(words[0].lower())
+    if capability is not None:
+        raise UnsupportedError(f"{kind.name} '{words[0]}'", capability)
+    _LOG.warning("there is no %s '%s'", kind.name, name)

@@ -1,0 +1,154 @@
+"""Trajectories as bytes and as text, in OpenRAVE's formats."""
+
+import struct
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.errors import ArgumentError
+from ravemj.openrave_xml.tree import Element
+from ravemj.trajectories.groups import Group
+from ravemj.trajectories.layout import count
+from ravemj.trajectories.text import groups_of, layout_text, read_element
+from ravemj.trajectories.waypoints import Waypoints
+from ravemj.transforms import Floats
+
+AS_TEXT = 0x8000
+"""The option that asks for text."""
+
+_MAGIC = b"\xff\x62"
+_VERSION = 2
+_READABLE_VERSIONS = range(1, 4)
+
+
+class Stored(NamedTuple):
+    """What is kept of a trajectory.
+
+    Attributes:
+        waypoints: Its configurations.
+        description: Its description.
+    """
+
+    waypoints: Waypoints
+    description: str
+
+
+def to_text(stored: Stored, kind: str) -> str:
+    """Return a trajectory as XML, with all digits.
+
+    Args:
+        stored: The trajectory.
+        kind: The name of its type.
+    """
+    numbers = "".join(f"{_digits(number)} " for number in stored.waypoints.data.ravel().tolist())
+    quoted = stored.description.replace("]]>", "]]]]><![CDATA[>")
+    description = f"<description><![CDATA[{quoted}]]></description>\n" if quoted else ""
+    return (
+        f'<trajectory type="{kind}">\n{layout_text(stored.waypoints.groups)}'
+        f'<data count="{len(stored.waypoints)}">\n{numbers}</data>\n{description}</trajectory>\n'
+    )
+
+
+def _digits(number: float) -> str:
+    short = f"{number:.16g}"
+    return short if float(short) == number else f"{number:.17g}"
+
+
+def to_bytes(stored: Stored) -> bytes:
+    """Return a trajectory in OpenRAVE's binary form.
+
+    Raises:
+        ArgumentError: a name or the description is too long.
+    """
+    groups = stored.waypoints.groups
+    parts = [_MAGIC, struct.pack("<HH", _VERSION, len(groups))]
+    for group in groups:
+        parts += [_packed(group.name), struct.pack("<ii", group.offset, group.dof), _packed(group.interpolation)]
+    data = np.ascontiguousarray(stored.waypoints.data, dtype="<f8")
+    parts += [struct.pack("<I", data.size), data.tobytes(), _packed(stored.description), struct.pack("<H", 0)]
+    return b"".join(parts)
+
+
+def _packed(text: str) -> bytes:
+    encoded = text.encode()
+    if len(encoded) > 0xFFFF:
+        raise ArgumentError(f"'{text[:20]}...' has {len(encoded)} bytes, and 65535 can be stored")
+    return struct.pack("<H", len(encoded)) + encoded
+
+
+def read(data: bytes | str) -> Stored:
+    """Return the trajectory in bytes or text of either form; text may also hold the bytes as letters.
+
+    Raises:
+        ArgumentError: they are no trajectory.
+    """
+    if isinstance(data, str) and data.startswith(_MAGIC.decode("latin-1")):
+        data = data.encode("latin-1", errors="replace")
+    if isinstance(data, bytes) and data.startswith(_MAGIC):
+        return _from_bytes(data)
+    try:
+        return _from_text(data if isinstance(data, str) else data.decode())
+    except UnicodeDecodeError:
+        raise ArgumentError("data: is no trajectory; its bytes are neither of the binary form nor text") from None
+
+
+def _from_text(text: str) -> Stored:
+    children = {child.tag: child for child in read_element(text, "trajectory").children}
+    groups = groups_of(children["configuration"]) if "configuration" in children else []
+    numbers = _numbers(children["data"]) if "data" in children else np.empty(0)
+    description = children["description"].text if "description" in children else ""
+    return Stored(Waypoints(groups, _rows(numbers, groups)), description)
+
+
+def _numbers(element: Element) -> Floats:
+    try:
+        return np.array([float(word) for word in element.text.split()])
+    except ValueError:
+        raise ArgumentError(f"{element.source}: <data> should hold numbers") from None
+
+
+def _from_bytes(data: bytes) -> Stored:
+    reader = _Reader(data)
+    version, number = reader.unpack("<2xHH")
+    if version not in _READABLE_VERSIONS:
+        raise ArgumentError(f"data: is a trajectory of version {version}, and 1 to 3 can be read")
+    groups: list[Group] = []
+    for _ in range(number):
+        name = reader.text()
+        offset, dof = reader.unpack("<ii")
+        groups.append(Group(name, offset, dof, reader.text()))
+    (size,) = reader.unpack("<I")
+    numbers = np.frombuffer(reader.take(8 * size), dtype="<f8").astype(np.float64)
+    return Stored(Waypoints(groups, _rows(numbers, groups)), reader.text())
+
+
+class _Reader:
+    """Takes one thing after the other from bytes."""
+
+    def __init__(self, data: bytes) -> None:
+        self._data = data
+        self._at = 0
+
+    def take(self, size: int) -> bytes:
+        taken = self._data[self._at : self._at + size]
+        if len(taken) < size:
+            raise ArgumentError(f"data: is no whole trajectory; it breaks off after {len(self._data)} bytes")
+        self._at += size
+        return taken
+
+    def unpack(self, form: str) -> tuple[int, ...]:
+        return struct.unpack(form, self.take(struct.calcsize(form)))
+
+    def text(self) -> str:
+        (size,) = self.unpack("<H")
+        return self.take(size).decode(errors="replace")
+
+
+def _rows(numbers: Floats, groups: Sequence[Group]) -> Floats:
+    width = count(groups)
+    if any(group.offset < 0 or group.dof < 0 for group in groups):
+        raise ArgumentError("data: is no trajectory; groups have negative offsets or sizes")
+    if numbers.size % width if width else numbers.size:
+        raise ArgumentError(f"data: has {numbers.size} numbers, and should have a multiple of {width}")
+    return numbers.reshape(-1, width) if width else np.empty((0, 0))

@@ -1,0 +1,196 @@
+"""Configurations over time."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.trajectories.conversion import FindBody, converted, nobody
+from ravemj.trajectories.extraction import time_column
+from ravemj.trajectories.groups import DELTATIME, IK, INTERPOLATIONS, Group, derived_interpolation
+from ravemj.trajectories.interpolation import DERIVATIVES, HELD, ROUNDING, Ends, curve, differentiated, held, value
+from ravemj.trajectories.layout import copied, count, equal, find_shifted
+from ravemj.transforms import Floats
+
+_ORDER = (
+    DELTATIME,
+    *(f"{part}_{rate}" for rate in ("snaps", "jerks", "accelerations", "velocities") for part in ("joint", "affine")),
+    *("joint_values", "affine_transform", "joint_torques"),
+)
+"""The order in which trajectories list their groups, as in OpenRAVE; other kinds come last."""
+
+
+class Waypoints:
+    """Configurations in the order of time, and how to find those between them.
+
+    Attributes:
+        groups: What the numbers of a configuration are.
+        data: A configuration in each row.
+    """
+
+    def __init__(self, groups: Sequence[Group], data: Floats | None = None) -> None:
+        self.groups = sorted(copied(groups), key=lambda group: _ORDER.index(group.kind) if group.kind in _ORDER else 99)
+        self.data = np.empty((0, count(groups))) if data is None else data
+        self._time_column = time_column(groups)
+        self._times: Floats | None = None
+
+    def __len__(self) -> int:
+        return len(self.data)
+
+    def insert(
+        self, index: int, numbers: Floats, groups: Sequence[Group], *, overwrite: bool, find_body: FindBody
+    ) -> None:
+        """Insert configurations, or write over those that are there.
+
+        Args:
+            index: Before which waypoint.
+            numbers: The configurations, one behind the other.
+            groups: Their layout. What it lacks is, in waypoints that are there, left as it is; in new ones it is the
+                present value of other joints of the same group, else zero.
+            overwrite: Whether to write over waypoints; what reaches beyond the last one is appended.
+            find_body: Finds the bodies of the groups.
+
+        Raises:
+            ArgumentError: the number of numbers does not fit, or there is no such place.
+        """
+        if not numbers.size:
+            return
+        width = count(groups)
+        if not width or numbers.size % width:
+            raise ArgumentError(f"data: has {numbers.size} numbers, and should have a multiple of {width}")
+        if not 0 <= index <= len(self):
+            raise ArgumentError(f"index: is {index}, and should be from 0 to {len(self)}", ErrorCode.Assert)
+        rows = numbers.reshape(-1, width)
+        end = min(len(self), index + len(rows)) if overwrite else index
+        old, fresh = rows[: end - index], rows[end - index :]
+        blank = np.zeros((len(fresh), self.data.shape[1]))
+        if equal(groups, self.groups):
+            replaced, added = old, fresh
+        else:
+            replaced = converted(groups, old, self.groups, self.data[index:end], None)
+            added = converted(groups, fresh, self.groups, blank, find_body, nobody)
+        self._change(np.vstack([self.data[:index], replaced, added, self.data[end:]]))
+
+    def remove(self, start: int, end: int) -> None:
+        """Remove the waypoints from ``start`` to before ``end``."""
+        self._check_range(start, end)
+        self._change(np.delete(self.data, slice(start, end), axis=0))
+
+    def _change(self, data: Floats) -> None:
+        self.data, self._times = data, None
+
+    def _check_range(self, start: int, end: int) -> None:
+        if not 0 <= start <= end <= len(self):
+            message = f"waypoints {start} to {end}: should be in order, and from 0 to {len(self)}"
+            raise ArgumentError(message, ErrorCode.Assert)
+
+    def rows(self, start: int, end: int) -> Floats:
+        """Return the waypoints from ``start`` to before ``end``; a copy."""
+        self._check_range(start, end)
+        return self.data[start:end].copy()
+
+    def as_layout(self, rows: Floats, groups: Sequence[Group], find_body: FindBody) -> Floats:
+        """Return configurations in another layout; what they lack is the bodies' present state."""
+        return converted(self.groups, rows, groups, np.zeros((len(rows), count(groups))), find_body)
+
+    def times(self) -> Floats:
+        """Return when the waypoints are [s]; empty where the layout has no time.
+
+        Raises:
+            RavemjError: time runs backwards.
+        """
+        if self._times is None:
+            if self._time_column is None:
+                return np.empty(0)
+            steps = self.data[:, self._time_column]
+            backward = np.flatnonzero(steps[1:] < 0)
+            if len(backward):
+                message = f"deltatime is {steps[backward[0] + 1]:.6g} at waypoint {backward[0] + 1}, and should be >= 0"
+                raise RavemjError(message, ErrorCode.InvalidState)
+            self._times = np.cumsum(steps)
+        return self._times
+
+    def duration(self) -> float:
+        """Return when the last waypoint is [s]; 0 without time."""
+        times = self.times()
+        return float(times[-1]) if len(times) else 0.0
+
+    def first_after(self, time: float) -> int:
+        """Return the first waypoint at a time or later; from the end on, the number of waypoints."""
+        self._timed()
+        return len(self) if time >= self.duration() else int(np.searchsorted(self.times(), time))
+
+    def sample(self, time: float, *, restamped: bool) -> Floats:
+        """Return the configuration at a time; from the end on, the last one.
+
+        Args:
+            time: Time [s] since the start.
+            restamped: Whether ``deltatime`` is the time since the last waypoint; else that of the next waypoint.
+
+        Raises:
+            ArgumentError: there is no time in the layout, no waypoint, or not what the interpolation needs.
+        """
+        column = self._timed()
+        if not time >= -ROUNDING:
+            raise ArgumentError(f"time: is {time}, and should not be negative", ErrorCode.Assert)
+        if not len(self):
+            raise ArgumentError("a trajectory needs a waypoint to sample from")
+        if time >= self.duration():
+            return self.data[-1].copy()
+        times = self.times()
+        index = int(np.searchsorted(times, time))
+        elapsed = time
+        if index == 0:
+            configuration = self.data[0].copy()
+        else:
+            duration = float(self.data[index, column])
+            elapsed = min(max(0.0, time - float(times[index - 1])), duration)
+            configuration = self._between(index, elapsed, duration)
+        if restamped:
+            configuration[column] = elapsed
+        return configuration
+
+    def _timed(self) -> int:
+        if self._time_column is None:
+            raise ArgumentError("the trajectory has no group 'deltatime', and so no time", ErrorCode.Assert)
+        return self._time_column
+
+    def _between(self, index: int, time: float, duration: float) -> Floats:
+        configuration = np.zeros(self.data.shape[1])
+        for group in self.groups:
+            if group.interpolation in HELD:
+                values = held(group.interpolation, time / duration, self._ends(group, index))
+            else:
+                values = value(self._curve(group, group.interpolation, index, duration), time / duration)
+            configuration[group.columns] = values
+        return configuration
+
+    def _ends(self, group: Group, index: int) -> Ends:
+        return self.data[index - 1, group.columns], self.data[index, group.columns]
+
+    def _curve(self, group: Group, interpolation: str, index: int, duration: float) -> Floats:
+        """Return how a group changes on the way to a waypoint, by its derivatives, or as the derivative of another."""
+        if group.kind == IK[0]:
+            raise UnsupportedError(f"sampling of '{group.name}'", "inverse kinematics (IK)")
+        if interpolation not in DERIVATIVES:
+            raise ArgumentError(f"group '{group.name}': there is no interpolation '{interpolation}'")
+        derivatives = [self._ends(derivative, index) for derivative in self._derivatives(group, interpolation)]
+        if len(derivatives) >= DERIVATIVES[interpolation]:
+            return curve(interpolation, self._ends(group, index), derivatives, duration)
+        integral = find_shifted(self.groups, group.name, -1, exact=True)
+        if integral is None or integral.dof != group.dof or interpolation == INTERPOLATIONS[-1]:
+            needed = DERIVATIVES[interpolation]
+            raise ArgumentError(f"group '{group.name}': {interpolation} interpolation needs {needed} derivatives of it")
+        higher = INTERPOLATIONS[INTERPOLATIONS.index(interpolation) + 1]
+        return differentiated(self._curve(integral, higher, index, duration), duration)
+
+    def _derivatives(self, group: Group, interpolation: str) -> list[Group]:
+        """Return the groups with the derivatives of another, as far as they are interpolated as derivatives of it."""
+        found: list[Group] = []
+        while interpolation != INTERPOLATIONS[0]:
+            derivative = find_shifted(self.groups, group.name, len(found) + 1, exact=True)
+            interpolation = derived_interpolation(interpolation, 1)
+            if derivative is None or derivative.dof != group.dof or derivative.interpolation != interpolation:
+                break
+            found.append(derivative)
+        return found

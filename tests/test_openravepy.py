@@ -1,0 +1,244 @@
+"""What scripts find under the name openravepy: the star, its sub-modules, the library's own functions."""
+
+import builtins
+import logging
+import sys
+import weakref
+
+import numpy as np
+import pytest
+
+import ravemj
+from ravemj import alias
+from ravemj.rave import environment, library, plugins
+
+
+@pytest.fixture
+def openravepy(monkeypatch):
+    """The module, imported as scripts do, for one test."""
+    known = set(sys.modules)
+    monkeypatch.setattr(sys, "meta_path", list(sys.meta_path))
+    alias.install_finder()
+    import openravepy
+
+    yield openravepy
+    for name in set(sys.modules) - known:
+        if name.partition(".")[0] == "openravepy":
+            del sys.modules[name]
+
+
+@pytest.fixture(autouse=True)
+def _environments(monkeypatch):
+    """Keep those of other tests from being destroyed."""
+    monkeypatch.setattr(environment, "_environments", weakref.WeakValueDictionary())
+
+
+@pytest.fixture(autouse=True)
+def _level():
+    yield
+    ravemj.RaveSetDebugLevel(ravemj.DebugLevel.Info)
+    for name in ("openravepy", "ravemj"):
+        logging.getLogger(name).handlers = []
+    logging.getLogger("ravemj").setLevel(logging.NOTSET)
+
+
+def test_the_star_brings_openraves_names_and_what_slips_out(openravepy):
+    space: dict[str, object] = {"load": "numpy's"}
+    exec("from openravepy import *", space)
+    for name in ("Environment", "RaveInitialize", "raveLogInfo", "openrave_exception", "IkParameterizationType"):
+        assert space[name] is getattr(ravemj, name)
+    for name in ("databases", "interfaces", "metaclass", "misc", "openravepy_int", "planningutils"):
+        assert space[name] is sys.modules[f"ravemj.{name}"]
+    assert space["numpy"] is np
+    assert space["sys"] is sys
+    assert isinstance(space["log"], logging.Logger)
+    assert {"pickle", "logging"} <= set(space)
+    assert space["load"] == "numpy's"
+    assert openravepy.load is ravemj.load
+    assert not hasattr(openravepy, "nonsense")
+
+
+def test_every_name_of_openraves_is_in_ravemj_too(openravepy):
+    for name in dir(openravepy):
+        assert hasattr(ravemj, name) or name in {"numpy", "sys", "pickle", "logging", "log"}
+
+
+def test_sub_modules_are_ours(openravepy):
+    import openravepy.databases.inversekinematics as ik
+    from openravepy import databases, misc
+    from openravepy.misc import InitOpenRAVELogging
+
+    assert ik is databases.inversekinematics is sys.modules["ravemj.databases.inversekinematics"]
+    assert misc.InitOpenRAVELogging is InitOpenRAVELogging
+    assert openravepy.openravepy_int.Environment is ravemj.Environment
+    assert __import__("openravepy.examples").examples is ravemj.examples
+
+
+def test_importing_sets_the_flag_and_has_a_version_that_can_be_compared(openravepy):
+    assert builtins.__openravepy_build_doc__ is False
+    assert [int(part) for part in openravepy.__version__.split(".")] >= [0, 9, 0]
+
+
+def test_enumerations_are_numbers_with_names():
+    assert ravemj.IkFilterOptions.CheckEnvCollisions | ravemj.IkFilterOptions.IgnoreJointLimits == 5
+    assert ravemj.IkFilterOptions.IgnoreEndEffectorCollisions.name == "IgnoreEndEffectorEnvCollisions"
+    assert ravemj.Sensor.ConfigureCommand.PowerOn.name == "PowerOn"
+    assert ravemj.SelectionOptions.NoRobots == ravemj.TriangulateOptions.Obstacles == 1
+    assert int(ravemj.DebugLevel.VerifyPlans) == 1 << 31
+
+
+@pytest.mark.parametrize("name", ["Failed", "HasSolution", "Interrupted", "InterruptedWithSolution"])
+def test_a_planner_status_is_old_and_new(name):
+    status = ravemj.PlannerStatus[name]
+    assert status.statusCode is ravemj.PlannerStatusCode[name]
+    assert bool(status & ravemj.PlannerStatus.HasSolution) == ("Solution" in name)
+    assert bool(status) == (name != "Failed")
+
+
+def test_initialize_and_destroy():
+    assert ravemj.RaveInitialize(True, level=ravemj.DebugLevel.Warn) == 0
+    assert ravemj.RaveGetDebugLevel() == ravemj.DebugLevel.Warn
+    env = ravemj.load("models/env.xml")
+    number = ravemj.RaveGetEnvironmentId(env)
+    assert ravemj.RaveGetEnvironment(number) is env
+    assert env in ravemj.RaveGetEnvironments()
+    ravemj.RaveDestroy()
+    assert env.GetBodies() == []
+    ravemj.RaveDestroy()
+
+
+def test_with_destroy_ends_with_empty_environments_even_after_an_error():
+    made = []
+
+    @ravemj.with_destroy
+    def main(count):
+        """What main does."""
+        made.append(ravemj.load("models/env.xml"))
+        return 1 / count
+
+    assert main(2) == 0.5
+    with pytest.raises(ZeroDivisionError):
+        main(count=0)
+    assert [env.GetBodies() for env in made] == [[], []]
+    assert main.__doc__ == "What main does."
+
+
+def test_the_level_decides_what_is_logged(caplog):
+    ravemj.RaveSetDebugLevel(ravemj.DebugLevel.Warn | ravemj.DebugLevel.VerifyPlans)
+    assert ravemj.RaveGetDebugLevel() & 0xFFFF == ravemj.DebugLevel.Warn
+    ravemj.raveLogInfo("quiet")
+    ravemj.RaveLogWarn("loud\n")
+    ravemj.RaveSetDebugLevel(5)
+    ravemj.raveLogVerbose("100 %s")
+    assert caplog.messages == ["loud", "100 %s"]
+
+
+def test_native_plugins_and_unknown_things_fail_softly(env, caplog):
+    assert ravemj.RaveLoadPlugin("libor_urdf.so") is False
+    assert "libor_urdf.so" in caplog.text
+    for create in (
+        ravemj.RaveCreateModule,
+        ravemj.RaveCreateProblem,
+        ravemj.RaveCreatePlanner,
+        ravemj.RaveCreateIkSolver,
+        ravemj.RaveCreateSensor,
+        ravemj.RaveCreateSpaceSampler,
+        ravemj.RaveCreateViewer,
+    ):
+        assert create(env, "nosuch") is None
+        assert create(env, "") is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "capability"),
+    [(kind, name, capability) for kind, names in plugins.MISSING.items() for name, capability in names.items()],
+)
+def test_openraves_own_plugins_say_what_is_missing(env, kind, name, capability):
+    create = {
+        "planner": ravemj.RaveCreatePlanner,
+        "module": ravemj.RaveCreateModule,
+        "iksolver": ravemj.RaveCreateIkSolver,
+        "sensor": ravemj.RaveCreateSensor,
+        "spacesampler": ravemj.RaveCreateSpaceSampler,
+    }[kind.name]
+    with pytest.raises(NotImplementedError, match=capability) as caught:
+        create(env, name.upper() + " with arguments")
+    assert caught.value.capability == capability
+    assert caught.value.GetCode() == "NotImplemented"
+
+
+def test_a_viewer_by_its_name_is_the_environments(env, monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    assert ravemj.RaveCreateViewer(env, "QtCoin") is env.GetViewer() is not None
+
+
+def test_files_of_databases(tmp_path, monkeypatch):
+    monkeypatch.setenv("OPENRAVE_HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("OPENRAVE_DATABASE", str(tmp_path / "data"))
+    assert library.RaveGetHomeDirectory() == str(tmp_path / "home")
+    assert library.RaveFindDatabaseFile("robot.x/ik.so") == ""
+    assert library.RaveFindDatabaseFile("robot.x/ik.so", False) == str(tmp_path / "data" / "robot.x" / "ik.so")
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home" / "file").touch()
+    assert library.RaveFindDatabaseFile("file") == str(tmp_path / "home" / "file")
+
+
+def test_local_files(tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    assert library.RaveFindLocalFile("file", str(tmp_path)) == str(tmp_path / "file")
+    assert library.RaveFindLocalFile("file") == ""
+    monkeypatch.setenv("OPENRAVE_DATA", str(tmp_path))
+    assert library.RaveFindLocalFile("file") == str(tmp_path / "file")
+
+
+# Sub-modules
+
+
+def test_models_are_made_have_nothing_and_say_what_is_missing(robot):
+    model = ravemj.databases.inversekinematics.InverseKinematicsModel(
+        robot, iktype=ravemj.IkParameterizationType.Transform6D, freeindices=[1]
+    )
+    assert model.robot == robot
+    assert model.iktype.name == "Transform6D"
+    assert model.load() is False
+    with pytest.raises(NotImplementedError, match="inverse kinematics"):
+        model.autogenerate()
+    grasping = ravemj.databases.grasping.GraspingModel(robot)
+    assert grasping.has() is False
+    with pytest.raises(ravemj.openrave_exception, match=r"GraspingModel.computeValidGrasps: .* planning of grasps"):
+        grasping.computeValidGrasps()
+    assert not hasattr(grasping, "__array__")
+
+
+def test_convex_decomposition_does_nothing(robot):
+    model = ravemj.databases.convexdecomposition.ConvexDecompositionModel(robot, padding=0.01)
+    model.autogenerate()
+    model.save()
+    assert model.load() is True
+
+
+@pytest.mark.parametrize("name", ["BaseManipulation", "TaskManipulation", "TaskCaging", "VisualFeedback", "Grasper"])
+def test_interfaces_say_what_is_missing(name, robot):
+    with pytest.raises(NotImplementedError, match=f"interfaces.{name}: ravemj does no"):
+        getattr(ravemj.interfaces, name)(robot)
+
+
+def test_planning_says_what_is_missing(robot):
+    for call in (
+        ravemj.Planner.PlannerParameters,
+        lambda: ravemj.planningutils.RetimeActiveDOFTrajectory(None, robot),
+        lambda: ravemj.planningutils.SmoothActiveDOFTrajectory(None, robot, plannername="parabolicsmoother"),
+    ):
+        with pytest.raises(NotImplementedError, match=r"planning|retiming|smoothing"):
+            call()
+    with pytest.raises(ravemj.PlanningError):
+        raise ravemj.planning_error("no way")
+    assert not issubclass(ravemj.PlanningError, ravemj.openrave_exception)
+
+
+def test_metaclass_has_what_scripts_derive_from():
+    class Model(ravemj.metaclass.AutoReloader):
+        pass
+
+    assert isinstance(Model(), ravemj.metaclass.InstanceTracker)
