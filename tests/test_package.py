@@ -32,8 +32,6 @@ LEVELS: list[set[str]] = [
     {"geometry_functions", "scene", "video"},
     {
         "adjacency",
-        "chains",
-        "fingerprints",
         "following",
         "hierarchy",
         "inertia",
