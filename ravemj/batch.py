@@ -79,7 +79,9 @@ class Batch:
             T_parent_frame = _axis_frame(joint, axis)
             step = self._append(joint, index, axis, name, step, root, T_step_parent @ T_parent_frame)
             T_step_parent = inverse(T_parent_frame)
-        T_step_child = T_step_parent @ joint.T_parent_child.matrix()
+        names = self._kinematics.names.joints[index]  # none for a joint that never moves
+        T_parent_child = joint.T_parent_child.matrix() if names else self._kinematics.rest_transform(child)
+        T_step_child = T_step_parent @ T_parent_child
         self._step_of[child], self._root_of[child], self._T_step_link[child] = step, root, T_step_child
 
     def _append(
@@ -137,7 +139,7 @@ class Batch:
             return values[index] - step.reference if step.reference else values[index]
         if kind == "follower":
             return followed[index] - step.reference
-        return np.full(values.shape[1], self._kinematics.data.qpos[index] - step.reference)
+        return np.full(values.shape[1:], float(self._kinematics.data.qpos[index]) - step.reference)
 
     def _vector(self, step: Step, values: Floats) -> Floats:
         """Return the rotation vector of a spherical joint, shape (3, N)."""

@@ -160,8 +160,8 @@ class UnsupportedError(RavemjError, NotImplementedError):
 
     _code = ErrorCode.NotImplemented
 
-    def __init__(self, name: str, capability: str) -> None:
-        super().__init__(f"{name}: ravemj does no {capability} yet")
+    def __init__(self, name: str, capability: str, code: ErrorCode | None = None) -> None:
+        super().__init__(f"{name}: ravemj does no {capability} yet", code)
         self.capability = capability
 
 

@@ -14,7 +14,7 @@ from ravemj.following import evaluation_order
 from ravemj.joints import measured_values, rotation_vector, wxyz_from_rotation_vector
 from ravemj.mjcf import BodyNames
 from ravemj.scene import Axis, Joint, KinBody
-from ravemj.transforms import Floats, Ints, Pose, Wxyz, conjugate, inverse, multiply, wxyz_from_rows
+from ravemj.transforms import Floats, Ints, Pose, Wxyz, conjugate, inverse, multiply, rows_from_wxyz, wxyz_from_rows
 
 LARGEST = float(np.finfo(np.float64).max)
 WELDED = -1
@@ -211,6 +211,15 @@ class BodyKinematics:
                 self._qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
             if self.followers:
                 self._follow(values, limit_followers=limit_followers)
+
+    def rest_transform(self, link: int) -> Floats:
+        """Return the pose of a link in its parent where no joint between them has moved, shape (4, 4)."""
+        positions, quaternions = self._rest
+        w, x, y, z = quaternions[link].tolist()
+        transform = np.eye(4)
+        transform[:3, :3] = rows_from_wxyz((w, x, y, z))
+        transform[:3, 3] = positions[link]
+        return transform
 
     def undo_displacement(self) -> None:
         """Let the joints place the links again that ``place_links`` put elsewhere; the roots stay."""

@@ -1,15 +1,25 @@
-"""``openravepy.planningutils``: times and smooths trajectories in OpenRAVE; ravemj does not yet.
+"""``openravepy.planningutils``: reverses, merges and converts trajectories.
 
-Every function raises ``UnsupportedError``, which is a ``NotImplementedError``.
+What times or smooths them in OpenRAVE raises ``UnsupportedError``, which is a ``NotImplementedError``.
 """
 
-from ravemj.errors import UnsupportedError
+import operator
+from collections.abc import Sequence
+from functools import reduce
+
+import numpy as np
+
+from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.rave.enums import PlannerStatus
+from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.groups import DELTATIME
+from ravemj.transforms import Floats
 
 RETIMING = "retiming of trajectories"
 SMOOTHING = "smoothing of trajectories"
 _VERIFYING = "verifying of trajectories"
-_EDITING = "conversion of trajectories"
+_ODD_DERIVATIVES = ("velocities", "jerks")
 _JITTERING = "search for poses without collisions"
 
 
@@ -80,19 +90,70 @@ def SmoothTrajectory(
     raise UnsupportedError("planningutils.SmoothTrajectory", SMOOTHING)
 
 
-def ConvertTrajectorySpecification(traj: object, spec: object) -> None:
-    """Change the layout of a trajectory in place."""
-    raise UnsupportedError("planningutils.ConvertTrajectorySpecification", _EDITING)
+def ConvertTrajectorySpecification(traj: Trajectory, spec: ConfigurationSpecification) -> None:
+    """Change the layout of a trajectory in place; what the trajectory lacks is taken from the bodies as they are.
+
+    Args:
+        traj: The trajectory.
+        spec: The new layout.
+    """
+    rows = traj.GetAllWaypoints2D(spec)
+    traj.Init(spec)
+    traj.Insert(0, rows.ravel())
 
 
-def ReverseTrajectory(traj: object) -> object:
-    """Return the trajectory backwards."""
-    raise UnsupportedError("planningutils.ReverseTrajectory", _EDITING)
+def ReverseTrajectory(traj: Trajectory) -> Trajectory:
+    """Return the trajectory backwards, in a new one.
+
+    The times between waypoints are kept, and velocities change their sign.
+
+    Example:
+        >>> back = planningutils.ReverseTrajectory(traj)
+    """
+    spec = traj.GetConfigurationSpecification()
+    rows = traj.GetAllWaypoints2D()[::-1]
+    for group in spec.GetGroups():
+        if group.kind == DELTATIME:
+            rows[:, group.columns] = np.roll(rows[:, group.columns], 1, axis=0)
+            rows[:1, group.columns] = 0
+        elif group.kind.endswith(_ODD_DERIVATIVES):
+            rows[:, group.columns] *= -1
+    return _made(traj, spec, rows)
 
 
-def MergeTrajectories(listtraj: object) -> object:
-    """Return one trajectory that runs several at once."""
-    raise UnsupportedError("planningutils.MergeTrajectories", _EDITING)
+def MergeTrajectories(listtraj: Sequence[Trajectory]) -> Trajectory:
+    """Return one trajectory that runs several at once, with a waypoint wherever one of them has one.
+
+    Args:
+        listtraj: Trajectories with times; each stays at its last waypoint when it is over.
+
+    Raises:
+        ArgumentError: there are none.
+    """
+    if not listtraj:
+        raise ArgumentError("listtraj: is empty, and should have trajectories")
+    spec = reduce(operator.add, (traj.GetConfigurationSpecification() for traj in listtraj))
+    times = np.unique(np.concatenate([np.cumsum(_deltas(traj)) for traj in listtraj]))
+    rows = np.zeros((len(times), spec.GetDOF()))
+    for traj in listtraj:
+        samples = np.array([traj.Sample(time) for time in times.tolist()])
+        own = traj.GetConfigurationSpecification()
+        rows = own.ConvertDataFromPrevious(rows.ravel(), spec, samples.ravel(), len(times), None).reshape(rows.shape)
+    rows[:, spec.GetGroupFromName(DELTATIME).offset] = np.diff(times, prepend=0)
+    return _made(listtraj[0], spec, rows)
+
+
+def _deltas(traj: Trajectory) -> Floats:
+    """Return the times between waypoints [s]."""
+    column = traj.GetConfigurationSpecification().GetGroupFromName(DELTATIME).columns
+    return traj.GetAllWaypoints2D()[:, column].ravel()
+
+
+def _made(like: Trajectory, spec: ConfigurationSpecification, rows: Floats) -> Trajectory:
+    made = Trajectory(like.GetEnv(), like.GetXMLId())
+    made.Init(spec)
+    made.Insert(0, rows.ravel())
+    return made
 
 
 def VerifyTrajectory(parameters: object, traj: object, samplingstep: float = 0.002) -> None:

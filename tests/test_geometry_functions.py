@@ -162,9 +162,8 @@ def test_normalized_axis_rotation_is_the_closest_to_none(axis, q, other):
 def test_normalized_z_rotations(rows):
     normalized, angles = rave.normalizeZRotation(rows)
     for row, best, angle in zip(rows, normalized, angles, strict=True):
-        expected_angle, expected = rave.normalizeAxisRotation([0, 0, 1], row)
-        np.testing.assert_allclose(best, expected, atol=1e-14)
-        assert angle == pytest.approx(-expected_angle, abs=1e-14)
+        np.testing.assert_allclose(rave.quatMultiply(rave.quatFromAxisAngle([0, 0, angle]), best), row, atol=1e-14)
+        assert best[0] == pytest.approx(rave.normalizeAxisRotation([0, 0, 1], row)[1][0], abs=1e-14)
 
 
 @given(positions, positions, vectors)

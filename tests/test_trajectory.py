@@ -98,7 +98,7 @@ def test_velocities_at_waypoints_are_those_given(trajectory):
     group = spec.FindTimeDerivativeGroup("joint_values arm")
     for time, row in zip(np.cumsum(rows[:-1, 2]), rows[:-1], strict=True):
         if group is not None:
-            np.testing.assert_allclose(trajectory.Sample(time + 1e-9)[group.columns], row[group.columns], atol=1e-2)
+            np.testing.assert_allclose(trajectory.Sample(time + 1e-12)[group.columns], row[group.columns], atol=1e-2)
 
 
 def test_velocities_without_their_derivative_come_from_positions():

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from ravemj.databases.model import DatabaseGenerator
+from ravemj.rave.arm_goals import INVERSE_KINEMATICS
 from ravemj.rave.enums import IkParameterizationType
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.plugins import INVERSE_KINEMATICS
 from ravemj.rave.robot import Robot
 
 

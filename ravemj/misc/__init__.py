@@ -1,7 +1,7 @@
 """``openravepy.misc``: what scripts need beside the API."""
 
 from ravemj.geometry_functions.solids import TSP, ComputeBoxMesh, ComputeCylinderYMesh, ComputeGeodesicSphereMesh
-from ravemj.misc.drawing import DrawAxes, DrawCircle
+from ravemj.misc.drawing import DrawAxes, DrawCircle, DrawIkparam, DrawIkparam2
 from ravemj.misc.sampling import SpaceSamplerExtra
 from ravemj.misc.scripts import (
     InitOpenRAVELogging,
@@ -18,6 +18,8 @@ __all__ = [
     "ComputeGeodesicSphereMesh",
     "DrawAxes",
     "DrawCircle",
+    "DrawIkparam",
+    "DrawIkparam2",
     "InitOpenRAVELogging",
     "OpenRAVEGlobalArguments",
     "SetViewerUserThread",

@@ -1,4 +1,4 @@
-"""Axes and circles, drawn into an environment."""
+"""Axes, circles and goals of arms, drawn into an environment."""
 
 from typing import Any, Protocol
 
@@ -7,8 +7,21 @@ from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_numbers, checked_transform
 from ravemj.errors import ArgumentError
+from ravemj.rave.enums import IkParameterizationType
+from ravemj.rave.ikparameterization import IkParameterization
 from ravemj.transforms import Floats
 
+_FRAMES = {
+    IkParameterizationType.Transform6D,
+    IkParameterizationType.Rotation3D,
+    IkParameterizationType.Translation3D,
+    IkParameterizationType.Lookat3D,
+}
+_LINES = {
+    IkParameterizationType.Direction3D,
+    IkParameterizationType.Ray4D,
+    IkParameterizationType.TranslationDirection5D,
+}
 _AXIS_COLOURS = {"rgb": np.eye(3), "cmy": 1 - np.eye(3)}
 
 
@@ -94,6 +107,40 @@ def DrawCircle(
         np.outer(np.cos(angles), right) + np.outer(np.sin(angles), up)
     )
     return env.drawlinestrip(points, linewidth, colors=np.array(colors))
+
+
+def DrawIkparam(
+    env: Canvas, ikparam: IkParameterization, dist: float = 1.0, linewidth: float = 1, coloradd: ArrayLike | None = None
+) -> object:
+    """Draw what an arm shall reach: axes at its place, or a line along its direction.
+
+    Args:
+        env: The environment.
+        ikparam: The goal.
+        dist: Length of axes and lines [m].
+        linewidth: Width of the lines [pixels].
+        coloradd: Colour that is added, shape (3,).
+
+    Returns:
+        The handle of the lines.
+    """
+    kind, values = ikparam.GetType(), ikparam.GetValues()
+    if kind in _FRAMES:
+        rotation = values[:4] if len(values) > 3 else [1, 0, 0, 0]
+        origin = [0, 0, 0] if kind == IkParameterizationType.Rotation3D else values[-3:]
+        return DrawAxes(env, [*rotation, *origin], dist, linewidth, coloradd=coloradd)
+    if kind not in _LINES:
+        raise ArgumentError(f"ikparam: its type is {kind.name}, which cannot be drawn")
+    start = values[3:] if len(values) > 3 else np.zeros(3)
+    colour = np.array([1.0, 0, 0]) + (0 if coloradd is None else checked_numbers(coloradd, "coloradd"))
+    return env.drawlinelist(np.array([start, start + dist * values[:3]]), linewidth, colors=np.clip(colour, 0, 1))
+
+
+def DrawIkparam2(
+    env: Canvas, ikparam: IkParameterization, dist: float = 1.0, linewidth: float = 1, coloradd: ArrayLike | None = None
+) -> list[object]:
+    """Draw as ``DrawIkparam``; returns a list of handles."""
+    return [DrawIkparam(env, ikparam, dist, linewidth, coloradd)]
 
 
 def _is_pose(target: object) -> bool:

@@ -7,8 +7,18 @@ objects is ravemj's own.
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.body.grabbing import GrabbedInfo
 from ravemj.rave.body.saving import StateSaver
+from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
+from ravemj.rave.controllers import (
+    Controller,
+    IdealController,
+    MultiController,
+    RaveCreateController,
+    RaveCreateMultiController,
+    VelocityController,
+)
 from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
 from ravemj.rave.enums import (
+    AdjacentOptions,
     CheckLimitsAction,
     CloningOptions,
     CollisionAction,
@@ -21,6 +31,7 @@ from ravemj.rave.enums import (
     InterfaceAddMode,
     InterfaceType,
     JointType,
+    PhysicsEngineOptions,
     PlannerStatus,
     PlannerStatusCode,
     SaveParameters,
@@ -39,6 +50,7 @@ from ravemj.rave.environment import (
 )
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.graph_handle import GraphHandle
+from ravemj.rave.ikparameterization import IkParameterization
 from ravemj.rave.infos import ElectricMotorActuatorInfo, ExtractInfoOptions
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
@@ -72,7 +84,7 @@ from ravemj.rave.logs import (
     raveLogWarn,
 )
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.physics import PhysicsEngine
+from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.planning import Planner, PlanningError, planning_error
 from ravemj.rave.plugins import (
     RaveCreateIkSolver,
@@ -84,6 +96,7 @@ from ravemj.rave.plugins import (
     RaveCreateViewer,
     RaveGetLoadedInterfaces,
 )
+from ravemj.rave.report import CollisionReport
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
 from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
@@ -91,17 +104,23 @@ from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 from ravemj.rave.trimesh import TriMesh
 
 KinBodyStateSaver = RobotStateSaver = StateSaver
+
 OpenRAVEException = openrave_exception = RavemjError
 
 __all__ = [
+    "AdjacentOptions",
     "AttachedSensor",
     "CameraGeomData",
     "CameraIntrinsics",
     "CheckLimitsAction",
     "CloningOptions",
     "CollisionAction",
+    "CollisionChecker",
     "CollisionOptions",
+    "CollisionOptionsStateSaver",
+    "CollisionReport",
     "ConfigurationSpecification",
+    "Controller",
     "DebugLevel",
     "ElectricMotorActuatorInfo",
     "Environment",
@@ -111,7 +130,9 @@ __all__ = [
     "GeometryType",
     "GrabbedInfo",
     "GraphHandle",
+    "IdealController",
     "IkFilterOptions",
+    "IkParameterization",
     "IkParameterizationType",
     "IkReturnAction",
     "InterfaceAddMode",
@@ -122,15 +143,21 @@ __all__ = [
     "KinBodyStateSaver",
     "Link",
     "Manipulator",
+    "MultiController",
     "OpenRAVEException",
     "PhysicsEngine",
+    "PhysicsEngineOptions",
     "Planner",
     "PlannerStatus",
     "PlannerStatusCode",
     "PlanningError",
+    "RaveCreateCollisionChecker",
+    "RaveCreateController",
     "RaveCreateIkSolver",
     "RaveCreateKinBody",
     "RaveCreateModule",
+    "RaveCreateMultiController",
+    "RaveCreatePhysicsEngine",
     "RaveCreatePlanner",
     "RaveCreateProblem",
     "RaveCreateRobot",
@@ -171,6 +198,7 @@ __all__ = [
     "Trajectory",
     "TriMesh",
     "TriangulateOptions",
+    "VelocityController",
     "load",
     "openrave_exception",
     "planning_error",

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_numbers
-from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.errors import ArgumentError, ErrorCode, UnsupportedError
 from ravemj.geometry_functions import arguments
 from ravemj.trajectories import extraction, layout
 from ravemj.trajectories.conversion import FindBody, convert_group, converted, nobody
@@ -110,9 +110,9 @@ class ConfigurationData:
         """Return a goal of inverse kinematics in a configuration.
 
         Raises:
-            NotImplementedError: always; there is no inverse kinematics yet.
+            UnsupportedError: always; there is no inverse kinematics yet.
         """
-        raise NotImplementedError("ExtractIkParameterization needs inverse kinematics (IK), which ravemj does not have")
+        raise UnsupportedError("ExtractIkParameterization", "inverse kinematics (IK)")
 
     def ExtractDeltaTime(self, data: ArrayLike) -> float | None:
         """Return the time since the last waypoint [s], or None where the configuration has none."""

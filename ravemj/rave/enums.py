@@ -187,24 +187,44 @@ class IkReturnAction(IntFlag):
 
 
 class CollisionOptions(IntFlag):
-    """What a collision checker reports."""
+    """What collision checking looks for and reports; combine them with ``|``."""
 
-    Distance = 1
-    UseTolerance = 2
-    Contacts = 4
-    RayAnyHit = 8
+    Distance = 0x1
+    """``report.minDistance`` is the least distance of what is tested."""
+    UseTolerance = 0x2
+    """``report.numWithinTol`` is the number of pairs of shapes that are nearer than the tolerance."""
+    Contacts = 0x4
+    """Reports have contact points."""
+    RayAnyHit = 0x8
+    """For rays any hit will do; here it is the nearest all the same."""
     ActiveDOFs = 0x10
+    """Only links that the robot's active DOFs move are tested."""
     AllLinkCollisions = 0x20
+    """Reports have all pairs of links that collide, not only the first."""
     AllGeometryCollisions = 0x40
+    """Reports have each pair of geometries by itself."""
     AllGeometryContacts = 0x80
+    """Reports have contact points of all pairs of geometries."""
     IgnoreCallbacks = 0x100
+    """Functions of ``env.RegisterCollisionCallback`` are not called."""
 
 
 class CollisionAction(IntEnum):
-    """What a collision callback says about a pair."""
+    """What a function of ``env.RegisterCollisionCallback`` says about a collision."""
 
     DefaultAction = 0
+    """It counts."""
     Ignore = 1
+    """It does not count."""
+
+
+class AdjacentOptions(IntFlag):
+    """Which pairs of links ``GetNonAdjacentLinks`` returns; combine them with ``|``."""
+
+    Enabled = 1
+    """Those of enabled links."""
+    ActiveDOFs = 2
+    """Those that the active DOFs move against each other."""
 
 
 class TriangulateOptions(IntEnum):
@@ -270,3 +290,10 @@ class PlannerStatus(IntFlag):
     def statusCode(self) -> PlannerStatusCode:
         """The same as a ``PlannerStatusCode``."""
         return PlannerStatusCode(self.value)
+
+
+class PhysicsEngineOptions(IntFlag):
+    """What physics engines look at."""
+
+    SelfCollisions = 1
+    """Links of one body collide with one another."""

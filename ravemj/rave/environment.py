@@ -8,10 +8,12 @@ import mujoco
 
 from ravemj.errors import SourceError
 from ravemj.rave.env.cloning import Cloning
+from ravemj.rave.env.collision import Collision
 from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.locking import Locking
 from ravemj.rave.env.meshing import Meshing
+from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
 from ravemj.readers import read_file
 from ravemj.simulation import Simulation
@@ -20,7 +22,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Cloning, Drawing, Loading, Locking, Meshing, Viewing):
+class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Running, Viewing):
     """A world with robots and other bodies.
 
     Example:
@@ -53,7 +55,8 @@ class Environment(Cloning, Drawing, Loading, Locking, Meshing, Viewing):
         self._simulation.clear()
 
     def Destroy(self) -> None:
-        """Close the viewer and remove all bodies; nothing can be added afterwards. A second time does nothing."""
+        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm."""
+        self.StopSimulation()
         self.SetViewer("")
         self.Reset()
         self._studio.close()

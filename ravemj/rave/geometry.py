@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj import scene
-from ravemj.arrays import checked_numbers
+from ravemj.arrays import checked_numbers, checked_transform
+from ravemj.bounds import geometry_bounds
 from ravemj.errors import ArgumentError, RavemjError
+from ravemj.geometry_functions import AABB
 from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.geometry import TYPES, GeometryInfo
@@ -164,6 +166,18 @@ class Geometry:
         if not self._scene.modifiable:
             raise RavemjError(f"geometry '{self.GetName()}' is not modifiable")
         self._edit(shape=scene.TriMesh(checked_mesh(mesh, "SetCollisionMesh: mesh")))
+
+    def ComputeAABB(self, transform: ArrayLike) -> AABB:
+        """Return the smallest box along the axes that holds the geometry, its link standing at a pose.
+
+        Args:
+            transform: ``T_a_link``: 4x4, 3x4 or 7 numbers.
+
+        Returns:
+            The box in frame a, with methods ``pos()`` and ``extents()``.
+        """
+        low, high = geometry_bounds(self._scene, checked_transform(transform, "ComputeAABB: transform"))
+        return AABB((low + high) / 2, (high - low) / 2)
 
     def GetDiffuseColor(self) -> Floats:
         """Return the colour: red, green, blue from 0 to 1, shape (3,)."""

@@ -76,6 +76,17 @@ class Joint(JointLimits, JointFollowing):
         """Return the joint's velocity about or along one of its axes [rad/s or m/s]."""
         return float(self.GetVelocities()[axis])
 
+    def AddTorque(self, torques: ArrayLike) -> bool:
+        """Let torques act on the joint during the next step of simulation time, with those before.
+
+        Args:
+            torques: For each of its axes [N m, for sliders N].
+
+        Returns:
+            Whether the environment has a physics engine that moves bodies.
+        """
+        return self._parent.GetEnv().GetPhysicsEngine().AddJointTorque(self, torques)
+
     def SubtractValue(self, value0: float, value1: float, axis: int = 0) -> float:
         """Return the difference of two values: the way from the second to the first.
 

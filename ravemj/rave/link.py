@@ -10,6 +10,8 @@ from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, LinkInfo
+from ravemj.rave.links.collision import LinkCollision
+from ravemj.rave.links.loads import LinkLoads
 from ravemj.rave.links.mass import LinkMass
 from ravemj.rave.links.parameters import LinkParameters
 from ravemj.rave.links.shapes import LinkShapes
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Link(LinkMass, LinkShapes, LinkParameters):
+class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters, LinkLoads):
     """A rigid part of a body; ``body.GetLinks()`` makes it."""
 
     Geometry = Geometry
@@ -109,10 +111,6 @@ class Link(LinkMass, LinkShapes, LinkParameters):
         """
         with self._state.simulation.lock:
             self._state.edit_link(self._index, static=bool(bStatic))
-
-    def IsEnabled(self) -> bool:
-        """Return whether collision checking looks at the link."""
-        return self._scene.enabled
 
     def GetParentLinks(self) -> "list[Link]":
         """Return the links that joints hang this one on."""

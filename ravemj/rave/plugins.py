@@ -5,13 +5,13 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from ravemj.errors import UnsupportedError
+from ravemj.rave.arm_goals import INVERSE_KINEMATICS
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
 from ravemj.rave.planning import PLANNING, Planner
 from ravemj.rave.sensors import Sensor
 from ravemj.viewers import VIEWERS, Viewer
 
-INVERSE_KINEMATICS = "inverse kinematics"
 _GRASPING = "planning of grasps"
 _SAMPLING = "sampling of spaces"
 _SENSORS = "simulation of sensors"

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ravemj.collision.questions import moved_links
 from ravemj.geometry_functions import DOFAffine
 from ravemj.rave.body.active import ActiveChoice
 from ravemj.rave.body.active_motion import ActiveMotion
@@ -15,6 +16,7 @@ from ravemj.rave.infos import AttachedSensorInfo, ManipulatorInfo, RobotBaseInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.robot_control import RobotControl
 from ravemj.rave.sensors import AttachedSensor
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats
@@ -23,7 +25,9 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class Robot(ActiveMotion, Manipulators, RobotBuilding, KinBody):  # pyright: ignore[reportIncompatibleMethodOverride]
+class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
+    ActiveMotion, Manipulators, RobotBuilding, RobotControl, KinBody
+):
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine
@@ -101,6 +105,12 @@ class Robot(ActiveMotion, Manipulators, RobotBuilding, KinBody):  # pyright: ign
         for tool, transform in [(tool.GetName(), tool.GetLocalToolTransform()) for tool in tools]:
             found.append(lambda body, tool=tool, transform=transform: _set_tool(body, tool, transform))
         return found
+
+    def active_links(self) -> frozenset[int] | None:
+        """Return the indices of the links that the active DOFs move; None: all."""
+        return (
+            None if self.active_choice.affine else moved_links(self._state.scene, self.GetActiveDOFIndices().tolist())
+        )
 
     def GetAttachedSensors(self) -> list[AttachedSensor]:
         """Return the sensors on the robot's links, in the order of the file."""

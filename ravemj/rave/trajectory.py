@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike
 from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.output import AnyPath, new_file
+from ravemj.rave.enums import InterfaceType
+from ravemj.rave.interface import Annotations, Interface
 from ravemj.rave.specification import ConfigurationSpecification
-from ravemj.rave.user_data import UserData
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.serialization import AS_TEXT, Stored, read, to_bytes, to_text
 from ravemj.trajectories.waypoints import Waypoints
@@ -26,7 +27,7 @@ KIND = "GenericTrajectory"
 Spec = ConfigurationSpecification | Group
 
 
-class Trajectory(UserData):
+class Trajectory(Interface):
     """Configurations over time; ``RaveCreateTrajectory`` makes it.
 
     Example:
@@ -40,28 +41,17 @@ class Trajectory(UserData):
         >>> robot.SetDOFValues(spec.ExtractJointValues(trajectory.Sample(0.5), robot, [0, 1]))
     """
 
+    _interface_type = InterfaceType.trajectory
+
     def __init__(self, env: "Environment", xmlid: str) -> None:
-        super().__init__()
         self._env = env
         self._xmlid = xmlid
-        self._description = ""
+        self._annotations = Annotations()
         self._waypoints: Waypoints | None = None
-
-    def GetEnv(self) -> "Environment":
-        """Return the environment whose bodies the trajectory looks up."""
-        return self._env
 
     def GetXMLId(self) -> str:
         """Return the name of the type, as it was spelled when the trajectory was made."""
         return self._xmlid
-
-    def GetDescription(self) -> str:
-        """Return the description."""
-        return self._description
-
-    def SetDescription(self, description: str) -> None:
-        """Set a text that is stored along with the trajectory."""
-        self._description = description
 
     def Init(self, spec: Spec) -> None:
         """Remove all waypoints, and say what the numbers of new ones are.
@@ -241,7 +231,7 @@ class Trajectory(UserData):
         del cloningoptions
         known = ref._waypoints
         self._waypoints = None if known is None else Waypoints(known.groups, known.data)
-        self._description = ref._description
+        self.SetDescription(ref.GetDescription())
 
     def Swap(self, traj: "Trajectory") -> None:
         """Exchange specification and waypoints with another trajectory."""
@@ -256,7 +246,7 @@ class Trajectory(UserData):
         Returns:
             Bytes; text for XML.
         """
-        stored = Stored(self._known(), self._description)
+        stored = Stored(self._known(), self.GetDescription())
         return to_text(stored, self._xmlid) if (options or 0) & AS_TEXT else to_bytes(stored)
 
     def deserialize(self, data: bytes | str) -> Self:
@@ -268,7 +258,8 @@ class Trajectory(UserData):
         Raises:
             ArgumentError: that is no trajectory; nothing has changed then.
         """
-        self._waypoints, self._description = read(data)
+        self._waypoints, description = read(data)
+        self.SetDescription(description)
         return self
 
     def SaveToFile(self, filename: AnyPath, options: int | None = 0) -> None:

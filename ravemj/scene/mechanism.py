@@ -58,6 +58,7 @@ class Link:
         enabled: False where collision checking leaves it out.
         groups: Other sets of shapes that scripts can swap in, by name.
         parameters: What scripts attach to it.
+        self_collision_ignored: True where it is not tested against other links of its body.
         source: The element that it comes from.
     """
 
@@ -69,6 +70,7 @@ class Link:
     enabled: bool
     groups: tuple[tuple[str, tuple[Geometry, ...]], ...] = ()
     parameters: Parameters = NO_PARAMETERS
+    self_collision_ignored: bool = False
     source: Source
 
 

@@ -1,6 +1,6 @@
 """A body and its state."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -50,8 +50,8 @@ class BodyState:
         simulation: The world that it was made for.
         index: Its index in the world, from 1; 0 while it is not in the world.
         stamp: Grows with every change of pose.
-        link_enabled: For each link, whether collision checking looks at it.
-        grabs: What it holds, in the order of grabbing.
+        rest_poses: The pose in which links that touch never count as colliding, shape (links, 4, 4): that in which the
+            body was added.
         api_object: The object that users have for it; the layer above keeps it here.
     """
 
@@ -59,7 +59,8 @@ class BodyState:
         self.simulation = simulation
         self.index = 0
         self.stamp = 0
-        self.grabs: list[GrabbedBody] = []
+        self._grabs: tuple[GrabbedBody, ...] = ()
+        self.rest_poses: Floats | None = None
         self.api_object: object | None = None
         self._kinematics: BodyKinematics | None = None
         self._dynamics: BodyDynamics | None = None
@@ -77,11 +78,32 @@ class BodyState:
             raise RavemjError(f"'{self.scene.name}' is in an environment; remove it first", ErrorCode.InvalidState)
         self.scene = scene
         self.link_enabled = [link.enabled for link in scene.links]
+        self.rest_poses = None
         self.stamp += 1
         self._velocities = np.zeros((len(scene.links), 6))
         self._poses: Floats | None = None
         self._configuration: Configuration | None = None
         self._is_moved = False
+
+    @property
+    def link_enabled(self) -> tuple[bool, ...]:
+        """For each link, whether collision checking looks at it."""
+        return self._link_enabled
+
+    @link_enabled.setter
+    def link_enabled(self, enabled: Iterable[bool]) -> None:
+        self._link_enabled = tuple(enabled)
+        self.simulation.collision_stamp += 1
+
+    @property
+    def grabs(self) -> tuple[GrabbedBody, ...]:
+        """What it holds, in the order of grabbing."""
+        return self._grabs
+
+    @grabs.setter
+    def grabs(self, grabs: Iterable[GrabbedBody]) -> None:
+        self._grabs = tuple(grabs)
+        self.simulation.collision_stamp += 1
 
     @property
     def kinematics(self) -> BodyKinematics:
@@ -208,7 +230,7 @@ class BodyState:
     def moved(self) -> None:
         """Take note that links were moved: what they hold follows."""
         self.stamp += 1
-        for grab in self.grabs:
+        for grab in self._grabs:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 
     def link_velocities(self) -> Floats:
@@ -246,11 +268,10 @@ class BodyState:
 
     def grab(self, grab: GrabbedBody) -> None:
         """Hold a body; one that is held already, anew."""
-        places = [number for number, old in enumerate(self.grabs) if old.body is grab.body]
-        if places:
-            self.grabs[places[0]] = grab
+        if any(old.body is grab.body for old in self.grabs):
+            self.grabs = [grab if old.body is grab.body else old for old in self.grabs]
         else:
-            self.grabs.append(grab)
+            self.grabs = (*self.grabs, grab)
         self._carry(grab)
 
     def release(self, body: "BodyState") -> None:
@@ -278,7 +299,7 @@ class BodyState:
             RavemjError: this body is in the world.
         """
         self.rebuild(other.scene if name is None else replace(other.scene, name=name))
-        self.link_enabled = list(other.link_enabled)
+        self.link_enabled = other.link_enabled
         self._configuration, self._poses = other.configuration()
         self._is_moved = self._configuration is None
         self._velocities = other.link_velocities()

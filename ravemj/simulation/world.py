@@ -28,6 +28,8 @@ class Simulation:
         diagnostics: What the last translation to MJCF found.
         version: Grows by one with each compiled model.
         gravity: Acceleration of free fall in the world [m/s^2].
+        collision_stamp: Grows when what may collide with what changes: links are enabled, bodies are held.
+        collision_world: What collision checking keeps between its queries; the layer above keeps it here.
         drawings: What scripts draw beside the bodies; needs no lock.
     """
 
@@ -38,6 +40,8 @@ class Simulation:
         self.diagnostics = Diagnostics()
         self.version = 0
         self.gravity = DEFAULT_GRAVITY
+        self.collision_stamp = 0
+        self.collision_world: object | None = None
         self._places: list[BodyState | None] = []
         self._by_name: dict[str, BodyState] = {}
         self._compiled: Compiled | None = None
@@ -83,6 +87,7 @@ class Simulation:
             place = self._places.index(None)
             self._places[place] = self._by_name[body.scene.name] = body
             body.index = place + 1
+            body.rest_poses = body.link_transforms()
 
     def remove(self, body: BodyState) -> bool:
         """Take a body out of the world; it keeps its pose. Return False if it was not there."""
@@ -168,6 +173,7 @@ class Simulation:
             self.diagnostics = Diagnostics()
             scene = Scene(tuple(body.scene for body in self.bodies), self.view)
             compiled = Compiled(scene, self.diagnostics)
+            compiled.write_true_inertias(scene)
             compiled.model.opt.gravity[:] = self.gravity
             for body, names in zip(self.bodies, compiled.mjcf.names, strict=True):
                 body.enter_model(BodyKinematics(compiled.model, compiled.data, body.scene, names))

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.trajectories.conversion import FindBody, converted, nobody
 from ravemj.trajectories.extraction import time_column
 from ravemj.trajectories.groups import DELTATIME, IK, INTERPOLATIONS, Group, derived_interpolation
@@ -171,7 +171,7 @@ class Waypoints:
     def _curve(self, group: Group, interpolation: str, index: int, duration: float) -> Floats:
         """Return how a group changes on the way to a waypoint, by its derivatives, or as the derivative of another."""
         if group.kind == IK[0]:
-            raise NotImplementedError(f"sampling '{group.name}' needs inverse kinematics (IK), which ravemj lacks")
+            raise UnsupportedError(f"sampling of '{group.name}'", "inverse kinematics (IK)")
         if interpolation not in DERIVATIVES:
             raise ArgumentError(f"group '{group.name}': there is no interpolation '{interpolation}'")
         derivatives = [self._ends(derivative, index) for derivative in self._derivatives(group, interpolation)]

@@ -5,11 +5,12 @@ A new area is a module with such a function, and a line in ``AREAS``.
 
 from collections.abc import Callable
 
-from benchmarks import imports, kinematics, loading, memory, reading, video
+from benchmarks import collision, imports, kinematics, loading, memory, reading, video
 from benchmarks.measure import Row
 
 AREAS: dict[str, Callable[[], list[Row]]] = {
     "kinematics": kinematics.rows,
+    "collision": collision.rows,
     "loading": loading.rows,
     "reading": reading.rows,
     "imports": imports.rows,

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ravemj.collision.questions import touching_links
+from ravemj.collision.world import world_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.link import Link
@@ -67,7 +69,8 @@ class Grabbing(BodyPart):
             self._check_holdable(body)
             held = body.simulation_state
             link = grablink.GetIndex()
-            ignored = {link, *(self._link_index(one) for one in linkstoignore)}
+            touched = touching_links(world_of(self._simulation), self._state, held)
+            ignored = {link, *(self._link_index(one) for one in linkstoignore), *touched}
             T_link_body = inverse(self._state.link_transform(link)) @ held.link_transform(0)
             self._state.grab(GrabbedBody(held, link, T_link_body, frozenset(ignored)))
             return True

@@ -58,6 +58,7 @@ class Cloning(Contents):
         copy = self._simulation.create(original.scene)
         copy.copy(original)
         self._simulation.insert(copy)
+        copy.rest_poses = original.rest_poses
         body, other = self.wrap(copy), original.api_object
         if isinstance(body, Robot) and isinstance(other, Robot):
             body.take_choices(other)

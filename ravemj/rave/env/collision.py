@@ -1,0 +1,142 @@
+"""Collision checking of an environment."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ravemj.arrays import checked_numbers
+from ravemj.collision.world import world_of
+from ravemj.errors import ArgumentError
+from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
+from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.report import CollisionReport
+from ravemj.transforms import Floats
+
+CollisionCallback = Callable[[CollisionReport, bool], int]
+"""Takes a report of one collision and whether time runs, and returns a ``CollisionAction``."""
+
+
+class CollisionCallbackHandle:
+    """Keeps a function registered; it is not called any more once this is closed or gone."""
+
+    def __init__(self, callbacks: list[CollisionCallback], callback: CollisionCallback) -> None:
+        self._callbacks, self._callback = callbacks, callback
+        callbacks.append(callback)
+
+    def Close(self) -> None:
+        """End it. A second time does nothing."""
+        if self._callback in self._callbacks:
+            self._callbacks.remove(self._callback)
+
+    def __del__(self) -> None:
+        self.Close()
+
+
+class Collision(EnvironmentPart):
+    """Tests whether things touch."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.collision_callbacks: list[CollisionCallback] = []
+        self._checker: CollisionChecker | None = None
+
+    def GetCollisionChecker(self) -> CollisionChecker:
+        """Return what answers ``CheckCollision``; never None."""
+        if self._checker is None:
+            self._checker = CollisionChecker(self._environment)
+        return self._checker
+
+    def SetCollisionChecker(self, collisionchecker: CollisionChecker | None) -> bool:
+        """Choose what answers ``CheckCollision``.
+
+        Args:
+            collisionchecker: A checker of this environment; None: one for which nothing collides.
+
+        Returns:
+            True.
+        """
+        self._checker = collisionchecker or NoCollisionChecker(self._environment)
+        return True
+
+    def CheckCollision(self, *arguments: object, report: CollisionReport | None = None, **named: object) -> bool:
+        """Return whether things touch or overlap.
+
+        The forms are OpenRAVE's; ``report`` may also be the last argument:
+
+        - ``(body)``, ``(link)``: against all other bodies.
+        - ``(body, body2)``, ``(link, body)``, ``(link, link2)``: against each other, two links of one body as well.
+        - ``(body, bodyexcluded, linkexcluded)`` or a link in its place: against all but the bodies and links of two
+          lists.
+        - ``(ray)``, ``(ray, body)``: a ray against all, or against one body. The length of its direction is its range.
+
+        A body takes part with all that it holds, and is not tested against that. Disabled bodies and links never
+        collide. Collisions of a body with itself are for ``body.CheckSelfCollision``.
+
+        Args:
+            arguments: One of these forms; by name they are ``body``, ``link``, ``body1``, ``body2``, ``link1``,
+                ``link2``, ``ray``, ``bodyexcluded``, ``linkexcluded``.
+            report: Filled with what is found, as ``GetCollisionChecker().SetCollisionOptions`` asks for it.
+            named: See ``arguments``.
+
+        Raises:
+            openrave_exception: an argument is None (``Assert``) or something else (``InvalidArguments``); one of two
+                bodies is not in the environment.
+
+        Example:
+            >>> env.CheckCollision(robot)
+            False
+            >>> report = ravemj.CollisionReport()
+            >>> env.CheckCollision(ravemj.Ray([0, 0, 5], [0, 0, -10]), report)
+            True
+            >>> report.contacts[0].pos
+            array([0. , 0. , 0.1])
+        """
+        checker = self._checker or self.GetCollisionChecker()
+        return checker.CheckCollision(*arguments, report=report, **named)
+
+    def CheckCollisionRays(
+        self, rays: ArrayLike, body: KinBody | None = None, front_facing_only: bool = False
+    ) -> tuple[NDArray[np.bool_], Floats]:
+        """Shoot many rays.
+
+        Args:
+            rays: A row for each: start, and direction with the range as its length [m], shape (n, 6).
+            body: The only body that they can hit; None: any.
+            front_facing_only: Whether hits from behind, on the inside of a surface, are left out.
+
+        Returns:
+            Which rays hit something, shape (n,); and point and outward normal of each hit, shape (n, 6), zeros for a
+            miss.
+
+        Example:
+            >>> hits, points = env.CheckCollisionRays([[0, 0, 5, 0, 0, -10], [1, 0, 5, 0, 0, -10]])
+        """
+        rows = checked_numbers(rays, "CheckCollisionRays: rays")
+        if rows.ndim == 1 and rows.size in {0, 6}:
+            rows = rows.reshape(-1, 6)
+        if rows.ndim != 2 or rows.shape[1] != 6:
+            raise ArgumentError(f"CheckCollisionRays: rays have shape {rows.shape}, and should have shape (n, 6)")
+        found, points = np.zeros(len(rows), dtype=bool), np.zeros((len(rows), 6))
+        checker = self.GetCollisionChecker()
+        with self._simulation.lock:
+            world = world_of(self._simulation)
+            for number, row in enumerate(rows):
+                hit = checker.cast(world, row[:3], row[3:], ... if body is None else body)
+                if hit is not None and not (front_facing_only and hit.normal @ row[3:] >= 0):
+                    found[number] = True
+                    points[number] = (*hit.position, *hit.normal)
+        return found, points
+
+    def RegisterCollisionCallback(self, fncallback: CollisionCallback) -> CollisionCallbackHandle:
+        """Register a function that decides about each collision.
+
+        Args:
+            fncallback: Takes a report with one pair, and False; returns a ``CollisionAction``. What it ignores does not
+                count.
+
+        Returns:
+            A handle: keep it as long as the function should be called.
+        """
+        return CollisionCallbackHandle(self.collision_callbacks, fncallback)

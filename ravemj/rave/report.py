@@ -1,0 +1,156 @@
+"""What collision checking found."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ravemj.transforms import Floats
+
+if TYPE_CHECKING:
+    from ravemj.rave.geometry import Geometry
+    from ravemj.rave.link import Link
+
+FAR = 1e20
+"""OpenRAVE's distance where none was found [m]."""
+
+
+@dataclass
+class Contact:
+    """A point where two shapes are in each other, or where a ray meets a shape.
+
+    Attributes:
+        pos: The point in the world [m], shape (3,).
+        norm: Unit vector out of the second shape towards the first; that of a ray's hit points outwards. Shape (3,).
+        depth: How far the shapes are in each other [m]; for a ray, how far away the hit is.
+    """
+
+    pos: Floats = field(default_factory=lambda: np.zeros(3))
+    norm: Floats = field(default_factory=lambda: np.zeros(3))
+    depth: float = 0.0
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of two shapes that collide, as objects of the API."""
+
+    link: "Link"
+    geometry: "Geometry | None"
+
+    @property
+    def names(self) -> tuple[str, str, str]:
+        """Names of body, link and geometry."""
+        geometry = "" if self.geometry is None else self.geometry.GetName()
+        return self.link.GetParent().GetName(), self.link.GetName(), geometry
+
+
+class CollisionPairInfo:
+    """Two links that collide, or a link that a ray hits."""
+
+    def __init__(self, first: Part, second: Part | None) -> None:
+        self.first, self.second = first, second
+        self.contacts: list[Contact] = []
+
+    @property
+    def bodyLinkGeom1Name(self) -> str:
+        """Names of body, link and geometry of the first, joined by spaces."""
+        return " ".join(self.first.names)
+
+    @property
+    def bodyLinkGeom2Name(self) -> str:
+        """Names of body, link and geometry of the second; empty for a ray."""
+        return " ".join(self.second.names) if self.second else ""
+
+    def ExtractFirstBodyLinkGeomNames(self) -> tuple[str, str, str]:
+        """Return the names of body, link and geometry of the first."""
+        return self.first.names
+
+    def ExtractSecondBodyLinkGeomNames(self) -> tuple[str, str, str]:
+        """Return the names of body, link and geometry of the second."""
+        return self.second.names if self.second else ("", "", "")
+
+    def __str__(self) -> str:
+        names = (":".join(filter(None, part.names)) for part in (self.first, self.second) if part)
+        return f"({')x('.join(names)}) contacts={len(self.contacts)}"
+
+
+class CollisionReport:
+    """What a call of collision checking found; hand one in to get it filled.
+
+    OpenRAVE renamed the content over time; both sets of names are here: ``collisionInfos`` of newer versions, and
+    ``plink1``, ``plink2``, ``contacts``, ``vLinkColliding``, ``numCols`` of older ones. The first of two links
+    belongs to the first argument of the call.
+
+    Attributes:
+        collisionInfos: The colliding pairs; only the first one without ``CollisionOptions.AllLinkCollisions``.
+        minDistance: Least distance [m], with ``CollisionOptions.Distance``; 0 in collision. For a ray that of its hit.
+        numWithinTol: Number of pairs within the tolerance, with ``CollisionOptions.UseTolerance``.
+        nKeepPrevious: If 1, what earlier calls found is kept.
+        options: The options of the call.
+
+    Example:
+        >>> report = ravemj.CollisionReport()
+        >>> env.CheckCollision(robot, report)
+        True
+        >>> print(report.plink1, report.plink2)
+        <link:Arm1 (1), parent=Pendulum> <link:base (0), parent=table>
+    """
+
+    def __init__(self) -> None:
+        self.nKeepPrevious = 0
+        self.Reset()
+
+    def Reset(self, coloptions: int = 0) -> None:
+        """Forget everything, unless ``nKeepPrevious`` is set.
+
+        Args:
+            coloptions: The options of the call that fills the report next.
+        """
+        self.options = int(coloptions)
+        if not self.nKeepPrevious:
+            self.collisionInfos: list[CollisionPairInfo] = []
+            self.minDistance = FAR
+            self.numWithinTol = 0
+
+    @property
+    def contacts(self) -> list[Contact]:
+        """The contact points of all pairs."""
+        return [contact for info in self.collisionInfos for contact in info.contacts]
+
+    @property
+    def numCols(self) -> int:
+        """The number of colliding pairs."""
+        return len(self.collisionInfos)
+
+    @property
+    def plink1(self) -> "Link | None":
+        """The first link of the first pair, or None."""
+        return self.collisionInfos[0].first.link if self.collisionInfos else None
+
+    @property
+    def plink2(self) -> "Link | None":
+        """The second link of the first pair, or None."""
+        second = self._second()
+        return second.link if second else None
+
+    @property
+    def pgeom1(self) -> "Geometry | None":
+        """The first geometry of the first pair, or None."""
+        return self.collisionInfos[0].first.geometry if self.collisionInfos else None
+
+    @property
+    def pgeom2(self) -> "Geometry | None":
+        """The second geometry of the first pair, or None."""
+        second = self._second()
+        return second.geometry if second else None
+
+    def _second(self) -> Part | None:
+        return self.collisionInfos[0].second if self.collisionInfos else None
+
+    @property
+    def vLinkColliding(self) -> "list[tuple[Link, Link | None]]":
+        """The pairs of links that collide."""
+        return [(info.first.link, info.second.link if info.second else None) for info in self.collisionInfos]
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.collisionInfos)) or "no collision"

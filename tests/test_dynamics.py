@@ -1,0 +1,382 @@
+"""Velocities, derivatives and dynamics: against difference quotients, against MuJoCo, and by hand."""
+
+import warnings
+
+import mujoco
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from strategies import Taste, choices, examples, number, scene_node, scenes, xml
+from test_properties import SMOOTH, Kinematics, draw_smooth, draw_values, spin
+
+import ravemj
+from ravemj.dynamics import rotation_rate
+
+Nothing = ravemj.CheckLimitsAction.Nothing
+STEP = 1e-6
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write(content: str) -> str:
+        (tmp_path / "model.xml").write_text(content, encoding="utf-8")
+        return str(tmp_path / "model.xml")
+
+    return write
+
+
+@pytest.fixture
+def load(write):
+    def load(scene) -> list[ravemj.KinBody]:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ravemj.RavemjWarning)
+            return ravemj.load(write(xml(scene_node(scene)))).GetBodies()
+
+    return load
+
+
+def smooth_body(load, scene, choices):
+    """Load a body, put it into a configuration where everything moves smoothly, and return both with velocities."""
+    (body,), (model,) = load(scene), scene.bodies
+    values = draw_smooth(body, Kinematics(model), choices)
+    assume(len(values))
+    body.SetDOFValues(values)
+    return body, values, np.array([number(choices, -1, 1) for _ in values])
+
+
+def quotient(body, values, function, step=STEP):
+    """Return the derivatives of a function of the body by the DOF values, one after the other."""
+    found = []
+    for d in np.eye(len(values)) * step:
+        body.SetDOFValues(values + d)
+        after = function()
+        body.SetDOFValues(values - d)
+        found.append((after - function()) / (2 * step))
+    body.SetDOFValues(values)
+    return np.array(found)
+
+
+def along(body, values, rates, function, step=STEP):
+    """Return the time derivative of a function of the body on its way."""
+    body.SetDOFValues(values + step * rates)
+    after = function()
+    body.SetDOFValues(values - step * rates)
+    before = function()
+    body.SetDOFValues(values)
+    return (after - before) / (2 * step)
+
+
+def close(actual, expected, tolerance=1e-7):
+    scale = max(1.0, np.abs(expected).max(initial=0.0))
+    np.testing.assert_allclose(actual, expected, rtol=0, atol=tolerance * scale)
+
+
+class TestHessians:
+    @examples(60)
+    @given(scenes(SMOOTH), choices())
+    def test_they_are_the_derivatives_of_the_jacobians(self, load, scene, choices):
+        body, values, _ = smooth_body(load, scene, choices)
+        local = np.array([0.3, -0.2, 0.1, 1.0])
+        for link, found in enumerate(body.GetLinks()):
+
+            def point(found=found):
+                return (found.GetTransform() @ local)[:3]
+
+            def moving(link=link, point=point):
+                return body.ComputeJacobianTranslation(link, point())
+
+            def turning(link=link):
+                return body.ComputeJacobianAxisAngle(link)
+
+            close(body.ComputeHessianTranslation(link, point()), quotient(body, values, moving), 1e-6)
+            by_hand = quotient(body, values, turning)
+            close(body.ComputeHessianAxisAngle(link), by_hand + by_hand.transpose(2, 1, 0), 1e-6)
+
+    def test_indices_choose_rows_and_columns(self, robot):
+        robot.SetDOFValues([0.4, -0.9])
+        whole = robot.ComputeHessianTranslation(2, [0.1, 0.2, -0.3])
+        part = robot.ComputeHessianTranslation(2, [0.1, 0.2, -0.3], [1, 7])
+        np.testing.assert_array_equal(part[0, :, 0], whole[1, :, 1])
+        assert part.shape == (2, 3, 2)
+        assert not part[1].any()
+        assert not part[:, :, 1].any()
+
+
+class TestJacobians:
+    def test_an_empty_list_means_all_and_a_wrong_index_zeros(self, robot):
+        robot.SetDOFValues([0.4, -0.9])
+        whole = robot.ComputeJacobianTranslation(2, [0.0, 0.1, -0.3])
+        np.testing.assert_array_equal(robot.ComputeJacobianTranslation(2, [0.0, 0.1, -0.3], []), whole)
+        chosen = robot.ComputeJacobianTranslation(2, [0.0, 0.1, -0.3], [1, 9, 0])
+        np.testing.assert_array_equal(chosen, np.column_stack((whole[:, 1], np.zeros(3), whole[:, 0])))
+
+    @pytest.mark.parametrize("call", [(5, [0, 0, 0]), (-1, [0, 0, 0]), (1, [0, 0]), (1, [0, 0, np.inf])])
+    def test_nonsense_is_refused(self, robot, call):
+        with pytest.raises(ravemj.openrave_exception):
+            robot.ComputeJacobianTranslation(*call)
+
+    def test_quaternion(self, robot):
+        values = np.array([0.4, -0.9])
+        robot.SetDOFValues(values)
+        link = robot.GetLinks()[2]
+        wxyz = ravemj.quatFromRotationMatrix(link.GetTransform())
+
+        def quaternion():
+            return ravemj.quatFromRotationMatrix(link.GetTransform())
+
+        close(robot.CalculateRotationJacobian(2, wxyz), quotient(robot, values, quaternion).T, 1e-8)
+
+    @examples(40)
+    @given(scenes(SMOOTH), choices())
+    def test_centre_of_mass(self, load, scene, choices):
+        body, values, _ = smooth_body(load, scene, choices)
+        masses = [link.GetMass() for link in body.GetLinks()]
+        assume(sum(masses) > 1e-3 and min(masses) >= 0)
+        close(body.com_jacobian(), quotient(body, values, body.GetCenterOfMass).T)
+
+
+class TestVelocities:
+    @examples(60)
+    @given(scenes(SMOOTH), choices())
+    def test_links_move_as_their_velocities_say(self, load, scene, choices):
+        body, values, rates = smooth_body(load, scene, choices)
+        body.SetDOFVelocities(rates, 0)
+        np.testing.assert_allclose(body.GetDOFVelocities(), rates, rtol=0, atol=1e-9)
+        velocities = body.GetLinkVelocities()
+        linear = along(body, values, rates, lambda: body.link_transforms()[:, :3, 3])
+        close(velocities[:, :3], linear)
+        body.SetDOFValues(values - STEP * rates)
+        before = body.link_transforms()
+        body.SetDOFValues(values + STEP * rates)
+        turned = [spin(*pair) / (2 * STEP) for pair in zip(before, body.link_transforms(), strict=True)]
+        close(velocities[:, 3:], turned)
+
+    def test_forms_of_the_call(self, robot):
+        robot.SetDOFVelocities([0.5, -0.25], [1, 2, 3], [0.1, 0.2, 0.3])
+        np.testing.assert_allclose(robot.GetDOFVelocities(), [0.5, -0.25], atol=1e-12)
+        robot.SetDOFVelocities([0.75], 0, [1])  # the base keeps its velocity
+        np.testing.assert_allclose(robot.GetDOFVelocities([1, 0]), [0.75, 0.5], atol=1e-12)
+        np.testing.assert_allclose(robot.GetLinks()[0].GetVelocity(), [1, 2, 3, 0.1, 0.2, 0.3])
+        robot.SetDOFVelocities([9, 9], checklimits=0, indices=[1, 0])
+        np.testing.assert_allclose(robot.GetDOFVelocities(), [9, 9], atol=1e-12)
+        assert robot.GetDOFVelocities([]).shape == (0,)
+
+    def test_limits(self, robot):
+        with pytest.warns(ravemj.RavemjWarning, match="velocity 9"):
+            robot.SetDOFVelocities([9, -9])
+        np.testing.assert_allclose(robot.GetDOFVelocities(), [3.42, -5.42], atol=1e-12)
+        with pytest.raises(ravemj.openrave_exception, match="limit"):
+            robot.SetDOFVelocities([9, 0], ravemj.CheckLimitsAction.CheckLimitsThrow)
+        robot.SetDOFVelocities([9, -9], ravemj.CheckLimitsAction.CheckLimitsSilent)
+        np.testing.assert_allclose(robot.GetDOFVelocities(), [3.42, -5.42], atol=1e-12)
+
+    @pytest.mark.parametrize("call", [([1],), ([1, np.nan],), ([1, 2], [0, 0], [0, 0, 0]), ([1, 2], 0, [0])])
+    def test_a_refused_call_changes_nothing(self, robot, call):
+        robot.SetDOFVelocities([0.5, -0.25])
+        before = robot.GetLinkVelocities()
+        with pytest.raises(ravemj.openrave_exception):
+            robot.SetDOFVelocities(*call)
+        np.testing.assert_array_equal(robot.GetLinkVelocities(), before)
+
+    def test_whole_body_and_one_link(self, robot):
+        robot.SetDOFValues([0.3, 0.9])
+        assert robot.SetVelocity([1, 2, 3], [0.1, 0.2, 0.3])
+        origins = robot.link_transforms()[:, :3, 3]
+        expected = np.array([1, 2, 3]) + np.cross([0.1, 0.2, 0.3], origins - origins[0])
+        np.testing.assert_allclose(robot.GetLinkVelocities()[:, :3], expected, atol=1e-12)
+        np.testing.assert_allclose(robot.GetDOFVelocities(), 0, atol=1e-12)
+        robot.GetLinks()[1].SetVelocity([0, 0, 1], [2, 0, 0])
+        np.testing.assert_allclose(robot.GetLinkVelocities()[1], [0, 0, 1, 2, 0, 0])
+        np.testing.assert_allclose(robot.GetDOFVelocities(), [1.9, -1.9], atol=1e-12)
+        velocities = robot.GetLinkVelocities()
+        velocities[:] = 7  # a copy
+        assert not np.any(robot.GetLinkVelocities() == 7)
+        robot.SetLinkVelocities(np.zeros((3, 6)))
+        assert not robot.GetDOFVelocities().any()
+
+    def test_they_outlive_the_model_and_belong_to_the_saver_that_asks(self, env, robot):
+        robot.SetDOFVelocities([0.5, -0.25])
+        env.simulation.forget_model()
+        np.testing.assert_allclose(robot.GetDOFVelocities(), [0.5, -0.25], atol=1e-12)
+        with robot.CreateKinBodyStateSaver(ravemj.KinBody.SaveParameters.LinkVelocities):
+            robot.SetDOFVelocities([0, 0])
+        np.testing.assert_allclose(robot.GetDOFVelocities(), [0.5, -0.25], atol=1e-12)
+        with robot:
+            robot.SetDOFVelocities([0, 0])
+        assert not robot.GetDOFVelocities().any()
+
+
+class TestAccelerations:
+    @examples(60)
+    @given(scenes(SMOOTH), choices())
+    def test_they_are_the_derivatives_of_the_velocities(self, load, scene, choices):
+        body, values, rates = smooth_body(load, scene, choices)
+        growths = np.array([number(choices, -1, 1) for _ in values])
+
+        def velocities(time):
+            body.SetDOFValues(values + time * rates + time**2 / 2 * growths)
+            body.SetDOFVelocities(rates + time * growths, [0, 0, 0], [0, 0, 0], Nothing)
+            return body.GetLinkVelocities()
+
+        expected = (velocities(STEP) - velocities(-STEP)) / (2 * STEP)
+        velocities(0)
+        close(body.GetLinkAccelerations(growths), expected, 1e-6)
+
+    def test_a_turning_base_pulls_inwards(self, robot):
+        robot.SetVelocity([0.5, 0, 0], [0, 0, 2.0])
+        origins = robot.link_transforms()[:, :3, 3] - robot.GetTransform()[:3, 3]
+        expected = np.array([0, 1.0, 0]) - 4 * origins * [1, 1, 0]
+        np.testing.assert_allclose(robot.GetLinkAccelerations(None)[:, :3], expected, atol=1e-12)
+        pushed = robot.GetLinkAccelerations(None, {0: [1, 2, 3, 0, 0, 0]})
+        np.testing.assert_allclose(pushed[:, :3], expected + np.array([1, 2, 3]), atol=1e-12)
+
+    @examples(40)
+    @given(scenes(SMOOTH), choices())
+    def test_hessians_are_their_velocity_part(self, load, scene, choices):
+        body, _, rates = smooth_body(load, scene, choices)
+        body.SetDOFVelocities(rates, [0, 0, 0], [0, 0, 0], Nothing)
+        accelerations = body.GetLinkAccelerations(None)
+        for link, transform in enumerate(body.link_transforms()):
+            moving = body.ComputeHessianTranslation(link, transform[:3, 3])
+            close(np.einsum("i,ijk,k", rates, moving, rates), accelerations[link, :3], 1e-9)
+            turning = body.ComputeHessianAxisAngle(link)
+            close(np.einsum("i,ijk,k", rates, turning, rates), 2 * accelerations[link, 3:], 1e-9)
+
+
+PLAIN = Taste(bodies=1, trees=True, mimics=False, kinds=("hinge", "slider", "hinge2"))
+"""Bodies whose DOFs are MuJoCo's."""
+
+
+class TestInverseDynamics:
+    @examples(60)
+    @given(scenes(PLAIN), choices())
+    def test_mujoco_says_the_same(self, load, scene, choices):
+        body, values, rates = smooth_body(load, scene, choices)
+        growths = np.array([number(choices, -1, 1) for _ in values])
+        body.SetDOFVelocities(rates, 0)
+        model, data = body.GetEnv().model, mujoco.MjData(body.GetEnv().model)
+        places = body.qpos_indices
+        data.qpos[places], data.qvel[places], data.qacc[places] = values, rates, growths
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fwdVelocity(model, data)
+        forces = np.zeros(model.nv)
+        mujoco.mj_rne(model, data, 1, forces)
+        expected = (forces + model.dof_armature * data.qacc)[places]
+        close(body.ComputeInverseDynamics(growths), expected, 1e-9)
+
+    @examples(60)
+    @given(scenes(SMOOTH), choices())
+    def test_power_becomes_energy(self, load, scene, choices):
+        body, values, rates = smooth_body(load, scene, choices)
+        growths = np.array([number(choices, -1, 1) for _ in values])
+        gravity = body.GetEnv().GetPhysicsEngine().GetGravity()
+        motors = body.simulation_state.dynamics.armature.any()
+        assume(not motors)
+
+        def energy(time):
+            body.SetDOFValues(values + time * rates + time**2 / 2 * growths)
+            body.SetDOFVelocities(rates + time * growths, [0, 0, 0], [0, 0, 0], Nothing)
+            total = 0.0
+            for link, velocity in zip(body.GetLinks(), body.GetLinkVelocities(), strict=True):
+                rotation = link.GetTransform()[:3, :3]
+                com = link.GetGlobalCOM()
+                moved = velocity[:3] + np.cross(velocity[3:], com - link.GetTransform()[:3, 3])
+                turned = rotation.T @ velocity[3:]
+                total += link.GetMass() * (moved @ moved / 2 - gravity @ com)
+                total += turned @ link.GetLocalInertia() @ turned / 2
+            return total
+
+        power = (energy(1e-4) - energy(-1e-4)) / 2e-4
+        size = abs(energy(0)) + 1
+        torques = body.ComputeInverseDynamics(growths)
+        assert torques @ rates == pytest.approx(power, abs=1e-5 * size)
+
+    @examples(60)
+    @given(scenes(SMOOTH), choices())
+    def test_components_and_pushes(self, load, scene, choices):
+        body, _, rates = smooth_body(load, scene, choices)
+        growths = np.array([number(choices, -1, 1) for _ in rates])
+        base = [number(choices, -1, 1) for _ in range(6)]
+        body.SetDOFVelocities(rates, base[:3], base[3:], Nothing)
+        link = choices.integer(0, len(body.GetLinks()) - 1)
+        push = np.array([number(choices, -5, 5) for _ in range(6)])
+        plain = body.ComputeInverseDynamics(growths)
+        pushed = body.ComputeInverseDynamics(growths, {link: push})
+        com = body.GetLinks()[link].GetGlobalCOM()
+        moving, turning = body.ComputeJacobianTranslation(link, com), body.ComputeJacobianAxisAngle(link)
+        close(pushed - plain, moving.T @ push[:3] + turning.T @ push[3:], 1e-9 * max(1, np.abs(plain).max()))
+        parts = body.ComputeInverseDynamics(growths, {link: push}, True)
+        close(np.sum(parts, axis=0), pushed, 1e-9)
+        body.SetVelocity([0, 0, 0], [0, 0, 0])
+        resting = body.ComputeInverseDynamics(None)
+        close(body.ComputeInverseDynamics(growths) - resting, parts[0], 1e-9 * max(1, np.abs(resting).max()))
+
+    def test_mass_set_later_counts(self, robot):
+        before = robot.ComputeInverseDynamics([1, 0], None, True)[0]
+        inertial = robot.simulation_state.scene.links[2].inertial
+        heavy = type(inertial)(
+            2 * inertial.mass, inertial.com, tuple(tuple(2 * x for x in row) for row in inertial.inertia)
+        )
+        robot.simulation_state.edit_link(2, inertial=heavy)
+        after = robot.ComputeInverseDynamics([1, 0], None, True)[0]
+        assert after[1] == pytest.approx(2 * before[1])
+
+
+class TestBatch:
+    @examples(80)
+    @given(scenes(Taste(bodies=2)), choices())
+    def test_many_are_one_after_the_other(self, load, scene, choices):
+        bodies = load(scene)
+        body, kinematics = bodies[-1], Kinematics(scene.bodies[-1])
+        body.SetTransform(ravemj.matrixFromPose([0.5, 0.5, -0.5, 0.5, 1, -2, 3]))
+        values, rates, growths = (np.array([draw_values(body, kinematics, choices) for _ in range(3)]) for _ in "qvw")
+        values = values.reshape(3, body.GetDOF())
+        before, stamp = body.link_transforms(), body.GetUpdateStamp()
+        transforms = body.batch_link_transforms(values)
+        torques = body.batch_inverse_dynamics(values, rates, growths)
+        link = len(body.GetLinks()) - 1
+        jacobians = body.batch_jacobians(values, link, [0.1, 0.2, 0.3])
+        np.testing.assert_array_equal(body.link_transforms(), before)
+        assert body.GetUpdateStamp() == stamp
+        for index in range(3):
+            body.SetDOFValues(values[index])
+            np.testing.assert_allclose(transforms[index], body.link_transforms(), rtol=0, atol=1e-11)
+            point = (body.link_transforms()[link] @ [0.1, 0.2, 0.3, 1])[:3]
+            close(jacobians[index, :3], body.ComputeJacobianTranslation(link, point), 1e-10)
+            close(jacobians[index, 3:], body.ComputeJacobianAxisAngle(link), 1e-10)
+            body.SetDOFVelocities(rates[index], [0, 0, 0], [0, 0, 0], Nothing)
+            close(torques[index], body.ComputeInverseDynamics(growths[index]), 1e-9)
+
+    def test_chunks_join(self, robot):
+        values = np.linspace(-1, 1, 2 * 2503).reshape(-1, 2)
+        out = np.empty((2503, 3, 4, 4))
+        assert robot.batch_link_transforms(values, out) is out
+        for index in (0, 999, 1000, 1001, 2502):
+            robot.SetDOFValues(values[index])
+            np.testing.assert_allclose(out[index], robot.link_transforms(), rtol=0, atol=1e-13)
+        assert robot.batch_link_transforms(np.zeros((0, 2))).shape == (0, 3, 4, 4)
+
+    def test_nonsense_is_refused(self, robot):
+        with pytest.raises(ravemj.openrave_exception, match="shape"):
+            robot.batch_link_transforms([0.1, 0.2])
+        with pytest.raises(ravemj.openrave_exception, match="finite"):
+            robot.batch_link_transforms([[0.1, np.nan]])
+        with pytest.raises(ravemj.openrave_exception, match="out"):
+            robot.batch_link_transforms([[0.1, 0.2]], np.empty((1, 3, 4, 4), dtype=np.float32))
+        with pytest.raises(ravemj.openrave_exception, match="as many"):
+            robot.batch_inverse_dynamics(np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((3, 2)))
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-9, 1e-3, 0.0999, 0.1001, 1.0, 3.0, 6.0])
+def test_rate_of_a_rotation_vector(size):
+    """Against quaternions, and the derivative against difference quotients."""
+    vector = size * np.array([2, -1, 2]) / 3
+    rate, changes = rotation_rate(vector)
+    now = ravemj.quatFromAxisAngle(vector)
+    for column, d in zip(rate.T, np.eye(3) * 1e-6, strict=True):
+        after, before = ravemj.quatFromAxisAngle(vector + d), ravemj.quatFromAxisAngle(vector - d)
+        turned = 2 * ravemj.quatMult(ravemj.quatInverse(now), (after - before) / 2e-6)
+        np.testing.assert_allclose(turned[1:], column, atol=1e-8)
+    for change, d in zip(changes, np.eye(3) * 1e-5, strict=True):
+        by_hand = (rotation_rate(vector + d)[0] - rotation_rate(vector - d)[0]) / 2e-5
+        np.testing.assert_allclose(change, by_hand, atol=1e-9)

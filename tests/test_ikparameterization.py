@@ -1,0 +1,196 @@
+"""Goals of arms: what they hold, how they move, how far they are from each other."""
+
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import ravemj
+from ravemj import IkParameterization, Ray, misc
+
+Type = IkParameterization.Type
+numbers = st.lists(st.floats(-2, 2), min_size=7, max_size=7).filter(lambda row: sum(x * x for x in row[:4]) > 0.1)
+TURN = ravemj.matrixFromAxisAngle([0, 0, np.pi / 2])
+SHIFT = ravemj.matrixFromPose([1, 0, 0, 0, 1, 2, 3])
+
+
+def pose(row):
+    quaternion = np.array(row[:4]) / np.linalg.norm(row[:4])
+    return ravemj.matrixFromPose([*quaternion, *row[4:]])
+
+
+def goals(T):
+    """Goals of all types that move, which a tool at T reaches, with its direction along x."""
+    ray = Ray(T[:3, 3], T[:3, 0])
+    return {
+        Type.Transform6D: T,
+        Type.Rotation3D: ravemj.quatFromRotationMatrix(T),
+        Type.Translation3D: T[:3, 3],
+        Type.Lookat3D: T[:3, 3],
+        Type.Direction3D: T[:3, 0],
+        Type.Ray4D: ray,
+        Type.TranslationDirection5D: ray,
+    }
+
+
+@given(numbers, numbers)
+def test_a_moved_goal_is_that_of_the_moved_tool(row, other):
+    T, move = pose(row), pose(other)
+    for (kind, value), moved in zip(goals(T).items(), goals(move @ T).values(), strict=True):
+        goal = IkParameterization(value, kind)
+        assert len(goal.GetValues()) == goal.GetNumberOfValues()
+        expected = IkParameterization(moved, kind)
+        for result in (move * goal, goal.Transform(move)):
+            assert result.GetType() is kind
+            assert expected.ComputeDistanceSqr(result) < 1e-12
+        goal.MultiplyTransform(move)
+        assert expected.ComputeDistanceSqr(goal) < 1e-12
+
+
+@pytest.mark.parametrize("kind", list(goals(TURN)))
+def test_text_copies_and_pickles_hold_all(kind):
+    goal = IkParameterization(goals(SHIFT @ TURN)[kind], kind)
+    for _ in range(2):
+        for copy in (IkParameterization(str(goal)), IkParameterization(goal), pickle.loads(pickle.dumps(goal, 2))):
+            assert copy.GetType() is kind
+            assert copy.GetValues().tolist() == goal.GetValues().tolist()
+            assert {name: list(row) for name, row in copy.GetCustomDataMap().items()} == {
+                name: list(row) for name, row in goal.GetCustomDataMap().items()
+            }
+        assert str(eval(repr(goal))) == str(goal)
+        goal.SetCustomValues("weight", [1, 0.25])
+        goal.SetCustomValues("none", [])
+
+
+@pytest.mark.parametrize(
+    ("kind", "dof", "count"),
+    [
+        ("Transform6D", 6, 7),
+        ("Rotation3D", 3, 4),
+        ("Ray4D", 4, 6),
+        ("TranslationDirection5D", 5, 6),
+        ("Lookat3D", 2, 3),
+    ],
+)
+def test_types_know_their_sizes(kind, dof, count):
+    assert IkParameterization.GetDOFFromType(Type[kind]) == dof
+    assert IkParameterization.GetNumberOfValuesFromType(Type[kind]) == count
+    spec = IkParameterization.GetConfigurationSpecificationFromType(Type[kind], "linear", "arm", "hand")
+    (group,) = spec.GetGroups()
+    assert (group.name, group.dof) == (f"ikparam_values {int(Type[kind])} arm hand", count)
+    assert group.interpolation == "linear"
+
+
+def test_getters_and_setters_of_all_types():
+    goal = IkParameterization()
+    goal.SetTransform6D(SHIFT[:3])
+    assert goal.GetTransform6D().tolist() == SHIFT.tolist()
+    assert goal.GetTransform6DPose().tolist() == [1, 0, 0, 0, 1, 2, 3]
+    assert goal.GetDOF() == 6
+    for name, value in (("Rotation3D", [0, 1, 0, 0]), ("Translation3D", [1, 2, 3]), ("Lookat3D", [4, 5, 6])):
+        getattr(goal, f"Set{name}")(value)
+        assert goal.GetType() is Type[name]
+        assert getattr(goal, f"Get{name}")().tolist() == value
+    goal.SetDirection3D([0, 1, 0])
+    assert goal.GetDirection3D().tolist() == [0, 1, 0]
+    for name in ("Ray4D", "TranslationDirection5D"):
+        getattr(goal, f"Set{name}")(Ray([1, 2, 3], [0, 0, 2]))
+        ray = getattr(goal, f"Get{name}")()
+        assert [ray.pos().tolist(), ray.dir().tolist()] == [[1, 2, 3], [0, 0, 1]]
+    goal.SetValues([1, 2], Type.TranslationXY2D)
+    assert goal.GetValues().tolist() == [1, 2]
+    values = goal.GetValues()
+    values[0] = 9
+    assert goal.GetValues().tolist() == [1, 2]
+
+
+def test_what_cannot_be_says_so_and_changes_nothing():
+    goal = IkParameterization([1, 2, 3], Type.Translation3D)
+    for wrong in (
+        goal.GetTransform6D,
+        lambda: goal.SetRotation3D([1, 2]),
+        lambda: goal.SetValues([1, 2], Type.Ray4D),
+        lambda: goal.SetCustomValues("two words", [1]),
+        lambda: goal.ComputeDistanceSqr(IkParameterization(SHIFT, Type.Transform6D)),
+    ):
+        with pytest.raises(ravemj.openrave_exception):
+            wrong()
+        assert str(goal) == f"{int(Type.Translation3D)} 1.0 2.0 3.0"
+    goal.SetValues([1, 2], Type.TranslationXY2D)
+    with pytest.raises(NotImplementedError, match="TranslationXY2D"):
+        goal.MultiplyTransform(SHIFT)
+
+
+def test_distances():
+    six = IkParameterization(np.eye(4), Type.Transform6D)
+    assert six.ComputeDistanceSqr(SHIFT * six) == 14
+    assert six.ComputeDistanceSqr(TURN * six) == pytest.approx(0.4 * (np.pi / 4) ** 2)
+    ray = IkParameterization(Ray([0, 0, 5], [0, 0, 1]), Type.Ray4D)
+    assert ray.ComputeDistanceSqr(IkParameterization(Ray([3, 0, -8], [0, 0, 1]), Type.Ray4D)) == 9
+    five = IkParameterization(ray.GetRay4D(), Type.TranslationDirection5D)
+    moved = IkParameterization(Ray([0, 0, 7], [1, 0, 0]), Type.TranslationDirection5D)
+    assert five.ComputeDistanceSqr(moved) == pytest.approx(4 + (np.pi / 2) ** 2)
+
+
+def test_custom_data_is_kept_apart():
+    goal = IkParameterization([1, 2, 3], Type.Translation3D)
+    goal.SetCustomValues("a", [1])
+    goal.SetCustomValues("b", [2, 3])
+    assert goal.GetCustomValues("b").tolist() == [2, 3]
+    assert goal.GetCustomValues("c") is None
+    copy = IkParameterization(goal)
+    assert goal.ClearCustomValues("a") == 1
+    assert goal.ClearCustomValues() == 1
+    assert set(copy.GetCustomDataMap()) == {"a", "b"}
+
+
+# Manipulators
+
+ARM = """<Robot name="arm"><KinBody>
+  <Body name="base" type="dynamic"><Translation>1 0 0</Translation><RotationAxis>0 0 1 90</RotationAxis></Body>
+  <Body name="hand" type="dynamic"><Translation>2 0 1</Translation></Body>
+  <Joint name="j" type="hinge"><Body>base</Body><Body>hand</Body><axis>0 1 0</axis></Joint></KinBody>
+  <Manipulator name="m"><base>base</base><effector>hand</effector><Translation>0 0 0.5</Translation>
+  <direction>1 0 0</direction></Manipulator></Robot>"""
+
+
+@pytest.fixture
+def arm(tmp_path):
+    (tmp_path / "arm.xml").write_text(ARM)
+    return ravemj.load(tmp_path / "arm.xml").GetRobots()[0].GetManipulators()[0]
+
+
+@pytest.mark.parametrize("kind", list(goals(TURN)))
+def test_the_tool_is_where_its_goal_says(arm, kind):
+    arm.GetRobot().SetDOFValues([0.7])
+    T = arm.GetTransform()
+    here = IkParameterization(goals(T)[kind], kind)
+    assert arm.GetIkParameterization(kind).ComputeDistanceSqr(here) < 1e-15
+    in_base = arm.GetIkParameterization(here, False)
+    assert (arm.GetBase().GetTransform() * in_base).ComputeDistanceSqr(here) < 1e-15
+
+
+def test_arms_have_no_solver_and_say_so(arm):
+    assert arm.GetIkSolver() is None
+    assert arm.SetIkSolver(None) is False
+    for find in (arm.FindIKSolution, arm.FindIKSolutions):
+        with pytest.raises(NotImplementedError, match="inverse kinematics") as caught:
+            find(np.eye(4), ravemj.IkFilterOptions.CheckEnvCollisions)
+        assert caught.value.GetCode() == "Failed"
+
+
+def test_goals_are_drawn_as_axes_or_lines():
+    class Canvas:
+        def drawlinelist(self, points, linewidth, colors):
+            return np.asarray(points)
+
+    for kind, value in goals(SHIFT).items():
+        (drawn,) = misc.DrawIkparam2(Canvas(), IkParameterization(value, kind), dist=0.5)
+        has_place = kind not in {Type.Rotation3D, Type.Direction3D}
+        assert drawn[0].tolist() == ([1, 2, 3] if has_place else [0, 0, 0])
+        assert len(drawn) in {2, 6}
+        np.testing.assert_allclose(drawn[1] - drawn[0], [0.5, 0, 0])
+    with pytest.raises(ravemj.openrave_exception, match="TranslationXY2D"):
+        misc.DrawIkparam(Canvas(), IkParameterization([1, 2], Type.TranslationXY2D))

@@ -1,0 +1,55 @@
+"""``openravepy.planningutils``: trajectories backwards, together, and in another layout."""
+
+import numpy as np
+import pytest
+
+import ravemj
+from ravemj import ConfigurationSpecification, planningutils
+
+
+def trajectory(rows, *groups):
+    """A trajectory with groups of one number each, and delta times in the last column."""
+    spec = ConfigurationSpecification()
+    for name in groups:
+        spec.AddGroup(name, 1, "linear")
+    spec.AddDeltaTimeGroup()
+    made = ravemj.RaveCreateTrajectory(ravemj.Environment(), "")
+    made.Init(spec)
+    made.Insert(0, np.array(rows, float).ravel())
+    return made
+
+
+def test_backwards_and_back():
+    rows = [[0, 0, 9, 0], [1, 2, 8, 0.5], [4, 3, 7, 1.5]]
+    there = trajectory(rows, "joint_values a 0", "joint_velocities a 0", "joint_accelerations a 0")
+    back = planningutils.ReverseTrajectory(there)
+    assert back.GetAllWaypoints2D().tolist() == [[4, -3, 7, 0], [1, -2, 8, 1.5], [0, 0, 9, 0.5]]
+    assert there.GetAllWaypoints2D().tolist() == rows
+    assert planningutils.ReverseTrajectory(back).GetAllWaypoints2D().tolist() == rows
+    assert back.GetDuration() == there.GetDuration()
+
+
+def test_together_each_is_where_it_would_be_alone():
+    one = trajectory([[0, 0], [2, 1]], "joint_values a 0")
+    two = trajectory([[5, 0], [6, 0.5], [3, 1.5]], "joint_values a 1")
+    both = planningutils.MergeTrajectories([one, two])
+    assert both.GetDuration() == 2
+    for time in np.linspace(0, 2, 9).tolist():
+        for alone in (one, two):
+            group = alone.GetConfigurationSpecification().GetGroupFromName("joint_values")
+            expected = alone.Sample(time)[group.offset]
+            part = ConfigurationSpecification()
+            part.AddGroup(group.name, 1, "linear")
+            assert both.Sample(time, part)[0] == pytest.approx(expected)
+    with pytest.raises(ravemj.openrave_exception):
+        planningutils.MergeTrajectories([])
+
+
+def test_converted_in_place():
+    made = trajectory([[1, 2, 0], [3, 4, 1]], "joint_values a 0", "joint_values b 0")
+    spec = ConfigurationSpecification()
+    spec.AddDeltaTimeGroup()
+    spec.AddGroup("joint_values b 0", 1, "linear")
+    planningutils.ConvertTrajectorySpecification(made, spec)
+    assert made.GetConfigurationSpecification() == spec
+    assert made.GetAllWaypoints2D().tolist() == [[0, 2], [1, 4]]
