@@ -45,7 +45,7 @@ SLIDER_FORCES = {
 MISTAKES = {
     "data-01-load-return-values": (
         "unknown-root",
-        "a file with an unknown root is no model: False is the better answer",
+        "a file with an unknown root is no model: False is better",
     ),
     "dynamics-03-accelerations": ("symmetric", "with the forces of sliders as they are, the mass matrix is symmetric"),
     "dynamics-11-mimic": (r"b\[0\]", "OpenRAVE leaves out what accelerates the follower"),

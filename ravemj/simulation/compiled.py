@@ -94,6 +94,8 @@ def write_inertial(model: mujoco.MjModel, body_id: int, inertial: Inertial) -> N
     model.body_inertia[body_id] = principal_moments(inertial)
     model.body_ipos[body_id] = frame.position
     model.body_iquat[body_id] = frame.wxyz
+    model.body_sameframe[body_id] = 0  # the frame of its inertia is not that of the body
+    model.body_subtreemass[0] += added
     while body_id:
         model.body_subtreemass[body_id] += added
         body_id = model.body_parentid[body_id]

@@ -184,5 +184,6 @@ class Simulation:
                 body.settle()
             self._compiled = compiled
             self.version += 1
-            send_warnings(self.diagnostics)
+            # Links that scripts make are all called "base"; only who reads the MJCF wants to know its names.
+            send_warnings(finding for finding in self.diagnostics if finding.code != "renamed")
             return compiled
