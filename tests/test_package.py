@@ -20,7 +20,7 @@ def rooms(names: str) -> set[str]:
 LEVELS = [
     rooms(row)
     for row in (
-        "_mujoco errors transforms",
+        "_mujoco errors showing transforms",
         "alias api_names arrays clock coverage_notes drawing examples expressions handles metaclass motion ordering "
         "output python2",
         "geometry_functions scene video",
@@ -47,7 +47,7 @@ WITHOUT_MUJOCO = rooms(
     """
     adjacency alias arrays bounds builder chains clock coverage drawing errors expressions fingerprints following
     geometry_functions handles hierarchy inertia joints making manipulators meshes mjcf motion openrave_xml ordering
-    output readers scene tessellation trajectories transforms video
+    output readers scene showing tessellation trajectories transforms video
     """
 )
 

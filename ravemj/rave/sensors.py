@@ -10,6 +10,7 @@ from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.infos import AttachedSensorInfo
 from ravemj.rave.link import Link
 from ravemj.rendering import CameraIntrinsics
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats
 
@@ -37,19 +38,19 @@ class CameraGeomData:
         return self.intrinsics.K
 
 
-class Sensor:
+class Sensor(Shown):
     """A device that measures; ``attached.GetSensor()`` makes it."""
 
     Type = SensorType
     ConfigureCommand = SensorCommand
 
-    def __init__(self, attached: scene.AttachedSensor, kind: str) -> None:
-        self._scene = attached
-        self._kind = kind
+    def __init__(self, attached: "AttachedSensor", place: scene.AttachedSensor) -> None:
+        self._attached = attached
+        self._scene = place
 
     def GetXMLId(self) -> str:
         """Return OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``."""
-        return self._kind
+        return self._scene.type or ""
 
     def GetSensorGeometry(self, type: SensorType | None = None) -> CameraGeomData | None:  # OpenRAVE's name
         """Return what is fixed about the sensor; None unless it is a camera.
@@ -63,8 +64,17 @@ class Sensor:
         matrix = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
         return CameraGeomData(CameraIntrinsics(matrix), camera.width, camera.height)
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sensor) and self._attached == other._attached
 
-class AttachedSensor:
+    def __hash__(self) -> int:
+        return hash((Sensor, self._attached))
+
+    def __repr__(self) -> str:
+        return f"{self._attached!r}.GetSensor()"
+
+
+class AttachedSensor(Shown):
     """A place on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
 
     def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
@@ -103,7 +113,7 @@ class AttachedSensor:
 
     def GetSensor(self) -> Sensor | None:
         """Return the device, or None for a mere frame."""
-        return None if self._scene.type is None else Sensor(self._scene, self._scene.type)
+        return None if self._scene.type is None else Sensor(self, self._scene)
 
     def GetInfo(self) -> AttachedSensorInfo:
         """Return the description of the attached sensor, a copy."""
@@ -111,5 +121,11 @@ class AttachedSensor:
 
     UpdateAndGetInfo = GetInfo
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, AttachedSensor) and self._state is other._state and self.GetName() == other.GetName()
+
+    def __hash__(self) -> int:
+        return hash((id(self._state), "sensor", self.GetName()))
+
     def __repr__(self) -> str:
-        return f"{self._robot!r}.GetAttachedSensor('{self.GetName()}')"
+        return f"{self._robot!r}.GetAttachedSensor({self.GetName()!r})"

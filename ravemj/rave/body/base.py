@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 class BodyPart(Interface):
     """Part of the API of a body; ``KinBody`` joins the parts."""
 
+    _internal = ("simulation_state",)
+
     def __init__(self, env: "Environment", state: BodyState) -> None:
         self._env = env
         self._state = state
