@@ -8,6 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
+from ravemj.chains import dofs_moving
 from ravemj.collision.resting import tested_pairs
 from ravemj.collision.world import CollisionWorld, Pairs, cross, joined
 from ravemj.scene import KinBody
@@ -81,22 +82,23 @@ def links(world: CollisionWorld, first: LinkOf, second: LinkOf) -> Pairs:
     return world.pairs(("links", first, second), find)
 
 
-def itself(world: CollisionWorld, body: BodyState, moved: Links = None) -> Pairs:
+def itself(world: CollisionWorld, body: BodyState, moved: Links = None, others: Links = None) -> Pairs:
     """Return the pairs within a body and what it holds.
 
     Args:
         world: Where the body is.
         body: The body.
         moved: Only pairs of one of these links, or what it holds, and one of the others; None: all.
+        others: Which of the others; None: all.
     """
 
     def find() -> tuple[Ints, Ints]:
-        return joined(_within(world, body, moved))
+        return joined(_within(world, body, moved, others))
 
-    return world.pairs(("itself", body, moved), find)
+    return world.pairs(("itself", body, moved, others), find)
 
 
-def _within(world: CollisionWorld, body: BodyState, moved: Links) -> Iterable[tuple[Ints, Ints]]:
+def _within(world: CollisionWorld, body: BodyState, moved: Links, others: Links = None) -> Iterable[tuple[Ints, Ints]]:
     tested = [link for link, one in enumerate(body.scene.links) if not one.self_collision_ignored]
     geoms = {link: world.geoms_of_link(body, link) for link in tested}
     held = [(grab, _held(world, grab.body)) for grab in body.grabs]
@@ -104,11 +106,19 @@ def _within(world: CollisionWorld, body: BodyState, moved: Links) -> Iterable[tu
     asked += [(a, grab.link, (geoms[a], other)) for grab, other in held for a in tested if a not in grab.ignored]
     asked += [(a.link, b.link, (one, other)) for (a, one), (b, other) in combinations(held, 2) if a.link != b.link]
     for first, second, sets in asked:
-        if moved is None or (first in moved) != (second in moved):
+        if _is_asked(first, second, moved, others):
             yield cross(*sets)
     if moved is None:
         for grab in body.grabs:
             yield from _within(world, grab.body, None)
+
+
+def _is_asked(first: int, second: int, moved: Links, others: Links) -> bool:
+    """Return whether one of two links is among those moved, and the other is another one."""
+    if moved is None:
+        return True
+    other = second if first in moved else first
+    return (first in moved) != (second in moved) and (others is None or other in others)
 
 
 def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) -> frozenset[int]:
@@ -119,21 +129,8 @@ def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) ->
 
 def moved_links(body: KinBody, dofs: Iterable[int]) -> frozenset[int]:
     """Return the links that any of the DOFs move, directly or through mimic joints."""
-    wanted, joints = set(dofs), (*body.joints, *body.passive_joints)
-    firsts = np.cumsum([0, *(len(joint.axes) for joint in body.joints)]).tolist()
-    placing = {joint.child: number for number, joint in enumerate(joints) if joint.places_child}
-
-    def is_moved(link: int) -> bool:
-        while link in placing:
-            number = placing[link]
-            joint = joints[number]
-            own = range(firsts[number], firsts[number] + len(joint.axes)) if number < len(body.joints) else ()
-            if not joint.static and wanted & set(own if joint.mimic is None else joint.mimic.dofs):
-                return True
-            link = joint.parent
-        return False
-
-    return frozenset(link for link in range(len(body.links)) if is_moved(link))
+    wanted = set(dofs)
+    return frozenset(link for link in range(len(body.links)) if wanted & dofs_moving(body, link))
 
 
 def _part(world: CollisionWorld, body: BodyState, links: Links) -> Ints:
@@ -147,7 +144,12 @@ def _part(world: CollisionWorld, body: BodyState, links: Links) -> Ints:
 
 def _held(world: CollisionWorld, body: BodyState) -> Ints:
     """Return the geoms of a body and of all that it holds."""
-    return np.concatenate([world.geoms_of_body(body), *(_held(world, grab.body) for grab in body.grabs)])
+    return np.concatenate([world.geoms_of_body(one) for one in held_with(body)])
+
+
+def held_with(body: BodyState) -> list[BodyState]:
+    """Return a body and all that it holds, and so on."""
+    return [body, *(one for grab in body.grabs for one in held_with(grab.body))]
 
 
 def _without(world: CollisionWorld, geoms: Ints, bodies: frozenset[BodyState], links: frozenset[LinkOf]) -> Ints:

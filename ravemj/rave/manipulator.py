@@ -10,6 +10,7 @@ from ravemj import chains, fingerprints, scene
 from ravemj.arrays import checked_transform, checked_vector
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.manipulators import joint_dofs
+from ravemj.rave.arm_collision import ArmCollision
 from ravemj.rave.arm_goals import ArmGoals
 from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.infos import ManipulatorInfo
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Manipulator(ArmGoals):
+class Manipulator(ArmGoals, ArmCollision):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
     def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:

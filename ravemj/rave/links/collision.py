@@ -30,7 +30,7 @@ class LinkCollision(LinkPart):
 
     def IsSelfCollisionIgnored(self) -> bool:
         """Return whether ``body.CheckSelfCollision`` leaves the link out."""
-        return self._state.scene.links[self._index].self_collision_ignored
+        return self._scene.self_collision_ignored
 
     def ComputeAABB(self) -> AABB:
         """Return the smallest box along the world's axes that holds the link's geometries.
@@ -44,7 +44,7 @@ class LinkCollision(LinkPart):
     def ComputeAABBFromTransform(self, transform: ArrayLike) -> AABB:
         """Return the box of ``ComputeAABB`` for the link standing at a pose: 4x4, 3x4 or 7 numbers."""
         T_a_link = checked_transform(transform, "ComputeAABBFromTransform: transform")
-        return aabb_of(link_bounds(self._state.scene.links[self._index], T_a_link), T_a_link)
+        return aabb_of(link_bounds(self._scene, T_a_link), T_a_link)
 
     def ComputeLocalAABB(self) -> AABB:
         """Return the smallest box along the link's axes that holds its geometries, in the link's frame."""
