@@ -18,6 +18,8 @@ from ravemj.transforms import Floats, Ints, Pose, Wxyz, conjugate, inverse, mult
 
 LARGEST = float(np.finfo(np.float64).max)
 WELDED = -1
+FEW = 20
+"""Up to so many DOFs a loop over plain floats is faster than numpy."""
 
 
 class Ball(NamedTuple):
@@ -129,9 +131,10 @@ class BodyKinematics:
         self.lower = np.array([axis.lower for axis in axes])
         self.upper = np.array([axis.upper for axis in axes])
         self.circular = np.array([axis.circular for axis in axes], dtype=bool)
-        self._bounds = [
-            (-LARGEST, LARGEST) if axis.circular else (axis.lower, axis.upper) for axis in axes
-        ]  # plain floats: for few joints a loop over them is faster than numpy
+        self._lowest = np.where(self.circular, -LARGEST, self.lower)
+        self._highest = np.where(self.circular, LARGEST, self.upper)
+        bounds = list(zip(self._lowest.tolist(), self._highest.tolist(), strict=True))
+        self._bounds = bounds if self.dof <= FEW else None
         self._joints = (*body.joints, *body.passive_joints)
         self.followers = [one._replace(axis=self._joints[one.joint].axes[0]) for one in self.followers]
 
@@ -302,9 +305,12 @@ class BodyKinematics:
         """Place the links by what was written."""
         mujoco.mj_kinematics(self.model, self.data)
 
-    def within_limits(self, values: Sequence[float]) -> bool:
+    def within_limits(self, values: Floats) -> bool:
         """Return whether all values are finite numbers inside the limits; circular joints have none."""
-        return all(lower <= value <= upper for value, (lower, upper) in zip(values, self._bounds, strict=True))
+        if self._bounds is None:
+            return bool(((self._lowest <= values) & (values <= self._highest)).all())
+        pairs = zip(values.tolist(), self._bounds, strict=True)
+        return all(lower <= value <= upper for value, (lower, upper) in pairs)
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""

@@ -206,6 +206,53 @@ class TestVelocities:
         assert not robot.GetDOFVelocities().any()
 
 
+@pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
+def test_what_is_held_moves_along(env, robot):
+    thing = ravemj.RaveCreateKinBody(env, "")
+    thing.InitFromBoxes(np.array([[0, 0, 0, 0.01, 0.01, 0.01]]), True)
+    thing.SetName("thing")
+    thing.SetTransform(ravemj.matrixFromPose([1, 0, 0, 0, 0.1, 0.2, -0.5]))
+    env.Add(thing)
+    robot.Grab(thing, robot.GetLinks()[2])
+    robot.SetDOFVelocities([1, 0])
+    arm = np.array([0.1, 0.2, -0.5]) - robot.GetLinks()[2].GetTransform()[:3, 3]
+    carrier = robot.GetLinks()[2].GetVelocity()
+    np.testing.assert_allclose(carrier[3:], [1, 0, 0], atol=1e-12)
+    expected = [*(carrier[:3] + np.cross(carrier[3:], arm)), 1, 0, 0]
+    np.testing.assert_allclose(thing.GetLinks()[0].GetVelocity(), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("rotation", [0, 8, 16, 32])
+def test_active_jacobians(robot, rotation):
+    """Against difference quotients, of joints in another order, two directions and each kind of rotation."""
+    robot.SetDOFValues([0.4, -0.9])
+    robot.SetTransform(ravemj.matrixFromPose([0.5, 0.5, -0.5, 0.5, 1, -2, 3]))
+    axis = np.array([0.6, 0.0, 0.8])
+    if rotation == 8:
+        robot.SetTransform(ravemj.matrixFromAxisAngle(axis * 0.7))
+    robot.SetActiveDOFs([1, 0], 5 | rotation, axis)
+    values, link = robot.GetActiveDOFValues(), robot.GetLinks()[2]
+    local = np.array([0.1, 0.2, 0.3, 1])
+
+    def place(values):
+        robot.SetActiveDOFValues(values)
+        return link.GetTransform()
+
+    pairs = [(place(values + d), place(values - d)) for d in np.eye(len(values)) * STEP]
+    point = (place(values) @ local)[:3]
+    moved = np.array([((after - before) @ local)[:3] / (2 * STEP) for after, before in pairs]).T
+    turned = np.array([spin(before, after) / (2 * STEP) for after, before in pairs]).T
+    close(robot.CalculateActiveJacobian(2, point), moved, 1e-8)
+    close(robot.CalculateActiveAngularVelocityJacobian(2), turned, 1e-8)
+    rates = np.linspace(-0.5, 0.5, len(values))
+    if rotation == 32:
+        rates[-4:] -= values[-4:] * (values[-4:] @ rates[-4:])  # a unit quaternion stays one
+    robot.SetActiveDOFVelocities(rates)
+    np.testing.assert_allclose(robot.GetActiveDOFVelocities(), rates, atol=1e-9)
+    velocity = link.GetVelocity()
+    np.testing.assert_allclose(velocity[3:], robot.CalculateActiveAngularVelocityJacobian(2) @ rates, atol=1e-9)
+
+
 class TestAccelerations:
     @examples(60)
     @given(scenes(SMOOTH), choices())
@@ -257,8 +304,8 @@ class TestInverseDynamics:
         model, data = body.GetEnv().model, mujoco.MjData(body.GetEnv().model)
         places = body.qpos_indices
         data.qpos[places], data.qvel[places], data.qacc[places] = values, rates, growths
-        mujoco.mj_fwdPosition(model, data)
-        mujoco.mj_fwdVelocity(model, data)
+        for stage in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_comVel):
+            stage(model, data)
         forces = np.zeros(model.nv)
         mujoco.mj_rne(model, data, 1, forces)
         expected = (forces + model.dof_armature * data.qacc)[places]

@@ -6,7 +6,7 @@
 
 from ravemj.dynamics.body import BodyDynamics
 from ravemj.dynamics.posture import Inertias, Posture, cross
-from ravemj.dynamics.slopes import VelocityMap, rotation_rate
+from ravemj.dynamics.slopes import VelocityMap, first_values, rotation_rate
 from ravemj.dynamics.tree import Tree
 
-__all__ = ["BodyDynamics", "Inertias", "Posture", "Tree", "VelocityMap", "cross", "rotation_rate"]
+__all__ = ["BodyDynamics", "Inertias", "Posture", "Tree", "VelocityMap", "cross", "first_values", "rotation_rate"]

@@ -35,8 +35,8 @@ class BodyDynamics:
         return self._model.dof_armature[self.tree.dofs]
 
     @property
-    def _reference(self) -> Floats:
-        """The reference point, in the world: near the body, so that no digits are lost far from the world's origin."""
+    def reference(self) -> Floats:
+        """The reference point in the world [m], shape (3,): near the body, so that no digits are lost far away."""
         return self._data.xpos[self._kinematics.body_ids[0]].copy()
 
     def posture(self, *, second: bool = False) -> Posture:
@@ -49,7 +49,7 @@ class BodyDynamics:
         axes = data.xaxis[tree.joints]
         for mover, body_id in tree.balls:
             axes[mover : mover + 3] = data.xmat[body_id].reshape(3, 3).T
-        reference = self._reference
+        reference = self.reference
         values = np.zeros(0) if self.map.is_constant else kinematics.values()
         return Posture(
             tree,
@@ -70,7 +70,7 @@ class BodyDynamics:
         Returns:
             Of the point's position and of the link's angular velocity, in world axes, each of shape (3, dof).
         """
-        columns = self.posture().jacobian(link, point - self._reference).T
+        columns = self.posture().jacobian(link, point - self.reference).T
         return columns[:3].copy(), columns[3:].copy()
 
     def hessian(self, link: int, point: Floats) -> tuple[Floats, Floats]:
@@ -81,7 +81,7 @@ class BodyDynamics:
         """
         posture = self.posture(second=True)
         count, slopes = self.tree.count, posture.slopes
-        columns = posture.columns(link, point - self._reference)
+        columns = posture.columns(link, point - self.reference)
         moving, turning = columns[:, :3], columns[:, 3:]
         pairs = _outer_cross(turning, np.stack((moving, turning)))
         before = np.arange(count)[:, None] <= self.tree.carriers  # the first moves the axis of the second

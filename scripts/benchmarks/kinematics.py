@@ -1,4 +1,7 @@
-"""Joint values in, link poses out."""
+"""Joint values in, link poses out: one configuration after the other, and many at once."""
+
+import tempfile
+from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -7,30 +10,110 @@ import ravemj
 from benchmarks.measure import MODEL, Row, microseconds, take_turns
 from ravemj.transforms import Floats
 
+AXES = ("1 0 0", "0 1 0", "0 0 1")
+MANY = 600
+"""Configurations of a batch."""
+
 
 def rows() -> list[Row]:
-    """Compare ``SetDOFValues`` and ``GetLinkTransformations`` with the MuJoCo calls that they stand for."""
-    env = ravemj.load(MODEL)
-    robot = env.GetRobots()[0]
-    model, data = env.model, mujoco.MjData(env.model)
-    qpos, xpos, xmat = data.qpos, data.xpos[1:], data.xmat[1:]
-    values = np.full(robot.GetDOF(), 0.5)
+    """Compare our calls with the MuJoCo calls that they stand for, for robots of several sizes."""
+    with tempfile.TemporaryDirectory() as folder:
+        arm = _write(Path(folder) / "arm.xml", [8])
+        large = _write(Path(folder) / "large.xml", [15] * 6)
+        return [*_of("pendulum", MODEL, 5.0), *_of("arm of 7 joints", arm, 4.5), *_of("90 links", large, 3.0)]
 
-    def ours() -> list[Floats]:
+
+def _write(path: Path, branches: list[int]) -> Path:
+    """Write a robot of chains of links that start at a common one; every fifth joint of several chains is a weld."""
+    bodies, joints = [_link("base", "")], list[str]()
+    for branch, length in enumerate(branches):
+        before = "base"
+        for index in range(length - (branch == 0)):
+            name = f"link{branch}_{index}"
+            bodies.append(_link(name, before))
+            weld = "<limits>0 0</limits>" if index % 5 == 4 and len(branches) > 1 else "<limits>-2 2</limits>"
+            ends = f"<Body>{before}</Body><Body>{name}</Body><offsetfrom>{name}</offsetfrom>"
+            joints.append(f"<Joint name='to_{name}' type='hinge'>{ends}<axis>{AXES[index % 3]}</axis>{weld}</Joint>")
+            before = name
+    path.write_text(f"<Robot name='robot'><KinBody>{''.join(bodies + joints)}</KinBody></Robot>")
+    return path
+
+
+def _link(name: str, before: str) -> str:
+    place = f"<offsetfrom>{before}</offsetfrom><Translation>0.1 0.02 0.05</Translation>" if before else ""
+    geometry = "<Geom type='box'><extents>0.05 0.02 0.02</extents></Geom>"
+    return f"<Body name='{name}'>{place}<rotationaxis>0 0 1 10</rotationaxis>{geometry}</Body>"
+
+
+def _of(what: str, path: Path, limit: float) -> list[Row]:
+    robot = ravemj.load(path).GetRobots()[0]
+    return [*_one(what, robot, limit), _many(what, robot)]
+
+
+class Bare:
+    """MuJoCo without us."""
+
+    def __init__(self, robot: ravemj.Robot) -> None:
+        self.model = robot.GetEnv().model
+        self.data = mujoco.MjData(self.model)
+        self.qpos, self.xpos, self.xmat = self.data.qpos, self.data.xpos[1:], self.data.xmat[1:]
+
+    def place(self, qpos: Floats, transforms: Floats) -> None:
+        """Write the poses of the links, without the last rows."""
+        self.qpos[:] = qpos
+        mujoco.mj_kinematics(self.model, self.data)
+        transforms[:, :3, 3] = self.xpos
+        transforms[:, :3, :3] = self.xmat.reshape(-1, 3, 3)
+
+
+def _one(what: str, robot: ravemj.Robot, limit: float) -> list[Row]:
+    bare, moving = Bare(robot), robot.qpos_indices >= 0
+    values, qpos = np.where(moving, 0.5, 0.0), np.full(moving.sum(), 0.5)
+    count = len(bare.xpos)
+
+    def as_list() -> list[Floats]:
         robot.SetDOFValues(values)
         return robot.GetLinkTransformations()
 
-    def bare() -> Floats:
-        qpos[:] = values
-        mujoco.mj_kinematics(model, data)
-        transforms = np.zeros((len(xpos), 4, 4))
-        transforms[:, :3, 3] = xpos
-        transforms[:, :3, :3] = xmat.reshape(-1, 3, 3)
+    def as_array() -> Floats:
+        robot.SetDOFValues(values)
+        return robot.link_transforms()
+
+    def floor() -> Floats:
+        transforms = np.zeros((count, 4, 4))
+        bare.place(qpos, transforms)
         transforms[:, 3, 3] = 1
         return transforms
 
-    if not np.array_equal(ours(), bare()):
+    if not np.allclose(as_list(), floor(), rtol=0, atol=1e-13):
         raise RuntimeError("the poses differ")
-    measured, floor = take_turns([microseconds(ours, 100), microseconds(bare, 100)], 1000)
-    what = "SetDOFValues + GetLinkTransformations : mj_kinematics + copies of xpos, xmat"
-    return [Row(what, "µs", measured, floor, 5.0)]
+    calls = max(1, 100 // count)  # short runs, which other programs seldom interrupt
+    listed, arrayed, bared = take_turns(
+        [microseconds(function, calls) for function in (as_list, as_array, floor)], 1000
+    )
+    return [
+        Row(f"{what}: SetDOFValues + GetLinkTransformations : mj_kinematics, poses", "µs", listed, bared, limit),
+        Row(f"{what}: SetDOFValues + link_transforms : mj_kinematics, poses", "µs", arrayed, bared, 2.5),
+    ]
+
+
+def _many(what: str, robot: ravemj.Robot) -> Row:
+    bare, moving = Bare(robot), robot.qpos_indices >= 0
+    values = np.random.default_rng(1).uniform(-1, 1, (MANY, robot.GetDOF())) * moving
+    qpos = values[:, moving]
+    out = np.zeros((MANY, len(bare.xpos), 4, 4))
+    out[:, :, 3, 3] = 1
+
+    def loop() -> Floats:
+        for own, transforms in zip(qpos, out, strict=True):
+            bare.place(own, transforms)
+        return out
+
+    def batch() -> Floats:
+        return robot.batch_link_transforms(values, out)
+
+    if not np.allclose(loop().copy(), batch(), rtol=0, atol=1e-12):
+        raise RuntimeError("the poses differ")
+    batched, looped = (MANY / time * 1e6 for time in take_turns([microseconds(batch), microseconds(loop)], 50))
+    label = f"{what}: configurations a second, batch_link_transforms : a loop over mj_kinematics, poses"
+    return Row(label, "1/s", batched, looped, 1.5, more_is_better=True)

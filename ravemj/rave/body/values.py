@@ -64,7 +64,7 @@ class JointValues(BodyPart):
         with self._simulation.lock:
             kinematics = self._state.kinematics
             target = self._full_values(values, dofindices)
-            if not kinematics.within_limits(target.tolist()):
+            if not kinematics.within_limits(target):
                 target = self._settled(target, checklimits)
             self._state.set_values(target, limit_followers=checklimits != CheckLimitsAction.Nothing)
 
