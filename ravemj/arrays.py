@@ -92,4 +92,4 @@ def _rotation(given: Floats, name: str) -> Floats:
         raise ArgumentError(f"{name}: the rotation {given.tolist()} is none: its rows should be orthonormal")
     if off < ROUNDING and abs(determinant - 1) < ROUNDING:
         return given
-    return np.array(rows_from_wxyz(wxyz_from_rows(rotation.tolist())))
+    return np.array(rows_from_wxyz(wxyz_from_rows(given.tolist())))  # with the scale, as OpenRAVE does

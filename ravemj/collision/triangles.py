@@ -22,7 +22,7 @@ _XML = """<mujoco><asset>
 <geom type="mesh" mesh="a"/><geom type="mesh" mesh="b"/><geom size="1"/>
 </worldbody></mujoco>"""
 _TRIANGLE, _OTHER_TRIANGLE, _SOLID = range(3)
-_IDENTITY = np.eye(3)
+
 _CHUNK = 64  # triangles
 
 _Pair = tuple[int, int, float]
@@ -38,7 +38,7 @@ class TriangleTests:
         self._triangles: dict[int, _Triangles] = {}
         self._scratch = mujoco.MjModel.from_xml_string(_XML)
         self._scratch_data = mujoco.MjData(self._scratch)
-        self._scratch_data.geom_xmat[:] = _IDENTITY.ravel()
+        self._scratch_data.geom_xmat[:] = np.eye(3).ravel()
         self._corners = self._scratch.mesh_vert.reshape(2, 4, 3)
         self._segment = np.zeros(6)
 
