@@ -357,6 +357,32 @@ def test_end_effector(env, arm):
     np.testing.assert_array_equal(arm.GetLinkTransformations(), before)
 
 
+def test_active_dofs_choose_what_is_tested(env, arm):
+    """Pairs that they move against each other; links that they move against the world."""
+    arm.SetDOFValues([0, 2.95, 1])
+    checker = env.GetCollisionChecker()
+    assert arm.CheckSelfCollision()
+    checker.SetCollisionOptions(CollisionOptions.ActiveDOFs)
+    assert arm.CheckSelfCollision()
+    assert arm.GetNonAdjacentLinks(KinBody.AdjacentOptions.ActiveDOFs) == [(0, 2), (0, 3), (1, 3)]
+    arm.SetActiveDOFs([0])  # turns all links but the base together
+    assert not arm.CheckSelfCollision()
+    assert arm.GetNonAdjacentLinks(KinBody.AdjacentOptions.ActiveDOFs) == [(0, 2), (0, 3)]
+    box(env, "foot", (0, 0, -0.1), (0.1, 0.1, 0.1))
+    assert not env.CheckCollision(arm)
+    arm.SetActiveDOFs([0], ravemj.DOFAffine.X)
+    assert env.CheckCollision(arm)
+
+
+def test_one_link_against_the_others(env, arm):
+    checker = env.GetCollisionChecker()
+    arm.GetLink("fore").SetTransform(np.eye(4))
+    assert checker.CheckSelfCollision(arm.GetLink("fore"))
+    assert checker.CheckSelfCollision(arm.GetLink("base"))
+    assert not checker.CheckSelfCollision(arm.GetLink("upper"))
+    assert checker.CheckSelfCollision(arm)
+
+
 def test_callbacks_decide(env):
     one, other, third = box(env, "one"), box(env, "other", (0.5, 0, 0)), box(env, "third", (-0.5, 0, 0))
     seen = []

@@ -83,14 +83,15 @@ class ArmCollision:
         """
         del numredundantsamples
         target, report = _sorted_out(transform, report)
-        others = frozenset(range(len(self._state.scene.links)))
+        beyond, others = self._links_beyond(), set(range(len(self._state.scene.links)))
         if ignoreManipulatorLinks:
-            others = frozenset(chains.independent_links(self._state.scene, self._scene))
+            others = set(chains.independent_links(self._state.scene, self._scene))
+        asked = frozenset((min(a, b), max(a, b)) for a in beyond for b in others - beyond)
         with self._state.simulation.lock:
             world = world_of(self._state.simulation)
             with self._moved(world, target):
                 checker = self._robot.GetEnv().GetCollisionChecker()
-                return checker.answer(world, itself(world, self._state, self._links_beyond(), others), report)
+                return checker.answer(world, itself(world, self._state, asked), report)
 
     def CheckIndependentCollision(self, report: CollisionReport | None = None) -> bool:
         """Return whether the links that neither arm nor gripper move, and what they hold, collide with other bodies.
