@@ -2,9 +2,12 @@
 
 MuJoCo loads that library while it is imported, and fails without it. Whoever wants no picture does not need it, and
 whoever wants one gets ravemj's own message when it is drawn (``ravemj.rendering.contexts``).
+
+What MuJoCo warns of goes to the log; by itself it writes a file ``MUJOCO_LOG.TXT`` into the working folder.
 """
 
 import importlib
+import logging
 import os
 
 try:
@@ -17,3 +20,12 @@ except Exception:  # whatever PyOpenGL raises
         importlib.import_module("mujoco")
     finally:
         os.environ.update(requested)
+
+import mujoco
+
+
+def _log(text: str) -> None:
+    logging.getLogger("ravemj").warning("MuJoCo: %s", text)
+
+
+mujoco.set_mju_user_warning(_log)

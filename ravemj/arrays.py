@@ -6,10 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.errors import ArgumentError
-from ravemj.transforms import Floats, Ints, normalize, rows_from_wxyz
+from ravemj.transforms import Floats, Ints, normalize, rows_from_wxyz, wxyz_from_rows
 
 NOT_RIGID = 1e-3
 """How far a rotation times its transpose may be from the identity."""
+
+ROUNDING = 1e-12
+"""How far it may be to be taken as it is."""
 
 
 def checked_numbers(values: ArrayLike, name: str) -> Floats:
@@ -56,7 +59,8 @@ def checked_transform(transform: ArrayLike, name: str) -> Floats:
     """Return a rigid transform as a 4x4 matrix.
 
     Args:
-        transform: Shape (4, 4) or (3, 4), or a pose [w, x, y, z, tx, ty, tz], whose quaternion is normalised.
+        transform: Shape (4, 4) or (3, 4), or a pose [w, x, y, z, tx, ty, tz]. The quaternion is normalised, and so is
+            a rotation that is scaled, as in OpenRAVE.
         name: What to call it in errors.
 
     Raises:
@@ -73,9 +77,19 @@ def checked_transform(transform: ArrayLike, name: str) -> Floats:
         matrix[:3, 3] = given[4:]
     elif given.shape in {(4, 4), (3, 4)}:
         matrix[:3] = given[:3]
-        rotation = matrix[:3, :3]
-        if np.abs(rotation @ rotation.T - np.eye(3)).max() > NOT_RIGID or np.linalg.det(rotation) < 0:
-            raise ArgumentError(f"{name}: the rotation {rotation.tolist()} is none: its rows should be orthonormal")
+        matrix[:3, :3] = _rotation(matrix[:3, :3], name)
     else:
         raise ArgumentError(f"{name}: has shape {given.shape}, and should have (4, 4), (3, 4) or (7,)")
     return matrix
+
+
+def _rotation(given: Floats, name: str) -> Floats:
+    """Return a rotation matrix without the scale that it may have."""
+    determinant = float(np.linalg.det(given))
+    rotation = given / np.cbrt(determinant) if determinant > 0 else given
+    off = float(np.abs(rotation @ rotation.T - np.eye(3)).max())
+    if determinant <= 0 or off > NOT_RIGID:
+        raise ArgumentError(f"{name}: the rotation {given.tolist()} is none: its rows should be orthonormal")
+    if off < ROUNDING and abs(determinant - 1) < ROUNDING:
+        return given
+    return np.array(rows_from_wxyz(wxyz_from_rows(given.tolist())))  # with the scale, as OpenRAVE does

@@ -5,11 +5,11 @@ from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
 from typing import cast
 
-from ravemj.joints import relative_pose
+from ravemj.joints import directions_at, relative_pose
 from ravemj.scene import Geometry, Joint, KinBody, Manipulator, Mesh
 from ravemj.transforms import Pose
 
-DIGITS = 5
+DIGITS = 8
 """Decimals that count, so that rounding does not."""
 
 
@@ -54,10 +54,14 @@ def _geometry(geometry: Geometry) -> tuple[object, ...]:
 
 
 def _joint(joint: Joint) -> tuple[object, ...]:
-    rest = relative_pose(joint, [0.0] * len(joint.axes))
-    axes = [(axis.direction, axis.circular) for axis in joint.axes]
+    rest = [0.0] * len(joint.axes)
+    moves: tuple[object, ...] = ()
+    if not joint.static:
+        anchor = None if joint.kind == "slider" else joint.anchor
+        directions = None if joint.kind == "spherical" else directions_at(joint, rest)
+        moves = (anchor, directions, [axis.circular for axis in joint.axes])
     mimic = None if joint.mimic is None else joint.mimic.position
-    return joint.kind, joint.parent, joint.child, rest, joint.anchor, axes, joint.places_child, mimic
+    return joint.kind, joint.parent, joint.child, relative_pose(joint, rest), moves, joint.places_child, mimic
 
 
 def _digest(*parts: object) -> str:

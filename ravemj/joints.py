@@ -34,6 +34,22 @@ def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
     return motion @ joint.T_parent_child
 
 
+def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
+    """Return the directions of a joint's axes in its parent at given values; the second one turns with the first."""
+    directions = [axis.direction for axis in joint.axes]
+    if joint.kind == "hinge2":
+        first = joint.axes[0]
+        directions[1] = rotate(wxyz_from_axis_angle(first.direction, values[0] - first.reference), directions[1])
+    return directions
+
+
+def reported_anchor(joint: Joint) -> Vec3:
+    """Return the anchor that OpenRAVE reports, in the joint's parent: for sliders that of the value 0."""
+    if joint.kind != "slider":
+        return joint.anchor
+    return add(joint.anchor, scale(joint.axes[0].direction, -joint.axes[0].reference))
+
+
 def rotation(joint: Joint, values: Sequence[float]) -> Wxyz:
     """Return how far a joint has turned from ``T_parent_child``, in the parent's axes."""
     if joint.kind == "spherical":

@@ -18,6 +18,7 @@ LEVELS: list[set[str]] = [
         "alias",
         "api_names",
         "arrays",
+        "clock",
         "coverage_notes",
         "drawing",
         "examples",
@@ -48,7 +49,7 @@ LEVELS: list[set[str]] = [
     {"coverage", "dynamics", "placement", "readers", "rendering", "trajectories"},
     {"batch"},
     {"simulation"},
-    {"collision", "export", "studio"},
+    {"collision", "export", "physics", "studio"},
     {"viewers"},
     {"extension", "rave"},
     {"checking", "databases", "interfaces", "misc", "openravepy_int", "planningutils", "recording"},
@@ -60,9 +61,9 @@ LEVELS: list[set[str]] = [
 ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
-    "adjacency", "alias", "arrays", "bounds", "builder", "chains", "coverage", "drawing", "errors", "expressions",
-    "fingerprints", "following", "geometry_functions", "handles", "hierarchy", "inertia", "joints", "making",
-    "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "ordering", "output", "readers", "scene",
+    "adjacency", "alias", "arrays", "bounds", "builder", "chains", "clock", "coverage", "drawing", "errors",
+    "expressions", "fingerprints", "following", "geometry_functions", "handles", "hierarchy", "inertia", "joints",
+    "making", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "ordering", "output", "readers", "scene",
     "tessellation", "trajectories", "transforms", "video",
 }  # fmt: skip
 

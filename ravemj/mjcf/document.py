@@ -6,6 +6,7 @@ from typing import Literal, NamedTuple
 
 from ravemj.errors import Diagnostics, Source
 from ravemj.joints import relative_pose
+from ravemj.making import MASSLESS
 from ravemj.mjcf.equality import EqualityWriter
 from ravemj.mjcf.excludes import WeldGroups, excluded_pairs
 from ravemj.mjcf.geometry import GeometryWriter
@@ -246,7 +247,7 @@ class _Writer:
         inertial = legal_inertial(link.inertial)
         if inertial is not link.inertial:
             self.altered.append((body_index, link_index))
-            if not is_rounding(inertial, link.inertial):
+            if link.inertial != MASSLESS and not is_rounding(inertial, link.inertial):
                 message = f"MuJoCo refuses the mass or inertia of '{link.name}'; the MJCF has the nearest legal one"
                 self.diagnostics.warn("raised-inertia", message, link.source)
         self.bodies.element("inertial", link.source, **inertia_attributes(inertial))

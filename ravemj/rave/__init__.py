@@ -8,6 +8,14 @@ from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.body.grabbing import GrabbedInfo
 from ravemj.rave.body.saving import StateSaver
 from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
+from ravemj.rave.controllers import (
+    Controller,
+    IdealController,
+    MultiController,
+    RaveCreateController,
+    RaveCreateMultiController,
+    VelocityController,
+)
 from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
 from ravemj.rave.enums import (
     AdjacentOptions,
@@ -23,6 +31,7 @@ from ravemj.rave.enums import (
     InterfaceAddMode,
     InterfaceType,
     JointType,
+    PhysicsEngineOptions,
     PlannerStatus,
     PlannerStatusCode,
     SaveParameters,
@@ -75,7 +84,7 @@ from ravemj.rave.logs import (
     raveLogWarn,
 )
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.physics import PhysicsEngine
+from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.planning import Planner, PlanningError, planning_error
 from ravemj.rave.plugins import (
     RaveCreateIkSolver,
@@ -111,6 +120,7 @@ __all__ = [
     "CollisionOptionsStateSaver",
     "CollisionReport",
     "ConfigurationSpecification",
+    "Controller",
     "DebugLevel",
     "ElectricMotorActuatorInfo",
     "Environment",
@@ -120,6 +130,7 @@ __all__ = [
     "GeometryType",
     "GrabbedInfo",
     "GraphHandle",
+    "IdealController",
     "IkFilterOptions",
     "IkParameterization",
     "IkParameterizationType",
@@ -132,16 +143,21 @@ __all__ = [
     "KinBodyStateSaver",
     "Link",
     "Manipulator",
+    "MultiController",
     "OpenRAVEException",
     "PhysicsEngine",
+    "PhysicsEngineOptions",
     "Planner",
     "PlannerStatus",
     "PlannerStatusCode",
     "PlanningError",
     "RaveCreateCollisionChecker",
+    "RaveCreateController",
     "RaveCreateIkSolver",
     "RaveCreateKinBody",
     "RaveCreateModule",
+    "RaveCreateMultiController",
+    "RaveCreatePhysicsEngine",
     "RaveCreatePlanner",
     "RaveCreateProblem",
     "RaveCreateRobot",
@@ -182,6 +198,7 @@ __all__ = [
     "Trajectory",
     "TriMesh",
     "TriangulateOptions",
+    "VelocityController",
     "load",
     "openrave_exception",
     "planning_error",

@@ -290,3 +290,10 @@ class PlannerStatus(IntFlag):
     def statusCode(self) -> PlannerStatusCode:
         """The same as a ``PlannerStatusCode``."""
         return PlannerStatusCode(self.value)
+
+
+class PhysicsEngineOptions(IntFlag):
+    """What physics engines look at."""
+
+    SelfCollisions = 1
+    """Links of one body collide with one another."""

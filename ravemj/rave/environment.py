@@ -13,7 +13,9 @@ from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.locking import Locking
 from ravemj.rave.env.meshing import Meshing
+from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
+from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
 from ravemj.readers import read_file
 from ravemj.simulation import Simulation
 
@@ -21,7 +23,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Viewing):
+class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Running, Viewing):
     """A world with robots and other bodies.
 
     Example:
@@ -49,12 +51,21 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Viewin
         """Return the environment's number, as ``repr(env)`` shows it."""
         return self._number
 
+    def SetDebugLevel(self, level: int) -> None:
+        """Set how much is logged, for all environments; see ``RaveSetDebugLevel``."""
+        RaveSetDebugLevel(level)
+
+    def GetDebugLevel(self) -> int:
+        """Return how much is logged, a ``DebugLevel``."""
+        return RaveGetDebugLevel()
+
     def Reset(self) -> None:
         """Remove all bodies."""
         self._simulation.clear()
 
     def Destroy(self) -> None:
-        """Close the viewer and remove all bodies; nothing can be added afterwards. A second time does nothing."""
+        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm."""
+        self.StopSimulation()
         self.SetViewer("")
         self.Reset()
         self._studio.close()

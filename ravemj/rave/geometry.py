@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj import scene
-from ravemj.arrays import checked_numbers, checked_transform
+from ravemj.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.bounds import geometry_bounds
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import AABB
@@ -201,9 +201,7 @@ class Geometry:
 
     def SetTransparency(self, transparency: float) -> None:
         """Set the transparency: 0 is opaque, 1 invisible."""
-        (value,) = checked_numbers(float(transparency), "SetTransparency").tolist()
-        if not np.isfinite(value):
-            raise ArgumentError(f"SetTransparency: transparency is {value}, and should be from 0 to 1")
+        (value,) = checked_vector([transparency], 1, "SetTransparency: transparency").tolist()
         self._edit(transparency=value)
 
     def IsVisible(self) -> bool:

@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_vector
-from ravemj.joints import measured_values, relative_pose
+from ravemj.joints import directions_at, measured_values, relative_pose, reported_anchor
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
 from ravemj.rave.joints.following import JointFollowing
 from ravemj.rave.joints.limits import JointLimits
 from ravemj.rave.link import Link
-from ravemj.transforms import Floats, Pose, add, pose_of, rotate, scale, wxyz_from_axis_angle
+from ravemj.transforms import Floats, Pose, pose_of
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -75,6 +75,17 @@ class Joint(JointLimits, JointFollowing):
     def GetVelocity(self, axis: int = 0) -> float:
         """Return the joint's velocity about or along one of its axes [rad/s or m/s]."""
         return float(self.GetVelocities()[axis])
+
+    def AddTorque(self, torques: ArrayLike) -> bool:
+        """Let torques act on the joint during the next step of simulation time, with those before.
+
+        Args:
+            torques: For each of its axes [N m, for sliders N].
+
+        Returns:
+            Whether the environment has a physics engine that moves bodies.
+        """
+        return self._parent.GetEnv().GetPhysicsEngine().AddJointTorque(self, torques)
 
     def SubtractValue(self, value0: float, value1: float, axis: int = 0) -> float:
         """Return the difference of two values: the way from the second to the first.
@@ -148,23 +159,15 @@ class Joint(JointLimits, JointFollowing):
 
     def GetAnchor(self) -> Floats:
         """Return a point on the axis in the world, as the links stand now [m], shape (3,)."""
-        anchor = self._scene.anchor
-        if self._scene.kind == "slider":  # OpenRAVE's is that of the value 0
-            axis = self._scene.axes[0]
-            anchor = add(anchor, scale(axis.direction, -axis.reference))
-        return self._T_world_parent() @ (*anchor, 1.0)
+        return self._T_world_parent() @ (*reported_anchor(self._scene), 1.0)
 
     def GetAxis(self, axis: int = 0) -> Floats:
         """Return the direction of an axis in the world, as the links stand now, shape (3,).
 
         The second axis of a ``Hinge2`` turns with the first.
         """
-        direction = self._scene.axes[axis].direction
-        if axis and self._scene.kind == "hinge2":
-            first = self._scene.axes[0]
-            turned = self.GetValues()[0] - first.reference
-            direction = rotate(wxyz_from_axis_angle(first.direction, turned), direction)
-        return self._T_world_parent()[:, :3] @ direction
+        values = self._shown_values() if axis else [0.0]
+        return self._T_world_parent()[:, :3] @ directions_at(self._scene, values)[axis]
 
     def _T_world_parent(self) -> Floats:
         """Return the parent link's pose in the world, shape (3, 4)."""

@@ -10,6 +10,7 @@ from ravemj.rave.body.limits import Limits
 from ravemj.rave.body.motion import Motion
 from ravemj.rave.body.saving import Saving, StateSaver
 from ravemj.rave.body.substance import Substance
+from ravemj.rave.body.torques import Torques
 from ravemj.rave.configured import Configured
 from ravemj.rave.enums import CheckLimitsAction, InterfaceType, JointType, SaveParameters
 from ravemj.rave.geometry import Geometry
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substance, Motion, Building):
+class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substance, Motion, Torques, Building):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:

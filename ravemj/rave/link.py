@@ -11,6 +11,7 @@ from ravemj.rave.enums import GeometryType
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, LinkInfo
 from ravemj.rave.links.collision import LinkCollision
+from ravemj.rave.links.loads import LinkLoads
 from ravemj.rave.links.mass import LinkMass
 from ravemj.rave.links.parameters import LinkParameters
 from ravemj.rave.links.shapes import LinkShapes
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters):
+class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters, LinkLoads):
     """A rigid part of a body; ``body.GetLinks()`` makes it."""
 
     Geometry = Geometry

@@ -174,9 +174,9 @@ class Manipulator(ArmGoals):
         """Return the joint values of the gripper [rad or m], in the order of ``GetGripperIndices()``."""
         return self._robot.GetDOFValues(self.GetGripperIndices())
 
-    def GetChuckingDirection(self) -> Floats:
+    def GetChuckingDirection(self) -> Ints:
         """Return for each DOF of the gripper the sign of closing: 1, 0 or -1."""
-        return np.array(self._scene.chucking_direction)
+        return np.array(self._scene.chucking_direction, dtype=np.int_)
 
     GetClosingDirection = GetChuckingDirection
 

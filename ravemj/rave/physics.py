@@ -1,27 +1,265 @@
-"""Physics engines, as far as gravity."""
+"""Physics engines."""
 
+from typing import TYPE_CHECKING
+
+import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_vector
-from ravemj.simulation import Simulation
-from ravemj.transforms import Floats
+from ravemj.arrays import checked_numbers, checked_vector
+from ravemj.errors import ArgumentError
+from ravemj.physics import Loads, Physics
+from ravemj.rave.enums import InterfaceType, PhysicsEngineOptions
+from ravemj.rave.interface import Annotations, Interface
+from ravemj.simulation import BodyState
+from ravemj.transforms import ZERO, Floats, Vec3
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+    from ravemj.rave.joint import Joint
+    from ravemj.rave.link import Link
 
 
-class PhysicsEngine:
-    """Holds gravity; ``env.GetPhysicsEngine()`` makes it. Nothing falls by itself."""
+class PhysicsEngine(Interface):
+    """Holds gravity, and says what time does to bodies; ``env.GetPhysicsEngine()`` returns it.
 
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
+    This is OpenRAVE's ``GenericPhysicsEngine``, which every environment has from the start: bodies stay where they are
+    put, and forces do nothing. ``RaveCreatePhysicsEngine`` makes others.
+    """
+
+    _interface_type = InterfaceType.physicsengine
+    is_simulated = False
+    """Whether bodies fall and collide."""
+
+    def __init__(self, env: "Environment", xml_id: str, gravity: Vec3 = ZERO) -> None:
+        self._env = env
+        self._annotations = Annotations()
+        self._xml_id = xml_id
+        self._gravity = gravity
+        self._is_attached = False
+
+    def GetXMLId(self) -> str:
+        """Return the name of the kind of engine, as it was spelt when it was made."""
+        return self._xml_id
 
     def SetGravity(self, gravity: ArrayLike) -> None:
-        """Set the acceleration of free fall in the world [m/s^2], shape (3,)."""
-        x, y, z = checked_vector(gravity, 3, "gravity").tolist()
-        self._simulation.set_gravity((x, y, z))
+        """Set the acceleration of free fall in the world [m/s^2], shape (3,).
+
+        It belongs to the engine: a new one has its own.
+
+        Raises:
+            IndexError: there are fewer than three numbers, as in OpenRAVE.
+
+        Example:
+            >>> env.GetPhysicsEngine().SetGravity([0, 0, -9.81])
+        """
+        given = checked_numbers(gravity, "SetGravity: gravity")
+        if given.size < 3:
+            raise IndexError(f"SetGravity: gravity has shape {given.shape}, and should have shape (3,)")
+        x, y, z = checked_vector(given, 3, "SetGravity: gravity").tolist()
+        self._gravity = (x, y, z)
+        if self._is_attached:
+            self._env.simulation.set_gravity(self._gravity)
 
     def GetGravity(self) -> Floats:
         """Return the acceleration of free fall in the world [m/s^2], shape (3,)."""
-        return checked_vector(self._simulation.gravity, 3, "gravity")
+        return np.array(self._env.simulation.gravity if self._is_attached else self._gravity)
 
-    def GetXMLId(self) -> str:
-        """Return OpenRAVE's name of the engine."""
-        return "GenericPhysicsEngine"
+    def SetPhysicsOptions(self, physicsoptions: int) -> bool:
+        """Set which collisions count, ``PhysicsEngineOptions``; return whether the engine has options."""
+        del physicsoptions
+        return False
+
+    def GetPhysicsOptions(self) -> PhysicsEngineOptions:
+        """Return which collisions count."""
+        return PhysicsEngineOptions(0)
+
+    def SimulateStep(self, timestep: float) -> None:
+        """Let the bodies move for a step of time [s]; ``StepSimulation`` calls this."""
+
+    def GetJointForceTorque(self, joint: "Joint") -> tuple[Floats, Floats]:
+        """Return what a joint transmits to its child: what holds it, moves it and stops it.
+
+        Returns:
+            The force on the child link [N], and the torque about the joint's anchor [N m], each of shape (3,), in
+            world axes; zero without physics.
+        """
+        del joint
+        return np.zeros(3), np.zeros(3)
+
+    def GetLinkForceTorque(self, link: "Link") -> tuple[Floats, Floats]:
+        """Return what joints and contacts do to a link; gravity and forces of users do not count.
+
+        Returns:
+            The force [N], and the torque about the link's centre of mass [N m], each of shape (3,), in world axes;
+            zero without physics.
+        """
+        del link
+        return np.zeros(3), np.zeros(3)
+
+    def SetBodyForce(self, link: "Link", force: ArrayLike, position: ArrayLike, add: bool) -> bool:
+        """Let a force act on a link during the next step; ``link.SetForce`` is the same.
+
+        Args:
+            link: The link.
+            force: In the world [N], shape (3,).
+            position: Where it acts, in the world [m], shape (3,).
+            add: Whether forces that were set for that step stay.
+
+        Returns:
+            Whether the engine moves bodies.
+        """
+        checked = checked_vector(force, 3, "force"), checked_vector(position, 3, "position")
+        loads = self.loads(link.GetParent().simulation_state)
+        if loads is not None:
+            loads.push(link.GetIndex(), *checked, add=add)
+        return loads is not None
+
+    def SetBodyTorque(self, link: "Link", torque: ArrayLike, add: bool) -> bool:
+        """Let a torque act on a link during the next step; ``link.SetTorque`` is the same.
+
+        Args:
+            link: The link.
+            torque: In world axes [N m], shape (3,).
+            add: Whether torques that were set for that step stay.
+
+        Returns:
+            Whether the engine moves bodies.
+        """
+        checked = checked_vector(torque, 3, "torque")
+        loads = self.loads(link.GetParent().simulation_state)
+        if loads is not None:
+            loads.turn(link.GetIndex(), checked, add=add)
+        return loads is not None
+
+    def AddJointTorque(self, joint: "Joint", torques: ArrayLike) -> bool:
+        """Let torques act on a joint during the next step, with those before; ``joint.AddTorque`` is the same.
+
+        Args:
+            joint: The joint.
+            torques: For each of its axes [N m, for sliders N].
+
+        Returns:
+            Whether the engine moves bodies.
+
+        Raises:
+            ArgumentError: the joint is passive, or the number of torques is wrong.
+        """
+        checked = checked_vector(torques, joint.GetDOF(), "torques")
+        first = joint.GetDOFIndex()
+        if first < 0:
+            raise ArgumentError(f"joint '{joint.GetName()}' is passive, and takes no torques")
+        loads = self.loads(joint.GetParent().simulation_state)
+        if loads is not None:
+            loads.torques[first : first + len(checked)] += checked
+        return loads is not None
+
+    def attach(self) -> None:
+        """Become the environment's engine."""
+        self._is_attached = True
+        self._env.simulation.set_gravity(self._gravity)
+
+    def detach(self) -> None:
+        """Make way for another engine."""
+        self._gravity = self._env.simulation.gravity
+        self._is_attached = False
+
+    def loads(self, state: BodyState) -> Loads | None:
+        """Return what pushes a body during the next step, to be changed; None where nothing moves bodies."""
+        del state
+        return None
+
+
+class SimulatedEngine(PhysicsEngine):
+    """Moves bodies as their masses, joints, contacts and forces say, with MuJoCo.
+
+    Bodies without a static link fall; those with one stay, and their joints swing. Poses and velocities can be set at
+    any time. Robots with an ``IdealController`` go where it puts them.
+
+    Example:
+        >>> env.SetPhysicsEngine(RaveCreatePhysicsEngine(env, "ode"))
+        True
+        >>> env.GetPhysicsEngine().SetGravity([0, 0, -9.81])
+        >>> env.StepSimulation(0.1)
+    """
+
+    is_simulated = True
+
+    def __init__(self, env: "Environment", xml_id: str) -> None:
+        super().__init__(env, xml_id)
+        self._physics = Physics(env.simulation)
+
+    def SetPhysicsOptions(self, physicsoptions: int) -> bool:
+        """Set which collisions count.
+
+        Args:
+            physicsoptions: ``PhysicsEngineOptions.SelfCollisions``, or 0: links of one body do not collide.
+
+        Returns:
+            True.
+        """
+        with self._env.simulation.lock:
+            self._physics.set_self_collisions(bool(physicsoptions & PhysicsEngineOptions.SelfCollisions))
+        return True
+
+    def GetPhysicsOptions(self) -> PhysicsEngineOptions:
+        """Return which collisions count."""
+        return PhysicsEngineOptions(int(self._physics.self_collisions))
+
+    def SimulateStep(self, timestep: float) -> None:
+        """Let the bodies move for a step of time [s]; ``StepSimulation`` calls this."""
+        with self._env.simulation.lock:
+            self._physics.step(timestep)
+
+    def GetJointForceTorque(self, joint: "Joint") -> tuple[Floats, Floats]:
+        """Return what a joint transmits to its child: what holds it, moves it and stops it.
+
+        Returns:
+            The force on the child link [N], and the torque about the joint's anchor [N m], each of shape (3,), in
+            world axes; zero before the first step.
+        """
+        state, child = joint.GetParent().simulation_state, joint.GetHierarchyChildLink()
+        with self._env.simulation.lock:
+            return self._physics.joint_wrench(state, child.GetIndex(), joint.GetAnchor())
+
+    def GetLinkForceTorque(self, link: "Link") -> tuple[Floats, Floats]:
+        """Return what joints and contacts do to a link; gravity and forces of users do not count.
+
+        Returns:
+            The force [N], and the torque about the link's centre of mass [N m], each of shape (3,), in world axes;
+            zero before the first step.
+        """
+        with self._env.simulation.lock:
+            return self._physics.link_wrench(link.GetParent().simulation_state, link.GetIndex())
+
+    def loads(self, state: BodyState) -> Loads | None:
+        """Return what pushes a body during the next step, to be changed."""
+        return self._physics.loads(state)
+
+
+_KINDS: dict[str, type[PhysicsEngine]] = {
+    "genericphysicsengine": PhysicsEngine,
+    "ode": SimulatedEngine,
+    "bullet": SimulatedEngine,
+    "mujoco": SimulatedEngine,
+}
+
+
+def RaveCreatePhysicsEngine(env: "Environment", name: str) -> PhysicsEngine | None:
+    """Make a physics engine; ``env.SetPhysicsEngine`` switches it on.
+
+    Args:
+        env: The environment that it is for.
+        name: ``ode``, ``bullet`` or ``mujoco``, all of which are MuJoCo; or ``GenericPhysicsEngine``, with which
+            bodies stay where they are put. Upper and lower case are the same.
+
+    Returns:
+        The engine, without gravity; None where the name is not known.
+
+    Example:
+        >>> engine = RaveCreatePhysicsEngine(env, "ode")
+        >>> engine.SetGravity([0, 0, -9.81])
+        >>> env.SetPhysicsEngine(engine)
+        True
+    """
+    kind = _KINDS.get(name.lower())
+    return None if kind is None else kind(env, name)

@@ -16,6 +16,7 @@ from ravemj.rave.infos import AttachedSensorInfo, ManipulatorInfo, RobotBaseInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.robot_control import RobotControl
 from ravemj.rave.sensors import AttachedSensor
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats
@@ -24,7 +25,9 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class Robot(ActiveMotion, Manipulators, RobotBuilding, KinBody):  # pyright: ignore[reportIncompatibleMethodOverride]
+class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
+    ActiveMotion, Manipulators, RobotBuilding, RobotControl, KinBody
+):
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine

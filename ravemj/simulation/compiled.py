@@ -2,6 +2,7 @@
 
 import re
 import warnings
+from collections.abc import Callable
 
 import mujoco
 import numpy as np
@@ -24,17 +25,36 @@ class Compiled:
     Attributes:
         mjcf: The text that was compiled.
         spec: MuJoCo's editable form of it.
-        model: The compiled model, with the true masses and inertias of the scene.
+        model: The compiled model; masses and inertias that MuJoCo refuses are the nearest legal ones there.
         data: Its state.
     """
 
-    def __init__(self, scene: Scene, diagnostics: Diagnostics, options: mjcf.Options | None = None) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        diagnostics: Diagnostics,
+        options: mjcf.Options | None = None,
+        edit: Callable[[mujoco.MjSpec, mjcf.Mjcf], None] | None = None,
+    ) -> None:
+        """Compile a scene.
+
+        Args:
+            scene: What to compile.
+            diagnostics: Takes what the translation finds.
+            options: What to add to the model.
+            edit: Changes the model before it is compiled.
+
+        Raises:
+            CompileError: MuJoCo refuses the model.
+        """
         self.mjcf = mjcf.write(scene, diagnostics, options)
         try:
             with mujoco.MjVfs() as files:
                 for name, content in self.mjcf.assets.items():
                     files[f"{ASSETS}/{name}"] = content.encode()
                 self.spec = mujoco.MjSpec.from_string(self.mjcf.text, vfs=files)
+                if edit is not None:
+                    edit(self.spec, self.mjcf)
                 with warnings.catch_warnings(record=True) as complaints:
                     warnings.simplefilter("always")
                     self.model = self.spec.compile(vfs=files)
@@ -42,7 +62,6 @@ class Compiled:
             raise _compile_error(str(error), self.mjcf) from None
         for complaint in complaints:
             self._report(str(complaint.message), scene, diagnostics)
-        self._write_true_inertias(scene)
         self.data = mujoco.MjData(self.model)
 
     def _report(self, complaint: str, scene: Scene, diagnostics: Diagnostics) -> None:
@@ -57,7 +76,7 @@ class Compiled:
         hint = "positions are exact; before time runs, give the link more mass or inertia"
         diagnostics.warn("near-singular", f"MuJoCo warns{about}: {complaint}", source, hint)
 
-    def _write_true_inertias(self, scene: Scene) -> None:
+    def write_true_inertias(self, scene: Scene) -> None:
         """Give the links that MuJoCo's compiler refuses their true values back; inverse dynamics needs them."""
         for body_index, link_index in self.mjcf.altered:
             inertial = scene.bodies[body_index].links[link_index].inertial
@@ -75,6 +94,8 @@ def write_inertial(model: mujoco.MjModel, body_id: int, inertial: Inertial) -> N
     model.body_inertia[body_id] = principal_moments(inertial)
     model.body_ipos[body_id] = frame.position
     model.body_iquat[body_id] = frame.wxyz
+    model.body_sameframe[body_id] = 0  # the frame of its inertia is not that of the body
+    model.body_subtreemass[0] += added
     while body_id:
         model.body_subtreemass[body_id] += added
         body_id = model.body_parentid[body_id]

@@ -113,13 +113,15 @@ class Simulation:
         """Give a body another name.
 
         Raises:
-            RavemjError: another body has the name, or it is empty.
+            RavemjError: the name is empty, or both bodies are in the world and another one has it.
         """
         with self.lock:
-            self.check_name(body, name)
             if self.holds(body):
+                self.check_name(body, name)
                 del self._by_name[body.scene.name]
                 self._by_name[name] = body
+            elif not name:
+                raise RavemjError("a body's name should not be empty", ErrorCode.Assert)
             body.edit(name=name)
 
     def check_name(self, body: BodyState, name: str) -> None:
@@ -173,6 +175,7 @@ class Simulation:
             self.diagnostics = Diagnostics()
             scene = Scene(tuple(body.scene for body in self.bodies), self.view)
             compiled = Compiled(scene, self.diagnostics)
+            compiled.write_true_inertias(scene)
             compiled.model.opt.gravity[:] = self.gravity
             for body, names in zip(self.bodies, compiled.mjcf.names, strict=True):
                 body.enter_model(BodyKinematics(compiled.model, compiled.data, body.scene, names))
@@ -181,5 +184,6 @@ class Simulation:
                 body.settle()
             self._compiled = compiled
             self.version += 1
-            send_warnings(self.diagnostics)
+            # Links that scripts make are all called "base"; only who reads the MJCF wants to know its names.
+            send_warnings(finding for finding in self.diagnostics if finding.code != "renamed")
             return compiled

@@ -163,7 +163,11 @@ class Building(Mechanism):
         return KinBodyInfo(**self.extracted(options))
 
     def extracted(self, options: int) -> dict[str, Any]:
-        """Return the fields of ``ExtractInfo``."""
+        """Return the fields of ``ExtractInfo``.
+
+        Args:
+            options: What to take, ``ExtractInfoOptions``.
+        """
         with self._simulation.lock:
             joints = [joint.GetInfo() for joint in self.GetJoints()]
             skip = options & ExtractInfoOptions.SkipDOFValues

@@ -113,6 +113,10 @@ class Grabbing(BodyPart):
         """Return the held bodies, in the order of grabbing."""
         return [self._env.wrap(grab.body) for grab in self._state.grabs]
 
+    def GetNumGrabbed(self) -> int:
+        """Return the number of held bodies."""
+        return len(self._state.grabs)
+
     def IsGrabbing(self, body: "KinBody") -> Link | None:
         """Return the link that holds a body, or None."""
         grab = next((one for one in self._state.grabs if one.body is body.simulation_state), None)

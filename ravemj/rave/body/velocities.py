@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_indices, checked_numbers, checked_vector
-from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, RavemjWarning
+from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.transforms import Floats
@@ -151,20 +151,3 @@ class Velocities(BodyPart):
         with self._simulation.lock:
             self._state.set_velocity(moved, turned)
         return True
-
-    def SetDOFTorques(self, torques: ArrayLike, add: bool) -> None:
-        """Take joint torques for the next step of time, as OpenRAVE's default engine does: nothing comes of them.
-
-        Args:
-            torques: Torques [N m, for sliders N], shape (dof,).
-            add: Whether to add them to earlier ones.
-
-        Raises:
-            openrave_exception: there are too few or too many.
-        """
-        del add
-        dof = self.GetDOF()
-        if checked_numbers(torques, "SetDOFTorques").shape != (dof,):
-            raise RavemjError(f"SetDOFTorques: there should be {dof} torques, one for each DOF", ErrorCode.Assert)
-
-    SetJointTorques = SetDOFTorques

@@ -7,7 +7,6 @@ from ravemj.rave.enums import InterfaceAddMode
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import Interface
 from ravemj.rave.kinbody import KinBody
-from ravemj.rave.physics import PhysicsEngine
 from ravemj.rave.robot import Robot
 
 
@@ -131,10 +130,6 @@ class Contents(EnvironmentPart):
         return None if state is None else self.wrap(state)
 
     GetBodyFromEnvironmentId = GetBodyFromEnvironmentBodyIndex
-
-    def GetPhysicsEngine(self) -> PhysicsEngine:
-        """Return what holds gravity; never None."""
-        return PhysicsEngine(self._simulation)
 
     def GetUnit(self) -> tuple[str, float]:
         """Return the unit of length and how many metres it is: always the metre."""

@@ -35,7 +35,7 @@ class ExtractInfoOptions(IntFlag):
 
 @dataclass(eq=False)
 class KinBodyInfo:
-    """A body.
+    """What a body is made of.
 
     Attributes:
         _name: Its name.
@@ -69,7 +69,7 @@ class KinBodyInfo:
 
 @dataclass(eq=False)
 class RobotBaseInfo(KinBodyInfo):
-    """A robot.
+    """What a robot is made of.
 
     Attributes:
         _vManipInfos: Its arms, a list of ``ManipulatorInfo``.

@@ -15,13 +15,13 @@ from ravemj import scene
 from ravemj.builder import JointBuilder, LinkBuilder
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.following import Equations
-from ravemj.joints import about, wxyz_from_rotation_vector
+from ravemj.joints import about, directions_at, reported_anchor, wxyz_from_rotation_vector
 from ravemj.making import MADE
 from ravemj.openrave_xml.actuator import Motor, motor_of
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos.numbers import filled, per_axis, vector
 from ravemj.rave.infos.parameters import ParameterFields
-from ravemj.transforms import Vec3, add, conjugate, dot, rotate, scale, wxyz_from_axis_angle
+from ravemj.transforms import Vec3, add, conjugate, dot, rotate, scale
 
 _KINDS: dict[JointType, scene.JointKind] = {
     JointType.Hinge: "hinge",
@@ -142,7 +142,7 @@ class JointInfo(ParameterFields):
             _name=joint.name,
             _linkname0=body.links[joint.parent].name,
             _linkname1=body.links[joint.child].name,
-            _vanchor=np.array(_anchor(joint)),
+            _vanchor=np.array(reported_anchor(joint)),
             _vaxes=[np.array(direction) for direction in _directions(body, joint, values)],
             _vcurrentvalues=np.array(values),
             _vresolution=np.array([axis.resolution for axis in axes]),
@@ -243,19 +243,8 @@ def _unit(direction: Vec3) -> Vec3:
     return scale(direction, 1 / length)
 
 
-def _anchor(joint: scene.Joint) -> Vec3:
-    """Return the anchor that OpenRAVE reports: for sliders that of the value 0."""
-    if joint.kind != "slider":
-        return joint.anchor
-    return add(joint.anchor, scale(joint.axes[0].direction, -joint.axes[0].reference))
-
-
 def _directions(body: scene.KinBody, joint: scene.Joint, values: Sequence[float]) -> list[Vec3]:
     """Return the directions of the axes at some values, in the frame of the first link."""
-    directions = [axis.direction for axis in joint.axes]
     if joint.static and body.joints:  # the builder turns those of a weld
-        return [rotate(conjugate(joint.T_parent_child.wxyz), direction) for direction in directions]
-    if joint.kind == "hinge2":
-        first = joint.axes[0]
-        directions[1] = rotate(wxyz_from_axis_angle(first.direction, values[0] - first.reference), directions[1])
-    return directions
+        return [rotate(conjugate(joint.T_parent_child.wxyz), axis.direction) for axis in joint.axes]
+    return directions_at(joint, values)

@@ -22,7 +22,7 @@ class LinkParameters(LinkPart):
             index: Which number of them; below 0: all.
 
         Returns:
-            An array, a number where an index was given, None for an unknown name, or all arrays by name.
+            An array of shape (n,), a number where an index was given, None for an unknown name, or all arrays by name.
         """
         found = {key: np.array(values) for key, values in self._scene.parameters.floats}
         if name is None or name not in found:

@@ -5,7 +5,7 @@ MuJoCo's wheels carry no type information. Arrays of models and data are views: 
 model. Enumerations behave like integers.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
 from typing import Any, SupportsInt
 
@@ -197,6 +197,12 @@ class mjtVisFlag(IntEnum):
     mjVIS_MESHBVH = 29
     mjVIS_SDFITER = 30
     mjNVISFLAG = 31
+
+class mjtIntegrator(IntEnum):
+    mjINT_EULER = 0
+    mjINT_RK4 = 1
+    mjINT_IMPLICIT = 2
+    mjINT_IMPLICITFAST = 3
 
 class mjtDisableBit(IntEnum):
     mjDSBL_CONSTRAINT = 1
@@ -1184,6 +1190,7 @@ def mj_makeM(m: MjModel, d: MjData) -> None: ...
 def mj_factorM(m: MjModel, d: MjData) -> None: ...
 def mj_fullM(m: MjModel, d: MjData, dst: Floats) -> None: ...
 def mj_mulM(m: MjModel, d: MjData, res: Floats, vec: ArrayLike) -> None: ...
+def set_mju_user_warning(handler: Callable[[str], None] | None) -> None: ...
 def mj_solveM(m: MjModel, d: MjData, x: Floats, y: ArrayLike) -> None: ...
 def mj_fwdPosition(m: MjModel, d: MjData) -> None: ...
 def mj_fwdVelocity(m: MjModel, d: MjData) -> None: ...

@@ -1,0 +1,131 @@
+"""Simulation time, and the thread that lets it pass."""
+
+import logging
+import threading
+import time
+import weakref
+from collections.abc import Callable
+from threading import Event, Lock, RLock, Thread
+from typing import NamedTuple
+
+_LOG = logging.getLogger("ravemj")
+
+DEFAULT_STEP = 0.01
+"""OpenRAVE's time step [s]."""
+
+PAUSE = 1e-4
+"""How long [s] the thread lets go between steps at least, so that others get the lock."""
+
+BEHIND = 0.1
+"""How much real time [s] the thread catches up with after it was held up; what is beyond is lost."""
+
+POLL = 0.05
+"""How often [s] the thread looks whether it should end while others have the lock."""
+
+
+class Clock:
+    """Counts simulation time, and calls what happens in it.
+
+    Time may pass from the start, as in OpenRAVE, but the thread comes with the first ``wake``. It holds the clock by
+    a weak reference, and so ends when whatever owns the clock is gone.
+
+    Attributes:
+        now: Simulation time since the start [microseconds].
+        is_allowed: Whether time passes by itself; ``stop`` ends that.
+    """
+
+    def __init__(self, lock: RLock, step: Callable[[float], None]) -> None:
+        """Make a clock that stands at 0.
+
+        Args:
+            lock: Held during each step.
+            step: What happens during a time step [s].
+        """
+        self.now = 0
+        self.is_allowed = True
+        self._lock = lock
+        self._step = step
+        self._timestep, self._realtime = DEFAULT_STEP, True
+        self._thread: Thread | None = None
+        self._ending = Event()
+        self._starting = Lock()
+
+    def step(self, timestep: float) -> None:
+        """Let time pass by one step [s]."""
+        with self._lock:
+            self._step(timestep)
+            self.now += round(timestep * 1e6)
+
+    def wake(self) -> None:
+        """Let time pass by itself from now on, unless it was stopped."""
+        with self._starting:
+            if self.is_allowed and self._thread is None:
+                self._ending = Event()
+                rhythm = _Rhythm(self._lock, self._ending, self._timestep, self._realtime)
+                arguments = (weakref.ref(self), rhythm)
+                self._thread = Thread(target=_run, args=arguments, name="simulation time", daemon=True)
+                self._thread.start()
+
+    def start(self, timestep: float, *, realtime: bool) -> None:
+        """Let time pass by itself from now on.
+
+        Args:
+            timestep: Length of the steps [s].
+            realtime: Whether a second of simulation takes a second; else steps follow one another at once.
+        """
+        self.stop()
+        self._timestep, self._realtime, self.is_allowed = timestep, realtime, True
+        self.wake()
+
+    def stop(self, *, wait: bool = True) -> None:
+        """Let time stand still.
+
+        Args:
+            wait: Whether to return only when the thread has ended.
+        """
+        with self._starting:
+            self.is_allowed = False
+            self._ending.set()
+            thread, self._thread = self._thread, None
+        if wait and thread is not None and thread is not threading.current_thread():
+            thread.join()
+
+    def __del__(self) -> None:
+        self._ending.set()
+
+
+class _Rhythm(NamedTuple):
+    """What the thread knows without the clock.
+
+    Attributes:
+        lock: Held during each step.
+        ending: Set when the thread should end.
+        timestep: Length of the steps [s].
+        realtime: Whether to wait between them.
+    """
+
+    lock: RLock
+    ending: Event
+    timestep: float
+    realtime: bool
+
+
+def _run(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> None:
+    """Step a clock until it is stopped or gone."""
+    due = time.monotonic() + rhythm.timestep
+    while not rhythm.ending.wait(max(due - time.monotonic(), PAUSE) if rhythm.realtime else PAUSE):
+        while not rhythm.lock.acquire(timeout=POLL):
+            if rhythm.ending.is_set():
+                return
+        try:
+            present = clock()
+            if present is None or rhythm.ending.is_set():
+                return
+            present.step(rhythm.timestep)
+        except Exception:
+            _LOG.exception("a step of simulation time failed; time stands still until StartSimulation")
+            return
+        finally:
+            present = None
+            rhythm.lock.release()
+        due = max(due + rhythm.timestep, time.monotonic() - BEHIND)

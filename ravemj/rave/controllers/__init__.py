@@ -1,0 +1,62 @@
+"""What moves robots in time."""
+
+from typing import TYPE_CHECKING
+
+from ravemj.rave.controllers.base import Controller
+from ravemj.rave.controllers.ideal import IdealController
+from ravemj.rave.controllers.multi import MultiController
+from ravemj.rave.controllers.velocity import VelocityController
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+__all__ = [
+    "Controller",
+    "IdealController",
+    "MultiController",
+    "RaveCreateController",
+    "RaveCreateMultiController",
+    "VelocityController",
+]
+
+_KINDS: dict[str, type[Controller]] = {
+    "idealcontroller": IdealController,
+    "idealvelocitycontroller": VelocityController,
+    "odevelocity": VelocityController,
+    "genericmulticontroller": MultiController,
+}
+
+
+def RaveCreateController(env: "Environment", name: str) -> Controller | None:
+    """Make a controller; ``robot.SetController`` gives it to a robot.
+
+    Args:
+        env: The environment of the robot.
+        name: ``IdealController``, ``IdealVelocityController`` or ``odevelocity``; upper and lower case are the same.
+            Arguments may follow after a space; none has a meaning here.
+
+    Returns:
+        The controller, or None where the name is not known.
+
+    Example:
+        >>> controller = RaveCreateController(env, "IdealController")
+        >>> robot.SetController(controller, [0, 1], 0)
+        True
+    """
+    word = name.split(maxsplit=1)[0] if name.strip() else ""
+    kind = _KINDS.get(word.lower())
+    return None if kind is None else kind(env, word)
+
+
+def RaveCreateMultiController(env: "Environment", name: str = "") -> MultiController | None:
+    """Make a controller that shares the DOFs of a robot out to others.
+
+    Args:
+        env: The environment of the robot.
+        name: ``GenericMultiController``, or nothing.
+
+    Returns:
+        The controller, or None where the name is not known.
+    """
+    word = name.strip() or "GenericMultiController"
+    return MultiController(env, word) if _KINDS.get(word.lower()) is MultiController else None

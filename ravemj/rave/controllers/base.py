@@ -1,0 +1,148 @@
+"""What all controllers have in common."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.arrays import checked_indices, checked_transform, checked_vector
+from ravemj.errors import ErrorCode, RavemjError
+from ravemj.rave.enums import InterfaceType
+from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.trajectory import Trajectory
+from ravemj.transforms import Floats, Ints
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+    from ravemj.rave.robot import Robot
+
+
+class Controller(Interface):
+    """Moves a robot in time; ``robot.GetController()`` or ``RaveCreateController`` makes it."""
+
+    _interface_type = InterfaceType.controller
+
+    def __init__(self, env: "Environment", xml_id: str) -> None:
+        self._env = env
+        self._annotations = Annotations()
+        self._xml_id = xml_id
+        self._attached_robot: Robot | None = None
+        self._dofs: Ints | None = None
+        self._moves_base = False
+        self._is_done = True
+        self._time = 0.0
+
+    def GetXMLId(self) -> str:
+        """Return the name of the kind of controller, as it was spelt when it was made."""
+        return self._xml_id
+
+    def Init(self, robot: "Robot", dofindices: ArrayLike | None = None, controltransform: int = 1) -> bool:
+        """Tell the controller what it moves; ``robot.SetController`` calls this.
+
+        Args:
+            robot: The robot.
+            dofindices: Which of its DOFs, in which order; None: all.
+            controltransform: Whether it moves the robot's base, too.
+        """
+        indices = None if dofindices is None else checked_indices(dofindices, robot.GetDOF())
+        with robot.simulation_state.simulation.lock:
+            self._attached_robot, self._dofs, self._moves_base = robot, indices, bool(controltransform)
+            self.Reset()
+        return True
+
+    @property
+    def _robot(self) -> "Robot":
+        if self._attached_robot is None:
+            message = f"the {type(self).__name__} has no robot yet; give it to one with robot.SetController"
+            raise RavemjError(message, ErrorCode.NotInitialized)
+        return self._attached_robot
+
+    def GetRobot(self) -> "Robot | None":
+        """Return the robot that the controller moves, or None before it is given to one."""
+        return self._attached_robot
+
+    def GetControlDOFIndices(self) -> Ints:
+        """Return which DOFs of the robot the controller moves, in the order of the values that it takes."""
+        if self._dofs is not None:
+            return self._dofs.copy()
+        return np.arange(0 if self._attached_robot is None else self._attached_robot.GetDOF())
+
+    def IsControlTransformation(self) -> int:
+        """Return 1 if the controller moves the robot's base, too, else 0."""
+        return int(self._moves_base)
+
+    def IsDone(self) -> bool:
+        """Return whether the controller has done what it was told.
+
+        Example:
+            >>> while not robot.GetController().IsDone():
+            ...     time.sleep(0.01)
+        """
+        return self._is_done
+
+    def GetTime(self) -> float:
+        """Return the time along the path that is played [s]."""
+        return self._time
+
+    def Reset(self, options: int = 0) -> None:
+        """Forget what the controller was told; the robot stays where it is, and the controller is done.
+
+        Args:
+            options: OpenRAVE has no meaning for them.
+        """
+        del options
+        self._is_done = True
+
+    def SetDesired(self, values: ArrayLike, transform: ArrayLike | None = None) -> bool:
+        """Tell the controller where the robot should be.
+
+        Args:
+            values: One value for each of ``GetControlDOFIndices()`` [rad or m]; for velocity controllers, velocities.
+            transform: ``T_world_link0``, the pose of the robot's base, if the controller moves it; None: as it is.
+
+        Returns:
+            True.
+
+        Raises:
+            ArgumentError: the number of values is wrong. Nothing has moved then.
+        """
+        checked = checked_vector(values, len(self._robot_dofs()), "SetDesired: values")
+        T_world_base = None if transform is None else checked_transform(transform, "SetDesired: transform")
+        with self._robot.simulation_state.simulation.lock:
+            self._desire(checked, T_world_base if self._moves_base else None)
+        self._env.wake_clock()
+        return True
+
+    def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
+        raise self._cannot("take single values")
+
+    def SetPath(self, traj: Trajectory | None) -> bool:
+        """Play a trajectory in simulation time, from its first point on."""
+        del traj
+        raise self._cannot("play paths")
+
+    def SimulationStep(self, timestep: float) -> None:
+        """Act for a step of time [s]; ``StepSimulation`` and the thread of simulation time call this."""
+
+    def GetVelocity(self) -> Floats:
+        """Return the present velocities of the DOFs that the controller moves [rad/s or m/s]."""
+        return self._robot.GetDOFVelocities()[self._robot_dofs()]
+
+    def GetTorque(self) -> Floats:
+        """Return the torques that the controller applies [N m or N]: none, for it places the robot."""
+        return np.zeros(len(self._robot_dofs()))
+
+    def _robot_dofs(self) -> Ints:
+        """Return the DOFs that the controller moves.
+
+        Raises:
+            RavemjError: it has no robot.
+        """
+        assert self._robot is not None
+        return self.GetControlDOFIndices()
+
+    def _cannot(self, what: str) -> RavemjError:
+        return RavemjError(f"{type(self).__name__} cannot {what}", ErrorCode.NotImplemented)
+
+    def __repr__(self) -> str:
+        return f"RaveCreateController({self._env!r}, '{self._xml_id}')"

@@ -1,0 +1,136 @@
+"""A controller that puts the robot where it should be."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.errors import ArgumentError, RavemjError
+from ravemj.rave.controllers.base import Controller
+from ravemj.rave.enums import CheckLimitsAction
+from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.groups import joint_indices
+from ravemj.transforms import Floats, Ints
+
+
+class _Path(NamedTuple):
+    """A trajectory, and what of it moves the robot.
+
+    Attributes:
+        trajectory: A copy of the user's.
+        columns: Where the joint values are in its points.
+        dofs: The DOFs that they are for.
+        moves_base: Whether it has a pose of the robot's base.
+    """
+
+    trajectory: Trajectory
+    columns: Ints
+    dofs: Ints
+    moves_base: bool
+
+
+class IdealController(Controller):
+    """Puts the robot where it should be, at once and exactly: the controller that robots have from the start.
+
+    ``SetDesired`` moves the robot at once, and is done with the next step of time. ``SetPath`` plays a trajectory:
+    the first step shows its first point, and the path is done one step after its last point.
+
+    Example:
+        >>> controller = robot.GetController()
+        >>> controller.SetPath(trajectory)
+        True
+        >>> robot.WaitForController(0)
+        True
+    """
+
+    _path: _Path | None = None
+    _desired: "tuple[Floats, Floats | None] | None" = None
+
+    def Reset(self, options: int = 0) -> None:
+        """Forget what the controller was told; the robot stays where it is, and the controller is done.
+
+        Args:
+            options: OpenRAVE has no meaning for them.
+        """
+        self._path = self._desired = None
+        super().Reset(options)
+
+    def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
+        if T_world_base is None and self._moves_base:
+            T_world_base = self._robot.GetTransform()
+        self._place(self._robot_dofs(), values, T_world_base)
+        self._path, self._desired = None, (values, T_world_base)
+        self._time, self._is_done = 0.0, False
+
+    def SetPath(self, traj: Trajectory | None) -> bool:
+        """Play a trajectory in simulation time, in place of what the controller was told before.
+
+        The trajectory is copied. Joints that it does not name stay; one for another robot moves nothing.
+
+        Args:
+            traj: A trajectory with times, as ``planningutils.RetimeActiveDOFTrajectory`` makes it.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: it is None, has no points, or no times. What is played goes on then.
+        """
+        if traj is None:
+            raise RavemjError("SetPath: traj is None; Reset() stops a path")
+        if not traj.GetNumWaypoints():
+            raise ArgumentError("SetPath: traj has no points")
+        with self._robot.simulation_state.simulation.lock:
+            path = self._prepared(traj)
+            path.trajectory.Sample(0.0)
+            self._path, self._desired = path, None
+            self._time, self._is_done = 0.0, False
+        self._env.wake_clock()
+        return True
+
+    def _prepared(self, traj: Trajectory) -> _Path:
+        spec = traj.GetConfigurationSpecification()
+        name = self._robot.GetName()
+        group = spec.FindCompatibleGroup(f"joint_values {name}")
+        own = self._robot_dofs().tolist()
+        places = [] if group is None else [(group.offset + i, dof) for i, dof in enumerate(joint_indices(group))]
+        columns, dofs = np.array([place for place in places if place[1] in own], dtype=int).reshape(-1, 2).T
+        has_base = spec.FindCompatibleGroup(f"affine_transform {name}") is not None
+        copy = Trajectory(self._env, traj.GetXMLId())
+        copy.Clone(traj)
+        return _Path(copy, columns, dofs, has_base and self._moves_base)
+
+    def SimulationStep(self, timestep: float) -> None:
+        """Go on by a step of time [s]; ``StepSimulation`` and the thread of simulation time call this."""
+        if self._path is not None:
+            self._play(self._path, timestep)
+        elif self._desired is not None:
+            self._place(self._robot_dofs(), *self._desired)
+            self._desired, self._is_done = None, True
+
+    def _play(self, path: _Path, timestep: float) -> None:
+        """Show the point of the path at the present time, which is then moved on."""
+        duration = path.trajectory.GetDuration()
+        is_over = self._time > duration
+        self._time = min(self._time, duration)
+        point = path.trajectory.Sample(self._time)
+        T_world_base = None
+        if path.moves_base:
+            spec = path.trajectory.GetConfigurationSpecification()
+            T_world_base = spec.ExtractTransform(self._robot.GetTransform(), point, self._robot)
+        self._place(path.dofs, point[path.columns], T_world_base)
+        if is_over:
+            self._path, self._is_done = None, True
+        else:
+            self._time += timestep
+
+    def _place(self, dofs: Ints, values: Floats, T_world_base: Floats | None) -> None:
+        """Put some of the joints, and the base, where they should be, at rest."""
+        robot = self._robot
+        if len(dofs):
+            robot.SetDOFValues(values, dofs)
+        if T_world_base is not None:
+            robot.SetTransform(T_world_base)
+        velocities = robot.GetDOFVelocities()
+        if velocities[dofs].any():
+            velocities[dofs] = 0.0
+            robot.SetDOFVelocities(velocities, checklimits=CheckLimitsAction.Nothing)

@@ -1,0 +1,114 @@
+"""A controller made of others."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.arrays import checked_indices
+from ravemj.errors import ArgumentError
+from ravemj.rave.controllers.base import Controller
+from ravemj.rave.trajectory import Trajectory
+from ravemj.transforms import Floats, Ints
+
+
+class _Part(NamedTuple):
+    """One of the controllers.
+
+    Attributes:
+        controller: The controller.
+        places: Where its DOFs are among those of the whole.
+    """
+
+    controller: Controller
+    places: Ints
+
+
+class MultiController(Controller):
+    """Shares the DOFs of a robot out to several controllers; ``RaveCreateMultiController`` makes it.
+
+    Example:
+        >>> multi = RaveCreateMultiController(env)
+        >>> robot.SetController(multi)
+        True
+        >>> multi.AttachController(RaveCreateController(env, "IdealController"), arm.GetArmIndices(), 0)
+        True
+    """
+
+    _parts: tuple[_Part, ...] = ()
+
+    def AttachController(self, controller: Controller, dofindices: ArrayLike, controltransform: int) -> bool:
+        """Give some of the DOFs to a controller.
+
+        Args:
+            controller: The controller; it is initialised here.
+            dofindices: Which DOFs of the robot it moves.
+            controltransform: Whether it moves the robot's base, too.
+
+        Returns:
+            True.
+
+        Raises:
+            ArgumentError: a DOF is not among those of this controller, or another controller has it; or there are two
+                for the base.
+        """
+        robot = self._robot
+        dofs = checked_indices(dofindices, robot.GetDOF())
+        own = self._robot_dofs().tolist()
+        taken = {int(dof) for part in self._parts for dof in part.controller.GetControlDOFIndices()}
+        for dof in dofs.tolist():
+            if dof not in own or dof in taken:
+                reason = "has a controller already" if dof in taken else "is not among those of the MultiController"
+                raise ArgumentError(f"AttachController: dofindices: DOF {dof} {reason}")
+        if controltransform and any(part.controller.IsControlTransformation() for part in self._parts):
+            raise ArgumentError("AttachController: controltransform: the base has a controller already")
+        with robot.simulation_state.simulation.lock:
+            controller.Init(robot, dofs, controltransform)
+            self._parts = (*self._parts, _Part(controller, np.array([own.index(dof) for dof in dofs], dtype=int)))
+        return True
+
+    def RemoveController(self, controller: Controller) -> None:
+        """Take a controller's DOFs away from it; nothing moves them then."""
+        self._parts = tuple(part for part in self._parts if part.controller is not controller)
+
+    def GetController(self, dof: int) -> Controller | None:
+        """Return the controller of a DOF, or None."""
+        owners = (part.controller for part in self._parts if dof in part.controller.GetControlDOFIndices())
+        return next(owners, None)
+
+    def Reset(self, options: int = 0) -> None:
+        """Reset all controllers.
+
+        Args:
+            options: Handed on to them.
+        """
+        for part in self._parts:
+            part.controller.Reset(options)
+
+    def SetPath(self, traj: Trajectory | None) -> bool:
+        """Play a trajectory: each controller its part of it. See ``IdealController.SetPath``."""
+        return all([part.controller.SetPath(traj) for part in self._parts])
+
+    def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
+        for part in self._parts:
+            part.controller.SetDesired(values[part.places], T_world_base)
+
+    def SimulationStep(self, timestep: float) -> None:
+        """Let all controllers act for a step of time [s]."""
+        for part in self._parts:
+            part.controller.SimulationStep(timestep)
+
+    def IsDone(self) -> bool:
+        """Return whether all controllers have done what they were told."""
+        return all(part.controller.IsDone() for part in self._parts)
+
+    def GetTime(self) -> float:
+        """Return the time along the path that is played [s]."""
+        return max((part.controller.GetTime() for part in self._parts), default=0.0)
+
+    def GetTorque(self) -> Floats:
+        """Return the torques that the controllers apply [N m or N]."""
+        torques = np.zeros(len(self._robot_dofs()))
+        for part in self._parts:
+            torques[part.places] = part.controller.GetTorque()
+        return torques

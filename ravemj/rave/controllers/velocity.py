@@ -1,0 +1,61 @@
+"""A controller of joint velocities."""
+
+import numpy as np
+
+from ravemj.physics import Motor
+from ravemj.rave.controllers.base import Controller
+from ravemj.rave.enums import CheckLimitsAction
+from ravemj.transforms import Floats
+
+
+class VelocityController(Controller):
+    """Keeps joint velocities until it is told others: OpenRAVE's ``IdealVelocityController`` and ``odevelocity``.
+
+    Where the environment has physics, motors at the joints reach the velocities, with no more than the torque limits;
+    else the joints move by them, and stop at their limits. It is done at any time.
+
+    Example:
+        >>> controller = RaveCreateController(env, "odevelocity")
+        >>> robot.SetController(controller, range(robot.GetDOF()), 0)
+        True
+        >>> controller.SetDesired([0.5, 0])  # [rad/s]
+        True
+    """
+
+    _velocities: Floats | None = None
+
+    def Reset(self, options: int = 0) -> None:
+        """Let go of the joints.
+
+        Args:
+            options: OpenRAVE has no meaning for them.
+        """
+        super().Reset(options)
+        self._drive(None)
+
+    def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
+        del T_world_base
+        robot, dofs = self._robot, self._robot_dofs()
+        limits = robot.GetDOFVelocityLimits()[dofs]
+        self._drive(np.clip(values, -limits, limits))
+
+    def _drive(self, velocities: Floats | None) -> None:
+        self._velocities = velocities
+        if self._attached_robot is not None:
+            loads = self._env.GetPhysicsEngine().loads(self._attached_robot.simulation_state)
+            if loads is not None:
+                loads.motor = None if velocities is None else Motor(self._robot_dofs(), velocities)
+
+    def SimulationStep(self, timestep: float) -> None:
+        """Move the joints for a step of time [s], unless physics does."""
+        if self._velocities is None:
+            return
+        if self._env.GetPhysicsEngine().is_simulated:
+            self._drive(self._velocities)
+            return
+        robot, dofs = self._robot, self._robot_dofs()
+        values = robot.GetDOFValues()[dofs] + timestep * self._velocities
+        robot.SetDOFValues(values, dofs, CheckLimitsAction.CheckLimitsSilent)
+        all_velocities = robot.GetDOFVelocities()
+        all_velocities[dofs] = self._velocities
+        robot.SetDOFVelocities(all_velocities, checklimits=CheckLimitsAction.Nothing)

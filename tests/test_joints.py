@@ -1,0 +1,158 @@
+"""Joints: their setters, and the graph that they make of the links."""
+
+import numpy as np
+import pytest
+
+import ravemj
+
+TREE = """<Environment><KinBody name="tree">
+  <Body name="root"><Geom type="box"><extents>1 1 1</extents></Geom></Body>
+  <Body name="left"/><Body name="right"/><Body name="hand"/><Body name="nail"/><Body name="loose"/>
+  <Joint name="l"><Body>root</Body><Body>left</Body><axis>0 0 1</axis><limits>-4 4</limits></Joint>
+  <Joint name="h" type="slider"><Body>left</Body><Body>hand</Body><axis>1 0 0</axis><limits>-1 1</limits></Joint>
+  <Joint name="r" circular="true"><Body>root</Body><Body>right</Body><axis>0 0 1</axis></Joint>
+  <Joint name="n" mimic_pos="2*r"><Body>hand</Body><Body>nail</Body><axis>0 1 0</axis><limits>-9 9</limits></Joint>
+</KinBody></Environment>"""
+
+LOOP = """<Environment><KinBody name="loop">
+  <Body name="a"/><Body name="b"/><Body name="c"/>
+  <Joint name="ab"><Body>a</Body><Body>b</Body><axis>0 0 1</axis></Joint>
+  <Joint name="bc"><Body>b</Body><Body>c</Body><axis>0 0 1</axis></Joint>
+  <Joint name="ca"><Body>c</Body><Body>a</Body><axis>0 0 1</axis></Joint>
+</KinBody></Environment>"""
+
+
+@pytest.fixture
+def env():
+    return ravemj.Environment()
+
+
+@pytest.fixture
+def tree(env):
+    env.LoadData(TREE)
+    return env.GetKinBody("tree")
+
+
+def names(things):
+    return [thing.GetName() for thing in things]
+
+
+class TestSetters:
+    @pytest.mark.parametrize("name", ["VelocityLimits", "AccelerationLimits", "TorqueLimits", "Weights"])
+    def test_what_is_set_is_there_and_in_the_body(self, tree, name):
+        joint = tree.GetJoint("h")
+        getattr(joint, f"Set{name}")([3])
+        assert getattr(tree, f"GetDOF{name}")().tolist()[1] == 3
+        assert getattr(tree, f"GetDOF{name}")().tolist()[0] != 3
+        got = getattr(joint, f"Get{name}")()
+        np.testing.assert_array_equal(got, [[-3], [3]] if name == "VelocityLimits" else [3])
+
+    def test_limits_move_nothing_and_hold_from_then_on(self, tree):
+        tree.SetDOFValues([0, 0.8, 0])
+        tree.GetJoint("h").SetLimits([-0.5], [0.5])
+        assert tree.GetJoint("h").GetValue() == 0.8
+        tree.SetDOFValues([0, 0.8, 0], None, ravemj.CheckLimitsAction.CheckLimitsSilent)
+        assert tree.GetJoint("h").GetValue() == 0.5
+
+    @pytest.mark.parametrize(
+        "call",
+        [
+            lambda joint: joint.SetLimits([-1, -1], [1, 1]),
+            lambda joint: joint.SetLimits([-1], [np.nan]),
+            lambda joint: joint.SetWeights([0]),
+            lambda joint: joint.SetVelocityLimits([]),
+        ],
+    )
+    def test_what_is_refused_changes_nothing(self, tree, call):
+        before = tree.simulation_state.scene
+        with pytest.raises(ravemj.ArgumentError):
+            call(tree.GetJoint("h"))
+        assert tree.simulation_state.scene is before
+
+    def test_a_wrap_offset_chooses_the_turn(self, tree):
+        tree.SetDOFValues([0, 0, 1])
+        transforms = tree.link_transforms()
+        tree.GetJoint("r").SetWrapOffset(4 * np.pi)
+        assert tree.GetDOFValues()[2] == pytest.approx(1 + 4 * np.pi)
+        assert tree.GetJoint("r").GetWrapOffset() == 4 * np.pi
+        np.testing.assert_allclose(tree.link_transforms(), transforms, atol=1e-12)
+
+
+class TestFollowing:
+    def test_a_follower_gets_another_equation(self, tree):
+        follower = tree.GetJoint("n")
+        follower.SetMimicEquations(0, "l+1")
+        assert follower.GetMimicDOFIndices().tolist() == [0]
+        tree.SetDOFValues([0.5, 0, 0])
+        assert follower.GetValue() == pytest.approx(1.5)
+        tree.SetDOFVelocities([2, 0, 0])
+        assert follower.GetVelocities() == pytest.approx(2)
+
+    @pytest.mark.parametrize(("joint", "equation"), [("n", "nonsense+1"), ("n", ""), ("l", "r")])
+    def test_what_is_refused_changes_nothing(self, tree, joint, equation):
+        before = tree.simulation_state.scene
+        with pytest.raises(ravemj.openrave_exception):
+            tree.GetJoint(joint).SetMimicEquations(0, equation)
+        assert tree.simulation_state.scene is before
+
+    def test_velocities_are_the_derivatives_of_the_equation(self, tree):
+        tree.SetDOFVelocities([0, 0.5, -1.5])
+        assert tree.GetJoint("n").GetVelocities() == pytest.approx(-3)
+        assert tree.GetJoint("h").GetVelocities() == pytest.approx(0.5)
+
+
+def test_the_joint_frame_places_the_child(tree):
+    tree.SetDOFValues([0.3, 0.2, 0.1])
+    for joint in tree.GetJoints():
+        left, right = joint.GetInternalHierarchyLeftTransform(), joint.GetInternalHierarchyRightTransform()
+        motion, axis = np.eye(4), joint.GetInternalHierarchyAxis(0) * joint.GetValue(0)
+        if joint.IsPrismatic():
+            motion[:3, 3] = axis
+        else:
+            motion = ravemj.matrixFromAxisAngle(axis)
+        placed = joint.GetFirstAttached().GetTransform() @ left @ motion @ right
+        np.testing.assert_allclose(placed, joint.GetSecondAttached().GetTransform(), atol=1e-12)
+
+
+class TestGraph:
+    def test_what_moves_what(self, tree):
+        affect = [[tree.DoesDOFAffectLink(dof, link) for link in range(6)] for dof in range(3)]
+        moved = []
+        for dof in range(3):
+            tree.SetDOFValues([0, 0, 0])
+            before = tree.link_transforms()
+            tree.SetDOFValues([0.5], [dof])
+            moved.append((np.abs(tree.link_transforms() - before).max(axis=(1, 2)) > 1e-9).astype(int).tolist())
+        assert affect == moved
+        assert [tree.IsDOFInChain(1, 4, dof) for dof in range(3)] == [False, True, True]
+
+    def test_ways(self, tree):
+        assert names(tree.GetChain(4, 2)) == ["n", "h", "l", "r"]
+        assert names(tree.GetChain(4, 2, returnjoints=False)) == ["nail", "hand", "left", "root", "right"]
+        assert tree.GetChain(0, 5) == []
+        assert names(tree.GetDependencyOrderedJoints()) == ["l", "r", "h"]
+        assert tree.GetJointIndex("n") == -1
+        with pytest.raises(ravemj.ArgumentError):
+            tree.GetChain(0, 6)
+
+    def test_loops(self, env, tree):
+        env.LoadData(LOOP)
+        assert tree.GetClosedLoops() == []
+        (loop,) = env.GetKinBody("loop").GetClosedLoops()
+        assert sorted(link.GetName() for link, _ in loop) == ["a", "b", "c"]
+        assert sorted(joint.GetName() for _, joint in loop) == ["ab", "bc", "ca"]
+        for (link, joint), (after, _) in zip(loop, [*loop[1:], loop[0]], strict=True):
+            assert {link, after} == {joint.GetFirstAttached(), joint.GetSecondAttached()}
+
+    def test_a_hash_tells_structures_apart(self, env, tree):
+        plain = tree.GetKinematicsGeometryHash()
+        tree.SetDOFValues([0.3, 0.2, 0.1])
+        tree.SetTransform([0, 1, 0, 0, 1, 2, 3])
+        tree.GetJoint("l").SetLimits([0], [1])
+        tree.SetName("other")
+        assert tree.GetKinematicsGeometryHash() == plain
+        env.LoadData(TREE.replace("1 1 1</extents>", "1 1 2</extents>"))
+        assert env.GetKinBody("tree").GetKinematicsGeometryHash() != plain
+        env.GetKinBody("tree").SetName("larger")
+        env.LoadData(TREE.replace("2*r", "3*r"))
+        assert env.GetKinBody("tree").GetKinematicsGeometryHash() != plain

@@ -1,0 +1,202 @@
+"""Links and geometries: what setters change, and when the model is compiled anew."""
+
+import numpy as np
+import pytest
+
+import ravemj
+from ravemj.geometry_functions import matrixFromAxisAngle, matrixFromPose
+
+MESH = ravemj.TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+
+
+@pytest.fixture
+def world():
+    return ravemj.Environment()
+
+
+def box(env, name="box", *rows):
+    body = ravemj.RaveCreateKinBody(env, "")
+    body.InitFromBoxes(rows or [[0, 0, 0, 0.5, 0.5, 0.5]])
+    body.SetName(name)
+    env.Add(body)
+    return body
+
+
+def seen_colour(env):
+    """Return the colour in the middle of a picture from above."""
+    camera = np.diag([1.0, -1.0, -1.0, 1.0])
+    camera[2, 3] = 3
+    return env.render(32, 32, camera=camera, background=[0, 0, 0])[16, 16].astype(int)
+
+
+class TestMass:
+    def test_inverse_dynamics_uses_what_was_set(self, robot, env):
+        before, model = robot.ComputeInverseDynamics(None), env.model
+        for link in robot.GetLinks():
+            link.SetMass(3 * link.GetMass())
+            link.SetPrincipalMomentsOfInertia(3 * link.GetPrincipalMomentsOfInertia())
+        np.testing.assert_allclose(robot.ComputeInverseDynamics(None), 3 * before, atol=1e-9)
+        assert env.model is model
+
+    def test_the_model_has_what_was_set(self, robot, env):
+        link = robot.GetLinks()[1]
+        body = env.model.body("Arm0")
+        total = env.model.body_subtreemass[0]
+        link.SetMass(link.GetMass() + 5)
+        T = matrixFromPose([0.6, 0, 0, 0.8, 0.1, 0.2, 0.3])
+        link.SetLocalMassFrame(T)
+        link.SetPrincipalMomentsOfInertia([0.3, 0.2, 0.1])
+        assert env.model.body_subtreemass[0] == pytest.approx(total + 5)
+        np.testing.assert_allclose(env.data.xipos[body.id], link.GetGlobalCOM(), atol=1e-9)
+        turned = env.data.ximat[body.id].reshape(3, 3)
+        inertia = turned @ np.diag(env.model.body_inertia[body.id]) @ turned.T
+        np.testing.assert_allclose(inertia, link.GetGlobalInertia(), atol=1e-9)
+        compiled = env.model
+        env.simulation.forget_model()
+        assert env.model is not compiled
+        np.testing.assert_allclose(env.model.body("Arm0").ipos, [0.1, 0.2, 0.3], atol=1e-9)
+
+    def test_moments_and_frame_stay_as_they_are_set(self, robot):
+        link = robot.GetLinks()[1]
+        T = matrixFromAxisAngle([0.3, -0.5, 1.2])
+        T[:3, 3] = [1, 2, 3]
+        link.SetLocalMassFrame(T)
+        link.SetPrincipalMomentsOfInertia([0.3, 0.1, 0.2])
+        np.testing.assert_allclose(link.GetPrincipalMomentsOfInertia(), [0.3, 0.1, 0.2], atol=1e-12)
+        np.testing.assert_allclose(link.GetLocalMassFrame(), T, atol=1e-12)
+        np.testing.assert_allclose(np.linalg.eigvalsh(link.GetLocalInertia()), [0.1, 0.2, 0.3], atol=1e-12)
+
+    @pytest.mark.parametrize(
+        "call",
+        [
+            lambda link: link.SetMass(np.nan),
+            lambda link: link.SetPrincipalMomentsOfInertia([1, 2]),
+            lambda link: link.SetLocalMassFrame(np.ones((4, 4))),
+        ],
+    )
+    def test_what_is_refused_changes_nothing(self, robot, call):
+        link = robot.GetLinks()[1]
+        before = robot.simulation_state.scene
+        with pytest.raises(ravemj.ArgumentError):
+            call(link)
+        assert robot.simulation_state.scene is before
+
+
+class TestColours:
+    def test_they_show_without_compiling(self, world):
+        geometry = box(world).GetLinks()[0].GetGeometries()[0]
+        geometry.SetDiffuseColor([0, 1, 0])
+        red, green, blue = seen_colour(world)
+        model = world.model
+        assert green > 4 * max(red, blue)
+        geometry.SetDiffuseColor([0, 0, 1])
+        red, green, blue = seen_colour(world)
+        assert blue > 4 * max(red, green)
+        geometry.SetTransparency(1)
+        assert seen_colour(world).tolist() == [0, 0, 0]
+        assert world.model is model
+
+    def test_only_the_geoms_of_the_geometry_change(self, world):
+        tray = ravemj.KinBody.GeometryInfo()
+        tray._type, tray._vGeomData, tray._vGeomData2 = ravemj.GeometryType.Container, [1, 1, 1], [0.9, 0.9, 0.9]
+        ball = ravemj.KinBody.GeometryInfo()
+        ball._type, ball._vGeomData = ravemj.GeometryType.Sphere, [1, 0, 0, 0]
+        box(world, "before")
+        body = ravemj.RaveCreateKinBody(world, "")
+        body.InitFromGeometries([ball, tray, ball])
+        body.SetName("body")
+        world.Add(body)
+        before = world.model.geom_rgba.copy()
+        body.GetLinks()[0].GetGeometries()[1].SetDiffuseColor([0.1, 0.2, 0.3])
+        changed = np.flatnonzero((world.model.geom_rgba != before).any(axis=1))
+        assert changed.tolist() == [2, 3, 4, 5, 6]
+
+    def test_a_new_model_has_them_too(self, world):
+        geometry = box(world).GetLinks()[0].GetGeometries()[0]
+        geometry.SetDiffuseColor([0.1, 0.2, 0.3])
+        np.testing.assert_allclose(world.model.geom_rgba[0], [0.1, 0.2, 0.3, 1], atol=1e-6)
+
+    @pytest.mark.parametrize("colour", [[1, 0], [[1, 0, 0]], [np.nan, 0, 0], "red"])
+    def test_what_is_refused_changes_nothing(self, world, colour):
+        geometry = box(world).GetLinks()[0].GetGeometries()[0]
+        with pytest.raises(ravemj.ArgumentError):
+            geometry.SetDiffuseColor(colour)
+        assert geometry.GetDiffuseColor().tolist() == [1, 0.5, 0.5]
+
+
+class TestShapes:
+    def test_hidden_ones_are_not_seen_and_their_body_stays(self, world):
+        body = box(world)
+        body.SetTransform(matrixFromPose([1, 0, 0, 0, 0, 0, -1]))
+        assert seen_colour(world).any()
+        assert body.SetVisible(False) is True
+        assert body.SetVisible(False) is False
+        assert not seen_colour(world).any()
+        assert body.GetTransform()[2, 3] == -1
+
+    def test_a_set_mesh_is_the_one_that_is_drawn(self, world):
+        body = ravemj.RaveCreateKinBody(world, "")
+        body.InitFromTrimesh(MESH)
+        body.SetName("mesh")
+        world.Add(body)
+        world.model  # noqa: B018 - compiles
+        geometry = body.GetLinks()[0].GetGeometries()[0]
+        geometry.SetCollisionMesh(ravemj.TriMesh(MESH.vertices * 3, MESH.indices))
+        assert world.Triangulate(body).vertices.max() == 3
+        corners = world.model.mesh_vert
+        assert np.linalg.norm(corners[:, None] - corners, axis=2).max() == pytest.approx(3 * 2**0.5)
+        with pytest.raises(ravemj.openrave_exception, match="Box"):
+            box(world).GetLinks()[0].GetGeometries()[0].SetCollisionMesh(MESH)
+
+    def test_groups_can_be_swapped_in(self, world):
+        link = box(world).GetLinks()[0]
+        info = link.GetGeometries()[0].GetInfo()
+        info._vGeomData, info._name = [1, 2, 3], "large"
+        assert link.GetGroupNumGeometries("large") == -1
+        link.SetGroupGeometries("large", [info, info])
+        assert link.GetGroupNumGeometries("large") == 2
+        link.GetGeometriesFromGroup("large")[1].SetName("second")
+        link.SetGeometriesFromGroup("large")
+        assert [geometry.GetName() for geometry in link.GetGeometries()] == ["large", "second"]
+        assert link.RemoveGeometryByName("large") is True
+        assert [geometry.GetName() for geometry in link.GetGeometries()] == ["second"]
+        assert link.GetGroupNumGeometries("large") == 1
+        link.AddGeometry(info)
+        with pytest.raises(ravemj.ArgumentError, match="already"):
+            link.AddGeometry(info)
+        link.InitGeometries([])
+        assert link.GetGeometries() == []
+        with pytest.raises(ravemj.ArgumentError, match="large"):
+            link.SetGeometriesFromGroup("none")
+
+    def test_geometries_are_equal_by_their_place(self, world):
+        link = box(world, "two", [0, 0, 0, 1, 1, 1], [3, 0, 0, 1, 1, 1]).GetLinks()[0]
+        first, second = link.GetGeometries()
+        assert first == link.GetGeometry(0)
+        assert first != second
+        assert len({first, second, *link.GetGeometries()}) == 2
+
+
+class TestLink:
+    def test_moved_alone(self, robot):
+        arm, tip = robot.GetLinks()[1:]
+        before = tip.GetTransform()
+        arm.SetTransform([1, 0, 0, 0, 1, 2, 3])
+        np.testing.assert_allclose(arm.GetTransformPose(), [1, 0, 0, 0, 1, 2, 3], atol=1e-12)
+        np.testing.assert_allclose(tip.GetTransform(), before, atol=1e-12)
+
+    def test_parameters(self, robot):
+        link = robot.GetLinks()[0]
+        link.SetFloatParameters("f", [1.5, 2])
+        link.SetIntParameters("i", [3])
+        assert link.GetFloatParameters("f", 1) == 2
+        assert link.GetIntParameters()["i"].tolist() == [3]
+        link.SetFloatParameters("f", [])
+        assert link.GetFloatParameters("f") is None
+        assert link.GetInfo()._mapIntParameters["i"].tolist() == [3]
+
+    def test_static(self, robot):
+        link = robot.GetLinks()[1]
+        link.SetStatic(True)
+        assert link.IsStatic()
+        assert robot.GetDOF() == 2
