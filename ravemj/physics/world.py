@@ -66,11 +66,12 @@ class Physics:
         model.opt.timestep = timestep / count
         before = data.qpos.copy()
         data.qfrc_applied[:] = 0.0
-        for state, loads in self._loads.items():
-            loads.apply(self._bodies[state])
+        pushed = [(self._bodies[state], loads) for state, loads in self._loads.items() if state in self._bodies]
+        for body, loads in pushed:
+            loads.apply(body)
         applied = data.qfrc_applied.copy()
         for _ in range(count):
-            self._drive(applied)
+            self._drive(pushed, applied)
             mujoco.mj_step(model, data)
         if not (np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()):
             _LOG.error("physics got unstable and starts again at rest; very light links or strong forces do that")
@@ -80,13 +81,13 @@ class Physics:
             loads.clear()
         self._give_back()
 
-    def _drive(self, applied: Floats) -> None:
+    def _drive(self, pushed: list[tuple[PhysicalBody, Loads]], applied: Floats) -> None:
         """Let motors act during the next time step."""
-        if any(loads.motor is not None for loads in self._loads.values()):
+        if any(loads.motor is not None for _, loads in pushed):
             self._data.qfrc_applied[:] = applied
             mujoco.mj_forward(self._model, self._data)
-            for state, loads in self._loads.items():
-                loads.drive(self._bodies[state], applied)
+            for body, loads in pushed:
+                loads.drive(body, applied)
 
     def _prepare(self) -> None:
         """Make the model anew if the bodies are others, and take over what users moved."""
