@@ -141,9 +141,9 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
     """Return the names that ``RaveCreate…`` of each kind makes something for."""
     made: dict[InterfaceType, list[str]] = {
         InterfaceType.collisionchecker: ["ode"],
-        InterfaceType.controller: ["IdealController"],
+        InterfaceType.controller: ["IdealController", "IdealVelocityController", "odevelocity"],
         InterfaceType.kinbody: [""],
-        InterfaceType.physicsengine: ["GenericPhysicsEngine"],
+        InterfaceType.physicsengine: ["GenericPhysicsEngine", "ode", "bullet", "mujoco"],
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],
         InterfaceType.viewer: list(VIEWERS),

@@ -45,6 +45,7 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
         self.active_choice = ActiveChoice()
         self.affine_kinds = default_kinds()
         self._active_manipulator = None
+        self.powered_sensors: set[str] = set()
 
     def GetXMLId(self) -> str:
         """Return OpenRAVE's name of the kind of robot."""

@@ -85,7 +85,7 @@ class IdealController(Controller):
             path.trajectory.Sample(0.0)
             self._path, self._desired = path, None
             self._time, self._is_done = 0.0, False
-        self._env.wake_clock()
+        self._env.clock.wake()
         return True
 
     def _prepared(self, traj: Trajectory) -> _Path:
