@@ -81,8 +81,9 @@ class Manipulator(ArmGoals, ArmCollision):
             That of the tool point [m/s] and the angular one [rad/s], shape (6,).
         """
         effector = self._effector()
-        velocity = effector.GetVelocity()
-        arm = self.GetTransform()[:3, 3] - effector.GetTransform()[:3, 3]
+        with self._state.simulation.lock:
+            velocity = effector.GetVelocity()
+            arm = self.GetTransform()[:3, 3] - effector.GetTransform()[:3, 3]
         velocity[:3] += np.cross(velocity[3:], arm)
         return velocity
 
@@ -92,8 +93,9 @@ class Manipulator(ArmGoals, ArmCollision):
         Returns:
             Derivative of its position in the world by the values of ``GetArmIndices()``, shape (3, arm dof).
         """
-        tool = self.GetTransform()[:3, 3]
-        return self._robot.ComputeJacobianTranslation(self._effector().GetIndex(), tool)[:, self.GetArmIndices()]
+        with self._state.simulation.lock:
+            tool = self.GetTransform()[:3, 3]
+            return self._robot.ComputeJacobianTranslation(self._effector().GetIndex(), tool)[:, self.GetArmIndices()]
 
     def CalculateAngularVelocityJacobian(self) -> Floats:
         """Return the angular velocity of the tool, in world axes, per unit of the arm's, shape (3, arm dof)."""
@@ -101,8 +103,9 @@ class Manipulator(ArmGoals, ArmCollision):
 
     def CalculateRotationJacobian(self) -> Floats:
         """Return how the tool's quaternion [w, x, y, z] changes with the arm's joints, shape (4, arm dof)."""
-        wxyz = wxyz_from_rows(self.GetTransform()[:3, :3].tolist())
-        return self._robot.CalculateRotationJacobian(self._effector().GetIndex(), wxyz)[:, self.GetArmIndices()]
+        with self._state.simulation.lock:
+            wxyz = wxyz_from_rows(self.GetTransform()[:3, :3].tolist())
+            return self._robot.CalculateRotationJacobian(self._effector().GetIndex(), wxyz)[:, self.GetArmIndices()]
 
     def GetTransformPose(self) -> Floats:
         """Return the pose of the tool in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""
@@ -139,9 +142,10 @@ class Manipulator(ArmGoals, ArmCollision):
         self._edit(direction=tuple((given / length).tolist()))
 
     def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Manipulator
-        arms = list(self._state.scene.manipulators)
-        arms[self._index] = replace(arms[self._index], **changes)
-        self._state.edit(manipulators=tuple(arms))
+        with self._state.simulation.lock:
+            arms = list(self._state.scene.manipulators)
+            arms[self._index] = replace(arms[self._index], **changes)
+            self._state.edit(manipulators=tuple(arms))
 
     def GetArmIndices(self) -> Ints:
         """Return the DOF indices of the joints between base and effector, the base first.

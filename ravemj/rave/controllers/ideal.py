@@ -51,8 +51,9 @@ class IdealController(Controller):
         Args:
             options: OpenRAVE has no meaning for them.
         """
-        self._path = self._desired = None
-        super().Reset(options)
+        with self._env.simulation.lock:
+            self._path = self._desired = None
+            super().Reset(options)
 
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
         if T_world_base is None and self._moves_base:

@@ -15,9 +15,10 @@ class LinkCollision(LinkPart):
 
     def Enable(self, enable: bool) -> None:
         """Enable or disable the link for collision checking; nothing else changes."""
-        enabled = list(self._state.link_enabled)
-        enabled[self._index] = bool(enable)
-        self._state.link_enabled = enabled
+        with self._state.simulation.lock:
+            enabled = list(self._state.link_enabled)
+            enabled[self._index] = bool(enable)
+            self._state.link_enabled = enabled
 
     def IsEnabled(self) -> bool:
         """Return whether collision checking looks at the link."""
@@ -25,8 +26,9 @@ class LinkCollision(LinkPart):
 
     def SetIgnoreSelfCollision(self, bIgnore: bool) -> None:
         """Leave the link out of ``body.CheckSelfCollision``, or take it in again."""
-        self._state.edit_link(self._index, self_collision_ignored=bool(bIgnore))
-        self._state.simulation.collision_stamp += 1
+        with self._state.simulation.lock:
+            self._state.edit_link(self._index, self_collision_ignored=bool(bIgnore))
+            self._state.simulation.collision_stamp += 1
 
     def IsSelfCollisionIgnored(self) -> bool:
         """Return whether ``body.CheckSelfCollision`` leaves the link out."""
