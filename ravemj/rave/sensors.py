@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ravemj import scene
+from ravemj.errors import UnsupportedError
 from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.infos import AttachedSensorInfo
 from ravemj.rave.link import Link
@@ -15,6 +16,8 @@ from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
+
+SENSING = "simulation of sensors"
 
 
 @dataclass(eq=False)
@@ -43,9 +46,26 @@ class Sensor:
     Type = SensorType
     ConfigureCommand = SensorCommand
 
-    def __init__(self, attached: scene.AttachedSensor, kind: str) -> None:
-        self._scene = attached
+    def __init__(self, attached: "AttachedSensor", description: scene.AttachedSensor, kind: str) -> None:
+        self._attached = attached
+        self._scene = description
         self._kind = kind
+
+    def GetName(self) -> str:
+        """Return the sensor's name, unique in its environment: ``robot:sensor``."""
+        return f"{self._attached.GetRobot().GetName()}:{self._scene.name}"
+
+    def GetTransform(self) -> Floats:
+        """Return the pose in the world, shape (4, 4); a camera looks along z, with y down."""
+        return self._attached.GetTransform()
+
+    def Configure(self, command: SensorCommand, blocking: bool = False) -> int:
+        """Switch the sensor on or off."""
+        raise UnsupportedError("Sensor.Configure", SENSING)
+
+    def GetSensorData(self, type: SensorType | None = None) -> object:  # OpenRAVE's name
+        """Return what the sensor measured last."""
+        raise UnsupportedError("Sensor.GetSensorData", SENSING)
 
     def GetXMLId(self) -> str:
         """Return OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``."""
@@ -103,7 +123,7 @@ class AttachedSensor:
 
     def GetSensor(self) -> Sensor | None:
         """Return the device, or None for a mere frame."""
-        return None if self._scene.type is None else Sensor(self._scene, self._scene.type)
+        return None if self._scene.type is None else Sensor(self, self._scene, self._scene.type)
 
     def GetInfo(self) -> AttachedSensorInfo:
         """Return the description of the attached sensor, a copy."""
