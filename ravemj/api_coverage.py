@@ -114,8 +114,10 @@ def _attribute(path: str) -> object:
 def _capability(thing: object) -> str:
     """Return what a function or class lacks that does nothing but raise ``UnsupportedError``; empty for others."""
     if isinstance(thing, type):
+        if issubclass(thing, databases.DatabaseGenerator):
+            return "" if "autogenerate" in vars(thing) else thing.capability
         made = vars(thing).get("__init__")
-        return str(getattr(thing, "capability", "")) or (_capability(made) if made else "")
+        return _capability(made) if made else ""
     if not isinstance(thing, FunctionType):
         return ""
     definition = ast.parse(textwrap.dedent(inspect.getsource(thing))).body[0]
