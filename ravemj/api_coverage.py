@@ -113,9 +113,9 @@ def _attribute(path: str) -> object:
 
 def _capability(thing: object) -> str:
     """Return what a function or class lacks that does nothing but raise ``UnsupportedError``; empty for others."""
+    if isinstance(thing, type) and issubclass(thing, databases.DatabaseGenerator):
+        return "" if "autogenerate" in vars(thing) else thing.capability
     if isinstance(thing, type):
-        if issubclass(thing, databases.DatabaseGenerator):
-            return "" if "autogenerate" in vars(thing) else thing.capability
         made = vars(thing).get("__init__")
         return _capability(made) if made else ""
     if not isinstance(thing, FunctionType):
