@@ -44,7 +44,7 @@ LEVELS: list[set[str]] = [
         "summary",
     },
     {"chains", "fingerprints"},
-    {"builder", "mjcf"},
+    {"builder", "mjcf", "reach"},
     {"kinematics", "openrave_xml", "tessellation"},
     {"coverage", "dynamics", "placement", "readers", "rendering", "trajectories"},
     {"batch"},
@@ -64,8 +64,8 @@ ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 WITHOUT_MUJOCO = {
     "adjacency", "alias", "arrays", "bounds", "builder", "chains", "clock", "coverage", "drawing", "errors",
     "expressions", "fingerprints", "following", "geometry_functions", "handles", "hierarchy", "inertia", "joints",
-    "making", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "ordering", "output", "readers", "scene",
-    "tessellation", "trajectories", "transforms", "video",
+    "making", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "ordering", "output", "reach", "readers",
+    "scene", "tessellation", "trajectories", "transforms", "video",
 }  # fmt: skip
 
 

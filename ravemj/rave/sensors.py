@@ -19,6 +19,8 @@ from ravemj.transforms import Floats
 if TYPE_CHECKING:
     from ravemj.rave.robot import Robot
 
+SENSING = "simulation of sensors"
+
 
 @dataclass(eq=False)
 class CameraGeomData:
