@@ -50,6 +50,7 @@ LEVELS: list[set[str]] = [
     {"batch"},
     {"simulation"},
     {"collision", "export", "physics", "studio"},
+    {"interaction"},
     {"viewers"},
     {"extension", "rave"},
     {"checking", "databases", "interfaces", "misc", "openravepy_int", "planningutils", "recording"},
