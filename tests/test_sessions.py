@@ -204,6 +204,16 @@ def objects():
         "viewer": env.GetViewer(),
         "link": robot.GetLinks()[1],
         "joint": robot.GetJoints()[0],
+        "geometry": robot.GetLinks()[0].GetGeometries()[0],
+        "controller": robot.GetController(),
+        "engine": env.GetPhysicsEngine(),
+        "checker": env.GetCollisionChecker(),
+        "report": ravemj.CollisionReport(),
+        "spec": robot.GetConfigurationSpecification(),
+        "trajectory": ravemj.RaveCreateTrajectory(env, ""),
+        "saver": robot.CreateRobotStateSaver(),
+        "handle": env.plot3([0, 0, 1], 5),
+        "fresh": ravemj.load(TUTORIAL / "env.xml"),
         "ravemj": ravemj,
     }
     env.Destroy()
@@ -224,13 +234,16 @@ def shell(objects, tmp_path_factory):
         os.environ["IPYTHONDIR"] = before
 
 
+COMPLETED = "env robot viewer link joint geometry controller engine checker report spec trajectory saver handle"
+
+
 @pytest.mark.parametrize("jedi", [True, False])
-@pytest.mark.parametrize("name", ["env", "robot", "viewer", "link", "joint"])
+@pytest.mark.parametrize("name", COMPLETED.split())
 def test_completion_lists_what_a_user_may_call(shell, objects, name, jedi):
     found = completions(shell, f"{name}.", jedi)
     assert found, "nothing is completed"
     assert not [word for word in found if word.startswith("_")]
-    public = {word for word in dir(type(objects[name])) if not word.startswith("_")}
+    public = {word for word in dir(objects[name]) if not word.startswith("_")}
     assert found == public
     wanted = {
         "env": {"Load", "SetViewer", "GetViewer", "GetRobots"},
@@ -239,7 +252,17 @@ def test_completion_lists_what_a_user_may_call(shell, objects, name, jedi):
         "link": {"GetName", "GetTransform", "GetMass"},
         "joint": {"GetName", "GetValue", "GetLimits"},
     }
-    assert wanted[name] <= found
+    assert wanted.get(name, set()) <= found
+
+
+@pytest.mark.parametrize("jedi", [True, False])
+def test_completion_neither_compiles_nor_draws(shell, objects, jedi, monkeypatch):
+    env = objects["fresh"]
+    env.simulation.forget_model()
+    monkeypatch.setattr(env.simulation, "compile", lambda: pytest.fail("completion compiles"))
+    monkeypatch.setattr(env.studio, "picture", lambda *rest: pytest.fail("completion draws"))
+    assert "model" in completions(shell, "fresh.", jedi)
+    assert "render" in completions(shell, "fresh.re", jedi)
 
 
 def test_completion_of_the_package_lists_what_it_exports(shell):

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.geometry_functions import arguments
+from ravemj.showing import Shown
 from ravemj.transforms import ZERO, Floats, Pose
 
 
-class Ray:
+class Ray(Shown):
     """A ray; its length is that of its direction.
 
     Example:
@@ -35,7 +36,7 @@ class Ray:
         return f"<{_listed((*self._pos, *self._dir), ' ')}>"
 
 
-class AABB:
+class AABB(Shown):
     """A box along the axes of the world.
 
     Example:
@@ -66,7 +67,7 @@ class AABB:
         return f"<{_listed((*self._pos, *self._extents), ' ')}>"
 
 
-class OrientedBox:
+class OrientedBox(Shown):
     """A box that may be turned."""
 
     def __init__(self, transform: ArrayLike = (1, 0, 0, 0, 0, 0, 0), extents: ArrayLike = ZERO) -> None:

@@ -9,6 +9,7 @@ from ravemj.errors import ErrorCode, UnsupportedError
 from ravemj.geometry_functions import Ray, quatFromRotationMatrix
 from ravemj.rave.enums import IkParameterizationType
 from ravemj.rave.ikparameterization import IkParameterization
+from ravemj.showing import Shown
 from ravemj.transforms import Floats, inverse
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 INVERSE_KINEMATICS = "inverse kinematics"
 
 
-class ArmGoals:
+class ArmGoals(Shown):
     """Part of the API of a manipulator."""
 
     @property

@@ -2,8 +2,7 @@
 
 import logging
 from collections.abc import Iterable, Sequence
-from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Self, cast
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
 from ravemj.rave.interface import Annotations, Interface
 from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact, Part
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats
 
@@ -51,6 +51,7 @@ class CollisionChecker(Interface):
     """
 
     _interface_type = InterfaceType.collisionchecker
+    _internal = ("answer", "cast")
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
         self._env = env
@@ -258,6 +259,11 @@ class CollisionChecker(Interface):
                 raise _not_understood((Ray(start, direction), target))
         return world.ray(start, direction, geoms)
 
+    def __repr__(self) -> str:
+        if self._env.GetCollisionChecker() is self:
+            return f"{self._env!r}.GetCollisionChecker()"
+        return f"RaveCreateCollisionChecker({self._env!r}, {self._name!r})"
+
 
 class NoCollisionChecker(CollisionChecker):
     """A checker for which nothing collides: that of ``env.SetCollisionChecker(None)``."""
@@ -277,7 +283,7 @@ class NoCollisionChecker(CollisionChecker):
         del world, start, direction, target
 
 
-class CollisionOptionsStateSaver(AbstractContextManager["CollisionOptionsStateSaver"]):
+class CollisionOptionsStateSaver(Shown):
     """Sets the options of a checker, and sets the old ones again at the end of its ``with``.
 
     Example:
@@ -299,6 +305,9 @@ class CollisionOptionsStateSaver(AbstractContextManager["CollisionOptionsStateSa
         self._checker, self._old = p, p.GetCollisionOptions()
         if not p.SetCollisionOptions(newoptions) and required:
             raise ArgumentError(f"CollisionOptionsStateSaver: newoptions are {newoptions}, which are not all known")
+
+    def __enter__(self) -> Self:
+        return self
 
     def __exit__(self, *exception: object) -> None:
         self._checker.SetCollisionOptions(self._old)

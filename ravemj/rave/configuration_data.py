@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import arguments
+from ravemj.showing import Shown
 from ravemj.trajectories import extraction, layout
 from ravemj.trajectories.conversion import FindBody, convert_group, converted, nobody
 from ravemj.trajectories.groups import Group, ik_type
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from ravemj.rave.specification import ConfigurationSpecification
 
 
-class ConfigurationData:
+class ConfigurationData(Shown):
     """The part of ``ConfigurationSpecification`` that works on numbers."""
 
     _groups: list[Group]

@@ -37,6 +37,8 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
         >>> picture = env.render(640, 480)
     """
 
+    _internal = ("simulation",)
+
     def __init__(self, options: int = 1) -> None:
         """Make an empty environment.
 

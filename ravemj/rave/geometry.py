@@ -15,12 +15,13 @@ from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.geometry import TYPES, GeometryInfo
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 from ravemj.tessellation import triangulated
 from ravemj.transforms import Floats
 
 
-class Geometry:
+class Geometry(Shown):
     """A shape of a link; ``link.GetGeometries()`` makes it. What it does not have, its getters raise for.
 
     Setters act at once, also in viewers and in pictures.
@@ -269,6 +270,11 @@ class Geometry:
         return self._link, self._index, self._group
 
     def __repr__(self) -> str:
+        body: Any = self._state.api_object
+        chosen = "GetGeometries()" if self._group is None else f"GetGeometriesFromGroup({self._group!r})"
+        return f"{body.GetLinks()[self._link]!r}.{chosen}[{self._index}]"
+
+    def __str__(self) -> str:
         return f"<geometry:{self.GetName()}, type={self.GetType().name}>"
 
 

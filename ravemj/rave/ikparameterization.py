@@ -12,6 +12,7 @@ from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.geometry_functions import Ray
 from ravemj.rave.enums import IkParameterizationType
 from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.showing import Shown
 from ravemj.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
 
 _Type = IkParameterizationType
@@ -21,7 +22,7 @@ _CUSTOM_DATA = 0x10000
 _ANGLE_WEIGHT = 0.4
 
 
-class IkParameterization:
+class IkParameterization(Shown):
     """A pose, a direction, a point or a ray that the tool of an arm shall reach.
 
     The numbers are, by type: ``Transform6D`` the pose [w, x, y, z, tx, ty, tz]; ``Rotation3D`` the quaternion;

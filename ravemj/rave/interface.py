@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
+from ravemj.showing import Shown
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -17,7 +18,7 @@ class Annotations:
         self.data: dict[str, Any] = {}
 
 
-class UserData:
+class UserData(Shown):
     """Keeps data of users."""
 
     _annotations: Annotations

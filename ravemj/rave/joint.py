@@ -13,6 +13,7 @@ from ravemj.rave.infos import JointInfo
 from ravemj.rave.joints.following import JointFollowing
 from ravemj.rave.joints.limits import JointLimits
 from ravemj.rave.link import Link
+from ravemj.rave.tables import joint_table
 from ravemj.transforms import Floats, Pose, pose_of
 
 if TYPE_CHECKING:
@@ -235,7 +236,11 @@ class Joint(JointLimits, JointFollowing):
         return hash((id(self._state), self._index))
 
     def __repr__(self) -> str:
-        return f"{self._parent.GetEnv()!r}.GetKinBody('{self._parent.GetName()}').GetJoint('{self.GetName()}')"
+        return f"{self._parent.GetEnv()!r}.GetKinBody({self._parent.GetName()!r}).GetJoint({self.GetName()!r})"
+
+    def _repr_html_(self) -> str:
+        """Return the table that notebooks show for a joint."""
+        return joint_table(self)
 
     def __str__(self) -> str:
         place = f"({self.GetJointIndex()}), dof={self.GetDOFIndex()}"

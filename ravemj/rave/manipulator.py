@@ -243,7 +243,7 @@ class Manipulator(ArmGoals, ArmCollision):
         return hash((id(self._state), "manipulator", self._index))
 
     def __repr__(self) -> str:
-        return f"{self._robot!r}.GetManipulator('{self.GetName()}')"
+        return f"{self._robot!r}.GetManipulator({self.GetName()!r})"
 
     def __str__(self) -> str:
         return f"<manipulator:{self.GetName()}, parent={self._robot.GetName()}>"

@@ -27,6 +27,7 @@ class PhysicsEngine(Interface):
     """
 
     _interface_type = InterfaceType.physicsengine
+    _internal = ("attach", "detach", "is_simulated", "loads")
     is_simulated = False
     """Whether bodies fall and collide."""
 
@@ -170,6 +171,11 @@ class PhysicsEngine(Interface):
         """Return what pushes a body during the next step, to be changed; None where nothing moves bodies."""
         del state
         return None
+
+    def __repr__(self) -> str:
+        if self._is_attached:
+            return f"{self._env!r}.GetPhysicsEngine()"
+        return f"RaveCreatePhysicsEngine({self._env!r}, {self._xml_id!r})"
 
 
 class SimulatedEngine(PhysicsEngine):

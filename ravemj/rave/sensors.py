@@ -12,6 +12,7 @@ from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.infos import AttachedSensorInfo
 from ravemj.rave.link import Link
 from ravemj.rendering import Camera, CameraIntrinsics, Pinhole
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 from ravemj.studio import Format
 from ravemj.transforms import Floats
@@ -66,7 +67,7 @@ class CameraSensorData:
         return self.intrinsics.K
 
 
-class Sensor:
+class Sensor(Shown):
     """A device that measures; ``attached.GetSensor()`` makes it.
 
     Example:
@@ -165,8 +166,11 @@ class Sensor:
         matrix = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
         return CameraGeomData(CameraIntrinsics(matrix), camera.width, camera.height)
 
+    def __repr__(self) -> str:
+        return f"{self._attached!r}.GetSensor()"
 
-class AttachedSensor:
+
+class AttachedSensor(Shown):
     """A place on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
 
     def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:
@@ -213,5 +217,11 @@ class AttachedSensor:
 
     UpdateAndGetInfo = GetInfo
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, AttachedSensor) and self._state is other._state and self.GetName() == other.GetName()
+
+    def __hash__(self) -> int:
+        return hash((id(self._state), "sensor", self.GetName()))
+
     def __repr__(self) -> str:
-        return f"{self._robot!r}.GetAttachedSensor('{self.GetName()}')"
+        return f"{self._robot!r}.GetAttachedSensor({self.GetName()!r})"

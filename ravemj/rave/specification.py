@@ -27,6 +27,7 @@ class ConfigurationSpecification(ConfigurationData):
     """
 
     Group = Group
+    _internal = ("of",)
 
     def __init__(self, spec: "ConfigurationSpecification | Group | str | None" = None) -> None:
         """Make a specification.

@@ -4,7 +4,7 @@ import math
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -299,7 +299,13 @@ class Trajectory(Interface):
         return True
 
     def __repr__(self) -> str:
-        return f"RaveCreateTrajectory({self._env!r}, '{self._xmlid}')"
+        made = f"RaveCreateTrajectory({self._env!r}, {self._xmlid!r})"
+        return made if self._waypoints is None else f"{made}.deserialize({self.serialize(AS_TEXT)!r})"
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
+        """Print the short text in IPython, where ``repr`` would fill the screen."""
+        del cycle
+        printer.text(str(self))
 
     def __str__(self) -> str:
         state = "not initialized" if self._waypoints is None else f"waypoints={len(self._waypoints)}"

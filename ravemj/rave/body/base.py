@@ -22,6 +22,8 @@ def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
 class BodyPart(Interface):
     """Part of the API of a body; ``KinBody`` joins the parts."""
 
+    _internal = ("simulation_state",)
+
     def __init__(self, env: "Environment", state: BodyState) -> None:
         self._env = env
         self._state = state

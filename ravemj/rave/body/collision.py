@@ -27,6 +27,7 @@ class BodyCollision(BodyPart):
     """Collision of the body with itself, what takes part in it, and how much room the body needs."""
 
     AdjacentOptions = AdjacentOptions
+    _internal = ("active_links",)
 
     _self_checker: "CollisionChecker | None" = None
 

@@ -145,4 +145,7 @@ class Controller(Interface):
         return RavemjError(f"{type(self).__name__} cannot {what}", ErrorCode.NotImplemented)
 
     def __repr__(self) -> str:
-        return f"RaveCreateController({self._env!r}, '{self._xml_id}')"
+        robot = self._attached_robot
+        if robot is not None and robot.GetController() is self:
+            return f"{robot!r}.GetController()"
+        return f"RaveCreateController({self._env!r}, {self._xml_id!r})"

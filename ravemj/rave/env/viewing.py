@@ -14,6 +14,8 @@ from ravemj.viewers import Viewer, open_viewer
 class Viewing(EnvironmentPart):
     """Shows the environment."""
 
+    _internal = ("studio",)
+
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
         """Attach a viewer, in place of the one before.
 
