@@ -242,7 +242,8 @@ class BodyKinematics:
             motion = T_world_link0 @ inverse(self.link_transform(0))
             for link in self.roots:
                 self.write_root(link, motion @ self.link_transform(link))
-        self.write_root(0, T_world_link0)
+        if 0 in self.roots:
+            self.write_root(0, T_world_link0)
         mujoco.mj_kinematics(self.model, self.data)
 
     def write_root(self, link: int, T_world_link: Floats) -> None:

@@ -26,12 +26,14 @@ LEVELS = [
         "geometry_functions scene video",
         "adjacency bounds following hierarchy inertia joints making manipulators meshes summary",
         "chains fingerprints",
-        "builder mjcf",
+        "builder mjcf reach",
         "kinematics openrave_xml tessellation",
         "coverage dynamics placement readers rendering trajectories",
         "batch",
         "simulation",
-        "collision export physics studio",
+        "collision export studio",
+        "physics",
+        "interaction",
         "viewers",
         "extension rave",
         "checking databases interfaces misc openravepy_int planningutils recording",
@@ -47,7 +49,7 @@ WITHOUT_MUJOCO = rooms(
     """
     adjacency alias arrays bounds builder chains clock coverage drawing errors expressions fingerprints following
     geometry_functions handles hierarchy inertia joints making manipulators meshes mjcf motion openrave_xml ordering
-    output readers scene showing tessellation trajectories transforms video
+    output reach readers scene showing tessellation trajectories transforms video
     """
 )
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Self, cast
 import numpy as np
 
 from ravemj.collision import questions
-from ravemj.collision.questions import LinkOf, Links
+from ravemj.collision.questions import LinkOf, Links, MovedBy
 from ravemj.collision.rays import RayHit
 from ravemj.collision.world import CollisionWorld, Pairs, world_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -128,10 +128,12 @@ class CollisionChecker(Interface):
             world = world_of(self._simulation)
             if isinstance(linkbody, Link):
                 state, link = _key(linkbody)
-                pairs = questions.itself(world, state, frozenset({link}))
+                others = range(len(state.scene.links))
+                pairs = questions.itself(world, state, frozenset((min(link, a), max(link, a)) for a in others))
             else:
                 state = _state(linkbody)
-                pairs = questions.itself(world, state, self._active_links(state))
+                active = self._options & _ACTIVE_DOFS
+                pairs = questions.itself(world, state, MovedBy(self._env.wrap(state).active_dofs()) if active else None)
             return self.answer(world, pairs, report)
 
     def _pairs(self, world: CollisionWorld, arguments: Sequence[object]) -> Pairs:
@@ -172,7 +174,8 @@ class CollisionChecker(Interface):
         """Return the links to which the option ``ActiveDOFs`` restricts the tests; None: all."""
         if not self._options & _ACTIVE_DOFS:
             return None
-        return self._env.wrap(state).active_links()
+        body = self._env.wrap(state)
+        return None if body.moves_as_a_whole() else MovedBy(body.active_dofs())
 
     def answer(self, world: CollisionWorld, pairs: Pairs, report: CollisionReport | None) -> bool:
         """Test pairs of geoms as the options say, fill the report, and return whether there is a collision.

@@ -7,16 +7,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_numbers
-from ravemj.errors import ArgumentError, ErrorCode, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import arguments
 from ravemj.showing import Shown
 from ravemj.trajectories import extraction, layout
 from ravemj.trajectories.conversion import FindBody, convert_group, converted, nobody
-from ravemj.trajectories.groups import Group
+from ravemj.trajectories.groups import Group, ik_type
 from ravemj.transforms import Floats, Ints, Pose
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
+    from ravemj.rave.ikparameterization import IkParameterization
     from ravemj.rave.kinbody import KinBody
     from ravemj.rave.specification import ConfigurationSpecification
 
@@ -114,19 +115,27 @@ class ConfigurationData(Shown):
 
     def ExtractIkParameterization(
         self, data: ArrayLike, timederivative: int = 0, robotname: str = "", manipulatorname: str = ""
-    ) -> None:
+    ) -> "IkParameterization | None":
         """Return a goal of inverse kinematics in a configuration.
 
         Args:
-            data: Numbers of one configuration, shape (dof,).
-            timederivative: 0 for values, 1 for velocities, 2 for accelerations.
-            robotname: Name of the robot; empty: any.
-            manipulatorname: Name of the arm; empty: any.
+            data: The configuration.
+            timederivative: 1 for velocities, 2 for accelerations and so on.
+            robotname: Whose goal; empty: that of any robot.
+            manipulatorname: The goal of which of its manipulators; empty: that of any.
 
-        Raises:
-            UnsupportedError: always; there is no inverse kinematics yet.
+        Returns:
+            The first one that there is, or None.
         """
-        raise UnsupportedError("ExtractIkParameterization", "inverse kinematics (IK)")
+        from ravemj.rave.ikparameterization import IkParameterization  # noqa: PLC0415 - which needs this module
+
+        values, order = self._checked(data), checked_order(timederivative)
+        group = extraction.ik_group(self._groups, robotname, manipulatorname, order)
+        if group is None:
+            return None
+        goal = IkParameterization()
+        goal.SetValues(values[group.columns], ik_type(group))
+        return goal
 
     def ExtractDeltaTime(self, data: ArrayLike) -> float | None:
         """Return the time since the last waypoint [s], or None where the configuration has none.

@@ -13,6 +13,7 @@ from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.locking import Locking
 from ravemj.rave.env.meshing import Meshing
+from ravemj.rave.env.modules import Modules
 from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
@@ -23,7 +24,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Running, Viewing):
+class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Modules, Running, Viewing):
     """A world with robots and other bodies.
 
     Example:

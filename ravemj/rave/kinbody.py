@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from ravemj.rave.body.base import both_locks
 from ravemj.rave.body.building import Building
 from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.body.grabbing import Grabbing
@@ -84,7 +85,8 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
             openrave_exception: this body is in an environment.
         """
         del cloningoptions
-        self._state.copy(reference.simulation_state)
+        with both_locks(self._simulation, reference.simulation_state.simulation):
+            self._state.copy(reference.simulation_state)
 
     GetEnvironmentId = GetEnvironmentBodyIndex
 

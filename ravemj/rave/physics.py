@@ -121,9 +121,10 @@ class PhysicsEngine(Interface):
             Whether the engine moves bodies.
         """
         checked = checked_vector(force, 3, "force"), checked_vector(position, 3, "position")
-        loads = self.loads(link.GetParent().simulation_state)
-        if loads is not None:
-            loads.push(link.GetIndex(), *checked, add=add)
+        with self._env.simulation.lock:
+            loads = self.loads(link.GetParent().simulation_state)
+            if loads is not None:
+                loads.push(link.GetIndex(), *checked, add=add)
         return loads is not None
 
     def SetBodyTorque(self, link: "Link", torque: ArrayLike, add: bool) -> bool:
@@ -138,9 +139,10 @@ class PhysicsEngine(Interface):
             Whether the engine moves bodies.
         """
         checked = checked_vector(torque, 3, "torque")
-        loads = self.loads(link.GetParent().simulation_state)
-        if loads is not None:
-            loads.turn(link.GetIndex(), checked, add=add)
+        with self._env.simulation.lock:
+            loads = self.loads(link.GetParent().simulation_state)
+            if loads is not None:
+                loads.turn(link.GetIndex(), checked, add=add)
         return loads is not None
 
     def AddJointTorque(self, joint: "Joint", torques: ArrayLike) -> bool:
@@ -160,9 +162,10 @@ class PhysicsEngine(Interface):
         first = joint.GetDOFIndex()
         if first < 0:
             raise ArgumentError(f"joint '{joint.GetName()}' is passive, and takes no torques")
-        loads = self.loads(joint.GetParent().simulation_state)
-        if loads is not None:
-            loads.torques[first : first + len(checked)] += checked
+        with self._env.simulation.lock:
+            loads = self.loads(joint.GetParent().simulation_state)
+            if loads is not None:
+                loads.torques[first : first + len(checked)] += checked
         return loads is not None
 
     def attach(self) -> None:

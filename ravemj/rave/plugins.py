@@ -9,12 +9,11 @@ from ravemj.rave.arm_goals import INVERSE_KINEMATICS
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
 from ravemj.rave.planning import PLANNING, Planner
-from ravemj.rave.sensors import Sensor
+from ravemj.rave.sensors import SENSING, Sensor
 from ravemj.viewers import VIEWERS, Viewer
 
 _GRASPING = "planning of grasps"
 _SAMPLING = "sampling of spaces"
-_SENSORS = "simulation of sensors"
 
 _LOG = logging.getLogger("ravemj")
 
@@ -50,14 +49,14 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
             "ikfast": INVERSE_KINEMATICS,
         },
         InterfaceType.sensor: {
-            "basecamera": _SENSORS,
-            "baseflashlidar3d": _SENSORS,
-            "baseforce6d": _SENSORS,
-            "baseimu": _SENSORS,
-            "basejointencoder": _SENSORS,
-            "baselaser2d": _SENSORS,
-            "baseodometry": _SENSORS,
-            "basetactile": _SENSORS,
+            "basecamera": SENSING,
+            "baseflashlidar3d": SENSING,
+            "baseforce6d": SENSING,
+            "baseimu": SENSING,
+            "basejointencoder": SENSING,
+            "baselaser2d": SENSING,
+            "baseodometry": SENSING,
+            "basetactile": SENSING,
         },
         InterfaceType.spacesampler: {
             "bodyconfiguration": _SAMPLING,
@@ -157,9 +156,9 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
     """Return the names that ``RaveCreate…`` of each kind makes something for."""
     made: dict[InterfaceType, list[str]] = {
         InterfaceType.collisionchecker: ["ode"],
-        InterfaceType.controller: ["IdealController"],
+        InterfaceType.controller: ["IdealController", "IdealVelocityController", "odevelocity"],
         InterfaceType.kinbody: [""],
-        InterfaceType.physicsengine: ["GenericPhysicsEngine"],
+        InterfaceType.physicsengine: ["GenericPhysicsEngine", "ode", "bullet", "mujoco"],
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],
         InterfaceType.viewer: list(VIEWERS),

@@ -106,6 +106,18 @@ def affine_parts(group: Group) -> tuple[int, Vec3]:
     return _integers(words[:1], group.name)[0], (x, y, z)
 
 
+def ik_type(group: Group) -> int:
+    """Return the number of the type of goal that the values of a group of inverse kinematics are.
+
+    Raises:
+        ArgumentError: the name does not say it.
+    """
+    words = group.name.split()[1:2]
+    if not words:
+        raise ArgumentError(f"group '{group.name}': its name should have the type of goal")
+    return _integers(words, group.name)[0]
+
+
 def _integers(words: Sequence[str], name: str) -> list[int]:
     try:
         return [int(word) for word in words]

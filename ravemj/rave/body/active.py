@@ -188,7 +188,7 @@ class ActiveDofs(Placement, Limits, Motion, AffineSettings):
             self.SetDOFVelocities(full, linear, angular, checklimits)
 
     def GetActiveDOFLimits(self) -> tuple[Floats, Floats]:
-        """Return the lower and upper limits of the active values, shape (n,) each; for the base ±100 m and ±10000 rad."""
+        """Return the lower and upper limits of the active values, shape (n,) each; the base has ±100 m, ±10000 rad."""
         dofs = self._active_dofs()
         lower, upper = self.GetDOFLimits(dofs)
         return self._with_affine(lower, "lower"), self._with_affine(upper, "upper")

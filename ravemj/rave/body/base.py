@@ -1,5 +1,7 @@
 """What the parts of a body's API share."""
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from ravemj.rave.interface import Annotations, Interface
@@ -7,6 +9,14 @@ from ravemj.simulation import BodyState, Simulation
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
+
+
+@contextmanager
+def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
+    """Hold the locks of two environments; taken in the same order by all, so that nobody waits for one another."""
+    first, second = sorted((one, other), key=id)
+    with first.lock, second.lock:
+        yield
 
 
 class BodyPart(Interface):

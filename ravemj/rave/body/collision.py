@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from ravemj.arrays import checked_numbers, checked_transform
 from ravemj.bounds import Bounds, links_bounds
 from ravemj.collision.batch import batch_collides
-from ravemj.collision.questions import moved_links
+from ravemj.collision.questions import moved_apart
 from ravemj.collision.resting import tested_pairs
 from ravemj.collision.world import world_of
 from ravemj.errors import ArgumentError
@@ -88,9 +88,13 @@ class BodyCollision(BodyPart):
         with self._simulation.lock:
             return batch_collides(self._state, rows, itself_too=itself_too)
 
-    def active_links(self) -> frozenset[int] | None:
-        """Return the indices of the links that the active DOFs move; None: all."""
-        return moved_links(self._state.scene, range(self.GetDOF()))
+    def active_dofs(self) -> tuple[int, ...]:
+        """Return the active joints' DOFs: all, where ``SetActiveDOFs`` has not chosen any."""
+        return tuple(range(self.GetDOF()))
+
+    def moves_as_a_whole(self) -> bool:
+        """Return whether active DOFs move the body's base."""
+        return False
 
     def Enable(self, enable: bool) -> None:
         """Enable or disable all links for collision checking; nothing else changes.
@@ -150,8 +154,10 @@ class BodyCollision(BodyPart):
         if adjacentoptions & AdjacentOptions.Enabled:
             enabled = self._state.link_enabled
             pairs = [(first, second) for first, second in pairs if enabled[first] and enabled[second]]
-        moved = self.active_links() if adjacentoptions & AdjacentOptions.ActiveDOFs else None
-        return pairs if moved is None else [(a, b) for a, b in pairs if (a in moved) != (b in moved)]
+        if adjacentoptions & AdjacentOptions.ActiveDOFs:
+            apart = moved_apart(self._state.scene, self.active_dofs())
+            pairs = [pair for pair in pairs if pair in apart]
+        return pairs
 
     def SetAdjacentLinks(self, linkindex0: int, linkindex1: int) -> None:
         """Leave a pair of links out of ``CheckSelfCollision``.

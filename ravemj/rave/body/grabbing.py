@@ -84,8 +84,12 @@ class Grabbing(BodyPart):
             if not self._simulation.holds(state):
                 message = f"Grab: '{state.scene.name}' is not in this environment; add it first"
                 raise RavemjError(message, ErrorCode.NotInitialized)
-        if held is self._state or self._state in _attached(held, downwards_only=True):
-            raise ArgumentError(f"Grab: '{self.GetName()}' cannot hold '{body.GetName()}', by which it is held itself")
+        self._check_not_carried_by(held)
+
+    def _check_not_carried_by(self, held: BodyState) -> None:
+        if held.carries(self._state):
+            name = held.scene.name
+            raise ArgumentError(f"Grab: '{self.GetName()}' cannot hold '{name}', by which it is held itself")
 
     def _link_index(self, link: Link | int | str) -> int:
         if isinstance(link, Link):
@@ -159,6 +163,7 @@ class Grabbing(BodyPart):
         body = self._simulation.body(info._grabbedname)
         if body is None:
             raise ArgumentError(f"ResetGrabbed: there is no body '{info._grabbedname}' in the environment")
+        self._check_not_carried_by(body)
         ignored = frozenset(self._link_index(name) for name in info._setIgnoreRobotLinkNames)
         return GrabbedBody(body, self._link_index(info._robotlinkname), np.array(info._trelative, dtype=float), ignored)
 
@@ -171,14 +176,13 @@ class Grabbing(BodyPart):
         return body.simulation_state in _attached(self._state)
 
 
-def _attached(start: BodyState, *, downwards_only: bool = False) -> list[BodyState]:
+def _attached(start: BodyState) -> list[BodyState]:
     """Return a body and all that are connected to it by grabbing."""
     found, pending = [start], [start]
     while pending:
         body = pending.pop()
         near = [grab.body for grab in body.grabs]
-        if not downwards_only:
-            near += [one for one in body.simulation.bodies if any(grab.body is body for grab in one.grabs)]
+        near += [one for one in body.simulation.bodies if any(grab.body is body for grab in one.grabs)]
         for one in near:
             if one not in found:
                 found.append(one)

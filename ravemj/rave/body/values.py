@@ -120,4 +120,5 @@ class JointValues(BodyPart):
     @property
     def qpos_indices(self) -> Ints:
         """Where each DOF is in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld."""
-        return self._state.kinematics.qpos_indices.copy()
+        with self._simulation.lock:
+            return self._state.kinematics.qpos_indices.copy()

@@ -113,7 +113,7 @@ class Controller(Interface):
         T_world_base = None if transform is None else checked_transform(transform, "SetDesired: transform")
         with self._robot.simulation_state.simulation.lock:
             self._desire(checked, T_world_base if self._moves_base else None)
-        self._env.wake_clock()
+        self._env.clock.wake()
         return True
 
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:

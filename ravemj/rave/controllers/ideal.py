@@ -51,8 +51,9 @@ class IdealController(Controller):
         Args:
             options: OpenRAVE has no meaning for them.
         """
-        self._path = self._desired = None
-        super().Reset(options)
+        with self._env.simulation.lock:
+            self._path = self._desired = None
+            super().Reset(options)
 
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
         if T_world_base is None and self._moves_base:
@@ -90,7 +91,7 @@ class IdealController(Controller):
             path.trajectory.Sample(0.0)
             self._path, self._desired = path, None
             self._time, self._is_done = 0.0, False
-        self._env.wake_clock()
+        self._env.clock.wake()
         return True
 
     def _prepared(self, traj: Trajectory) -> _Path:

@@ -30,8 +30,9 @@ class VelocityController(Controller):
         Args:
             options: OpenRAVE has no meaning for them.
         """
-        super().Reset(options)
-        self._drive(None)
+        with self._env.simulation.lock:
+            super().Reset(options)
+            self._drive(None)
 
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
         del T_world_base

@@ -8,6 +8,7 @@ from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import Interface
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
+from ravemj.rave.sensors import Sensor
 
 
 class Contents(EnvironmentPart):
@@ -146,6 +147,15 @@ class Contents(EnvironmentPart):
         """
         body = self.GetKinBody(name)
         return body if isinstance(body, Robot) else None
+
+    def GetSensors(self) -> list[Sensor]:
+        """Return the sensors on all robots; see ``robot.GetAttachedSensors``."""
+        found = (attached.GetSensor() for robot in self.GetRobots() for attached in robot.GetAttachedSensors())
+        return [sensor for sensor in found if sensor is not None]
+
+    def GetSensor(self, name: str) -> Sensor | None:
+        """Return the sensor of that name, ``robot:sensor``, or None."""
+        return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
 
     def GetBodyFromEnvironmentBodyIndex(self, bodyIndex: int) -> KinBody | None:
         """Return the body with that number, as ``body.GetEnvironmentBodyIndex()`` gives it, or None.

@@ -75,19 +75,19 @@ class Loading(EnvironmentPart):
 
     def _add(self, reading: Reading) -> None:
         self._note(reading)
-        for body in reading.scene.bodies:
-            self._simulation.add(body)
-        if reading.scene.view is not None:
-            self._simulation.view = reading.scene.view
-        if reading.scene.gravity is not None:
-            self._simulation.set_gravity(reading.scene.gravity)
+        with self._simulation.lock:
+            for body in reading.scene.bodies:
+                self._simulation.add(body)
+            if reading.scene.view is not None:
+                self._simulation.view = reading.scene.view
+            if reading.scene.gravity is not None:
+                self._simulation.set_gravity(reading.scene.gravity)
         send_warnings(reading.diagnostics)
 
     def _note(self, reading: Reading) -> None:
         self._check_alive()
-        self._files.extend(reading.files)
-        for finding in reading.diagnostics:
-            self._found.add(finding)
+        self._files.update(dict.fromkeys(reading.files))
+        self._found.update(dict.fromkeys(reading.diagnostics))
 
     def ReadKinBodyURI(self, *arguments: "KinBody | str | Attributes | None") -> KinBody | None:
         """Read a body from a file without adding it: ``ReadKinBodyURI(filename[, atts])``.
@@ -143,7 +143,8 @@ class Loading(EnvironmentPart):
         scene = replace(scene, is_robot=scene.is_robot or is_robot)
         if into is None:
             return self.wrap(self._simulation.create(scene))
-        into.simulation_state.rebuild(replace(scene, is_robot=into.IsRobot()))
+        with self._simulation.lock:
+            into.simulation_state.rebuild(replace(scene, is_robot=into.IsRobot()))
         return into
 
     @property
@@ -154,7 +155,7 @@ class Loading(EnvironmentPart):
     @property
     def files(self) -> tuple[str, ...]:
         """Paths of all files that were read: models, what they include, and meshes."""
-        return tuple(dict.fromkeys(self._files))
+        return tuple(self._files)
 
 
 def _read_arguments(

@@ -19,9 +19,10 @@ class LinkCollision(LinkPart):
         Args:
             enable: False: collision checking leaves it out.
         """
-        enabled = list(self._state.link_enabled)
-        enabled[self._index] = bool(enable)
-        self._state.link_enabled = enabled
+        with self._state.simulation.lock:
+            enabled = list(self._state.link_enabled)
+            enabled[self._index] = bool(enable)
+            self._state.link_enabled = enabled
 
     def IsEnabled(self) -> bool:
         """Return whether collision checking looks at the link."""
@@ -33,12 +34,13 @@ class LinkCollision(LinkPart):
         Args:
             bIgnore: Whether it is left out.
         """
-        self._state.edit_link(self._index, self_collision_ignored=bool(bIgnore))
-        self._state.simulation.collision_stamp += 1
+        with self._state.simulation.lock:
+            self._state.edit_link(self._index, self_collision_ignored=bool(bIgnore))
+            self._state.simulation.collision_stamp += 1
 
     def IsSelfCollisionIgnored(self) -> bool:
         """Return whether ``body.CheckSelfCollision`` leaves the link out."""
-        return self._state.scene.links[self._index].self_collision_ignored
+        return self._scene.self_collision_ignored
 
     def ComputeAABB(self) -> AABB:
         """Return the smallest box along the world's axes that holds the link's geometries.
@@ -56,7 +58,7 @@ class LinkCollision(LinkPart):
             transform: ``T_world_link``: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
         """
         T_a_link = checked_transform(transform, "ComputeAABBFromTransform: transform")
-        return aabb_of(link_bounds(self._state.scene.links[self._index], T_a_link), T_a_link)
+        return aabb_of(link_bounds(self._scene, T_a_link), T_a_link)
 
     def ComputeLocalAABB(self) -> AABB:
         """Return the smallest box along the link's axes that holds its geometries, in the link's frame."""
