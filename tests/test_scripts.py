@@ -161,7 +161,7 @@ def _be_the_command(folder: Path, arguments: tuple[str, ...]) -> None:
         for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
             os.environ.pop(variable, None)
         warnings.resetwarnings()
-        sys.stdout, sys.stderr = Path("stdout").open("w"), Path("stderr").open("w")
+        sys.stdout, sys.stderr = Path("stdout").open("w"), Path("stderr").open("w")  # noqa: SIM115 - until the process ends
         try:
             status = main(list(arguments))
         except SystemExit as end:
