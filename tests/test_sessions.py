@@ -1,6 +1,5 @@
 """Sessions: the tutorial's script by every way of starting it, IPython, and the package that stands for openravepy."""
 
-import inspect
 import os
 import re
 import subprocess
@@ -291,32 +290,6 @@ def test_question_mark_shows_the_docstring(shell, capsys):
         assert text in printed
     shell.run_cell("robot?")
     assert "GetRobots()" in plain(capsys.readouterr().out)
-
-
-def public_members() -> list[tuple[str, object]]:
-    classes = (ravemj.Environment, ravemj.KinBody, ravemj.Robot, ravemj.Link, ravemj.Joint, ravemj.Viewer)
-    return [
-        (f"{owner.__name__}.{name}", inspect.getattr_static(owner, name))
-        for owner in classes
-        for name in dir(owner)
-        if not name.startswith("_")
-    ]
-
-
-def test_every_public_name_has_a_docstring_that_teaches():
-    for name, member in public_members():
-        doc = inspect.getdoc(member) or ""
-        summary = doc.partition("\n")[0]
-        assert summary.endswith((".", ":")) or "\n" in doc, f"{name} has no summary: {summary!r}"
-        assert len(summary) > 10, name
-        if not inspect.isfunction(member):
-            continue
-        arguments = [word for word in inspect.signature(member).parameters if word not in {"self", "axis", "name"}]
-        for argument in arguments:
-            assert re.search(rf"^    {argument}: \S", doc, re.MULTILINE), f"{name} does not explain {argument}"
-        annotation = str(inspect.signature(member).return_annotation)
-        if "ndarray" in annotation and "float" in annotation:  # what holds indices is a list of them
-            assert re.search(r"\(\d|\(dof|\(axes|\(height|\(4, 4\)|shape", doc), f"{name} does not say its shape"
 
 
 # What ``alias --install`` puts into an environment

@@ -49,7 +49,12 @@ class ArmGoals(Shown):
         return False
 
     def FindIKSolution(self, param: ArrayLike | IkParameterization, *arguments: Any, **options: Any) -> Floats | None:  # noqa: ANN401 - OpenRAVE's overloads
-        """Find joint values that take the tool to a goal.
+        """Return joint values that take the tool to a goal, in the order of ``GetArmIndices()``, shape (n,).
+
+        Args:
+            param: ``T_world_tool``, or an ``IkParameterization``.
+            arguments: ``IkFilterOptions``, and what OpenRAVE's other overloads take.
+            options: The same by name.
 
         Raises:
             UnsupportedError: always; there is no solver.
@@ -57,7 +62,12 @@ class ArmGoals(Shown):
         raise UnsupportedError("FindIKSolution", INVERSE_KINEMATICS, ErrorCode.Failed)
 
     def FindIKSolutions(self, param: ArrayLike | IkParameterization, *arguments: Any, **options: Any) -> Floats:  # noqa: ANN401 - OpenRAVE's overloads
-        """Find all joint values that take the tool to a goal.
+        """Return joint values that take the tool to a goal, each way in a row, shape (k, n).
+
+        Args:
+            param: ``T_world_tool``, or an ``IkParameterization``.
+            arguments: ``IkFilterOptions``, and what OpenRAVE's other overloads take.
+            options: The same by name.
 
         Raises:
             UnsupportedError: always; there is no solver.

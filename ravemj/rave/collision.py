@@ -91,7 +91,11 @@ class CollisionChecker(Interface):
         return self._options
 
     def SetTolerance(self, tolerance: float) -> None:
-        """Set the distance [m] of ``CollisionOptions.UseTolerance``."""
+        """Set the distance [m] of ``CollisionOptions.UseTolerance``.
+
+        Args:
+            tolerance: The distance [m].
+        """
         self._tolerance = float(tolerance)
 
     def GetTolerance(self) -> float:
@@ -99,7 +103,7 @@ class CollisionChecker(Interface):
         return self._tolerance
 
     def CheckCollision(self, *arguments: object, report: CollisionReport | None = None, **named: object) -> bool:
-        """Return whether things touch; see ``env.CheckCollision``."""
+        """Return whether things touch; arguments and ``report`` as for ``env.CheckCollision``."""
         if named:
             arguments = (*arguments, *(named.pop(name) for name in _ARGUMENTS if name in named))
         if named:

@@ -55,7 +55,11 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
         return self._number
 
     def SetDebugLevel(self, level: int) -> None:
-        """Set how much is logged, for all environments; see ``RaveSetDebugLevel``."""
+        """Set how much is logged, for all environments; see ``RaveSetDebugLevel``.
+
+        Args:
+            level: A ``DebugLevel``.
+        """
         RaveSetDebugLevel(level)
 
     def GetDebugLevel(self) -> int:
@@ -67,7 +71,16 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
         self._simulation.clear()
 
     def Destroy(self) -> None:
-        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm."""
+        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm.
+
+        Example:
+            >>> env = ravemj.Environment()
+            >>> try:
+            ...     env.Load("models/env.xml")
+            ... finally:
+            ...     env.Destroy()
+            True
+        """
         self.StopSimulation()
         self.SetViewer("")
         self.Reset()
@@ -109,12 +122,20 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
 
 
 def RaveGetEnvironment(id: int) -> Environment | None:  # OpenRAVE's name of the argument
-    """Return the environment of that number, as ``repr(env)`` shows it, or None."""
+    """Return the environment of that number, as ``repr(env)`` shows it, or None.
+
+    Args:
+        id: The number.
+    """
     return _environments.get(id)
 
 
 def RaveGetEnvironmentId(env: Environment) -> int:
-    """Return the environment's number, as ``RaveGetEnvironment`` takes it."""
+    """Return the environment's number, as ``RaveGetEnvironment`` takes it.
+
+    Args:
+        env: The environment.
+    """
     return env.GetId()
 
 

@@ -58,6 +58,11 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
 
         Raises:
             openrave_exception: another body of the environment has it (``BodyNameConflict``), or it is empty.
+
+        Example:
+            >>> robot.SetName("swing")
+            >>> env.GetRobot("swing") == robot
+            True
         """
         self._simulation.rename(self._state, name)
 

@@ -162,7 +162,7 @@ class Manipulator(ArmGoals, ArmCollision):
         return len(self._scene.arm_dofs)
 
     def GetArmDOFValues(self) -> Floats:
-        """Return the joint values of the arm [rad or m], in the order of ``GetArmIndices()``."""
+        """Return the joint values of the arm [rad or m], in the order of ``GetArmIndices()``, shape (n,)."""
         return self._robot.GetDOFValues(self.GetArmIndices())
 
     def GetGripperIndices(self) -> Ints:
@@ -176,7 +176,7 @@ class Manipulator(ArmGoals, ArmCollision):
         return len(self._scene.gripper_dofs)
 
     def GetGripperDOFValues(self) -> Floats:
-        """Return the joint values of the gripper [rad or m], in the order of ``GetGripperIndices()``."""
+        """Return the joint values of the gripper [rad or m], in the order of ``GetGripperIndices()``, shape (n,)."""
         return self._robot.GetDOFValues(self.GetGripperIndices())
 
     def GetChuckingDirection(self) -> Ints:
@@ -186,7 +186,11 @@ class Manipulator(ArmGoals, ArmCollision):
     GetClosingDirection = GetChuckingDirection
 
     def SetChuckingDirection(self, chuckingdirection: ArrayLike) -> None:
-        """Set for each DOF of the gripper the sign of closing."""
+        """Set for each DOF of the gripper the sign of closing.
+
+        Args:
+            chuckingdirection: -1, 0 or 1 for each of the gripper's DOFs.
+        """
         count = len(self._scene.gripper_dofs)
         signs = checked_vector(chuckingdirection, count, "SetChuckingDirection: chuckingdirection")
         self._edit(chucking_direction=tuple(signs.tolist()))

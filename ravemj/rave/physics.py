@@ -47,6 +47,9 @@ class PhysicsEngine(Interface):
 
         It belongs to the engine: a new one has its own.
 
+        Args:
+            gravity: The acceleration in the world [m/s^2], shape (3,).
+
         Raises:
             IndexError: there are fewer than three numbers, as in OpenRAVE.
 
@@ -66,7 +69,11 @@ class PhysicsEngine(Interface):
         return np.array(self._env.simulation.gravity if self._is_attached else self._gravity)
 
     def SetPhysicsOptions(self, physicsoptions: int) -> bool:
-        """Set which collisions count, ``PhysicsEngineOptions``; return whether the engine has options."""
+        """Set which collisions count, ``PhysicsEngineOptions``; return whether the engine has options.
+
+        Args:
+            physicsoptions: ``PhysicsEngineOptions`` combined with ``|``.
+        """
         del physicsoptions
         return False
 
@@ -75,7 +82,11 @@ class PhysicsEngine(Interface):
         return PhysicsEngineOptions(0)
 
     def SimulateStep(self, timestep: float) -> None:
-        """Let the bodies move for a step of time [s]; ``StepSimulation`` calls this."""
+        """Let the bodies move for a step of time [s]; ``StepSimulation`` calls this.
+
+        Args:
+            timestep: How long [s].
+        """
 
     def GetJointForceTorque(self, joint: "Joint") -> tuple[Floats, Floats]:
         """Return what a joint transmits to its child: what holds it, moves it and stops it.

@@ -89,7 +89,11 @@ RaveCreateProblem = RaveCreateModule
 
 
 def RaveCreatePlanner(env: Environment, name: str) -> Planner | None:
-    """Refuse to make a planner: None where OpenRAVE does not know the name either.
+    """Refuse to make a planner; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the planner is one of OpenRAVE's own.
@@ -98,7 +102,11 @@ def RaveCreatePlanner(env: Environment, name: str) -> Planner | None:
 
 
 def RaveCreateIkSolver(env: Environment, name: str) -> None:
-    """Refuse to make a solver of inverse kinematics: None where OpenRAVE does not know the name either.
+    """Refuse to make a solver of inverse kinematics; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the solver is one of OpenRAVE's own.
@@ -107,7 +115,11 @@ def RaveCreateIkSolver(env: Environment, name: str) -> None:
 
 
 def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
-    """Refuse to make a sensor: None where OpenRAVE does not know the name either.
+    """Refuse to make a sensor; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the sensor is one of OpenRAVE's own.
@@ -116,7 +128,11 @@ def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
 
 
 def RaveCreateSpaceSampler(env: Environment, name: str) -> None:
-    """Refuse to make a sampler: None where OpenRAVE does not know the name either.
+    """Refuse to make a sampler; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the sampler is one of OpenRAVE's own.

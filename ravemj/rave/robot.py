@@ -72,7 +72,7 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
         return False if link is None else super().Grab(body, link, ignored)
 
     def CreateRobotStateSaver(self, options: int | None = None) -> StateSaver:
-        """Save the robot's state; see ``CreateKinBodyStateSaver``.
+        """Return what keeps the robot's state; see ``CreateKinBodyStateSaver``.
 
         Args:
             options: What to save, ``SaveParameters`` combined with ``|``; None: poses, joint values, enabled links,

@@ -99,7 +99,11 @@ class Sensor(Shown):
         return self._attached.GetTransform()
 
     def Supports(self, type: SensorType) -> bool:  # OpenRAVE's name
-        """Return whether the sensor gives this kind of data: cameras do."""
+        """Return whether the sensor gives this kind of data: cameras do.
+
+        Args:
+            type: A ``Sensor.Type``.
+        """
         return type == SensorType.Camera and self._scene.camera is not None
 
     def Configure(self, command: int, blocking: bool = False) -> int:
@@ -124,7 +128,11 @@ class Sensor(Shown):
         return int(command in {SensorCommand.PowerOn, SensorCommand.PowerOff})
 
     def SimulationStep(self, timestep: float) -> None:
-        """Do nothing: data is taken when it is asked for."""
+        """Do nothing: data is taken when it is asked for.
+
+        Args:
+            timestep: How long [s].
+        """
 
     def GetSensorData(self, type: SensorType | None = None) -> CameraSensorData:  # OpenRAVE's name
         """Return what the sensor sees now.
@@ -165,6 +173,12 @@ class Sensor(Shown):
             return None
         matrix = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
         return CameraGeomData(CameraIntrinsics(matrix), camera.width, camera.height)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sensor) and self._attached == other._attached
+
+    def __hash__(self) -> int:
+        return hash((Sensor, self._attached))
 
     def __repr__(self) -> str:
         return f"{self._attached!r}.GetSensor()"

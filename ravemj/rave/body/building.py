@@ -126,6 +126,9 @@ class Building(Mechanism):
         Args:
             linkinfos: The descriptions of the links.
             uri: Not used.
+
+        Returns:
+            True.
         """
         return self.Init(linkinfos, [], uri)
 

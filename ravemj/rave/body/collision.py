@@ -53,7 +53,11 @@ class BodyCollision(BodyPart):
         return checker.CheckSelfCollision(self, report)
 
     def SetSelfCollisionChecker(self, collisionchecker: "CollisionChecker | None") -> None:
-        """Choose the checker of ``CheckSelfCollision``; None: that of the environment."""
+        """Choose the checker of ``CheckSelfCollision``; None: that of the environment.
+
+        Args:
+            collisionchecker: The checker; None: the environment's.
+        """
         self._self_checker = collisionchecker
 
     def GetSelfCollisionChecker(self) -> "CollisionChecker | None":
@@ -93,7 +97,11 @@ class BodyCollision(BodyPart):
         return False
 
     def Enable(self, enable: bool) -> None:
-        """Enable or disable all links for collision checking; nothing else changes."""
+        """Enable or disable all links for collision checking; nothing else changes.
+
+        Args:
+            enable: Whether it takes part.
+        """
         self._state.link_enabled = [bool(enable)] * len(self._state.link_enabled)
 
     def IsEnabled(self) -> bool:
@@ -124,7 +132,11 @@ class BodyCollision(BodyPart):
         return (padded << np.arange(64, dtype=np.uint64)).sum(axis=1, dtype=np.uint64)
 
     def SetLinkEnableStatesMasks(self, masks: Iterable[int]) -> None:
-        """Enable the links whose bits are set, as ``GetLinkEnableStatesMasks`` returns them."""
+        """Enable the links whose bits are set, as ``GetLinkEnableStatesMasks`` returns them.
+
+        Args:
+            masks: Numbers of 64 bits each, one bit for each link.
+        """
         bits = [bool(int(mask) >> bit & 1) for mask in masks for bit in range(64)]
         count = len(self._state.link_enabled)
         if len(bits) < count:
@@ -150,13 +162,21 @@ class BodyCollision(BodyPart):
     def SetAdjacentLinks(self, linkindex0: int, linkindex1: int) -> None:
         """Leave a pair of links out of ``CheckSelfCollision``.
 
+        Args:
+            linkindex0: Index of a link.
+            linkindex1: Index of the other.
+
         Raises:
             openrave_exception: there is no such link, or both are the same.
         """
         self.SetAdjacentLinksPairs([(linkindex0, linkindex1)])
 
     def SetAdjacentLinksCombinations(self, linkIndices: Sequence[int]) -> None:
-        """Leave all pairs of some links out of ``CheckSelfCollision``."""
+        """Leave all pairs of some links out of ``CheckSelfCollision``.
+
+        Args:
+            linkIndices: Indices of the links.
+        """
         self.SetAdjacentLinksPairs([(a, b) for a in linkIndices for b in linkIndices if a < b])
 
     def SetAdjacentLinksPairs(self, pairs: Iterable[Sequence[int]]) -> None:
@@ -192,7 +212,7 @@ class BodyCollision(BodyPart):
             geometries it is the point where its first link is.
 
         Example:
-            >>> box = table.ComputeAABB()
+            >>> box = robot.ComputeAABB()
             >>> height = box.pos()[2] + box.extents()[2]
         """
         with self._simulation.lock:
@@ -211,7 +231,11 @@ class BodyCollision(BodyPart):
         return self._bounds(T_world_body @ inverse(poses[0]) @ poses if len(poses) else poses, enabledOnlyLinks)
 
     def ComputeLocalAABB(self, enabledOnlyLinks: bool = False) -> AABB:
-        """Return the box of ``ComputeAABB`` along the axes of the first link and in its frame."""
+        """Return the box of ``ComputeAABB`` along the axes of the first link and in its frame.
+
+        Args:
+            enabledOnlyLinks: Whether to leave out links that are not enabled.
+        """
         return self.ComputeAABBFromTransform(np.eye(4), enabledOnlyLinks)
 
     def _bounds(self, poses: Floats, enabled_only: bool) -> AABB:

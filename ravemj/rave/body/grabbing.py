@@ -149,6 +149,9 @@ class Grabbing(BodyPart):
     def ResetGrabbed(self, grabbedinfos: Sequence[GrabbedInfo]) -> None:
         """Hold the bodies that the infos of ``GetGrabbedInfo`` name, each in the pose that it had, and no others.
 
+        Args:
+            grabbedinfos: What ``GetGrabbedInfo`` returned.
+
         Raises:
             openrave_exception: a body or link is not there. Nothing has changed then.
         """

@@ -94,7 +94,7 @@ class Collision(EnvironmentPart):
             >>> env.CheckCollision(ravemj.Ray([0, 0, 5], [0, 0, -10]), report)
             True
             >>> report.contacts[0].pos
-            array([0. , 0. , 0.1])
+            array([0.  , 0.  , 0.03])
         """
         checker = self._checker or self.GetCollisionChecker()
         return checker.CheckCollision(*arguments, report=report, **named)

@@ -38,7 +38,8 @@ class Loading(EnvironmentPart):
             openrave_exception: a body of that name is in the environment already (``BodyNameConflict``).
 
         Example:
-            >>> env.Load("env.xml")
+            >>> env = ravemj.Environment()
+            >>> env.Load("models/env.xml")
             True
         """
         del atts
@@ -106,14 +107,14 @@ class Loading(EnvironmentPart):
     ReadKinBodyXMLFile = ReadKinBodyURI
 
     def ReadKinBodyData(self, *arguments: "KinBody | str | Attributes | None") -> KinBody | None:
-        """Read a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
+        """Return a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
         body, data = _read_arguments("ReadKinBodyData", arguments)
         return self._read(read_data(data), body, is_robot=False)
 
     ReadKinBodyXMLData = ReadKinBodyData
 
     def ReadRobotURI(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
-        """Read a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
+        """Return a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
 
         A body that the file does not call a robot becomes one.
         """
@@ -124,7 +125,7 @@ class Loading(EnvironmentPart):
     ReadRobotXMLFile = ReadRobotURI
 
     def ReadRobotData(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
-        """Read a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
+        """Return a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
         body, data = _read_arguments("ReadRobotData", arguments)
         robot = self._read(read_data(data), body, is_robot=True)
         return robot if isinstance(robot, Robot) else None

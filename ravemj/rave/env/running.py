@@ -19,7 +19,7 @@ class Running(EnvironmentPart):
     ``StopSimulation``; before that no thread runs. While ``with env:`` holds the environment, it stands still.
     """
 
-    _internal = ("wake_clock",)
+    _internal = ("clock", "wake_clock")
 
     def __init__(self) -> None:
         super().__init__()
