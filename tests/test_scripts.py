@@ -161,13 +161,11 @@ def _be_the_command(folder: Path, arguments: tuple[str, ...]) -> None:
         for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
             os.environ.pop(variable, None)
         warnings.resetwarnings()
-        sys.stdout, sys.stderr = Path("stdout").open("w"), Path("stderr").open("w")  # noqa: SIM115 - until the process ends
-        try:
-            status = main(list(arguments))
-        except SystemExit as end:
-            status = int(end.code or 0)
-        sys.stdout.flush()
-        sys.stderr.flush()
+        with Path("stdout").open("w") as sys.stdout, Path("stderr").open("w") as sys.stderr:
+            try:
+                status = main(list(arguments))
+            except SystemExit as end:
+                status = int(end.code or 0)
     os._exit(status)
 
 
