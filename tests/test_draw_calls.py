@@ -118,7 +118,7 @@ def test_handles_place_show_and_close(env):
     handle.SetShow(1)
     assert middle(env.render(160, 120)) == PINK
     with pytest.raises(ArgumentError, match="SetTransform: transform: "):
-        handle.SetTransform(2 * np.eye(4))
+        handle.SetTransform(np.diag([1, 2, 1, 1]))
     handle.Close()
     handle.Close()
     handle.SetShow(True)
@@ -247,9 +247,7 @@ def test_what_is_selected_is_told_and_may_be_refused():
     assert link == robot.GetLinks()[2]
     np.testing.assert_allclose(point, [0.01, 0, -0.3], atol=1e-9)
     np.testing.assert_allclose(direction, np.array([-0.99, 0, -0.3]) / np.hypot(0.99, 0.3), atol=1e-9)
-    assert not np.array_equal(viewer.render(96, 72), env.render(96, 72)), (
-        "the cylinder is in the viewer's pictures only"
-    )
+    with_cylinder = viewer.render(96, 72)
     click(viewer, [0.01, 0, -0.3])
     assert viewer.GetSelectedJoint() is None
     handle.close()

@@ -7,7 +7,7 @@ _MARGIN = 8
 _BUTTON = 36
 _WHEEL_LENGTH, _WHEEL_WIDTH = 120, 18
 _RIDGES = 9
-_LABEL_WIDTH, _LABEL_HEIGHT = 64, 28
+_LABEL_WIDTH, _LABEL_HEIGHT = 44, 20
 
 _Rgba = tuple[float, float, float, float]
 _BACK: _Rgba = (0.15, 0.15, 0.17, 0.75)

@@ -74,13 +74,13 @@ class Painter:
         """Draw text and buttons over the picture."""
         if self._stage is None or self._overlay is None:
             return
-        for panel in self._overlay.panels:
-            self._draw_panel(panel, pixels[1], ratio, self._stage.context)
         if self._overlay.lines:
             text = "\n".join(self._overlay.lines)
             for _ in range(2):  # its background is half transparent; twice, white text can be read on white
                 viewport = mujoco.MjrRect(0, 0, *pixels)
                 mujoco.mjr_overlay(_FONT, _TOP_LEFT, viewport, text, "", self._stage.context)
+        for panel in self._overlay.panels:
+            self._draw_panel(panel, pixels[1], ratio, self._stage.context)
 
     def _draw_panel(self, panel: Panel, height: int, ratio: float, context: mujoco.MjrContext) -> None:
         x, y, width, rows = panel.rect
@@ -104,4 +104,4 @@ def _merged(drawings: Shapes, gizmos: Shapes) -> Shapes:
 
 def _font_scale(ratio: float) -> int:
     """Return MuJoCo's scale of letters [percent], from 50 to 300."""
-    return min(max(50 * round(3 * ratio), 50), 300)
+    return min(max(50 * round(2 * ratio), 50), 300)

@@ -6,17 +6,20 @@ from typing import Any
 from ravemj.handles import Handle
 from ravemj.interaction import Hit, Interaction, Ray
 from ravemj.rendering import Camera
+from ravemj.showing import Shown
 from ravemj.simulation import Simulation
 from ravemj.viewers.callbacks import Callback, Callbacks
 
 
-class Selecting:
+class Selecting(Shown):
     """Part of every viewer: its mouse and keys, and what they select.
 
     Attributes:
         environment: What the viewer was made for; OpenRAVE's scripts ask ``GetEnv``.
         interaction: Takes events of mouse and keys; ``ravemj.interaction`` says how.
     """
+
+    _internal = ("environment",)
 
     environment: "weakref.ref[Any] | None" = None
 
