@@ -1,17 +1,22 @@
-"""Finds a file and reads it by its kind."""
+"""Finds a file and reads it by its kind.
+
+The readers are imported when they are asked for: that takes a while, and not every script reads a file.
+"""
+
+# ruff: noqa: PLC0415 - see above
 
 import os
+from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
-from ravemj.builder import BodyBuilder
 from ravemj.errors import Diagnostics, Source, SourceError
-from ravemj.openrave_xml import Reading, read, read_text
-from ravemj.openrave_xml.context import COLLADA_SUFFIXES, Context
-from ravemj.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.scene import Scene
 
+if TYPE_CHECKING:
+    from ravemj.openrave_xml import Reading
 
-def read_file(path: str | os.PathLike[str]) -> Reading:
+
+def read_file(path: str | os.PathLike[str]) -> "Reading":
     """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
 
     Args:
@@ -20,6 +25,10 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
     Returns:
         What was read; its ``failure`` says what ended the reading.
     """
+    from ravemj.openrave_xml import Reading, read
+    from ravemj.openrave_xml.context import COLLADA_SUFFIXES
+    from ravemj.openrave_xml.mesh_body import is_mesh
+
     found = find(_without_scheme(os.fspath(path)))
     if found is None:
         failure = SourceError("there is no such file", Source(os.fspath(path)), "check the path, or set OPENRAVE_DATA")
@@ -33,8 +42,10 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
     return Reading(Scene(), Diagnostics(), failure)
 
 
-def read_data(data: str | bytes) -> Reading:
+def read_data(data: str | bytes) -> "Reading":
     """Read the text of an OpenRAVE XML document, as ``read_file`` reads a file."""
+    from ravemj.openrave_xml import Reading, read_text
+
     head = data[:1000] if isinstance(data, bytes) else data[:1000].encode()
     if b"<COLLADA" in head:
         failure = SourceError("this version of ravemj does not read COLLADA yet", Source("data"))
@@ -58,8 +69,13 @@ def _without_scheme(uri: str) -> str:
     return unquote(path)
 
 
-def read_mesh_file(path: str) -> Reading:
+def read_mesh_file(path: str) -> "Reading":
     """Read a mesh file as a static body with the file's name."""
+    from ravemj.builder import BodyBuilder
+    from ravemj.openrave_xml import Reading
+    from ravemj.openrave_xml.context import Context
+    from ravemj.openrave_xml.mesh_body import add_mesh
+
     context = Context()
     source = Source(path)
     body = BodyBuilder(is_robot=False, source=source)

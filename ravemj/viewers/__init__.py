@@ -11,9 +11,8 @@ from ravemj.errors import RenderingError
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
 from ravemj.viewers.viewer import Viewer
-from ravemj.viewers.window import WindowViewer
 
-__all__ = ["VIEWERS", "Viewer", "WindowViewer", "has_display", "open_viewer"]
+__all__ = ["VIEWERS", "Viewer", "has_display", "open_viewer"]
 
 VIEWERS = ("window", "qtcoin", "qtosg", "qtogre", "offscreen")
 """Names of viewers: ours, and those that OpenRAVE's scripts ask for."""
@@ -45,6 +44,8 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
         _LOG.error("there is no viewer '%s'; the viewers are: %s", name, ", ".join(VIEWERS))
         return None
     if show and name != "offscreen" and has_display():
+        from ravemj.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
+
         try:
             return WindowViewer(simulation, studio, name)
         except RenderingError as error:

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.errors import RenderingError
-from ravemj.rendering import Camera, Quality, Stage
+from ravemj.rendering import Camera
+from ravemj.rendering.stage import Quality, Stage
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
 from ravemj.viewers.callbacks import Callbacks

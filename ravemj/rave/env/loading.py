@@ -4,13 +4,16 @@ import logging
 import os
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from ravemj.errors import ArgumentError, Diagnostic, send_warnings
-from ravemj.openrave_xml import Reading
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.readers import read_data, read_file
+
+if TYPE_CHECKING:
+    from ravemj.openrave_xml import Reading
 
 Attributes = Mapping[str, str]
 """OpenRAVE's options of reading; all are ignored."""
@@ -66,13 +69,13 @@ class Loading(EnvironmentPart):
         del atts
         return self._take(read_data(data))
 
-    def _take(self, reading: Reading) -> bool:
+    def _take(self, reading: "Reading") -> bool:
         self._add(reading)
         if reading.failure is not None:
             _LOG.error("%s", reading.failure)
         return reading.failure is None and all(finding.severity != "error" for finding in reading.diagnostics)
 
-    def _add(self, reading: Reading) -> None:
+    def _add(self, reading: "Reading") -> None:
         self._note(reading)
         with self._simulation.lock:
             for body in reading.scene.bodies:
@@ -83,7 +86,7 @@ class Loading(EnvironmentPart):
                 self._simulation.set_gravity(reading.scene.gravity)
         send_warnings(reading.diagnostics)
 
-    def _note(self, reading: Reading) -> None:
+    def _note(self, reading: "Reading") -> None:
         self._check_alive()
         self._files.update(dict.fromkeys(reading.files))
         self._found.update(dict.fromkeys(reading.diagnostics))
@@ -131,7 +134,7 @@ class Loading(EnvironmentPart):
 
     ReadRobotXMLData = ReadRobotData
 
-    def _read(self, reading: Reading, into: KinBody | None, *, is_robot: bool) -> KinBody | None:
+    def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
         """Make a body of what was read, that is not added; the first one counts."""
         self._note(reading)
         send_warnings(reading.diagnostics)

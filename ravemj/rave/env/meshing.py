@@ -5,7 +5,6 @@ from collections.abc import Callable
 from enum import IntEnum
 
 from ravemj.errors import Source, SourceError
-from ravemj.meshes import read_mesh
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.trimesh import TriMesh, trimesh_of
@@ -67,6 +66,8 @@ class Meshing(EnvironmentPart):
         Returns:
             The triangles, or None, with the reason in the log, where there is no such file or it is broken.
         """
+        from ravemj.meshes import read_mesh  # noqa: PLC0415 - rarely wanted
+
         path = find(filename)
         try:
             if path is None:
