@@ -14,7 +14,7 @@ from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.following import Equations, Follower, evaluation_order, leaders, resolve
 from ravemj.joints import measured_values, place_links
 from ravemj.manipulators import ManipulatorBuilder, freeze_manipulator
-from ravemj.transforms import UNMOVED, ZERO, Pose, Vec3, rotate, scale
+from ravemj.transforms import UNIT_WXYZ, UNMOVED, ZERO, Pose, Vec3, Wxyz, conjugate, multiply, rotate, scale
 
 DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 0.4)))
 """A link without mass properties weighs 1 kg, like a unit sphere."""
@@ -37,7 +37,11 @@ class LinkBuilder:
 
 @dataclass(slots=True, kw_only=True)
 class JointBuilder:
-    """A joint as listed: anchor and axis directions are in the frame of the first listed link."""
+    """A joint as listed: anchor and axis directions are in the frame of the first listed link.
+
+    Attributes:
+        frame: Rotation in the first link of the frame that the file gives the axes in.
+    """
 
     name: str
     kind: scene.JointKind
@@ -45,6 +49,7 @@ class JointBuilder:
     T_first_second: Pose
     anchor: Vec3
     axes: tuple[scene.Axis, ...]
+    frame: Wxyz = UNIT_WXYZ
     enabled: bool
     equations: Equations | None = None
     parameters: scene.Parameters = scene.NO_PARAMETERS
@@ -221,7 +226,8 @@ def _directed(
         axes = tuple(replace(axis, direction=scale(rotate(T_parent_child.wxyz, axis.direction), -1.0)) for axis in axes)
     if joint.fixed and has_dofs:  # OpenRAVE moves the frame of a weld to its child
         anchor = T_parent_child.position
-        axes = tuple(replace(axis, direction=rotate(T_parent_child.wxyz, axis.direction)) for axis in axes)
+        turn = multiply(T_parent_child.wxyz, conjugate(joint.frame))
+        axes = tuple(replace(axis, direction=rotate(turn, axis.direction)) for axis in axes)
     return scene.Joint(
         name=joint.name,
         kind=joint.kind,

@@ -310,8 +310,10 @@ class BodyKinematics:
         """Return whether all values are finite numbers inside the limits; circular joints have none."""
         if self._bounds is None:
             return bool(((self._lowest <= values) & (values <= self._highest)).all())
-        pairs = zip(values.tolist(), self._bounds, strict=True)
-        return all(lower <= value <= upper for value, (lower, upper) in pairs)
+        for value, (lower, upper) in zip(values.tolist(), self._bounds, strict=True):  # noqa: SIM110 - faster than all
+            if not lower <= value <= upper:
+                return False
+        return True
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""

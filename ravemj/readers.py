@@ -1,22 +1,19 @@
-"""Finds a file and reads it by its kind.
-
-The readers are imported when they are asked for: that takes a while, and not every script reads a file.
-"""
-
-# ruff: noqa: PLC0415 - see above
+"""Finds a file and reads it by its kind."""
 
 import os
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 from urllib.parse import unquote
 
+from ravemj import collada
+from ravemj.builder import BodyBuilder
 from ravemj.errors import Diagnostics, Source, SourceError
-from ravemj.scene import Scene
+from ravemj.openrave_xml import Reading, read, read_text
+from ravemj.openrave_xml.context import Context
+from ravemj.openrave_xml.mesh_body import add_mesh, is_mesh
+from ravemj.scene import KinBody, Scene
 
-if TYPE_CHECKING:
-    from ravemj.openrave_xml import Reading
 
-
-def read_file(path: str | os.PathLike[str]) -> "Reading":
+def read_file(path: str | os.PathLike[str]) -> Reading:
     """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
 
     Args:
@@ -25,32 +22,51 @@ def read_file(path: str | os.PathLike[str]) -> "Reading":
     Returns:
         What was read; its ``failure`` says what ended the reading.
     """
-    from ravemj.openrave_xml import Reading, read
-    from ravemj.openrave_xml.context import COLLADA_SUFFIXES
-    from ravemj.openrave_xml.mesh_body import is_mesh
-
     found = find(_without_scheme(os.fspath(path)))
     if found is None:
         failure = SourceError("there is no such file", Source(os.fspath(path)), "check the path, or set OPENRAVE_DATA")
     elif not os.path.isfile(found):
         kind = "folder" if os.path.isdir(found) else "device or pipe"
         failure = SourceError(f"this is a {kind}, not a model file", Source(found))
-    elif found.lower().endswith(COLLADA_SUFFIXES):
-        failure = SourceError("this version of ravemj does not read COLLADA yet", Source(found))
+    elif found.lower().endswith(collada.SUFFIXES):
+        return _read_collada(found, lambda context: collada.read_file(found, context.diagnostics, context.files))
     else:
         return read_mesh_file(found) if is_mesh(found) else read(found)
     return Reading(Scene(), Diagnostics(), failure)
 
 
-def read_data(data: str | bytes) -> "Reading":
+def read_data(data: str | bytes) -> Reading:
     """Read the text of an OpenRAVE XML document, as ``read_file`` reads a file."""
-    from ravemj.openrave_xml import Reading, read_text
-
     head = data[:1000] if isinstance(data, bytes) else data[:1000].encode()
     if b"<COLLADA" in head:
-        failure = SourceError("this version of ravemj does not read COLLADA yet", Source("data"))
-        return Reading(Scene(), Diagnostics(), failure)
+        text = data if isinstance(data, bytes) else data.encode()
+        return _read_collada(
+            "data", lambda context: collada.read_text(text, "data", context.diagnostics, context.files)
+        )
     return read_text(data, "data")
+
+
+def _read_collada(path: str, read_content: Callable[[Context], collada.Content]) -> Reading:
+    context = Context()
+    bodies: list[KinBody] = []
+    gravity = failure = None
+    try:
+        content = read_content(context)
+        gravity = content.gravity
+        if not content.bodies:
+            raise SourceError("there is no kinematics scene with a body in it", Source(path))
+        for built in (*content.bodies, *content.others):
+            built.name = _unused(built.name or "body", {body.name for body in bodies})
+            bodies.append(built.freeze(context.diagnostics))
+    except SourceError as error:
+        failure = error
+    return Reading(Scene(tuple(bodies), None, gravity), context.diagnostics, failure, tuple(context.files))
+
+
+def _unused(name: str, taken: set[str]) -> str:
+    """Return a name, with a number behind it where it is taken."""
+    numbered = (f"{name}{count}" for count in range(len(taken) + 1))
+    return name if name not in taken else next(other for other in numbered if other not in taken)
 
 
 def find(name: str) -> str | None:
@@ -69,13 +85,8 @@ def _without_scheme(uri: str) -> str:
     return unquote(path)
 
 
-def read_mesh_file(path: str) -> "Reading":
+def read_mesh_file(path: str) -> Reading:
     """Read a mesh file as a static body with the file's name."""
-    from ravemj.builder import BodyBuilder
-    from ravemj.openrave_xml import Reading
-    from ravemj.openrave_xml.context import Context
-    from ravemj.openrave_xml.mesh_body import add_mesh
-
     context = Context()
     source = Source(path)
     body = BodyBuilder(is_robot=False, source=source)

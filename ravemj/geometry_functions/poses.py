@@ -43,7 +43,11 @@ def poseFromMatrix(transform: ArrayLike) -> Floats:
 
 
 def poseFromMatrices(transforms: ArrayLike) -> Floats:
-    """Return the poses, shape (n, 7), of matrices of 4x4 or 3x4."""
+    """Return the poses, shape (n, 7), of matrices of 4x4 or 3x4.
+
+    Args:
+        transforms: Matrices, shape (n, 4, 4).
+    """
     matrices = checked_numbers(transforms, "transforms")
     return np.array([poseFromMatrix(matrix) for matrix in matrices]).reshape(-1, 7)
 
@@ -99,7 +103,12 @@ def transformPoints(T: ArrayLike, points: ArrayLike) -> Floats:
 
 
 def transformInversePoints(T: ArrayLike, points: ArrayLike) -> Floats:
-    """Return points moved by the inverse of a rigid matrix; arguments as for ``transformPoints``."""
+    """Return points moved by the inverse of a rigid matrix; arguments as for ``transformPoints``.
+
+    Args:
+        T: The matrix, shape (4, 4).
+        points: Points [m], shape (n, 3).
+    """
     linear, offset = _linear(T)
     return (arguments.table(points, len(offset), "points") - offset) @ linear
 
@@ -145,12 +154,23 @@ def ComputePoseDistSqr(pose0: ArrayLike, pose1: ArrayLike, quatweight: float = 1
     """Return the squared distance of two poses: of the positions, plus ``quatweight`` times that of the quaternions.
 
     The sign of a quaternion does not count.
+
+    Args:
+        pose0: A pose [w, x, y, z, tx, ty, tz], shape (7,).
+        pose1: The other, shape (7,).
+        quatweight: Weight of the rotations against the positions.
     """
     return float(ComputePoseArrayDistSqr(pose0, [arguments.numbers(pose1, 7, "pose1")], quatweight)[0])
 
 
 def ComputePoseArrayDistSqr(pose0: ArrayLike, posearray: ArrayLike, quatweight: float = 1.0) -> Floats:
-    """Return the squared distances, shape (n,), of a pose to poses of shape (n, 7); see ``ComputePoseDistSqr``."""
+    """Return the squared distances, shape (n,), of a pose to poses of shape (n, 7); see ``ComputePoseDistSqr``.
+
+    Args:
+        pose0: A pose [w, x, y, z, tx, ty, tz], shape (7,).
+        posearray: Poses, a row each, shape (n, 7).
+        quatweight: Weight of the rotations against the positions.
+    """
     first, others = arguments.numbers(pose0, 7, "pose0"), arguments.table(posearray, 7, "posearray")
     squares = [((others[:, :4] - sign * first[:4]) ** 2).sum(axis=1) for sign in (1, -1)]
     return ((others[:, 4:] - first[4:]) ** 2).sum(axis=1) + quatweight * np.minimum(*squares)

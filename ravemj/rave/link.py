@@ -157,7 +157,7 @@ class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters, LinkLoads):
         return hash((id(self._state), self._index))
 
     def __repr__(self) -> str:
-        return f"{self._parent.GetEnv()!r}.GetKinBody('{self._parent.GetName()}').GetLink('{self.GetName()}')"
+        return f"{self._parent.GetEnv()!r}.GetKinBody({self._parent.GetName()!r}).GetLink({self.GetName()!r})"
 
     def __str__(self) -> str:
         return f"<link:{self.GetName()} ({self._index}), parent={self._parent.GetName()}>"

@@ -10,6 +10,7 @@ from ravemj import chains, fingerprints, scene
 from ravemj.arrays import checked_transform, checked_vector
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.manipulators import joint_dofs
+from ravemj.rave.arm_collision import ArmCollision
 from ravemj.rave.arm_goals import ArmGoals
 from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.infos import ManipulatorInfo
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Manipulator(ArmGoals):
+class Manipulator(ArmGoals, ArmCollision):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
     def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
@@ -161,7 +162,7 @@ class Manipulator(ArmGoals):
         return len(self._scene.arm_dofs)
 
     def GetArmDOFValues(self) -> Floats:
-        """Return the joint values of the arm [rad or m], in the order of ``GetArmIndices()``."""
+        """Return the joint values of the arm [rad or m], in the order of ``GetArmIndices()``, shape (n,)."""
         return self._robot.GetDOFValues(self.GetArmIndices())
 
     def GetGripperIndices(self) -> Ints:
@@ -175,7 +176,7 @@ class Manipulator(ArmGoals):
         return len(self._scene.gripper_dofs)
 
     def GetGripperDOFValues(self) -> Floats:
-        """Return the joint values of the gripper [rad or m], in the order of ``GetGripperIndices()``."""
+        """Return the joint values of the gripper [rad or m], in the order of ``GetGripperIndices()``, shape (n,)."""
         return self._robot.GetDOFValues(self.GetGripperIndices())
 
     def GetChuckingDirection(self) -> Ints:
@@ -185,7 +186,11 @@ class Manipulator(ArmGoals):
     GetClosingDirection = GetChuckingDirection
 
     def SetChuckingDirection(self, chuckingdirection: ArrayLike) -> None:
-        """Set for each DOF of the gripper the sign of closing."""
+        """Set for each DOF of the gripper the sign of closing.
+
+        Args:
+            chuckingdirection: -1, 0 or 1 for each of the gripper's DOFs.
+        """
         count = len(self._scene.gripper_dofs)
         signs = checked_vector(chuckingdirection, count, "SetChuckingDirection: chuckingdirection")
         self._edit(chucking_direction=tuple(signs.tolist()))
@@ -242,7 +247,7 @@ class Manipulator(ArmGoals):
         return hash((id(self._state), "manipulator", self._index))
 
     def __repr__(self) -> str:
-        return f"{self._robot!r}.GetManipulator('{self.GetName()}')"
+        return f"{self._robot!r}.GetManipulator({self.GetName()!r})"
 
     def __str__(self) -> str:
         return f"<manipulator:{self.GetName()}, parent={self._robot.GetName()}>"

@@ -12,12 +12,15 @@ from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.infos import AttachedSensorInfo
 from ravemj.rave.link import Link
 from ravemj.rendering import Camera, CameraIntrinsics, Pinhole
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 from ravemj.studio import Format
 from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
     from ravemj.rave.robot import Robot
+
+SENSING = "simulation of sensors"
 
 
 @dataclass(eq=False)
@@ -64,7 +67,7 @@ class CameraSensorData:
         return self.intrinsics.K
 
 
-class Sensor:
+class Sensor(Shown):
     """A device that measures; ``attached.GetSensor()`` makes it.
 
     Example:
@@ -96,7 +99,11 @@ class Sensor:
         return self._attached.GetTransform()
 
     def Supports(self, type: SensorType) -> bool:  # OpenRAVE's name
-        """Return whether the sensor gives this kind of data: cameras do."""
+        """Return whether the sensor gives this kind of data: cameras do.
+
+        Args:
+            type: A ``Sensor.Type``.
+        """
         return type == SensorType.Camera and self._scene.camera is not None
 
     def Configure(self, command: int, blocking: bool = False) -> int:
@@ -121,7 +128,11 @@ class Sensor:
         return int(command in {SensorCommand.PowerOn, SensorCommand.PowerOff})
 
     def SimulationStep(self, timestep: float) -> None:
-        """Do nothing: data is taken when it is asked for."""
+        """Do nothing: data is taken when it is asked for.
+
+        Args:
+            timestep: How long [s].
+        """
 
     def GetSensorData(self, type: SensorType | None = None) -> CameraSensorData:  # OpenRAVE's name
         """Return what the sensor sees now.
@@ -163,8 +174,17 @@ class Sensor:
         matrix = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
         return CameraGeomData(CameraIntrinsics(matrix), camera.width, camera.height)
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sensor) and self._attached == other._attached
 
-class AttachedSensor:
+    def __hash__(self) -> int:
+        return hash((Sensor, self._attached))
+
+    def __repr__(self) -> str:
+        return f"{self._attached!r}.GetSensor()"
+
+
+class AttachedSensor(Shown):
     """A place on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
 
     def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:
@@ -211,5 +231,11 @@ class AttachedSensor:
 
     UpdateAndGetInfo = GetInfo
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, AttachedSensor) and self._state is other._state and self.GetName() == other.GetName()
+
+    def __hash__(self) -> int:
+        return hash((id(self._state), "sensor", self.GetName()))
+
     def __repr__(self) -> str:
-        return f"{self._robot!r}.GetAttachedSensor('{self.GetName()}')"
+        return f"{self._robot!r}.GetAttachedSensor({self.GetName()!r})"

@@ -22,11 +22,13 @@ from ravemj.rendering.camera import (
     CameraIntrinsics,
     Pinhole,
     bounding_sphere,
+    geom_corners,
     three_quarter_view,
     view_from_above,
 )
 from ravemj.rendering.camera_file import read_camera, write_camera
 from ravemj.rendering.frame import WHITE
+from ravemj.rendering.visibility import drawn_geoms
 
 __all__ = [
     "Camera",
@@ -34,6 +36,8 @@ __all__ = [
     "Pinhole",
     "Renderer",
     "bounding_sphere",
+    "drawn_geoms",
+    "geom_corners",
     "open_renderer",
     "read_camera",
     "three_quarter_view",

@@ -10,6 +10,7 @@ from ravemj.arrays import checked_vector
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.handles import Handle
 from ravemj.rendering import Camera, CameraIntrinsics, Pinhole
+from ravemj.showing import Shown
 from ravemj.simulation import Simulation
 from ravemj.studio import Format, Frame, Studio, checked_colour
 from ravemj.transforms import Floats
@@ -19,7 +20,7 @@ _SIZE = 640, 480
 _FIGURES = "SetFiguresInCamera"
 
 
-class Viewer:
+class Viewer(Shown):
     """A point of view on an environment; ``env.SetViewer`` makes it and ``env.GetViewer()`` returns it.
 
     This one has no window: it draws when it is asked for a picture. The camera is OpenRAVE's: a 4x4 matrix
@@ -34,6 +35,8 @@ class Viewer:
     Attributes:
         environment: What it was made for; OpenRAVE's scripts ask ``GetEnv``.
     """
+
+    _internal = ("environment",)
 
     environment: "weakref.ref[Any] | None" = None
 

@@ -22,6 +22,8 @@ def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
 class BodyPart(Interface):
     """Part of the API of a body; ``KinBody`` joins the parts."""
 
+    _internal = ("simulation_state",)
+
     def __init__(self, env: "Environment", state: BodyState) -> None:
         self._env = env
         self._state = state
@@ -29,13 +31,22 @@ class BodyPart(Interface):
         self._annotations = Annotations()
 
     def GetName(self) -> str:
-        """Return the body's name, unique in its environment."""
+        """Return the body's name, unique in its environment.
+
+        Example:
+            >>> [body.GetName() for body in env.GetBodies()]
+            ['Pendulum']
+        """
         return self._state.scene.name
 
     def GetDOF(self) -> int:
         """Return the number of degrees of freedom: the joint axes that ``SetDOFValues`` sets.
 
         Passive joints are not counted.
+
+        Example:
+            >>> robot.GetDOF()
+            2
         """
         return len(self._state.scene.dof_axes)
 

@@ -13,6 +13,7 @@ from ravemj.collision.questions import touching_links
 from ravemj.collision.world import world_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
+from ravemj.rave.infos.content import Info
 from ravemj.rave.link import Link
 from ravemj.simulation import BodyState
 from ravemj.simulation.body import GrabbedBody
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-@dataclass
-class GrabbedInfo:
+@dataclass(eq=False, repr=False)
+class GrabbedInfo(Info):
     """What ``ResetGrabbed`` needs to hold a body as before.
 
     Attributes:
@@ -32,6 +33,8 @@ class GrabbedInfo:
         _trelative: ``T_link_body``, shape (4, 4).
         _setIgnoreRobotLinkNames: Names of the holder's links that the held body does not collide with.
     """
+
+    _called = "GrabbedInfo"
 
     _grabbedname: str = ""
     _robotlinkname: str = ""
@@ -145,6 +148,9 @@ class Grabbing(BodyPart):
 
     def ResetGrabbed(self, grabbedinfos: Sequence[GrabbedInfo]) -> None:
         """Hold the bodies that the infos of ``GetGrabbedInfo`` name, each in the pose that it had, and no others.
+
+        Args:
+            grabbedinfos: What ``GetGrabbedInfo`` returned.
 
         Raises:
             openrave_exception: a body or link is not there. Nothing has changed then.

@@ -21,6 +21,10 @@ class Placement(JointValues):
 
         Returns:
             ``T_world_link0``, shape (4, 4); a copy. The identity for a body without links.
+
+        Example:
+            >>> position = robot.GetTransform()[:3, 3]
+            >>> x_axis = robot.GetTransform()[:3, 0]
         """
         with self._simulation.lock:
             return self._state.link_transform(0) if self._state.scene.links else np.eye(4)

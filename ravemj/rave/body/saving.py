@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Self, cast
 
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import SaveParameters
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 from ravemj.simulation.body import GrabbedBody
 
@@ -26,6 +27,8 @@ _AXIS_FIELDS = {
 
 class Saving(Placement):
     """State savers: ``with body:`` and ``body.CreateKinBodyStateSaver``."""
+
+    _internal = ("default_saved", "restorers")
 
     default_saved = SaveParameters.LinkTransformation | SaveParameters.LinkEnable
     _open_savers: "list[StateSaver]"
@@ -93,7 +96,7 @@ class Saving(Placement):
             self._simulation.lock.release()
 
 
-class StateSaver:
+class StateSaver(Shown):
     """Keeps a state of a body; ``body.CreateKinBodyStateSaver()`` and ``robot.CreateRobotStateSaver()`` make it."""
 
     def __init__(self, body: "KinBody", options: int | None = None) -> None:

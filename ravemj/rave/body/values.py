@@ -30,6 +30,13 @@ class JointValues(BodyPart):
 
         Raises:
             IndexError: there is no such DOF.
+
+        Example:
+            >>> robot.SetDOFValues([0.5, -0.5])
+            >>> robot.GetDOFValues()
+            array([ 0.5, -0.5])
+            >>> robot.GetDOFValues([1])  # the second joint only
+            array([-0.5])
         """
         with self._simulation.lock:
             values = self._state.kinematics.values()

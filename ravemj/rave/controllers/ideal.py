@@ -75,6 +75,12 @@ class IdealController(Controller):
 
         Raises:
             openrave_exception: it is None, has no points, or no times. What is played goes on then.
+
+        Example:
+            >>> robot.GetController().SetPath(trajectory)
+            True
+            >>> robot.WaitForController(0)
+            True
         """
         if traj is None:
             raise RavemjError("SetPath: traj is None; Reset() stops a path")
@@ -101,7 +107,11 @@ class IdealController(Controller):
         return _Path(copy, columns, dofs, has_base and self._moves_base)
 
     def SimulationStep(self, timestep: float) -> None:
-        """Go on by a step of time [s]; ``StepSimulation`` and the thread of simulation time call this."""
+        """Go on by a step of time [s]; ``StepSimulation`` and the thread of simulation time call this.
+
+        Args:
+            timestep: How long [s].
+        """
         if self._path is not None:
             self._play(self._path, timestep)
         elif self._desired is not None:

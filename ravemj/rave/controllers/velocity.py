@@ -49,7 +49,11 @@ class VelocityController(Controller):
                 loads.motor = None if velocities is None else Motor(self._robot_dofs(), velocities)
 
     def SimulationStep(self, timestep: float) -> None:
-        """Move the joints for a step of time [s], unless physics does."""
+        """Move the joints for a step of time [s], unless physics does.
+
+        Args:
+            timestep: How long [s].
+        """
         if self._velocities is None:
             return
         if self._env.GetPhysicsEngine().is_simulated:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 class EnvironmentPart(UserData):
     """Part of the API of an environment; ``Environment`` joins the parts."""
 
+    _internal = ("wrap",)
+
     def __init__(self) -> None:
         self._simulation = Simulation()
         self._studio = Studio(self._simulation)

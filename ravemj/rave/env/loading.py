@@ -10,7 +10,6 @@ from ravemj.errors import ArgumentError, Diagnostic, send_warnings
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
-from ravemj.readers import read_data, read_file
 
 if TYPE_CHECKING:
     from ravemj.openrave_xml import Reading
@@ -41,11 +40,12 @@ class Loading(EnvironmentPart):
             openrave_exception: a body of that name is in the environment already (``BodyNameConflict``).
 
         Example:
-            >>> env.Load("env.xml")
+            >>> env = ravemj.Environment()
+            >>> env.Load("models/env.xml")
             True
         """
         del atts
-        return self._take(read_file(filename))
+        return self._take(_read_file(filename))
 
     LoadURI = Load
 
@@ -67,7 +67,7 @@ class Loading(EnvironmentPart):
             True
         """
         del atts
-        return self._take(read_data(data))
+        return self._take(_read_data(data))
 
     def _take(self, reading: "Reading") -> bool:
         self._add(reading)
@@ -104,32 +104,32 @@ class Loading(EnvironmentPart):
             >>> env.Add(mug)
         """
         body, filename = _read_arguments("ReadKinBodyURI", arguments)
-        return self._read(read_file(filename), body, is_robot=False)
+        return self._read(_read_file(filename), body, is_robot=False)
 
     ReadKinBodyXMLFile = ReadKinBodyURI
 
     def ReadKinBodyData(self, *arguments: "KinBody | str | Attributes | None") -> KinBody | None:
-        """Read a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
+        """Return a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
         body, data = _read_arguments("ReadKinBodyData", arguments)
-        return self._read(read_data(data), body, is_robot=False)
+        return self._read(_read_data(data), body, is_robot=False)
 
     ReadKinBodyXMLData = ReadKinBodyData
 
     def ReadRobotURI(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
-        """Read a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
+        """Return a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
 
         A body that the file does not call a robot becomes one.
         """
         body, filename = _read_arguments("ReadRobotURI", arguments)
-        robot = self._read(read_file(filename), body, is_robot=True)
+        robot = self._read(_read_file(filename), body, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLFile = ReadRobotURI
 
     def ReadRobotData(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
-        """Read a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
+        """Return a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
         body, data = _read_arguments("ReadRobotData", arguments)
-        robot = self._read(read_data(data), body, is_robot=True)
+        robot = self._read(_read_data(data), body, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLData = ReadRobotData
@@ -169,3 +169,18 @@ def _read_arguments(
     if not given:
         raise ArgumentError(f"{caller}: takes a text, optionally after a body, not {arguments!r}")
     return into, os.fspath(given[0])
+
+
+# Readers are imported when they are asked for: that takes a while, and not every script reads a file.
+
+
+def _read_file(path: str | os.PathLike[str]) -> "Reading":
+    from ravemj.readers import read_file  # noqa: PLC0415
+
+    return read_file(path)
+
+
+def _read_data(data: str | bytes) -> "Reading":
+    from ravemj.readers import read_data  # noqa: PLC0415
+
+    return read_data(data)

@@ -19,6 +19,8 @@ class Running(EnvironmentPart):
     ``StopSimulation``; before that no thread runs. While ``with env:`` holds the environment, it stands still.
     """
 
+    _internal = ("clock", "wake_clock")
+
     def __init__(self) -> None:
         super().__init__()
         self._clock = Clock(self._simulation.lock, self._advance)

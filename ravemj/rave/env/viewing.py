@@ -14,6 +14,8 @@ from ravemj.viewers import Viewer, open_viewer
 class Viewing(EnvironmentPart):
     """Shows the environment."""
 
+    _internal = ("studio",)
+
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
         """Attach a viewer, in place of the one before.
 
@@ -64,6 +66,11 @@ class Viewing(EnvironmentPart):
 
         Args:
             name: None or empty, or the name that ``SetViewer`` was given: None is returned for any other.
+
+        Example:
+            >>> viewer = env.GetViewer()
+            >>> if viewer is not None:
+            ...     viewer.SetBkgndColor([0.8, 0.85, 0.9])
         """
         viewer = self._viewer
         return viewer if viewer is None or not name or name == viewer.GetXMLId() else None

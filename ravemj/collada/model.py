@@ -1,0 +1,300 @@
+"""``<kinematics_model>``: links and joints, filled into a body."""
+
+import re
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from ravemj.builder import BodyBuilder, JointBuilder, LinkBuilder
+from ravemj.collada import formula
+from ravemj.collada.axis import AxisInfo, AxisReader
+from ravemj.collada.bindings import Bindings
+from ravemj.collada.geometry import GeometryReader
+from ravemj.collada.library import Library
+from ravemj.collada.physics import NO_MASS, Physics
+from ravemj.collada.placing import rigid
+from ravemj.collada.references import Found, References
+from ravemj.collada.visual import Node, transform_of
+from ravemj.following import Equations
+from ravemj.meshes.collada.document import Element, child, children, local_name, numbers, words
+from ravemj.scene import Axis, JointKind
+from ravemj.transforms import Floats, Pose, Vec3, rotate
+
+_MAX_LINKS = 20_000
+_NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.:/-]")
+
+
+def valid_name(name: str | None) -> str:
+    """Return a name with ``_`` in place of what names cannot have in OpenRAVE."""
+    return _NOT_IN_NAMES.sub("_", name or "")
+
+
+@dataclass(slots=True)
+class Scene:
+    """What all bodies of a kinematics scene share."""
+
+    library: Library
+    references: References
+    bindings: Bindings
+    physics: Physics
+    geometry: GeometryReader
+    moved: set[Node] = field(default_factory=set[Node])
+
+    def __post_init__(self) -> None:
+        self.moved = {binding.node for binding in self.bindings.axes if binding.node is not None}
+        self.moved |= {binding.node for binding in self.bindings.models}
+
+    @property
+    def axes(self) -> AxisReader:
+        return AxisReader(self.library, self.references)
+
+
+class _FoundJoint(NamedTuple):
+    """A joint that an attachment names.
+
+    Attributes:
+        holder: What the attachment names.
+        keys: All elements that stand for the joint.
+        built: The joint.
+        values: The bound values of its axes.
+    """
+
+    holder: Element
+    keys: tuple[Element, ...]
+    built: JointBuilder
+    values: list[float]
+
+
+class ModelReader:
+    """Reads one instance of a kinematics model into a body.
+
+    Attributes:
+        body: The body.
+        links: Indices of links, by ``<link>``.
+        joints: Indices of joints, by ``<joint>`` or ``<instance_joint>``, and by axis.
+        values: Values of the axes of each joint as the scene binds them.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        body: BodyBuilder,
+        owner: Element,
+        instance: Element,
+        model: Element,
+        infos: dict[Element, AxisInfo],
+    ) -> None:
+        self._scene = scene
+        self._library = scene.library
+        self.body = body
+        self._owner = owner
+        self._instance = instance
+        self.model = model
+        self._infos = infos
+        self._axes = scene.axes
+        self._root = scene.bindings.node_of(owner, instance, model)
+        self._T_world_root = Pose()
+        self._formulas = self._read_formulas()
+        self.links: dict[Element, int] = {}
+        self.joints: dict[Element, int] = {}
+        self.values: dict[int, list[float]] = {}
+        self._found: list[_FoundJoint] = []
+
+    def read(self) -> None:
+        """Read all links, each with those that its joints carry."""
+        common = child(self.model, "technique_common")
+        for link in children(common, "link"):
+            T = Pose()
+            if self._root is not None and self._root.parent is not None:
+                T = rigid(self._root.parent.world, self._library.source(link))
+            self._T_world_root = T @ self._pose(link)
+            self._read_link(link, self._root, self._T_world_root)
+        self._settle_joints(common)
+        self._read_equations()
+
+    def _settle_joints(self, common: Element | None) -> None:
+        """Give the joints to the body, in the order in which the model lists them."""
+        listed = [*children(common, "joint", "instance_joint")]
+        place = {element: index for index, element in enumerate(listed)}
+        for found in sorted(self._found, key=lambda found: place.get(found.holder, len(listed))):
+            index = len(self.body.joints)
+            self.joints |= dict.fromkeys(found.keys, index)
+            self.values[index] = found.values
+            self.body.joints.append(found.built)
+
+    def _pose(self, element: Element) -> Pose:
+        return rigid(transform_of(self._library, element), self._library.source(element))
+
+    def _read_link(self, element: Element, node: Node | None, T_world_link: Pose) -> None:
+        if len(self.body.links) >= _MAX_LINKS:
+            raise self._library.error(f"the body has more than {_MAX_LINKS} links", element)
+        name = element.get("name") or element.get("id") or (node.name if node else "") or element.get("sid")
+        link = LinkBuilder(self._link_name(name), self._library.source(element), T_world_link, inertial=NO_MASS)
+        index = len(self.body.links)
+        self.body.links.append(link)
+        self.links[element] = index
+        rigid_body = self._scene.physics.of(node)
+        if rigid_body is not None:
+            link.inertial = rigid_body.inertial(self._library, T_world_link, self._T_world_root)
+            link.static = rigid_body.static
+        if node is not None:
+            self._read_shapes(link, node, T_world_link)
+        for attachment in children(element, "attachment_full", "attachment_start", "attachment_end"):
+            if local_name(attachment) == "attachment_full":
+                self._read_attachment(attachment, index, T_world_link)
+            else:
+                message = "OpenRAVE does not close the loop of this attachment, and neither does ravemj"
+                self._library.warn("ignored-tag", message, attachment)
+
+    def _link_name(self, name: str | None) -> str:
+        return _unused(valid_name(name) or f"link{len(self.body.links)}", {link.name for link in self.body.links})
+
+    def _read_shapes(self, link: LinkBuilder, node: Node, T_world_link: Pose) -> None:
+        T_link_world = T_world_link.inverse().matrix()
+        shapes = self._scene.geometry.read(
+            node, lambda inner: T_link_world @ self._world(inner), lambda inner: inner in self._scene.moved
+        )
+        link.geometries += shapes
+
+    def _world(self, node: Node) -> Floats:
+        """Return the pose of a node as OpenRAVE composes it: in the first link, from below that link's node on.
+
+        That node's own transform counts for its own shapes only, once more than it should.
+        """
+        path = [*node.around()]
+        if self._root not in path:
+            return node.world
+        below = path[: path.index(self._root)] or [node]
+        world = self._T_world_root.matrix()
+        for inner in reversed(below):
+            world = world @ inner.transform
+        return world
+
+    def _read_attachment(self, element: Element, parent: int, T_world_parent: Pose) -> None:
+        inner = child(element, "link")
+        if inner is None:
+            self._library.warn("no-link", "there is no link in it; it is left out", element)
+            return
+        T_parent_frame = self._pose(element)
+        holder, joint = self._joint(element)
+        axes = [*children(joint, "revolute", "prismatic")]
+        bound = [self._scene.bindings.of_axis(self._owner, self._instance, axis, holder) for axis in axes]
+        node = next((item.node for item in bound if item is not None and item.node is not None), None)
+        T_parent_child = T_parent_frame @ self._pose(inner)
+        links = (parent, len(self.body.links))
+        built = self._built_joint(joint, axes, links, T_parent_frame, T_parent_child)
+        written = [None if item is None else item.value for item in bound]
+        values = [self._axes.value(axis, value) for axis, value in zip(axes, written, strict=True)]
+        self._found.append(_FoundJoint(holder, (holder, joint, *axes), built, values[: len(built.axes)]))
+        self._read_link(inner, node, T_world_parent @ T_parent_child)
+
+    def _joint(self, attachment: Element) -> tuple[Element, Element]:
+        """Return what an attachment names, and the ``<joint>`` behind it."""
+        path = attachment.get("joint") or ""
+        found = self._scene.references.resolve(path, self.model)
+        joint = None if found is None else found.element
+        if joint is not None and local_name(joint) == "instance_joint":
+            joint = self._library.follow(joint)
+        if found is None or joint is None or local_name(joint) != "joint":
+            raise self._library.error(f"there is no joint '{path}'", attachment)
+        if next(children(joint, "revolute", "prismatic"), None) is None:
+            raise self._library.error("the joint has no axis", joint)
+        return found.element, joint
+
+    def _built_joint(
+        self, joint: Element, axes: list[Element], links: tuple[int, int], T_parent_frame: Pose, T_parent_child: Pose
+    ) -> JointBuilder:
+        kind = self._kind(joint, axes)
+        infos = [self._infos.get(axis, AxisInfo()) for axis in axes]
+        names = {other.name for other in self.body.joints} | {found.built.name for found in self._found}
+        name = valid_name(joint.get("name") or joint.get("id") or joint.get("sid")) or f"joint{len(names)}"
+        return JointBuilder(
+            name=_unused(name, names),
+            kind=kind,
+            links=links,
+            T_first_second=T_parent_child,
+            anchor=T_parent_frame.position,
+            frame=T_parent_frame.wxyz,
+            axes=tuple(
+                self._axis(axis, info, T_parent_frame)
+                for axis, info in zip(axes[: 2 if kind == "hinge2" else 1], infos, strict=False)
+            ),
+            enabled=all(self._axes.is_active(info) for info in infos),
+            source=self._library.source(joint),
+        )
+
+    def _kind(self, joint: Element, axes: list[Element]) -> JointKind:
+        kinds = [local_name(axis) for axis in axes]
+        if kinds == ["revolute", "revolute"]:
+            return "hinge2"
+        if len(kinds) > 1:
+            message = f"a joint with the axes {', '.join(kinds)} is more than ravemj can move; the first counts"
+            self._library.warn("unknown-type", message, joint)
+        return "hinge" if kinds[0] == "revolute" else "slider"
+
+    def _axis(self, element: Element, info: AxisInfo, T_parent_frame: Pose) -> Axis:
+        values = numbers(child(element, "axis"))[:3].tolist()
+        direction = _unit((values[0], values[1], values[2])) if len(values) == 3 else (0.0, 0.0, 1.0)
+        return self._axes.read(element, rotate(T_parent_frame.wxyz, direction), info)
+
+    def _read_formulas(self) -> list[tuple[Element, Found]]:
+        """Return the formulas, and the joint or axis that each is for."""
+        found: list[tuple[Element, Found]] = []
+        for item in children(child(self.model, "technique_common"), "formula", "instance_formula"):
+            element = self._library.follow(item) if local_name(item) == "instance_formula" else item
+            path = "".join(words(child(element, "target", "param")))
+            target = self._scene.references.resolve(path, self.model) if path else None
+            if element is None or target is None:
+                self._library.warn("broken-reference", f"there is no joint '{path}' for the formula", item)
+            else:
+                found.append((element, target))
+        return found
+
+    def _read_equations(self) -> None:
+        """Give the followers their equations."""
+        for element, target in self._formulas:
+            index = self.joints.get(target.element)
+            if index is None:
+                self._library.warn("broken-reference", "the joint of the formula is not in the model", element)
+                continue
+            joint = self.body.joints[index]
+            try:
+                position = formula.equation(formula.position_math(element), self._joint_name)
+            except formula.FormulaError as error:
+                message = f"joint '{joint.name}' cannot follow: {error}; it stays where it is"
+                self._library.warn("bad-mimic", message, element)
+                joint.enabled = False
+                continue
+            first, second = (self._partials(element, kind) for kind in ("first_partial", "second_partial"))
+            joint.equations = Equations(position, first, second)
+
+    def _partials(self, element: Element, kind: str) -> str:
+        """Return the derivatives by each joint, as OpenRAVE writes them."""
+        text = ""
+        for item in formula.content_of(element, kind):
+            name = self._joint_name(item.get("target") or "")
+            try:
+                text += f"|{name} {formula.equation(child(item, 'math'), self._joint_name)} " if name else ""
+            except formula.FormulaError as error:
+                self._library.warn("bad-mimic", f"a derivative is left out: {error}", item)
+        return text
+
+    def _joint_name(self, path: str) -> str | None:
+        found = self._scene.references.resolve(path, self.model) if path else None
+        index = None if found is None else self.joints.get(found.element)
+        return None if index is None else self.body.joints[index].name
+
+
+def _unused(name: str, taken: set[str]) -> str:
+    """Return a name, with a number behind it where it is taken."""
+    count = 1
+    unused = name
+    while unused in taken:
+        unused = f"{name}_{count}"
+        count += 1
+    return unused
+
+
+def _unit(vector: Vec3) -> Vec3:
+    x, y, z = vector
+    length = (x * x + y * y + z * z) ** 0.5
+    return (x / length, y / length, z / length) if length > 0 else (0.0, 0.0, 1.0)
