@@ -40,7 +40,9 @@ def read_data(data: str | bytes) -> Reading:
     head = data[:1000] if isinstance(data, bytes) else data[:1000].encode()
     if b"<COLLADA" in head:
         text = data if isinstance(data, bytes) else data.encode()
-        return _read_collada("data", lambda context: collada.read_text(text, "data", context.diagnostics, context.files))
+        return _read_collada(
+            "data", lambda context: collada.read_text(text, "data", context.diagnostics, context.files)
+        )
     return read_text(data, "data")
 
 
