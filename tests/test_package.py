@@ -45,6 +45,7 @@ LEVELS: list[set[str]] = [
     },
     {"chains", "fingerprints"},
     {"builder", "mjcf"},
+    {"collada"},
     {"kinematics", "openrave_xml", "tessellation"},
     {"coverage", "dynamics", "placement", "readers", "rendering", "trajectories"},
     {"batch"},
@@ -61,8 +62,8 @@ LEVELS: list[set[str]] = [
 ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = {
-    "adjacency", "alias", "arrays", "bounds", "builder", "chains", "clock", "coverage", "drawing", "errors",
-    "expressions", "fingerprints", "following", "geometry_functions", "handles", "hierarchy", "inertia", "joints",
+    "adjacency", "alias", "arrays", "bounds", "builder", "chains", "clock", "collada", "coverage", "drawing",
+    "errors", "expressions", "fingerprints", "following", "geometry_functions", "handles", "hierarchy", "inertia", "joints",
     "making", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "ordering", "output", "readers", "scene",
     "tessellation", "trajectories", "transforms", "video",
 }  # fmt: skip

@@ -12,6 +12,7 @@ from ravemj.builder import BodyBuilder
 from ravemj.errors import SourceError
 from ravemj.following import Equations
 from ravemj.manipulators import ManipulatorBuilder
+from ravemj.openrave_xml.collada_body import add_collada, is_collada
 from ravemj.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
 from ravemj.openrave_xml.geometry import GeometryScope
 from ravemj.openrave_xml.joint import read_joint
@@ -75,9 +76,7 @@ class _Scope:
         tags, ignored = (ROBOT_TAGS, ROBOT_IGNORED) if element.tag == "robot" else (KINBODY_TAGS, KINBODY_IGNORED)
         self.context.walk(element, tags, ignored, self)
         self.body.name = element.attributes.get("name", "") or self.body.name
-        prefix = element.attributes.get("prefix", "")
-        if prefix:
-            self._prefix(prefix, marks, whole=element.tag == "robot")
+        self._prefix(element.attributes.get("prefix", ""), marks, whole=element.tag == "robot")
         if self.transparency is not None:
             for link in self.body.links:
                 link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
@@ -96,6 +95,13 @@ class _Scope:
             if path is not None:
                 add_mesh(self.body, path, self.scale, element.source, self.context)
             return
+        if is_collada(name):
+            marks = _Marks.of(self.body)
+            path = self.context.find(name, element.source)
+            if path is not None:
+                add_collada(self.body, path, element.source, self.context, skip_geometry=self.skip_geometry)
+                self._prefix(element.attributes.get("prefix", ""), marks, whole=True)
+            return
         root = self.context.include(element)
         if root is None:
             return
@@ -106,6 +112,8 @@ class _Scope:
 
     def _prefix(self, prefix: str, marks: _Marks, *, whole: bool) -> None:
         """Rename the parts made inside the element; OpenRAVE renames less in a KinBody than in a Robot."""
+        if not prefix:
+            return
         joints = self.body.joints[marks.joints :]
         renamed = {joint.name: prefix + joint.name for joint in joints if joint.name}
         for part in (*self.body.links[marks.links :], *joints):
