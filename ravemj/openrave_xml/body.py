@@ -65,6 +65,7 @@ class _Scope:
         self.geometry_scope = GeometryScope(None, scale)
         self.joint_values: list[float] | None = None
         self.own_manipulators: list[ManipulatorBuilder] = []
+        self.own_sensors: list[int] = []
         self.transparency: float | None = None
 
     def read(self, element: Element) -> None:
@@ -82,6 +83,8 @@ class _Scope:
                 link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
         if marks.manipulators:
             self._own_manipulators_first()
+        if marks.sensors:
+            self._own_sensors_first()
         if self.placement.moves:
             T_outer_scope = self.placement.pose
             for link in self.body.links[first_link:]:
@@ -142,6 +145,11 @@ class _Scope:
         own = self.own_manipulators
         others = [built for built in self.body.manipulators if all(built is not mine for mine in own)]
         self.body.manipulators = [*reversed(own), *others]
+
+    def _own_sensors_first(self) -> None:
+        """Move the sensors of this very element to the front, the youngest first."""
+        others = [index for index in range(len(self.body.sensors)) if index not in self.own_sensors]
+        self.body.sensors = [self.body.sensors[index] for index in (*reversed(self.own_sensors), *others)]
 
     def nest(self, element: Element) -> None:
         """Read a nested ``<Robot>`` or ``<KinBody>`` into the same body."""
@@ -212,6 +220,7 @@ class _Scope:
     def read_sensor(self, element: Element) -> None:
         """Read an ``<AttachedSensor>``."""
         read_attached_sensor(self.body, element, self.context)
+        self.own_sensors.append(len(self.body.sensors) - 1)
 
 
 _PLACEMENT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {

@@ -6,6 +6,7 @@ from ravemj import collada
 from ravemj.builder import BodyBuilder
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.openrave_xml.context import COLLADA_SUFFIXES, Context
+from ravemj.transforms import Pose
 
 
 def is_collada(name: str) -> bool:
@@ -33,17 +34,34 @@ def add_collada(body: BodyBuilder, path: str, source: Source, context: Context, 
         context.diagnostics.error("broken-file", error.message, error.source)
         return
     body.name = found.name
-    first = len(body.links)
     for link, at_values in zip(found.links, placed.links, strict=True):
         link.pose = at_values.T_world_link
         if skip_geometry:
             link.geometries = []
-    for joint in found.joints:
-        joint.links = (joint.links[0] + first, joint.links[1] + first)
-    body.links += found.links
-    body.joints += found.joints
-    body.adjacent += [(one + first, other + first) for one, other in found.adjacent]
-    body.manipulators += found.manipulators
+    _join(body, found)
+
+
+def _join(body: BodyBuilder, other: BodyBuilder) -> None:
+    """Add one body to another; links of one name become one, and the first such link says where the body goes."""
+    places = [body.find_link(link.name) for link in other.links]
+    T_body_other = Pose()
+    if places[0] is not None:
+        T_body_other = body.links[places[0]].pose @ other.links[0].pose.inverse()
+    indices: list[int] = []
+    for link, place in zip(other.links, places, strict=True):
+        link.pose = T_body_other @ link.pose
+        if place is None:
+            place = len(body.links)
+            body.links.append(link)
+        else:
+            link.geometries = [*body.links[place].geometries, *link.geometries]
+            body.links[place] = link
+        indices.append(place)
+    for joint in other.joints:
+        joint.links = (indices[joint.links[0]], indices[joint.links[1]])
+    body.joints += other.joints
+    body.adjacent += [(indices[one], indices[two]) for one, two in other.adjacent]
+    body.manipulators += other.manipulators
     body.sensors += [
-        replace(sensor, link=None if sensor.link is None else sensor.link + first) for sensor in found.sensors
+        replace(sensor, link=None if sensor.link is None else indices[sensor.link]) for sensor in other.sensors
     ]
