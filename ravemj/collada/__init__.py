@@ -16,9 +16,7 @@ SUFFIXES = (".dae", ".zae")
 """Ends of the names of the files, in lower case."""
 
 
-def read_file(
-    path: str, diagnostics: Diagnostics, files: list[str], included_from: Source | None = None
-) -> Content:
+def read_file(path: str, diagnostics: Diagnostics, files: list[str], included_from: Source | None = None) -> Content:
     """Read a ``.dae`` or ``.zae`` file.
 
     Args:

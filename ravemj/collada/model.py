@@ -8,17 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.builder import BodyBuilder, JointBuilder, LinkBuilder
-from ravemj.collada import formula
 from ravemj.collada.axis import AxisInfo, AxisReader
 from ravemj.collada.bindings import Bindings
+from ravemj.collada.formulas import read_formulas
 from ravemj.collada.geometry import GeometryReader
 from ravemj.collada.library import Library
 from ravemj.collada.physics import NO_MASS, Physics
 from ravemj.collada.placing import rigid
-from ravemj.collada.references import Found, References
+from ravemj.collada.references import References
 from ravemj.collada.visual import Node, transform_of
-from ravemj.following import Equations
-from ravemj.meshes.collada.document import Element, child, children, local_name, numbers, words
+from ravemj.meshes.collada.document import Element, child, children, local_name, numbers
 from ravemj.scene import Axis, JointKind
 from ravemj.transforms import UNIT_WXYZ, Floats, Pose, Vec3, Wxyz, conjugate, multiply, rotate, wxyz_from_axis_angle
 
@@ -48,6 +47,7 @@ class Scene:
 
     @property
     def axes(self) -> AxisReader:
+        """A reader of axes."""
         return AxisReader(self.library, self.references)
 
 
@@ -96,7 +96,6 @@ class ModelReader:
         self._axes = scene.axes
         self._root = scene.bindings.node_of(owner, instance, model)
         self._T_world_root = Pose()
-        self._formulas = self._read_formulas()
         self.links: dict[Element, int] = {}
         self.joints: dict[Element, int] = {}
         self.values: dict[int, list[float]] = {}
@@ -106,13 +105,12 @@ class ModelReader:
         """Read all links, each with those that its joints carry."""
         common = child(self.model, "technique_common")
         for link in children(common, "link"):
-            T = Pose()
-            if self._root is not None and self._root.parent is not None:
-                T = rigid(self._root.parent.world, self._library.source(link))
-            self._T_world_root = T @ self._pose(link)
+            parent = None if self._root is None else self._root.parent
+            T_world_parent = Pose() if parent is None else rigid(parent.world, self._library.source(link))
+            self._T_world_root = T_world_parent @ self._pose(link)
             self._read_link(link, self._root, self._T_world_root)
         self._settle_joints()
-        self._read_equations()
+        read_formulas(self._library, self._scene.references, self.model, self.joints, self.body)
 
     def _settle_joints(self) -> None:
         """Give the joints to the body, those with an index of OpenRAVE's in its order."""
@@ -246,53 +244,6 @@ class ModelReader:
         turn = wxyz_from_axis_angle(_direction(axis), self._axes.wrap(axis, info))
         turned = multiply(multiply(turn, T_frame_child.wxyz), conjugate(T_parent_frame.wxyz))
         return multiply(T_parent_frame.wxyz, turned)
-
-    def _read_formulas(self) -> list[tuple[Element, Found]]:
-        """Return the formulas, and the joint or axis that each is for."""
-        found: list[tuple[Element, Found]] = []
-        for item in children(child(self.model, "technique_common"), "formula", "instance_formula"):
-            element = self._library.follow(item) if local_name(item) == "instance_formula" else item
-            path = "".join(words(child(element, "target", "param")))
-            target = self._scene.references.resolve(path, self.model) if path else None
-            if element is None or target is None:
-                self._library.warn("broken-reference", f"there is no joint '{path}' for the formula", item)
-            else:
-                found.append((element, target))
-        return found
-
-    def _read_equations(self) -> None:
-        """Give the followers their equations."""
-        for element, target in self._formulas:
-            index = self.joints.get(target.element)
-            if index is None:
-                self._library.warn("broken-reference", "the joint of the formula is not in the model", element)
-                continue
-            joint = self.body.joints[index]
-            try:
-                position = formula.equation(formula.position_math(element), self._joint_name)
-            except formula.FormulaError as error:
-                message = f"joint '{joint.name}' cannot follow: {error}; it stays where it is"
-                self._library.warn("bad-mimic", message, element)
-                joint.enabled = False
-                continue
-            first, second = (self._partials(element, kind) for kind in ("first_partial", "second_partial"))
-            joint.equations = Equations(position, first, second)
-
-    def _partials(self, element: Element, kind: str) -> str:
-        """Return the derivatives by each joint, as OpenRAVE writes them."""
-        text = ""
-        for item in formula.content_of(element, kind):
-            name = self._joint_name(item.get("target") or "")
-            try:
-                text += f"|{name} {formula.equation(child(item, 'math'), self._joint_name)} " if name else ""
-            except formula.FormulaError as error:
-                self._library.warn("bad-mimic", f"a derivative is left out: {error}", item)
-        return text
-
-    def _joint_name(self, path: str) -> str | None:
-        found = self._scene.references.resolve(path, self.model) if path else None
-        index = None if found is None else self.joints.get(found.element)
-        return None if index is None else self.body.joints[index].name
 
 
 def _unused(name: str, taken: set[str]) -> str:

@@ -77,14 +77,13 @@ class _Scope:
         tags, ignored = (ROBOT_TAGS, ROBOT_IGNORED) if element.tag == "robot" else (KINBODY_TAGS, KINBODY_IGNORED)
         self.context.walk(element, tags, ignored, self)
         self.body.name = element.attributes.get("name", "") or self.body.name
-        self._prefix(element.attributes.get("prefix", ""), marks, whole=element.tag == "robot")
+        prefix = element.attributes.get("prefix", "")
+        if prefix:
+            self._prefix(prefix, marks, whole=element.tag == "robot")
         if self.transparency is not None:
             for link in self.body.links:
                 link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
-        if marks.manipulators:
-            self._own_manipulators_first()
-        if marks.sensors:
-            self._own_sensors_first()
+        self._own_first(marks)
         if self.placement.moves:
             T_outer_scope = self.placement.pose
             for link in self.body.links[first_link:]:
@@ -115,8 +114,6 @@ class _Scope:
 
     def _prefix(self, prefix: str, marks: _Marks, *, whole: bool) -> None:
         """Rename the parts made inside the element; OpenRAVE renames less in a KinBody than in a Robot."""
-        if not prefix:
-            return
         joints = self.body.joints[marks.joints :]
         renamed = {joint.name: prefix + joint.name for joint in joints if joint.name}
         for part in (*self.body.links[marks.links :], *joints):
@@ -140,16 +137,15 @@ class _Scope:
         for index, sensor in enumerate(self.body.sensors[marks.sensors :], marks.sensors):
             self.body.sensors[index] = replace(sensor, name=prefix + sensor.name)
 
-    def _own_manipulators_first(self) -> None:
-        """Move the manipulators of this very element to the front, the youngest first."""
-        own = self.own_manipulators
-        others = [built for built in self.body.manipulators if all(built is not mine for mine in own)]
-        self.body.manipulators = [*reversed(own), *others]
-
-    def _own_sensors_first(self) -> None:
-        """Move the sensors of this very element to the front, the youngest first."""
-        others = [index for index in range(len(self.body.sensors)) if index not in self.own_sensors]
-        self.body.sensors = [self.body.sensors[index] for index in (*reversed(self.own_sensors), *others)]
+    def _own_first(self, marks: _Marks) -> None:
+        """Move manipulators and sensors of this very element before those that were there, the youngest first."""
+        if marks.manipulators:
+            mine = self.own_manipulators
+            others = [built for built in self.body.manipulators if all(built is not own for own in mine)]
+            self.body.manipulators = [*reversed(mine), *others]
+        if marks.sensors:
+            order = [index for index in range(len(self.body.sensors)) if index not in self.own_sensors]
+            self.body.sensors = [self.body.sensors[index] for index in (*reversed(self.own_sensors), *order)]
 
     def nest(self, element: Element) -> None:
         """Read a nested ``<Robot>`` or ``<KinBody>`` into the same body."""

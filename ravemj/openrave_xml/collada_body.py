@@ -50,13 +50,12 @@ def _join(body: BodyBuilder, other: BodyBuilder) -> None:
     indices: list[int] = []
     for link, place in zip(other.links, places, strict=True):
         link.pose = T_body_other @ link.pose
+        indices.append(len(body.links) if place is None else place)
         if place is None:
-            place = len(body.links)
             body.links.append(link)
         else:
             link.geometries = [*body.links[place].geometries, *link.geometries]
             body.links[place] = link
-        indices.append(place)
     for joint in other.joints:
         joint.links = (indices[joint.links[0]], indices[joint.links[1]])
     body.joints += other.joints
