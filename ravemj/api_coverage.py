@@ -114,8 +114,7 @@ def _attribute(path: str) -> object:
 def _capability(thing: object) -> str:
     """Return what a function or class lacks that does nothing but raise ``UnsupportedError``; empty for others."""
     if isinstance(thing, type):
-        made = vars(thing).get("__init__")
-        return str(getattr(thing, "capability", "")) or (_capability(made) if made else "")
+        return _capability_of_class(thing)
     if not isinstance(thing, FunctionType):
         return ""
     definition = ast.parse(textwrap.dedent(inspect.getsource(thing))).body[0]
@@ -130,6 +129,13 @@ def _capability(thing: object) -> str:
     if isinstance(argument, ast.Constant):
         return str(argument.value)
     return str(vars(importlib.import_module(thing.__module__))[ast.unparse(argument)])
+
+
+def _capability_of_class(thing: type[object]) -> str:
+    if issubclass(thing, databases.DatabaseGenerator):
+        return "" if "autogenerate" in vars(thing) else thing.capability
+    made = vars(thing).get("__init__")
+    return _capability(made) if made else ""
 
 
 def _tested(name: str) -> str:

@@ -111,6 +111,32 @@ def test_options_are_applied_to_an_environment(parsed, env):
     assert misc.OpenRAVEGlobalArguments.parseAndCreate(parsed()).GetBodies() == []
 
 
+def test_options_choose_what_collides_and_falls(parsed, env):
+    apply = misc.OpenRAVEGlobalArguments.parseEnvironment
+    env.GetPhysicsEngine().SetGravity([0, 0, -1])
+    apply(parsed("--collision", "pqp", "--physics", "ode", "--debug", "Warn"), env)
+    assert env.GetCollisionChecker().GetXMLId() == "pqp"
+    assert env.GetPhysicsEngine().GetXMLId() == "ode"
+    assert env.GetPhysicsEngine().GetGravity().tolist() == [0, 0, -1]
+    assert ravemj.RaveGetDebugLevel() == ravemj.DebugLevel.Warn
+    for option in ("--collision", "--physics"):
+        with pytest.raises(ravemj.openrave_exception, match="'nosuch'"):
+            apply(parsed(option, "nosuch"), env)
+
+
+def test_trajectories_come_from_files(env, robot, tmp_path):
+    trajectory = ravemj.RaveCreateTrajectory(env, "")
+    trajectory.Init(robot.GetConfigurationSpecificationIndices([0, 1], "linear"))
+    trajectory.Insert(0, [0.1, 0.2, 0.3, 0.4])
+    for options in (0, 0x8000):
+        trajectory.SaveToFile(tmp_path / "file", options)
+        found = misc.LoadTrajectoryFromFile(env, tmp_path / "file")
+        assert found.GetAllWaypoints2D().tolist() == [[0.1, 0.2], [0.3, 0.4]]
+    assert misc.LoadTrajectoryFromFile(env, tmp_path / "file", "nosuch") is None
+    with pytest.raises(ravemj.openrave_exception, match="missing"):
+        misc.LoadTrajectoryFromFile(env, tmp_path / "missing")
+
+
 def test_logging_is_shown_once(capsys):
     try:
         misc.InitOpenRAVELogging()

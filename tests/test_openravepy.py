@@ -167,6 +167,35 @@ def test_openraves_own_plugins_say_what_is_missing(env, kind, name, capability):
     assert caught.value.GetCode() == "NotImplemented"
 
 
+def test_modules_are_refused_and_none_is_there(env):
+    for add in (env.AddModule, env.LoadProblem):
+        with pytest.raises(ravemj.openrave_exception, match="AddModule: module is None, as RaveCreateModule") as caught:
+            add(ravemj.RaveCreateModule(env, "urdf"), "")
+        assert caught.value.GetCode() == "InvalidArguments"
+        with pytest.raises(ravemj.openrave_exception, match="module is a str"):
+            add("urdf", args="")
+    assert env.GetModules() == env.GetLoadedProblems() == []
+    assert env.RemoveProblem(object()) is env.Remove(object()) is False
+    with pytest.raises(ravemj.openrave_exception, match="None"):
+        env.RemoveProblem(None)
+
+
+def test_sensors_stand_where_they_are_attached_and_measure_nothing(env):
+    camera = '<sensor type="BaseCamera"><KK>500 500 320 240</KK><width>640</width><height>480</height></sensor>'
+    text = (
+        '<Robot name="r"><KinBody><Body name="b"><Geom type="sphere"><radius>1</radius></Geom></Body></KinBody>'
+        f'<AttachedSensor name="eye"><link>b</link><translation>0 0 2</translation>{camera}</AttachedSensor></Robot>'
+    )
+    assert env.LoadData(text)
+    (sensor,) = env.GetSensors()
+    assert sensor.GetName() == "r:eye"
+    assert env.GetSensor("r:eye").GetTransform()[2, 3] == 2
+    assert env.GetSensor("eye") is None
+    for call in (lambda: sensor.Configure(ravemj.Sensor.ConfigureCommand.PowerOn), sensor.GetSensorData):
+        with pytest.raises(NotImplementedError, match="simulation of sensors"):
+            call()
+
+
 def test_a_viewer_by_its_name_is_the_environments(env, monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)

@@ -318,8 +318,35 @@ def test_poses():
     assert spec.ExtractAffineValues(data, None, parts, 1) is None
     with pytest.raises(ArgumentError, match="ExtractAffineValues"):
         spec.ExtractTransform(None, data, None, 1)
-    with pytest.raises(NotImplementedError, match="IK"):
-        spec.ExtractIkParameterization(data)
+    assert spec.ExtractIkParameterization(data) is None
+
+
+def test_goals_of_arms():
+    Type = ravemj.IkParameterizationType
+    goal = ravemj.IkParameterization([1, 2, 3], Type.Translation3D)
+    pose = ravemj.IkParameterization([1, 0, 0, 0, 4, 5, 6], Type.Transform6D)
+    spec = ravemj.ConfigurationSpecification()
+    spec.AddDeltaTimeGroup()
+    spec += goal.GetConfigurationSpecification("linear", "arm", "left")
+    spec += pose.GetConfigurationSpecification("linear", "arm", "right")
+    spec.AddDerivativeGroups(1)
+    data = [0.5, 1, 2, 3, 1, 0, 0, 0, 4, 5, 6, *range(10)]
+
+    def extracted(*arguments):
+        found = spec.ExtractIkParameterization(data, *arguments)
+        return found and (found.GetType(), found.GetValues().tolist())
+
+    assert extracted() == extracted(0, "arm") == extracted(0, "", "left") == (Type.Translation3D, [1, 2, 3])
+    assert extracted(0, "arm", "right") == (Type.Transform6D, [1, 0, 0, 0, 4, 5, 6])
+    assert extracted(1) == (Type.Translation3D, [0, 1, 2])
+    assert extracted(1, "", "right") == (Type.Transform6D, [3, 4, 5, 6, 7, 8, 9])
+    for nobody in ((2,), (0, "leg"), (0, "arm", "middle")):
+        assert extracted(*nobody) is None
+    with pytest.raises(ArgumentError, match=r"data: has shape \(1,\)"):
+        spec.ExtractIkParameterization([0])
+    for name in ("ikparam_values", "ikparam_values x"):
+        with pytest.raises(ArgumentError, match=name):
+            spec_of((name, 3)).ExtractIkParameterization([1, 2, 3])
 
 
 @pytest.mark.parametrize("name", ["affine_transform arm", "affine_transform arm x", "affine_transform arm 8 0 0 z"])

@@ -12,12 +12,15 @@ class DatabaseGenerator:
 
     Args:
         robot: The robot; its active manipulator is the model's.
+        arguments: What models of OpenRAVE's take besides.
+        named: The same, by name.
     """
 
     capability = "building of databases"
     """What ravemj lacks to compute it."""
 
-    def __init__(self, robot: Robot) -> None:
+    def __init__(self, robot: Robot, *arguments: object, **named: object) -> None:
+        del arguments, named
         self.robot = robot
         self.manip = robot.GetActiveManipulator()
 

@@ -5,6 +5,7 @@ from ravemj.misc.drawing import DrawAxes, DrawCircle, DrawIkparam, DrawIkparam2
 from ravemj.misc.sampling import SpaceSamplerExtra
 from ravemj.misc.scripts import (
     InitOpenRAVELogging,
+    LoadTrajectoryFromFile,
     OpenRAVEGlobalArguments,
     SetViewerUserThread,
     mkdir_recursive,
@@ -21,6 +22,7 @@ __all__ = [
     "DrawIkparam",
     "DrawIkparam2",
     "InitOpenRAVELogging",
+    "LoadTrajectoryFromFile",
     "OpenRAVEGlobalArguments",
     "SetViewerUserThread",
     "SpaceSamplerExtra",

@@ -8,9 +8,13 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from typing import IO, Any
 
+from ravemj.errors import RavemjError
+from ravemj.output import AnyPath
 from ravemj.rave import logs
+from ravemj.rave.collision import CollisionChecker, RaveCreateCollisionChecker
 from ravemj.rave.enums import DebugLevel
 from ravemj.rave.environment import Environment
+from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 
 _LEVELS = {level.name.lower(): level for level in DebugLevel}
 
@@ -63,7 +67,7 @@ class OpenRAVEGlobalArguments:
         group.add_option("--viewer", dest="_viewer", help="name of the viewer; '' for none")
         group.add_option("--loadplugin", dest="_loadplugins", action="append", default=[], help="is not supported")
         level = "Debug level, one of " + ",".join(_LEVELS)
-        group.add_option("--level", "-l", "--log_level", dest="_level", help=level)
+        group.add_option("--level", "-l", "--log_level", "--debug", "-d", dest="_level", help=level)
         if testmode:
             group.add_option("--testmode", dest="testmode", action="store_true", default=False, help="run by itself")
         parser.add_option_group(group)
@@ -92,8 +96,15 @@ class OpenRAVEGlobalArguments:
 
         Returns:
             The name, or None.
+
+        Raises:
+            openrave_exception: there is no collision checker or physics engine of the name.
         """
         OpenRAVEGlobalArguments.parseGlobalArguments(options)
+        if getattr(options, "_collision", None):
+            env.SetCollisionChecker(_checker(env, options._collision))
+        if getattr(options, "_physics", None):
+            env.SetPhysicsEngine(options._physics)
         viewer = getattr(options, "_viewer", None)
         if viewer is None:
             viewer = "qtcoin" if defaultviewer else ""
@@ -127,6 +138,33 @@ class OpenRAVEGlobalArguments:
         env = createenv()
         viewer = OpenRAVEGlobalArguments.parseEnvironment(options, env, defaultviewer, returnviewer=True)
         SetViewerUserThread(env, viewer or "", lambda: userfn(env, options))
+
+
+def _checker(env: Environment, name: str) -> CollisionChecker:
+    checker = RaveCreateCollisionChecker(env, name)
+    if checker is None:
+        raise RavemjError(f"there is no collision checker '{name}'; there are mujoco and ode")
+    return checker
+
+
+def LoadTrajectoryFromFile(env: Environment, trajfile: AnyPath, trajtype: str = "") -> Trajectory | None:
+    """Return the trajectory in a file that ``SaveToFile`` wrote.
+
+    Args:
+        env: The environment that the trajectory is for.
+        trajfile: The file.
+        trajtype: As for ``RaveCreateTrajectory``.
+
+    Returns:
+        The trajectory; None where there is no such type.
+
+    Raises:
+        openrave_exception: the file cannot be read, or is no trajectory.
+    """
+    trajectory = RaveCreateTrajectory(env, trajtype)
+    if trajectory is not None:
+        trajectory.LoadFromFile(trajfile)
+    return trajectory
 
 
 def mkdir_recursive(newdir: str) -> None:

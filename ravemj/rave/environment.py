@@ -13,6 +13,7 @@ from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.locking import Locking
 from ravemj.rave.env.meshing import Meshing
+from ravemj.rave.env.modules import Modules
 from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
@@ -23,7 +24,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Running, Viewing):
+class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Modules, Running, Viewing):
     """A world with robots and other bodies.
 
     Example:
@@ -35,6 +36,8 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Runnin
         >>> robot.SetDOFValues([0.785, 0.785])
         >>> picture = env.render(640, 480)
     """
+
+    _internal = ("simulation",)
 
     def __init__(self, options: int = 1) -> None:
         """Make an empty environment.
@@ -52,7 +55,11 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Runnin
         return self._number
 
     def SetDebugLevel(self, level: int) -> None:
-        """Set how much is logged, for all environments; see ``RaveSetDebugLevel``."""
+        """Set how much is logged, for all environments; see ``RaveSetDebugLevel``.
+
+        Args:
+            level: A ``DebugLevel``.
+        """
         RaveSetDebugLevel(level)
 
     def GetDebugLevel(self) -> int:
@@ -64,7 +71,16 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Runnin
         self._simulation.clear()
 
     def Destroy(self) -> None:
-        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm."""
+        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm.
+
+        Example:
+            >>> env = ravemj.Environment()
+            >>> try:
+            ...     env.Load("models/env.xml")
+            ... finally:
+            ...     env.Destroy()
+            True
+        """
         self.StopSimulation()
         self.SetViewer("")
         self.Reset()
@@ -106,12 +122,20 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Runnin
 
 
 def RaveGetEnvironment(id: int) -> Environment | None:  # OpenRAVE's name of the argument
-    """Return the environment of that number, as ``repr(env)`` shows it, or None."""
+    """Return the environment of that number, as ``repr(env)`` shows it, or None.
+
+    Args:
+        id: The number.
+    """
     return _environments.get(id)
 
 
 def RaveGetEnvironmentId(env: Environment) -> int:
-    """Return the environment's number, as ``RaveGetEnvironment`` takes it."""
+    """Return the environment's number, as ``RaveGetEnvironment`` takes it.
+
+    Args:
+        env: The environment.
+    """
     return env.GetId()
 
 

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from ravemj.rave.body.base import both_locks
 from ravemj.rave.body.building import Building
 from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.body.grabbing import Grabbing
@@ -17,6 +18,7 @@ from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, JointInfo, KinBodyInfo, LinkInfo
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
+from ravemj.rave.tables import body_table
 from ravemj.simulation import BodyState
 
 if TYPE_CHECKING:
@@ -56,6 +58,11 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
 
         Raises:
             openrave_exception: another body of the environment has it (``BodyNameConflict``), or it is empty.
+
+        Example:
+            >>> robot.SetName("swing")
+            >>> env.GetRobot("swing") == robot
+            True
         """
         self._simulation.rename(self._state, name)
 
@@ -78,7 +85,8 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
             openrave_exception: this body is in an environment.
         """
         del cloningoptions
-        self._state.copy(reference.simulation_state)
+        with both_locks(self._simulation, reference.simulation_state.simulation):
+            self._state.copy(reference.simulation_state)
 
     GetEnvironmentId = GetEnvironmentBodyIndex
 
@@ -89,7 +97,11 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
         return hash(id(self._state))
 
     def __repr__(self) -> str:
-        return f"{self._env!r}.Get{'Robot' if self.IsRobot() else 'KinBody'}('{self.GetName()}')"
+        return f"{self._env!r}.Get{'Robot' if self.IsRobot() else 'KinBody'}({self.GetName()!r})"
+
+    def _repr_html_(self) -> str:
+        """Return the tables that notebooks show for a body."""
+        return body_table(self)
 
     def __str__(self) -> str:
         kind = self._interface_type.name

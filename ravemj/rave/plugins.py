@@ -9,12 +9,11 @@ from ravemj.rave.arm_goals import INVERSE_KINEMATICS
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
 from ravemj.rave.planning import PLANNING, Planner
-from ravemj.rave.sensors import Sensor
+from ravemj.rave.sensors import SENSING, Sensor
 from ravemj.viewers import VIEWERS, Viewer
 
 _GRASPING = "planning of grasps"
 _SAMPLING = "sampling of spaces"
-_SENSORS = "simulation of sensors"
 
 _LOG = logging.getLogger("ravemj")
 
@@ -50,14 +49,14 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
             "ikfast": INVERSE_KINEMATICS,
         },
         InterfaceType.sensor: {
-            "basecamera": _SENSORS,
-            "baseflashlidar3d": _SENSORS,
-            "baseforce6d": _SENSORS,
-            "baseimu": _SENSORS,
-            "basejointencoder": _SENSORS,
-            "baselaser2d": _SENSORS,
-            "baseodometry": _SENSORS,
-            "basetactile": _SENSORS,
+            "basecamera": SENSING,
+            "baseflashlidar3d": SENSING,
+            "baseforce6d": SENSING,
+            "baseimu": SENSING,
+            "basejointencoder": SENSING,
+            "baselaser2d": SENSING,
+            "baseodometry": SENSING,
+            "basetactile": SENSING,
         },
         InterfaceType.spacesampler: {
             "bodyconfiguration": _SAMPLING,
@@ -90,7 +89,11 @@ RaveCreateProblem = RaveCreateModule
 
 
 def RaveCreatePlanner(env: Environment, name: str) -> Planner | None:
-    """Refuse to make a planner: None where OpenRAVE does not know the name either.
+    """Refuse to make a planner; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the planner is one of OpenRAVE's own.
@@ -99,7 +102,11 @@ def RaveCreatePlanner(env: Environment, name: str) -> Planner | None:
 
 
 def RaveCreateIkSolver(env: Environment, name: str) -> None:
-    """Refuse to make a solver of inverse kinematics: None where OpenRAVE does not know the name either.
+    """Refuse to make a solver of inverse kinematics; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the solver is one of OpenRAVE's own.
@@ -108,7 +115,11 @@ def RaveCreateIkSolver(env: Environment, name: str) -> None:
 
 
 def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
-    """Refuse to make a sensor: None where OpenRAVE does not know the name either.
+    """Refuse to make a sensor; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the sensor is one of OpenRAVE's own.
@@ -117,7 +128,11 @@ def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
 
 
 def RaveCreateSpaceSampler(env: Environment, name: str) -> None:
-    """Refuse to make a sampler: None where OpenRAVE does not know the name either.
+    """Refuse to make a sampler; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the sampler is one of OpenRAVE's own.
@@ -141,9 +156,9 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
     """Return the names that ``RaveCreate…`` of each kind makes something for."""
     made: dict[InterfaceType, list[str]] = {
         InterfaceType.collisionchecker: ["ode"],
-        InterfaceType.controller: ["IdealController"],
+        InterfaceType.controller: ["IdealController", "IdealVelocityController", "odevelocity"],
         InterfaceType.kinbody: [""],
-        InterfaceType.physicsengine: ["GenericPhysicsEngine"],
+        InterfaceType.physicsengine: ["GenericPhysicsEngine", "ode", "bullet", "mujoco"],
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],
         InterfaceType.viewer: list(VIEWERS),

@@ -23,6 +23,7 @@ from ravemj.rendering.camera import (
     CameraIntrinsics,
     Pinhole,
     bounding_sphere,
+    geom_corners,
     three_quarter_view,
     view_from_above,
 )
@@ -32,6 +33,7 @@ from ravemj.rendering.frame import WHITE
 from ravemj.rendering.gl import GlRenderer
 from ravemj.rendering.ray import RayRenderer
 from ravemj.rendering.stage import Quality, Stage
+from ravemj.rendering.visibility import drawn_geoms
 
 __all__ = [
     "Camera",
@@ -41,6 +43,8 @@ __all__ = [
     "Renderer",
     "Stage",
     "bounding_sphere",
+    "drawn_geoms",
+    "geom_corners",
     "open_renderer",
     "read_camera",
     "three_quarter_view",

@@ -11,7 +11,7 @@ from ravemj.geometry_functions.affine import (
     RaveGetIndexFromAffineDOF,
     pose_with_values,
 )
-from ravemj.trajectories.groups import AFFINE, DELTATIME, JOINTS, Group, affine_parts, joint_indices
+from ravemj.trajectories.groups import AFFINE, DELTATIME, IK, JOINTS, Group, affine_parts, joint_indices
 from ravemj.transforms import Floats, Pose
 
 
@@ -74,6 +74,16 @@ def pose(groups: Sequence[Group], data: Floats, body: str | None, start: Pose) -
         parts, axis = affine_parts(group)
         start = pose_with_values(start, data[group.columns], parts, axis)
     return start if found else None
+
+
+def ik_group(groups: Sequence[Group], robot: str, manipulator: str, order: int) -> Group | None:
+    """Return the first goal of inverse kinematics of a robot and a manipulator, or None; empty names fit to all."""
+    for group in groups:
+        _, *owner = group.name.split()[1:] or [""]
+        fits = all(name in {"", word} for name, word in zip((robot, manipulator), [*owner, "", ""], strict=False))
+        if group.kind == IK[order] and fits:
+            return group
+    return None
 
 
 def time_column(groups: Sequence[Group]) -> int | None:

@@ -23,7 +23,7 @@ INTERPOLATIONS = ("next", "linear", "quadratic", "cubic", "quartic", "quintic", 
 """Interpolations in which each is the derivative of the following one."""
 
 
-@dataclass
+@dataclass(repr=False)
 class Group:
     """Some values of a configuration that belong together.
 
@@ -39,6 +39,10 @@ class Group:
     offset: int = 0
     dof: int = 0
     interpolation: str = ""
+
+    def __repr__(self) -> str:
+        values = f"{self.name!r}, {self.offset}, {self.dof}, {self.interpolation!r}"
+        return f"ConfigurationSpecification.Group({values})"
 
     @property
     def columns(self) -> slice:
@@ -100,6 +104,18 @@ def affine_parts(group: Group) -> tuple[int, Vec3]:
     except ValueError:
         raise ArgumentError(f"group '{group.name}': its axis should be three numbers") from None
     return _integers(words[:1], group.name)[0], (x, y, z)
+
+
+def ik_type(group: Group) -> int:
+    """Return the number of the type of goal that the values of a group of inverse kinematics are.
+
+    Raises:
+        ArgumentError: the name does not say it.
+    """
+    words = group.name.split()[1:2]
+    if not words:
+        raise ArgumentError(f"group '{group.name}': its name should have the type of goal")
+    return _integers(words, group.name)[0]
 
 
 def _integers(words: Sequence[str], name: str) -> list[int]:

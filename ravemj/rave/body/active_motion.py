@@ -18,7 +18,7 @@ class ActiveMotion(ActiveDofs, Motion):
     """How the active DOFs move the robot. The base's parts move all of it."""
 
     def GetActiveDOFVelocities(self) -> Floats:
-        """Return the velocities of the active values: of joints [rad/s or m/s], then of the base."""
+        """Return the velocities of the active values: of joints [rad/s or m/s], then of the base; shape (n,)."""
         with self._simulation.lock:
             base = self._state.link_velocities()[0]
             linear = [base[i] for i, part in enumerate(_AXES) if part & self.active_choice.affine]
@@ -68,6 +68,9 @@ class ActiveMotion(ActiveDofs, Motion):
 
     def CalculateActiveAngularVelocityJacobian(self, linkindex: int) -> Floats:
         """Return the angular velocity of a link, in world axes, per unit of the active values' velocity.
+
+        Args:
+            linkindex: Index of the link.
 
         Returns:
             Shape (3, active dof).

@@ -30,8 +30,9 @@ class VelocityController(Controller):
         Args:
             options: OpenRAVE has no meaning for them.
         """
-        super().Reset(options)
-        self._drive(None)
+        with self._env.simulation.lock:
+            super().Reset(options)
+            self._drive(None)
 
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
         del T_world_base
@@ -47,7 +48,11 @@ class VelocityController(Controller):
                 loads.motor = None if velocities is None else Motor(self._robot_dofs(), velocities)
 
     def SimulationStep(self, timestep: float) -> None:
-        """Move the joints for a step of time [s], unless physics does."""
+        """Move the joints for a step of time [s], unless physics does.
+
+        Args:
+            timestep: How long [s].
+        """
         if self._velocities is None:
             return
         if self._env.GetPhysicsEngine().is_simulated:

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from ravemj.rave.body.base import both_locks
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.contents import Contents
 from ravemj.rave.robot import Robot
@@ -44,7 +45,7 @@ class Cloning(Contents):
         del options, name
         self._check_alive()
         source = reference.simulation
-        with source.lock, self._simulation.lock:
+        with both_locks(source, self._simulation):
             self._simulation.clear()
             self._simulation.view = source.view
             self._simulation.set_gravity(source.gravity)
@@ -57,7 +58,7 @@ class Cloning(Contents):
     def _copy(self, original: BodyState) -> BodyState:
         copy = self._simulation.create(original.scene)
         copy.copy(original)
-        self._simulation.insert(copy)
+        self._simulation.insert(copy, original.index)
         copy.rest_poses = original.rest_poses
         body, other = self.wrap(copy), original.api_object
         if isinstance(body, Robot) and isinstance(other, Robot):

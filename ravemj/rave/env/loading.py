@@ -38,7 +38,8 @@ class Loading(EnvironmentPart):
             openrave_exception: a body of that name is in the environment already (``BodyNameConflict``).
 
         Example:
-            >>> env.Load("env.xml")
+            >>> env = ravemj.Environment()
+            >>> env.Load("models/env.xml")
             True
         """
         del atts
@@ -74,19 +75,19 @@ class Loading(EnvironmentPart):
 
     def _add(self, reading: Reading) -> None:
         self._note(reading)
-        for body in reading.scene.bodies:
-            self._simulation.add(body)
-        if reading.scene.view is not None:
-            self._simulation.view = reading.scene.view
-        if reading.scene.gravity is not None:
-            self._simulation.set_gravity(reading.scene.gravity)
+        with self._simulation.lock:
+            for body in reading.scene.bodies:
+                self._simulation.add(body)
+            if reading.scene.view is not None:
+                self._simulation.view = reading.scene.view
+            if reading.scene.gravity is not None:
+                self._simulation.set_gravity(reading.scene.gravity)
         send_warnings(reading.diagnostics)
 
     def _note(self, reading: Reading) -> None:
         self._check_alive()
-        self._files.extend(reading.files)
-        for finding in reading.diagnostics:
-            self._found.add(finding)
+        self._files.update(dict.fromkeys(reading.files))
+        self._found.update(dict.fromkeys(reading.diagnostics))
 
     def ReadKinBodyURI(self, *arguments: "KinBody | str | Attributes | None") -> KinBody | None:
         """Read a body from a file without adding it: ``ReadKinBodyURI(filename[, atts])``.
@@ -106,14 +107,14 @@ class Loading(EnvironmentPart):
     ReadKinBodyXMLFile = ReadKinBodyURI
 
     def ReadKinBodyData(self, *arguments: "KinBody | str | Attributes | None") -> KinBody | None:
-        """Read a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
+        """Return a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
         body, data = _read_arguments("ReadKinBodyData", arguments)
         return self._read(read_data(data), body, is_robot=False)
 
     ReadKinBodyXMLData = ReadKinBodyData
 
     def ReadRobotURI(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
-        """Read a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
+        """Return a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
 
         A body that the file does not call a robot becomes one.
         """
@@ -124,7 +125,7 @@ class Loading(EnvironmentPart):
     ReadRobotXMLFile = ReadRobotURI
 
     def ReadRobotData(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
-        """Read a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
+        """Return a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
         body, data = _read_arguments("ReadRobotData", arguments)
         robot = self._read(read_data(data), body, is_robot=True)
         return robot if isinstance(robot, Robot) else None
@@ -142,7 +143,8 @@ class Loading(EnvironmentPart):
         scene = replace(scene, is_robot=scene.is_robot or is_robot)
         if into is None:
             return self.wrap(self._simulation.create(scene))
-        into.simulation_state.rebuild(replace(scene, is_robot=into.IsRobot()))
+        with self._simulation.lock:
+            into.simulation_state.rebuild(replace(scene, is_robot=into.IsRobot()))
         return into
 
     @property
@@ -153,7 +155,7 @@ class Loading(EnvironmentPart):
     @property
     def files(self) -> tuple[str, ...]:
         """Paths of all files that were read: models, what they include, and meshes."""
-        return tuple(dict.fromkeys(self._files))
+        return tuple(self._files)
 
 
 def _read_arguments(

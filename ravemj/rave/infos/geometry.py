@@ -16,6 +16,7 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceE
 from ravemj.making import MADE
 from ravemj.meshes import MeshPart, read_mesh
 from ravemj.rave.enums import GeometryType
+from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, identity, pose, vector
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 from ravemj.readers import find
@@ -35,8 +36,8 @@ TYPES: dict[type[scene.Shape], GeometryType] = {
 }
 
 
-@dataclass(eq=False)
-class GeometryInfo:
+@dataclass(eq=False, repr=False)
+class GeometryInfo(Info):
     """A shape of a link.
 
     Attributes:
@@ -68,6 +69,8 @@ class GeometryInfo:
         True
     """
 
+    _called = "KinBody.GeometryInfo"
+
     _type: GeometryType = GeometryType.None_
     _t: ArrayLike = field(default_factory=identity)
     _vGeomData: ArrayLike = field(default_factory=filled(0, 4))
@@ -87,7 +90,9 @@ class GeometryInfo:
     _filenamecollision: str | None = None
     _vRenderScale: ArrayLike = field(default_factory=filled(1))
     _vCollisionScale: ArrayLike = field(default_factory=filled(1))
-    _drawn: "tuple[str | None, tuple[scene.Surface, ...] | None]" = (None, None)
+    _drawn: "tuple[str | None, tuple[scene.Surface, ...] | None]" = field(
+        default=(None, None), repr=False, compare=False
+    )
 
     @classmethod
     def of(cls, geometry: scene.Geometry) -> Self:

@@ -19,6 +19,7 @@ from ravemj.joints import about, directions_at, reported_anchor, wxyz_from_rotat
 from ravemj.making import MADE
 from ravemj.openrave_xml.actuator import Motor, motor_of
 from ravemj.rave.enums import JointType
+from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, per_axis, vector
 from ravemj.rave.infos.parameters import ParameterFields
 from ravemj.transforms import Vec3, add, conjugate, dot, rotate, scale
@@ -33,8 +34,8 @@ _AXES: dict[scene.JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "sphe
 _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-@dataclass(eq=False)
-class ElectricMotorActuatorInfo:
+@dataclass(eq=False, repr=False)
+class ElectricMotorActuatorInfo(Info):
     """An electric motor behind a gear. Its torque wins over ``JointInfo._vmaxtorque``.
 
     Attributes:
@@ -43,6 +44,8 @@ class ElectricMotorActuatorInfo:
         nominal_torque: Torque of the motor for long [N m]; taken where the other is 0.
         rotor_inertia: Inertia of the rotor [kg m^2].
     """
+
+    _called = "ElectricMotorActuatorInfo"
 
     model_type: str = ""
     gear_ratio: float = 0.0
@@ -69,7 +72,7 @@ class ElectricMotorActuatorInfo:
         return motor_of({name: float(getattr(self, name)) for name in names})
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class JointInfo(ParameterFields):
     """A joint between two links. Fields with a number for each axis may be longer than there are axes.
 
@@ -98,6 +101,8 @@ class JointInfo(ParameterFields):
         >>> body.Init([upper, lower], [info])
         True
     """
+
+    _called = "KinBody.JointInfo"
 
     _type: JointType = field(default_factory=lambda: JointType(0))
     _name: str | None = None

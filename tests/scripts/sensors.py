@@ -1,0 +1,18 @@
+# Attached sensors: where they are, and what the camera's matrix is.
+from openravepy import *
+env = Environment()
+env.Load('data/arm.robot.xml')
+robot = env.GetRobots()[0]
+for attached in robot.GetAttachedSensors():
+    sensor = attached.GetSensor()
+    print('sensor', attached.GetName(), sensor.GetName(), attached.GetAttachingLink().GetName())
+    geometry = sensor.GetSensorGeometry(Sensor.Type.Camera)
+    print('camera', geometry.KK[0, 0], geometry.width, geometry.height)
+robot.SetDOFValues([1.5707963267948966], [0])
+print('looks', robot.GetAttachedSensor('eye').GetTransform()[0:3, 2], env.GetSensor('arm:eye').GetTransform()[0:3, 3])
+print('unknown', robot.GetAttachedSensor('ear'), env.GetSensor('ear'), len(env.GetSensors()))
+try:
+    sensor.Configure(Sensor.ConfigureCommand.PowerOn)
+    sensor.GetSensorData()
+except NotImplementedError as e:
+    print('missing', e.capability)

@@ -1,0 +1,20 @@
+# As scripts with plugins do: without the plugin they stop by themselves.
+from openravepy import *
+env = Environment()
+RaveLoadPlugin('or_urdf')
+module = RaveCreateModule(env, 'urdf')
+if module is None:
+    print('no urdf plugin')
+    try:
+        env.AddModule(module, '')
+    except openrave_exception as e:
+        print(e.GetCode())
+    try:
+        env.LoadProblem(RaveCreateProblem(env, 'nosuch'), '')
+    except openrave_exception as e:
+        print(e.GetCode())
+print(env.GetModules(), env.GetLoadedProblems())
+try:
+    env.LoadProblem(RaveCreateProblem(env, 'BaseManipulation'), 'arm')
+except NotImplementedError as e:
+    print(e.capability)
