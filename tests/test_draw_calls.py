@@ -116,7 +116,7 @@ def test_handles_place_show_and_close(env):
     handle.SetShow(1)
     assert middle(env.render(160, 120)) == PINK
     with pytest.raises(ArgumentError, match="SetTransform: transform: "):
-        handle.SetTransform(2 * np.eye(4))
+        handle.SetTransform(np.diag([1.0, 2, 1, 1]))
     handle.Close()
     handle.Close()
     handle.SetShow(True)

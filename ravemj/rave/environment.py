@@ -16,6 +16,7 @@ from ravemj.rave.env.meshing import Meshing
 from ravemj.rave.env.modules import Modules
 from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
+from ravemj.rave.interface import checked_environment
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
 from ravemj.readers import read_file
 from ravemj.simulation import Simulation
@@ -113,7 +114,7 @@ def RaveGetEnvironment(id: int) -> Environment | None:  # OpenRAVE's name of the
 
 def RaveGetEnvironmentId(env: Environment) -> int:
     """Return the environment's number, as ``RaveGetEnvironment`` takes it."""
-    return env.GetId()
+    return checked_environment(env, "RaveGetEnvironmentId").GetId()
 
 
 def RaveGetEnvironments() -> list[Environment]:

@@ -270,6 +270,8 @@ def _numbers(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: ANN40
         pose = pose_of(checked_transform(value, "value"))
         return np.array([*pose.wxyz, *pose.position])
     if kind in _RAYS:
+        if not isinstance(value, Ray):
+            raise ArgumentError(f"value: is a {type(value).__name__}, and should be a Ray")
         direction = value.dir()
         return np.concatenate([direction / (np.linalg.norm(direction) or 1.0), value.pos()])
     return checked_vector(value, IkParameterization.GetNumberOfValuesFromType(kind), "value")

@@ -15,6 +15,7 @@ from ravemj.rave.configured import Configured
 from ravemj.rave.enums import CheckLimitsAction, InterfaceType, JointType, SaveParameters
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, JointInfo, KinBodyInfo, LinkInfo
+from ravemj.rave.interface import checked_kind
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 from ravemj.simulation import BodyState
@@ -78,7 +79,7 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
             openrave_exception: this body is in an environment.
         """
         del cloningoptions
-        self._state.copy(reference.simulation_state)
+        self._state.copy(checked_kind(reference, KinBody, "Clone: reference").simulation_state)
 
     GetEnvironmentId = GetEnvironmentBodyIndex
 

@@ -13,7 +13,7 @@ from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.output import AnyPath, new_file
 from ravemj.rave.enums import InterfaceType
-from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.serialization import AS_TEXT, Stored, read, to_bytes, to_text
@@ -59,6 +59,8 @@ class Trajectory(Interface):
         Args:
             spec: A specification, or a group; it is copied.
         """
+        if spec is None:  # pyright: ignore[reportUnnecessaryComparison] - users give it
+            raise ArgumentError("Init: spec is None, and should be a ConfigurationSpecification")
         self._waypoints = Waypoints(_groups(spec))
 
     def _known(self) -> Waypoints:
@@ -324,5 +326,6 @@ def RaveCreateTrajectory(env: "Environment", name: str = "") -> Trajectory | Non
         >>> trajectory = RaveCreateTrajectory(env, "")
         >>> trajectory.Init(robot.GetConfigurationSpecification("linear"))
     """
+    checked_environment(env, "RaveCreateTrajectory")
     xmlid = next(iter(name.split()), KIND)
     return Trajectory(env, xmlid) if xmlid.lower() == KIND.lower() else None

@@ -5,8 +5,11 @@ from dataclasses import replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Self, cast
 
+from ravemj.errors import ArgumentError
+from ravemj.rave.body.base import BodyPart
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import SaveParameters
+from ravemj.rave.interface import checked_kind
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -95,6 +98,7 @@ class StateSaver:
     """Keeps a state of a body; ``body.CreateKinBodyStateSaver()`` and ``robot.CreateRobotStateSaver()`` make it."""
 
     def __init__(self, body: "KinBody", options: int | None = None) -> None:
+        checked_kind(body, BodyPart, "StateSaver: body", "a KinBody")
         self._body = body
         wanted = body.default_saved if options is None else SaveParameters(options)
         with body.GetEnv().simulation.lock:
@@ -110,7 +114,10 @@ class StateSaver:
         Args:
             body: Another body of the same structure that should get the state; None: the body itself.
         """
-        target = body or self._body
+        target = self._body if body is None else body
+        checked_kind(target, BodyPart, "Restore: body", "a KinBody")
+        if _structure(target) != _structure(self._body):
+            raise ArgumentError(f"Restore: body is {target!r}, and should have the structure of {self._body!r}")
         with target.GetEnv().simulation.lock:
             for restore in self._restorers:
                 restore(target)
@@ -130,6 +137,10 @@ class StateSaver:
 
     def __repr__(self) -> str:
         return f"<state saver:{self._body.GetName()}>"
+
+
+def _structure(body: "KinBody") -> tuple[int, int]:
+    return len(body.GetLinks()), body.GetDOF()
 
 
 def _set_axes(body: "KinBody", kept: list[dict[str, float]]) -> None:

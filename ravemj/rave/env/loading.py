@@ -8,6 +8,7 @@ from dataclasses import replace
 from ravemj.errors import ArgumentError, Diagnostic, send_warnings
 from ravemj.openrave_xml import Reading
 from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.readers import read_data, read_file
@@ -42,6 +43,7 @@ class Loading(EnvironmentPart):
             True
         """
         del atts
+        checked_kind(filename, (str, os.PathLike), "Load: filename", "a path")
         return self._take(read_file(filename))
 
     LoadURI = Load
@@ -64,6 +66,7 @@ class Loading(EnvironmentPart):
             True
         """
         del atts
+        checked_kind(data, (str, bytes), "LoadData: data", "a text")
         return self._take(read_data(data))
 
     def _take(self, reading: Reading) -> bool:
