@@ -27,7 +27,16 @@ from ravemj.cli import main
 SCRIPTS = Path(__file__).parent / "scripts"
 NAMES = sorted(path.stem for path in SCRIPTS.glob("*.py"))
 NEIGHBOURS = {"homework2_utils"}
-BY_COMMAND = {"camera", "exceptions", "homework2_py2", "old_names", "play_trajectory", "plotting", "uncaught"}
+BY_COMMAND = {
+    "camera",
+    "exceptions",
+    "homework2_py2",
+    "new_names",
+    "old_names",
+    "play_trajectory",
+    "plotting",
+    "uncaught",
+}
 PATIENCE = 60
 
 UPPER, FORE, TOOL, HEIGHT = 0.4, 0.3, 0.08, 0.3

@@ -304,6 +304,8 @@ def _numbers(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: ANN40
     if kind == _Type.Transform6D:
         return pose_of(checked_transform(value, "value")).numbers()
     if kind in _RAYS:
+        if not isinstance(value, Ray):
+            raise ArgumentError(f"value: is a {type(value).__name__}, and should be a Ray")
         direction = value.dir()
         return np.concatenate([direction / (np.linalg.norm(direction) or 1.0), value.pos()])
     return checked_vector(value, IkParameterization.GetNumberOfValuesFromType(kind), "value")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_vector
+from ravemj.arrays import checked_indices, checked_vector
 from ravemj.joints import directions_at, measured_values, relative_pose, reported_anchor
 from ravemj.rave.body.limits import wrapped_angle
 from ravemj.rave.enums import JointType
@@ -189,6 +189,7 @@ class Joint(JointLimits, JointFollowing):
 
         The second axis of a ``Hinge2`` turns with the first.
         """
+        checked_indices([axis], len(self._scene.axes), "axis")
         values = self._shown_values() if axis else [0.0]
         return self._T_world_parent()[:, :3] @ directions_at(self._scene, values)[axis]
 

@@ -13,7 +13,7 @@ from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.output import AnyPath, new_file
 from ravemj.rave.enums import InterfaceType
-from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.waypoints import Waypoints
@@ -62,6 +62,8 @@ class Trajectory(Interface):
             >>> trajectory = ravemj.RaveCreateTrajectory(env, "")
             >>> trajectory.Init(robot.GetActiveConfigurationSpecification())
         """
+        if spec is None:  # pyright: ignore[reportUnnecessaryComparison] - users give it
+            raise ArgumentError("Init: spec is None, and should be a ConfigurationSpecification")
         self._waypoints = Waypoints(_groups(spec))
 
     def _known(self) -> Waypoints:
@@ -391,5 +393,6 @@ def RaveCreateTrajectory(env: "Environment", name: str = "") -> Trajectory | Non
         >>> trajectory = RaveCreateTrajectory(env, "")
         >>> trajectory.Init(robot.GetConfigurationSpecification("linear"))
     """
+    checked_environment(env, "RaveCreateTrajectory")
     xmlid = next(iter(name.split()), KIND)
     return Trajectory(env, xmlid) if xmlid.lower() == KIND.lower() else None

@@ -6,7 +6,7 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers, checked_transform
+from ravemj.arrays import checked_transform, checked_vector
 from ravemj.errors import RavemjError
 from ravemj.rave.body.values import JointValues
 from ravemj.rave.enums import CheckLimitsAction
@@ -108,7 +108,7 @@ class Placement(JointValues):
         checked = np.array([checked_transform(one, "SetLinkTransformations: transforms") for one in transforms])
         last = np.zeros(self.GetDOF())
         if doflastsetvalues is not None and np.size(doflastsetvalues):
-            last = checked_numbers(doflastsetvalues, "doflastsetvalues")
+            last = checked_vector(doflastsetvalues, self.GetDOF(), "SetLinkTransformations: doflastsetvalues")
         with self._simulation.lock:
             self._state.place_links(checked.reshape(-1, 4, 4), last)
 

@@ -41,6 +41,8 @@ class Viewing(EnvironmentPart):
             >>> viewer = env.GetViewer()
             >>> viewer.SetBkgndColor([0.8, 0.85, 0.9])
         """
+        if viewername:
+            self._check_alive()
         if self._viewer is not None:
             self._viewer.close()
             self._viewer = None
@@ -112,6 +114,7 @@ class Viewing(EnvironmentPart):
             >>> import imageio.v3
             >>> imageio.v3.imwrite("pendulum.png", env.render(640, 480))
         """
+        self._check_alive()
         view = self.default_camera(width / height) if camera is None else Camera.from_matrix(camera)
         colour = self.background if background is None else checked_colour(background)
         return self._studio.picture(view, colour, Format(width, height, shadows=True))
