@@ -1,7 +1,7 @@
 """A viewer with a window, drawn by a thread of its own while the script goes on."""
 
-import atexit
 import threading
+import weakref
 from collections.abc import Callable
 from queue import SimpleQueue
 from typing import Any
@@ -36,13 +36,13 @@ class WindowViewer(Viewer):
         self._closing = threading.Event()
         self._opened = threading.Event()
         self._failure = ""
-        self._thread = threading.Thread(target=self._run, name="ravemj window", daemon=True)
+        self._thread = threading.Thread(target=_run, args=(weakref.ref(self),), name="ravemj window", daemon=True)
         self._thread.start()
         self._opened.wait()
         if self._failure:
             self._thread.join()
             raise RenderingError(self._failure)
-        atexit.register(self.close)
+        self._end = weakref.finalize(self, _end, self._closing, self._thread)
 
     @property
     def is_open(self) -> bool:
@@ -118,29 +118,51 @@ class WindowViewer(Viewer):
 
     def close(self) -> None:
         """Close the window."""
-        self._closing.set()
-        if threading.current_thread() is not self._thread:
-            self._thread.join()
-        atexit.unregister(self.close)
+        self._end()
         super().close()
 
-    def _run(self) -> None:
+    def open_window(self) -> "_Window | None":
+        """Open the window, in the thread that it belongs to; None where that fails."""
         try:
-            window = _Window("ravemj")
+            return _Window("ravemj")
         except RenderingError as error:
             self._failure = error.message
-            self._opened.set()
-            return
-        self._opened.set()
-        try:
-            while not (self._closing.is_set() or window.is_closed):
-                for _ in range(self._requests.qsize()):
-                    self._requests.get()(window)
-                self._size = window.size
-                self._thread_callbacks.call()
-                window.show(self._simulation, self._camera, self._background, self._image_callbacks)
+            return None
         finally:
-            window.close()
+            self._opened.set()
+
+    def turn(self, window: "_Window") -> bool:
+        """Do what others asked of the window and draw it anew if need be; return False once it should close."""
+        if self._closing.is_set() or window.is_closed:
+            return False
+        for _ in range(self._requests.qsize()):
+            self._requests.get()(window)
+        self._size = window.size
+        self._thread_callbacks.call()
+        window.show(self._simulation, self._camera, self._background, self._image_callbacks)
+        return True
+
+
+def _run(reference: "weakref.ref[WindowViewer]") -> None:
+    """Open a viewer's window and draw it until it is closed or the viewer is gone, which waiting does not keep."""
+    viewer = reference()
+    window = viewer.open_window() if viewer is not None else None
+    if window is None:
+        return
+    try:
+        while viewer is not None and viewer.turn(window):
+            viewer = None
+            window.wait()
+            viewer = reference()
+    finally:
+        window.close()
+
+
+def _end(closing: threading.Event, thread: threading.Thread) -> None:
+    """Close a window and wait for the end of its thread."""
+    closing.set()
+    if threading.current_thread() is not thread:
+        thread.join()
 
 
 class _Window:
@@ -194,7 +216,7 @@ class _Window:
         background: tuple[float, float, float],
         on_picture: Callbacks,
     ) -> None:
-        """Draw a frame if anything has changed, then wait for at most a frame's time."""
+        """Draw a frame if anything has changed."""
         width, height = self._glfw.get_framebuffer_size(self._window)
         if width and height:
             with simulation.lock:
@@ -209,6 +231,9 @@ class _Window:
             if changed:
                 self._draw(background, width, height, on_picture)
                 self._shown = now
+
+    def wait(self) -> None:
+        """Wait for the user, for at most a frame's time."""
         self._glfw.wait_events_timeout(_PERIOD)
 
     def _prepared_stage(self, model: mujoco.MjModel, version: int) -> Stage:
