@@ -265,5 +265,5 @@ def send_warning(diagnostic: Diagnostic, stacklevel: int) -> None:
     warnings.warn_explicit(RavemjWarning(diagnostic), None, *place, registry=_shown)  # pyright: ignore
 
 
-_MOST_SHOWN = 10_000
+_MOST_SHOWN = 1000
 _shown: dict[str | tuple[str, type[Warning], int], int] = {}
