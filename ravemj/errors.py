@@ -14,6 +14,7 @@
 """
 
 import re
+import sys
 import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -246,4 +247,23 @@ def describe(kind: str, message: str, source: Source, hint: str) -> str:
 def send_warnings(diagnostics: Iterable[Diagnostic]) -> None:
     """Send every diagnostic through Python's ``warnings``, pointing at the caller of ravemj."""
     for diagnostic in diagnostics:
-        warnings.warn(RavemjWarning(diagnostic), stacklevel=3)
+        send_warning(diagnostic, 3)
+
+
+def send_warning(diagnostic: Diagnostic, stacklevel: int) -> None:
+    """Send a diagnostic through Python's ``warnings``, which counts stack levels in the same way.
+
+    What ``warnings`` keeps in order to show each text once is kept here, and bounded: a million values outside limits
+    would be a million texts.
+    """
+    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage] - what warnings.warn does
+    for _ in range(stacklevel - 1):
+        frame = frame.f_back or frame
+    if len(_shown) > _MOST_SHOWN:
+        _shown.clear()
+    place = frame.f_code.co_filename, frame.f_lineno, frame.f_globals.get("__name__")
+    warnings.warn_explicit(RavemjWarning(diagnostic), None, *place, registry=_shown)  # pyright: ignore
+
+
+_MOST_SHOWN = 1000
+_shown: dict[str | tuple[str, type[Warning], int], int] = {}

@@ -1,7 +1,6 @@
 """Videos of a robot that follows a motion."""
 
 import os
-import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -9,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning
+from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.motion import Motion
 from ravemj.rave import CheckLimitsAction, Environment, KinBody
 from ravemj.rendering import Camera
@@ -129,7 +128,7 @@ def within_limits(body: KinBody, motion: Motion) -> Motion:
                 f"[{lower[dof]:.6g}, {upper[dof]:.6g}]; it stops at the limit"
             )
             diagnostic = Diagnostic("warning", "value-outside-limits", message, source)
-            warnings.warn(RavemjWarning(diagnostic), stacklevel=3)
+            send_warning(diagnostic, 3)
     return Motion(motion.times, values)
 
 

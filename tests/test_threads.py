@@ -104,6 +104,63 @@ def test_readers_see_whole_states(env):
     assert env.GetSimulationTime() > 0
 
 
+@pytest.mark.parametrize("duration", [DURATION, pytest.param(3.0, marks=pytest.mark.stress)])
+def test_what_is_set_under_the_lock_is_seen_together(env, duration):
+    """A box is always 1 m above the pendulum's tip, whoever looks, while other bodies come and go, also in copies."""
+    robot = env.GetRobots()[0]
+    env.LoadData(f"<Environment>{BOX.format('box')}{BOX.format('held')}</Environment>")
+    box, held = env.GetKinBody("box"), env.GetKinBody("held")
+    tip, above = robot.GetLinks()[2], np.array([0, 0, 1])
+    robot.Grab(held, tip)
+    numbers = iter(range(1, 10**9))
+    env.StartSimulation(0.001)
+
+    def write():
+        number = next(numbers)
+        with env:
+            robot.SetDOFValues([0.3 * np.sin(number), 0.5 * np.cos(number)])
+            T = box.GetTransform()
+            T[:3, 3] = tip.GetTransform()[:3, 3] + above
+            box.SetTransform(T)
+
+    def compare(world):
+        with world:
+            poses = [world.GetKinBody(name).GetTransform()[:3, 3] for name in ("box", "held")]
+            arm = world.GetRobots()[0].GetLinks()[2]
+            np.testing.assert_allclose(poses[0], arm.GetTransform()[:3, 3] + above, atol=1e-9)
+            assert world.GetRobots()[0].IsGrabbing(world.GetKinBody("held"))
+            world.CheckCollision(world.GetRobots()[0])
+
+    def copy():
+        copied = env.CloneSelf(1)
+        compare(copied)
+        copied.Destroy()
+
+    def play():
+        robot.GetController().SetDesired(robot.GetDOFValues())
+        robot.GetController().Reset()
+
+    def come_and_go():
+        env.LoadData(BOX.format("guest"))
+        env.GetKinBody("guest").Enable(False)
+        env.Remove(env.GetKinBody("guest"))
+
+    write()
+    with threads(write, lambda: compare(env), copy, lambda: env.render(16, 12), come_and_go):
+        time.sleep(duration)
+    with threads(play, lambda: env.render(16, 12), come_and_go, robot.GetDOFValues):
+        time.sleep(duration)
+    assert env.IsSimulationRunning()
+
+
+def test_environments_that_copy_one_another_do_not_wait_forever(env):
+    other = env.CloneSelf(1)
+    with threads(lambda: other.Clone(env), lambda: env.Clone(other), lambda: env.render(16, 12)):
+        time.sleep(DURATION)
+    assert [len(one.GetBodies()) for one in (env, other)] == [1, 1]
+    other.Destroy()
+
+
 def test_commands_of_many_threads_are_carried_out(env):
     robot = env.GetRobots()[0]
     controller = robot.GetController()

@@ -103,8 +103,8 @@ def RaveFindLocalFile(filename: str, curdir: str = "") -> str:
     Returns:
         The absolute path, or an empty text.
     """
-    beside = os.path.join(curdir, filename)
     from ravemj.readers import find  # noqa: PLC0415 - slow to import
 
+    beside = os.path.join(curdir, filename)
     found = beside if curdir and os.path.exists(beside) else find(filename)
     return os.path.abspath(found) if found else ""

@@ -16,6 +16,7 @@ from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.groups import Group
+from ravemj.trajectories.serialization import AS_TEXT, Stored, read, to_bytes, to_text
 from ravemj.trajectories.waypoints import Waypoints
 from ravemj.transforms import Floats
 
@@ -293,8 +294,6 @@ class Trajectory(Interface):
         Returns:
             Bytes; text for XML.
         """
-        from ravemj.trajectories.serialization import AS_TEXT, Stored, to_bytes, to_text  # noqa: PLC0415 - rarely wanted
-
         stored = Stored(self._known(), self.GetDescription())
         return to_text(stored, self._xmlid) if (options or 0) & AS_TEXT else to_bytes(stored)
 
@@ -310,8 +309,6 @@ class Trajectory(Interface):
         Raises:
             ArgumentError: that is no trajectory; nothing has changed then.
         """
-        from ravemj.trajectories.serialization import read  # noqa: PLC0415 - rarely wanted
-
         self._waypoints, description = read(data)
         self.SetDescription(description)
         return self

@@ -2,17 +2,19 @@
 
 import struct
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ravemj.errors import ArgumentError
-from ravemj.openrave_xml.tree import Element
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.layout import count
 from ravemj.trajectories.text import groups_of, layout_text, read_element
 from ravemj.trajectories.waypoints import Waypoints
 from ravemj.transforms import Floats
+
+if TYPE_CHECKING:
+    from ravemj.openrave_xml.tree import Element
 
 AS_TEXT = 0x8000
 """The option that asks for text."""
@@ -103,7 +105,7 @@ def _from_text(text: str) -> Stored:
     return Stored(Waypoints(groups, _rows(numbers, groups)), description)
 
 
-def _numbers(element: Element) -> Floats:
+def _numbers(element: "Element") -> Floats:
     try:
         return np.array([float(word) for word in element.text.split()])
     except ValueError:

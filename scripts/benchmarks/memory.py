@@ -1,10 +1,11 @@
-"""Peak memory of ``ravemj play``, which must not depend on how long the motion is."""
+"""Memory must not depend on how long a motion is, nor on how many calls a script makes."""
 
 import statistics
+import sys
 import tempfile
 from pathlib import Path
 
-from benchmarks.measure import CAMERA, MODEL, Row, peak_memory
+from benchmarks.measure import CAMERA, MODEL, Row, peak_memory, run_python
 
 _SHORT, _LONG = 60, 600
 _SIZE = (320, 240)
@@ -13,11 +14,66 @@ _PROCESSES = 3
 _LIMIT = 1.03
 """Noise of repeated runs: some MB. The frames of the long motion would take more than half as much again."""
 
+_CALLS, _CYCLES = 100_000, 1_000
+_MOST_GROWTH = 5.0
+"""How much a process may grow during all of these calls [MB]; pools of the allocator come and go."""
+
+_GROWTH = """
+import gc, os, sys
+os.environ["MUJOCO_GL"] = "disable"
+import ravemj
+
+def memory():
+    gc.collect()
+    with open("/proc/self/status") as status:
+        return next(int(line.split()[1]) for line in status if line.startswith("VmRSS")) / 1024
+
+def calls():
+    robot.SetDOFValues([0.1, 0.2])
+    robot.GetLinkTransformations()
+    robot.GetTransform()
+    env.CheckCollision(robot)
+    env.plot3([0, 0, 1], 5)
+
+def cycle():
+    box = ravemj.RaveCreateKinBody(env, "")
+    box.InitFromBoxes([[2, 0, 0, 0.1, 0.1, 0.1]])
+    box.SetName("box")
+    env.Add(box)
+    robot.Grab(box, robot.GetLinks()[1])
+    with robot:
+        calls()
+    copy = env.CloneSelf(1)
+    copy.GetRobots()[0].GetDOFValues()
+    copy.Destroy()
+    env.Remove(box)
+
+env = ravemj.load(sys.argv[1])
+robot = env.GetRobots()[0]
+env.SetViewer("offscreen")
+for count, work in ((int(sys.argv[2]), calls), (int(sys.argv[3]), cycle)):
+    for _ in range(count // 10):
+        work()
+    before = memory()
+    for _ in range(count):
+        work()
+    print(memory() - before)
+"""
+
 
 def rows() -> list[Row]:
-    """Compare a long motion with a short one, played to MP4 and to PNG files by commands of their own."""
+    """Compare a long motion with a short one, played to MP4 and to PNG files; and see whether many calls add up."""
     with tempfile.TemporaryDirectory() as folder:
-        return [_row(Path(folder), name, target) for name, target in (("MP4", "video.mp4"), ("PNG files", "frames"))]
+        played = [_row(Path(folder), name, target) for name, target in (("MP4", "video.mp4"), ("PNG files", "frames"))]
+    return [*played, *(_growth(_CALLS, _CYCLES) if sys.platform == "linux" else [])]
+
+
+def _growth(calls: int, cycles: int) -> list[Row]:
+    by_calls, by_cycles = map(float, run_python("-c", _GROWTH, str(MODEL), str(calls), str(cycles)).split())
+    return [
+        Row(f"growth by {calls} times values, poses, collision, drawing : limit", "MB", by_calls, _MOST_GROWTH, 1.0),
+        Row(f"growth by {cycles} times add, grab, save, clone, remove : limit", "MB", by_cycles, _MOST_GROWTH, 1.0),
+    ]
 
 
 def _row(folder: Path, name: str, target: str) -> Row:

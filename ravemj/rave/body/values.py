@@ -1,13 +1,12 @@
 """Joint values of a body."""
 
-import warnings
 from types import EllipsisType
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_indices, checked_numbers
-from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning
+from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.transforms import Floats, Ints
@@ -115,7 +114,7 @@ class JointValues(BodyPart):
         if checklimits == CheckLimitsAction.CheckLimitsThrow:
             raise ArgumentError(message)
         diagnostic = Diagnostic("warning", "value-outside-limits", f"{message}; it stops at the limit", joint.source)
-        warnings.warn(RavemjWarning(diagnostic), stacklevel=4)
+        send_warning(diagnostic, 4)
 
     @property
     def qpos_indices(self) -> Ints:

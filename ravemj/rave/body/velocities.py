@@ -1,13 +1,12 @@
 """Velocities of a body."""
 
-import warnings
 from types import EllipsisType
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_indices, checked_numbers, checked_vector
-from ravemj.errors import ArgumentError, Diagnostic, RavemjWarning
+from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.transforms import Floats
@@ -106,7 +105,7 @@ class Velocities(BodyPart):
             if checklimits == CheckLimitsAction.CheckLimitsThrow:
                 raise ArgumentError(message)
             diagnostic = Diagnostic("warning", "value-outside-limits", f"{message}, which it gets", joint.source)
-            warnings.warn(RavemjWarning(diagnostic), stacklevel=3)
+            send_warning(diagnostic, 3)
         return limited
 
     def GetLinkVelocities(self) -> Floats:
