@@ -64,7 +64,12 @@ class JointBuilder:
     def fixed(self) -> bool:
         """True for a weld."""
         moves = self.equations is not None and self.equations.position
-        return not moves and all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
+        return not moves and self.has_no_room
+
+    @property
+    def has_no_room(self) -> bool:
+        """True where the limits of all axes are equal."""
+        return all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
 
 
 @dataclass(slots=True)
@@ -215,10 +220,10 @@ def _followers(listed: Sequence[JointBuilder]) -> list[Follower]:
 
 
 def _with_welds(listed: Sequence[JointBuilder], mimics: dict[int, scene.Mimic]) -> dict[int, scene.Mimic]:
-    """Return the followers; those of which no leader ever moves are marked."""
-    fixed = [joint.fixed for joint in listed if joint.active for _ in joint.axes]
+    """Return the followers; those that are welds and follow nothing but welds are marked."""
+    fixed = [joint.has_no_room for joint in listed if joint.active for _ in joint.axes]
     return {
-        index: replace(mimic, static=bool(mimic.dofs) and all(fixed[dof] for dof in mimic.dofs))
+        index: replace(mimic, static=listed[index].has_no_room and all(fixed[dof] for dof in mimic.dofs))
         for index, mimic in mimics.items()
     }
 
