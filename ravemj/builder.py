@@ -16,6 +16,8 @@ from ravemj.joints import measured_values, place_links
 from ravemj.manipulators import ManipulatorBuilder, freeze_manipulator
 from ravemj.transforms import UNMOVED, ZERO, Pose, Vec3, Wxyz, rotate, scale
 
+_ROUNDING = 1e-9  # of values that were degrees
+
 DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 0.4)))
 """A link without mass properties weighs 1 kg, like a unit sphere."""
 
@@ -64,7 +66,12 @@ class JointBuilder:
     def fixed(self) -> bool:
         """True for a weld."""
         moves = self.equations is not None and self.equations.position
-        return not moves and all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
+        return not moves and self.has_no_room
+
+    @property
+    def has_no_room(self) -> bool:
+        """True where the limits of all axes are equal."""
+        return all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
 
 
 @dataclass(slots=True)
@@ -160,7 +167,8 @@ class BodyBuilder:
     ) -> list[scene.Joint]:
         """Return the joints with their values: measured, or as the file asks, moved into the limits."""
         values = [list(measured_values(joint, poses[joint.parent].inverse() @ poses[joint.child])) for joint in joints]
-        values = _limited(joints, values, diagnostics)
+        findings = diagnostics if self.joint_values is None else Diagnostics()
+        values = _limited(joints, values, findings)
         active = sum(1 for joint in self.joints if joint.active)
         values = self._asked(joints[:active], values, diagnostics)
         follow(joints, values)
@@ -215,10 +223,10 @@ def _followers(listed: Sequence[JointBuilder]) -> list[Follower]:
 
 
 def _with_welds(listed: Sequence[JointBuilder], mimics: dict[int, scene.Mimic]) -> dict[int, scene.Mimic]:
-    """Return the followers; those of which no leader ever moves are marked."""
-    fixed = [joint.fixed for joint in listed if joint.active for _ in joint.axes]
+    """Return the followers; those that are welds and follow nothing but welds are marked."""
+    fixed = [joint.has_no_room for joint in listed if joint.active for _ in joint.axes]
     return {
-        index: replace(mimic, static=bool(mimic.dofs) and all(fixed[dof] for dof in mimic.dofs))
+        index: replace(mimic, static=listed[index].has_no_room and all(fixed[dof] for dof in mimic.dofs))
         for index, mimic in mimics.items()
     }
 
@@ -264,7 +272,7 @@ def _limited(
             continue
         limited.append([_inside(axis, value) for axis, value in zip(joint.axes, joint_values, strict=True)])
         for axis, value, inside in zip(joint.axes, joint_values, limited[-1], strict=True):
-            if value != inside:
+            if abs(value - inside) > _ROUNDING:
                 diagnostics.warn(
                     "value-outside-limits",
                     f"joint '{joint.name}' loads at {inside:.6g}, not at {value:.6g}, which its limits "

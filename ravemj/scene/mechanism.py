@@ -120,7 +120,7 @@ class Mimic:
         expression: The equation over ``joint0``, ``joint1``, … (active joints, then passive ones); None where joints
             follow each other in a circle, and none of them moves.
         dofs: Indices of the DOFs that it depends on, directly or through other followers.
-        static: True where none of these DOFs can move.
+        static: True where none of these DOFs can move, and the limits of the joint itself leave no room.
     """
 
     position: str
@@ -164,7 +164,7 @@ class Joint:
 
     @property
     def static(self) -> bool:
-        """True for a weld: a joint whose limits leave no room, or that follows welds."""
+        """True for a weld: a joint whose limits leave no room, and that follows nothing that moves."""
         if self.mimic is not None:
             return self.mimic.static
         return all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
