@@ -49,13 +49,8 @@ ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 WITHOUT_MUJOCO = rooms(
     """
     adjacency alias arrays bounds builder chains clock collada coverage drawing errors expressions fingerprints
-<<<<<<< HEAD
     following geometry_functions handles hierarchy inertia joints making manipulators meshes mjcf motion
     openrave_xml ordering output reach readers scene showing tessellation trajectories transforms video
-=======
-    following geometry_functions handles hierarchy inertia joints making manipulators meshes mjcf motion openrave_xml
-    ordering output reach readers scene showing tessellation trajectories transforms video
->>>>>>> h/dae
     """
 )
 
