@@ -63,6 +63,8 @@ def _read_collada(path: str, read_content: Callable[[Context], collada.Content])
             bodies.append(built.freeze(context.diagnostics))
     except SourceError as error:
         failure = error
+    except ArithmeticError:
+        failure = SourceError("a number in the file is too large to compute with", Source(path))
     return Reading(Scene(tuple(bodies), None, gravity), context.diagnostics, failure, tuple(context.files))
 
 

@@ -7,6 +7,8 @@ What a file refers to may stand in other files. Whatever leads nowhere is report
 
 from collections.abc import Callable
 
+import numpy as np
+
 from ravemj.collada.library import Library
 from ravemj.collada.scenes import Content, read_document
 from ravemj.errors import Diagnostics, Source, SourceError
@@ -47,7 +49,8 @@ def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str]
 
 def _read(library: Library, path: str, opened: Callable[[], ColladaDocument]) -> Content:
     try:
-        return read_document(library, opened())
+        with np.errstate(all="ignore"):  # what is not finite in the end is refused
+            return read_document(library, opened())
     except (RecursionError, MemoryError, OverflowError) as error:
         message = f"the file is too large or nested too deep ({type(error).__name__})"
         raise SourceError(message, Source(path)) from error
