@@ -40,7 +40,9 @@ def read_data(data: str | bytes) -> Reading:
     head = data[:1000] if isinstance(data, bytes) else data[:1000].encode()
     if b"<COLLADA" in head:
         text = data if isinstance(data, bytes) else data.encode()
-        return _read_collada("data", lambda context: collada.read_text(text, "data", context.diagnostics, context.files))
+        return _read_collada(
+            "data", lambda context: collada.read_text(text, "data", context.diagnostics, context.files)
+        )
     return read_text(data, "data")
 
 
@@ -51,8 +53,11 @@ def _read_collada(path: str, read_content: Callable[[Context], collada.Content])
     try:
         content = read_content(context)
         gravity = content.gravity
+        if not content.bodies and not content.others:
+            raise SourceError("there is no body in it", Source(path))
         if not content.bodies:
-            raise SourceError("there is no kinematics scene with a body in it", Source(path))
+            message = "without a kinematics scene, OpenRAVE loads no body of it into an environment"
+            context.diagnostics.error("no-kinematics", message, Source(path), "read it with ReadKinBodyURI")
         for built in (*content.bodies, *content.others):
             built.name = _unused(built.name or "body", {body.name for body in bodies})
             bodies.append(built.freeze(context.diagnostics))

@@ -16,18 +16,19 @@ SUFFIXES = (".dae", ".zae")
 """Ends of the names of the files, in lower case."""
 
 
-def read_file(path: str, diagnostics: Diagnostics, files: list[str]) -> Content:
+def read_file(path: str, diagnostics: Diagnostics, files: list[str], included_from: Source | None = None) -> Content:
     """Read a ``.dae`` or ``.zae`` file.
 
     Args:
         path: Where it lies.
         diagnostics: Takes every finding.
         files: Takes the paths of the files that are read.
+        included_from: The element that names the file, or None.
 
     Raises:
         SourceError: The file is broken, or something in it is impossible.
     """
-    library = Library(diagnostics, files)
+    library = Library(diagnostics, files, included_from)
     return _read(library, path, lambda: library.open_file(path))
 
 
@@ -40,7 +41,7 @@ def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str]
         diagnostics: Takes every finding.
         files: Takes the paths of the files that are read.
     """
-    library = Library(diagnostics, files)
+    library = Library(diagnostics, files, None)
     return _read(library, name, lambda: library.open_text(data, name))
 
 

@@ -17,7 +17,6 @@ from ravemj.rave.env.modules import Modules
 from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
-from ravemj.readers import read_file
 from ravemj.simulation import Simulation
 
 _numbers = itertools.count(1)
@@ -168,6 +167,8 @@ def load(path: str | os.PathLike[str]) -> Environment:
         >>> env.GetRobots()[0].GetDOF()
         2
     """
+    from ravemj.readers import read_file  # noqa: PLC0415 - slow to import
+
     reading = read_file(path)
     env = Environment()
     try:

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_vector
 from ravemj.joints import directions_at, measured_values, relative_pose, reported_anchor
+from ravemj.rave.body.limits import wrapped_angle
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
 from ravemj.rave.joints.following import JointFollowing
@@ -113,7 +114,7 @@ class Joint(JointLimits, JointFollowing):
             ``value0 - value1``; for a circular joint the shorter way round, from -pi to pi.
         """
         difference = float(value0) - float(value1)
-        return (difference + np.pi) % (2 * np.pi) - np.pi if self._scene.axes[axis].circular else difference
+        return float(wrapped_angle(difference)) if self._scene.axes[axis].circular else difference
 
     def SubtractValues(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
         """Return the differences of the values of all axes, as ``SubtractValue``.

@@ -7,7 +7,6 @@ from functools import wraps
 from pathlib import Path
 from typing import ParamSpec, TypeVar
 
-from ravemj import readers
 from ravemj.rave import logs
 from ravemj.rave.enums import DebugLevel
 from ravemj.rave.environment import RaveDestroy
@@ -105,5 +104,7 @@ def RaveFindLocalFile(filename: str, curdir: str = "") -> str:
         The absolute path, or an empty text.
     """
     beside = os.path.join(curdir, filename)
-    found = beside if curdir and os.path.exists(beside) else readers.find(filename)
+    from ravemj.readers import find  # noqa: PLC0415 - slow to import
+
+    found = beside if curdir and os.path.exists(beside) else find(filename)
     return os.path.abspath(found) if found else ""

@@ -7,13 +7,13 @@ from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_numbers, checked_vector
 from ravemj.errors import ArgumentError
-from ravemj.physics import Loads, Physics
 from ravemj.rave.enums import InterfaceType, PhysicsEngineOptions
 from ravemj.rave.interface import Annotations, Interface
 from ravemj.simulation import BodyState
 from ravemj.transforms import ZERO, Floats, Vec3
 
 if TYPE_CHECKING:
+    from ravemj.physics import Loads
     from ravemj.rave.environment import Environment
     from ravemj.rave.joint import Joint
     from ravemj.rave.link import Link
@@ -178,7 +178,7 @@ class PhysicsEngine(Interface):
         self._gravity = self._env.simulation.gravity
         self._is_attached = False
 
-    def loads(self, state: BodyState) -> Loads | None:
+    def loads(self, state: BodyState) -> "Loads | None":
         """Return what pushes a body during the next step, to be changed; None where nothing moves bodies."""
         del state
         return None
@@ -206,6 +206,8 @@ class SimulatedEngine(PhysicsEngine):
 
     def __init__(self, env: "Environment", xml_id: str) -> None:
         super().__init__(env, xml_id)
+        from ravemj.physics import Physics  # noqa: PLC0415 - slow to import
+
         self._physics = Physics(env.simulation)
 
     def SetPhysicsOptions(self, physicsoptions: int) -> bool:
@@ -251,7 +253,7 @@ class SimulatedEngine(PhysicsEngine):
         with self._env.simulation.lock:
             return self._physics.link_wrench(link.GetParent().simulation_state, link.GetIndex())
 
-    def loads(self, state: BodyState) -> Loads | None:
+    def loads(self, state: BodyState) -> "Loads":
         """Return what pushes a body during the next step, to be changed."""
         return self._physics.loads(state)
 

@@ -16,7 +16,6 @@ from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Annotations, Interface
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.groups import Group
-from ravemj.trajectories.serialization import AS_TEXT, Stored, read, to_bytes, to_text
 from ravemj.trajectories.waypoints import Waypoints
 from ravemj.transforms import Floats
 
@@ -292,6 +291,8 @@ class Trajectory(Interface):
         Returns:
             Bytes; text for XML.
         """
+        from ravemj.trajectories.serialization import AS_TEXT, Stored, to_bytes, to_text  # noqa: PLC0415 - rarely wanted
+
         stored = Stored(self._known(), self.GetDescription())
         return to_text(stored, self._xmlid) if (options or 0) & AS_TEXT else to_bytes(stored)
 
@@ -307,6 +308,8 @@ class Trajectory(Interface):
         Raises:
             ArgumentError: that is no trajectory; nothing has changed then.
         """
+        from ravemj.trajectories.serialization import read  # noqa: PLC0415 - rarely wanted
+
         self._waypoints, description = read(data)
         self.SetDescription(description)
         return self
@@ -355,6 +358,8 @@ class Trajectory(Interface):
         return True
 
     def __repr__(self) -> str:
+        from ravemj.trajectories.serialization import AS_TEXT  # noqa: PLC0415 - rarely wanted
+
         made = f"RaveCreateTrajectory({self._env!r}, {self._xmlid!r})"
         return made if self._waypoints is None else f"{made}.deserialize({self.serialize(AS_TEXT)!r})"
 

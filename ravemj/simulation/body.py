@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ravemj.batch import Batch
-from ravemj.dynamics import BodyDynamics, Inertias
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.kinematics import BodyKinematics, Configuration
 from ravemj.mjcf import rgba
@@ -17,6 +15,8 @@ from ravemj.simulation.compiled import write_inertial
 from ravemj.transforms import Floats, Pose, inverse, pose_of
 
 if TYPE_CHECKING:
+    from ravemj.batch import Batch
+    from ravemj.dynamics import BodyDynamics, Inertias
     from ravemj.simulation.world import Simulation
 
 _LOOKS = {"name", "diffuse", "ambient", "transparency"}
@@ -136,23 +136,29 @@ class BodyState:
         return self._kinematics
 
     @property
-    def dynamics(self) -> BodyDynamics:
+    def dynamics(self) -> "BodyDynamics":
         """Jacobians and inverse dynamics in the present model."""
         if self._dynamics is None:
+            from ravemj.dynamics import BodyDynamics  # noqa: PLC0415 - slow to import
+
             self._dynamics = BodyDynamics(self.kinematics)
         return self._dynamics
 
     @property
-    def batch(self) -> Batch:
+    def batch(self) -> "Batch":
         """The chain of links, ready for many configurations."""
         if self._batch is None:
+            from ravemj.batch import Batch  # noqa: PLC0415 - slow to import
+
             self._batch = Batch(self.kinematics, self.dynamics)
         return self._batch
 
     @property
-    def inertias(self) -> Inertias:
+    def inertias(self) -> "Inertias":
         """Mass properties of the links, as the scene has them now."""
         if self._inertias is None or self._inertias[0] is not self.scene.links:
+            from ravemj.dynamics import Inertias  # noqa: PLC0415 - slow to import
+
             self._inertias = (self.scene.links, Inertias.of(self.scene.links))
         return self._inertias[1]
 

@@ -11,9 +11,8 @@ from ravemj.errors import RenderingError
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
 from ravemj.viewers.viewer import Viewer
-from ravemj.viewers.window import WindowViewer
 
-__all__ = ["VIEWERS", "Viewer", "WindowViewer", "has_display", "open_viewer"]
+__all__ = ["VIEWERS", "Viewer", "has_display", "open_viewer"]
 
 VIEWERS = ("window", "web", "qtcoin", "qtosg", "qtogre", "offscreen")
 """Names of viewers: ours, and those that OpenRAVE's scripts ask for."""
@@ -48,6 +47,8 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
         return _open_page(simulation, studio)
     if show and name != "offscreen":
         if has_display():
+            from ravemj.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
+
             try:
                 viewer = WindowViewer(simulation, studio, name)
             except RenderingError as error:

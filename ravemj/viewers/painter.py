@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ravemj.drawing import merge
 from ravemj.interaction import Interaction, Overlay, Panel
-from ravemj.rendering import Quality, Stage
+from ravemj.rendering.stage import Quality, Stage
 from ravemj.simulation import Simulation
 
 _FONT = mujoco.mjtFont.mjFONT_NORMAL.value

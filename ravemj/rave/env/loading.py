@@ -4,13 +4,15 @@ import logging
 import os
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from ravemj.errors import ArgumentError, Diagnostic, send_warnings
-from ravemj.openrave_xml import Reading
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
-from ravemj.readers import read_data, read_file
+
+if TYPE_CHECKING:
+    from ravemj.openrave_xml import Reading
 
 Attributes = Mapping[str, str]
 """OpenRAVE's options of reading; all are ignored."""
@@ -43,7 +45,7 @@ class Loading(EnvironmentPart):
             True
         """
         del atts
-        return self._take(read_file(filename))
+        return self._take(_read_file(filename))
 
     LoadURI = Load
 
@@ -65,15 +67,15 @@ class Loading(EnvironmentPart):
             True
         """
         del atts
-        return self._take(read_data(data))
+        return self._take(_read_data(data))
 
-    def _take(self, reading: Reading) -> bool:
+    def _take(self, reading: "Reading") -> bool:
         self._add(reading)
         if reading.failure is not None:
             _LOG.error("%s", reading.failure)
         return reading.failure is None and all(finding.severity != "error" for finding in reading.diagnostics)
 
-    def _add(self, reading: Reading) -> None:
+    def _add(self, reading: "Reading") -> None:
         self._note(reading)
         with self._simulation.lock:
             for body in reading.scene.bodies:
@@ -84,7 +86,7 @@ class Loading(EnvironmentPart):
                 self._simulation.set_gravity(reading.scene.gravity)
         send_warnings(reading.diagnostics)
 
-    def _note(self, reading: Reading) -> None:
+    def _note(self, reading: "Reading") -> None:
         self._check_alive()
         self._files.update(dict.fromkeys(reading.files))
         self._found.update(dict.fromkeys(reading.diagnostics))
@@ -102,14 +104,14 @@ class Loading(EnvironmentPart):
             >>> env.Add(mug)
         """
         body, filename = _read_arguments("ReadKinBodyURI", arguments)
-        return self._read(read_file(filename), body, is_robot=False)
+        return self._read(_read_file(filename), body, is_robot=False)
 
     ReadKinBodyXMLFile = ReadKinBodyURI
 
     def ReadKinBodyData(self, *arguments: "KinBody | str | Attributes | None") -> KinBody | None:
         """Return a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
         body, data = _read_arguments("ReadKinBodyData", arguments)
-        return self._read(read_data(data), body, is_robot=False)
+        return self._read(_read_data(data), body, is_robot=False)
 
     ReadKinBodyXMLData = ReadKinBodyData
 
@@ -119,7 +121,7 @@ class Loading(EnvironmentPart):
         A body that the file does not call a robot becomes one.
         """
         body, filename = _read_arguments("ReadRobotURI", arguments)
-        robot = self._read(read_file(filename), body, is_robot=True)
+        robot = self._read(_read_file(filename), body, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLFile = ReadRobotURI
@@ -127,12 +129,12 @@ class Loading(EnvironmentPart):
     def ReadRobotData(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
         """Return a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
         body, data = _read_arguments("ReadRobotData", arguments)
-        robot = self._read(read_data(data), body, is_robot=True)
+        robot = self._read(_read_data(data), body, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLData = ReadRobotData
 
-    def _read(self, reading: Reading, into: KinBody | None, *, is_robot: bool) -> KinBody | None:
+    def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
         """Make a body of what was read, that is not added; the first one counts."""
         self._note(reading)
         send_warnings(reading.diagnostics)
@@ -167,3 +169,18 @@ def _read_arguments(
     if not given:
         raise ArgumentError(f"{caller}: takes a text, optionally after a body, not {arguments!r}")
     return into, os.fspath(given[0])
+
+
+# Readers are imported when they are asked for: that takes a while, and not every script reads a file.
+
+
+def _read_file(path: str | os.PathLike[str]) -> "Reading":
+    from ravemj.readers import read_file  # noqa: PLC0415
+
+    return read_file(path)
+
+
+def _read_data(data: str | bytes) -> "Reading":
+    from ravemj.readers import read_data  # noqa: PLC0415
+
+    return read_data(data)

@@ -6,7 +6,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,12 +17,14 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.following import Equations
 from ravemj.joints import about, directions_at, reported_anchor, wxyz_from_rotation_vector
 from ravemj.making import MADE
-from ravemj.openrave_xml.actuator import Motor, motor_of
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, per_axis, vector
 from ravemj.rave.infos.parameters import ParameterFields
 from ravemj.transforms import Vec3, add, conjugate, dot, rotate, scale
+
+if TYPE_CHECKING:
+    from ravemj.openrave_xml.actuator import Motor
 
 _KINDS: dict[JointType, scene.JointKind] = {
     JointType.Hinge: "hinge",
@@ -66,9 +68,11 @@ class ElectricMotorActuatorInfo(Info):
     coloumb_friction: float = 0.0
     viscous_friction: float = 0.0
 
-    def motor(self) -> Motor:
+    def motor(self) -> "Motor":
         """Return torque and inertia at the joint."""
         names = ("gear_ratio", "max_instantaneous_torque", "nominal_torque", "rotor_inertia")
+        from ravemj.openrave_xml.actuator import motor_of  # noqa: PLC0415 - rarely wanted
+
         return motor_of({name: float(getattr(self, name)) for name in names})
 
 
