@@ -244,3 +244,27 @@ def test_messages(text, message):
                 parse(json.dumps({**fields, name: wrong}))
         with pytest.raises(ValueError):  # noqa: PT011 - whatever it says
             parse(json.dumps({key: value for key, value in fields.items() if key != name}))
+
+
+def test_a_script_a_hand_and_an_onlooker_share_one_environment(env, viewer):
+    """The script turns one joint, the hand another one; nobody waits for long and nothing is torn."""
+    robot = env.GetRobots()[0]
+    with Page(viewer) as page, Page(viewer) as onlooker:
+        page.escape()
+        page.drag(at([0.01, 0, -0.3]), at([0.01, 0, -0.3]), ctrl=True)
+        await_that(lambda: viewer.GetSelectedJoint() is not None)
+        centre = at(JointHandle.at(robot._state, 1).center)
+        page.mouse("press", (centre[0] + 5, centre[1]), button="left", ctrl=False, shift=False)
+        start = time.monotonic()
+        for step in range(100):
+            robot.SetDOFValues([0.001 * step], [0])
+            page.mouse("move", (centre[0] + 5 * math.cos(step / 20), centre[1] + 5 * math.sin(step / 20)))
+            if step % 20 == 0:
+                page.picture()
+                onlooker.picture()
+            T_base, T_arm0, T_arm1 = robot.link_transforms()
+            np.testing.assert_allclose(T_arm0 @ [0.2, 0, 0, 1], T_arm1[:, 3], atol=1e-12)
+            assert np.array_equal(T_base[:3, 3], [0, 0, 0])
+        assert time.monotonic() - start < 10
+        await_that(lambda: abs(robot.GetDOFValues()[1]) > 1)
+        assert robot.GetDOFValues()[0] == pytest.approx(0.099)

@@ -81,28 +81,37 @@ class Client:
 
     def show(self, connection: Connection, background: tuple[float, float, float]) -> None:
         """Send a picture if the page takes one, and anything has changed or come to rest."""
-        if not self._is_ready or not self._simulation.lock.acquire(timeout=_PERIOD):
+        if not self._is_ready:
             return
         try:
-            seen = appearance(self._simulation), self.interaction.version, background, self._ratio
-            now = time.monotonic()
-            is_changed = seen != self._seen
-            if not is_changed and (self._is_crisp or now - self._changed_at < _REST):
-                return
-            overlay = self.interaction.overlay()
-            picture = self._picture(overlay, background)
+            overlay = self._look(background)
+            picture = None if overlay is None else self._picture(overlay, background)
         except RavemjError as error:
             if self._seen is not None:
                 _LOG.error("a page cannot show the environment: %s", error)
             self._seen = None
             return
+        if overlay is not None and picture is not None:
+            self._is_ready = False
+            connection.send(_text(overlay))
+            connection.send(jpeg(picture, _RESTING_QUALITY if self._is_crisp else _MOVING_QUALITY))
+
+    def _look(self, background: tuple[float, float, float]) -> Overlay | None:
+        """Return what is to be drawn over the bodies if a picture is due, else None."""
+        if not self._simulation.lock.acquire(timeout=_PERIOD):  # who holds it may wait for this thread to end
+            return None
+        try:
+            seen = appearance(self._simulation), self.interaction.version, background, self._ratio
+            now = time.monotonic()
+            if seen != self._seen:
+                self._seen, self._changed_at, self._is_crisp = seen, now, False
+            elif self._is_crisp or now - self._changed_at < _REST:
+                return None
+            else:
+                self._is_crisp = True
+            return self.interaction.overlay()
         finally:
             self._simulation.lock.release()
-        if is_changed:
-            self._seen, self._changed_at = seen, now
-        self._is_ready, self._is_crisp = False, not is_changed
-        connection.send(_text(overlay))
-        connection.send(jpeg(picture, _MOVING_QUALITY if is_changed else _RESTING_QUALITY))
 
     def _picture(self, overlay: Overlay, background: tuple[float, float, float]) -> Frame:
         width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
