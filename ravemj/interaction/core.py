@@ -60,7 +60,6 @@ class Interaction:
     Attributes:
         view: The camera.
         mode: What the left button does.
-        version: Grows with everything that changes the view or the overlay; what moves bodies changes these as well.
     """
 
     def __init__(
@@ -78,13 +77,25 @@ class Interaction:
         self.view = View(camera, 0.0, size)
         self.mode = Mode.CAMERA
         self._selector = Selector(simulation, on_select)
-        self.version = 0
+        self._changes = 0
         self._pointer: tuple[float, float] | None = None
         self._hovered = False
         self._buttons: set[Button] = set()
         self._keys: set[str] = set()
         self._press: Press | None = None
         self._follow: _Follow | None = None
+
+    def another_view(self) -> "Interaction":
+        """Return the mouse and the keys of another view on the same simulation; they share what is selected."""
+        other = Interaction(self._simulation, self.view.camera, self.view.size)
+        other.view = self.view
+        other._selector = self._selector
+        return other
+
+    @property
+    def version(self) -> int:
+        """A number that grows with what changes the view and the overlay; what moves bodies changes these as well."""
+        return self._changes + self._selector.changes
 
     def look_from(self, camera: Camera, distance: float = 0.0) -> None:
         """Take another camera; what the mouse does with the old one ends.
@@ -97,7 +108,7 @@ class Interaction:
             if self.mode is Mode.CAMERA:
                 self._follow = None
             self.view = replace(self.view, camera=camera, distance=distance or self.view.distance)
-            self.version += 1
+            self._changes += 1
 
     def handle(self, event: Event) -> None:
         """Do what an event asks for. The simulation is locked meanwhile."""
@@ -106,7 +117,7 @@ class Interaction:
             self._do(event)
             hovers = self.hover is not None
             if not isinstance(event, Move) or self._buttons or hovers or self._hovered:
-                self.version += 1
+                self._changes += 1
             self._hovered = hovers
 
     @property

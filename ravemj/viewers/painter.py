@@ -4,13 +4,21 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.drawing import Shapes, merge
+from ravemj.drawing import merge
 from ravemj.interaction import Interaction, Overlay, Panel
 from ravemj.rendering.stage import Quality, Stage
 from ravemj.simulation import Simulation
 
 _FONT = mujoco.mjtFont.mjFONT_NORMAL.value
 _TOP_LEFT = mujoco.mjtGridPos.mjGRID_TOPLEFT.value
+
+
+def appearance(simulation: Simulation) -> object:
+    """Return what is equal for as long as bodies and drawings look the same; the caller has locked the simulation."""
+    compiled = simulation.compile()
+    model, data = compiled.model, compiled.data
+    state = data.geom_xpos.tobytes(), data.geom_xmat.tobytes(), model.geom_rgba.tobytes()
+    return simulation.version, state, simulation.drawings.shapes()
 
 
 class Painter:
@@ -37,16 +45,14 @@ class Painter:
         """
         simulation = self._simulation
         compiled = simulation.compile()
-        model, data = compiled.model, compiled.data
-        drawings = simulation.drawings.shapes()
-        state = data.geom_xpos.tobytes(), data.geom_xmat.tobytes(), model.geom_rgba.tobytes()
-        seen = (simulation.version, self._interaction.version, state, background, pixels, ratio, drawings)
+        seen = (appearance(simulation), self._interaction.version, background, pixels, ratio)
         if seen == self._seen:
             return False
         self._seen = seen
         self._overlay = self._interaction.overlay()
-        stage = self._prepared_stage(model, ratio)
-        stage.fill(data, self._interaction.view.camera, *pixels, _merged(drawings, self._overlay.shapes))
+        stage = self._prepared_stage(compiled.model, ratio)
+        shapes = merge([simulation.drawings.shapes(), self._overlay.shapes])
+        stage.fill(compiled.data, self._interaction.view.camera, *pixels, shapes)
         return True
 
     def _prepared_stage(self, model: mujoco.MjModel, ratio: float) -> Stage:
@@ -96,10 +102,6 @@ class Painter:
         if self._stage is not None:
             self._stage.close()
             self._stage = None
-
-
-def _merged(drawings: Shapes, gizmos: Shapes) -> Shapes:
-    return merge([drawings, gizmos]) if len(gizmos) else drawings
 
 
 def _font_scale(ratio: float) -> int:

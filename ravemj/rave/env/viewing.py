@@ -26,8 +26,9 @@ class Viewing(EnvironmentPart):
         moves it.
 
         Args:
-            viewername: ``'window'``: a window; a warning says so where there is no display for it. ``'offscreen'``: no
-                window. One of OpenRAVE's names, such as ``'qtcoin'``: the best that works here; the log says which.
+            viewername: ``'window'``: a window; a warning says so where there is no display for it. ``'web'``: a page
+                for a browser on this machine, at ``GetViewer().url``. ``'offscreen'``: neither. One of OpenRAVE's
+                names, such as ``'qtcoin'``: a window if there is a display, else neither; the log says which.
                 ``''`` removes the viewer.
             showviewer: False: never a window.
 
