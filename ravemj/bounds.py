@@ -40,7 +40,7 @@ def _half_extents(solid: Box | Sphere | Cylinder | Capsule | Container | NoShape
         case Sphere(radius):
             return np.full(3, radius)
         case Cylinder(radius, height):
-            return along * height / 2 + np.sqrt(np.maximum(1 - along**2, 0.0)) * radius
+            return along * height / 2 + np.hypot(rotation[:, 0], rotation[:, 1]) * radius
         case Capsule(radius, height):
             return along * height / 2 + radius
         case Container(outer_extents):

@@ -14,7 +14,7 @@ from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.following import Equations, Follower, evaluation_order, leaders, resolve
 from ravemj.joints import measured_values, place_links
 from ravemj.manipulators import ManipulatorBuilder, freeze_manipulator
-from ravemj.transforms import UNMOVED, ZERO, Pose, Vec3, rotate, scale
+from ravemj.transforms import UNMOVED, ZERO, Pose, Vec3, Wxyz, rotate, scale
 
 DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 0.4)))
 """A link without mass properties weighs 1 kg, like a unit sphere."""
@@ -37,7 +37,11 @@ class LinkBuilder:
 
 @dataclass(slots=True, kw_only=True)
 class JointBuilder:
-    """A joint as listed: anchor and axis directions are in the frame of the first listed link."""
+    """A joint as listed: anchor and axis directions are in the frame of the first listed link.
+
+    Attributes:
+        weld_turn: What turns the axes of a weld into those that OpenRAVE reports; None: the second link's rotation.
+    """
 
     name: str
     kind: scene.JointKind
@@ -45,6 +49,7 @@ class JointBuilder:
     T_first_second: Pose
     anchor: Vec3
     axes: tuple[scene.Axis, ...]
+    weld_turn: Wxyz | None = None
     enabled: bool
     equations: Equations | None = None
     parameters: scene.Parameters = scene.NO_PARAMETERS
@@ -105,7 +110,7 @@ class BodyBuilder:
             return self._frozen([link.pose for link in self.links], [], 0)
         listed = self._in_order()
         has_dofs = bool(listed and listed[0].active)
-        mimics = resolve(_followers(listed), diagnostics)
+        mimics = _with_welds(listed, resolve(_followers(listed), diagnostics))
         decided = self._decide(listed, mimics)
         poses = [link.pose for link in self.links]
         joints = [
@@ -146,7 +151,8 @@ class BodyBuilder:
             mimic = mimics.get(index)
             follows = leaders(mimic.expression) if mimic is not None and mimic.expression is not None else ()
             passive = tuple(leader for leader in follows if not listed[leader].active)
-            edges.append(hierarchy.Edge(joint.links, joint.fixed and index not in mimics, joint.active, passive))
+            fixed = joint.fixed if mimic is None else mimic.static
+            edges.append(hierarchy.Edge(joint.links, fixed, joint.active, passive))
         return hierarchy.decide([link.static for link in self.links], edges)
 
     def _settled(
@@ -208,6 +214,15 @@ def _followers(listed: Sequence[JointBuilder]) -> list[Follower]:
     return followers
 
 
+def _with_welds(listed: Sequence[JointBuilder], mimics: dict[int, scene.Mimic]) -> dict[int, scene.Mimic]:
+    """Return the followers; those of which no leader ever moves are marked."""
+    fixed = [joint.fixed for joint in listed if joint.active for _ in joint.axes]
+    return {
+        index: replace(mimic, static=bool(mimic.dofs) and all(fixed[dof] for dof in mimic.dofs))
+        for index, mimic in mimics.items()
+    }
+
+
 def _directed(
     joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, places_child: bool, has_dofs: bool
 ) -> scene.Joint:
@@ -219,9 +234,10 @@ def _directed(
         T_parent_child = T_parent_child.inverse()
         anchor = T_parent_child.apply(anchor)
         axes = tuple(replace(axis, direction=scale(rotate(T_parent_child.wxyz, axis.direction), -1.0)) for axis in axes)
-    if joint.fixed and has_dofs:  # OpenRAVE moves the frame of a weld to its child
+    if (joint.fixed if mimic is None else mimic.static) and has_dofs:  # OpenRAVE moves the frame of a weld to its child
         anchor = T_parent_child.position
-        axes = tuple(replace(axis, direction=rotate(T_parent_child.wxyz, axis.direction)) for axis in axes)
+        turn = T_parent_child.wxyz if joint.weld_turn is None else joint.weld_turn
+        axes = tuple(replace(axis, direction=rotate(turn, axis.direction)) for axis in axes)
     return scene.Joint(
         name=joint.name,
         kind=joint.kind,

@@ -18,6 +18,7 @@ _TIP_OF_ARROW = 0.1
 """Length of an arrow's tip as a part of the whole, as in OpenRAVE."""
 
 _SIDES_OF_ARROW = 12
+_SIDES_OF_CYLINDER = 32
 _SHADES = 16
 """Pieces of a line along which a colour goes from 0 to 1."""
 
@@ -140,8 +141,20 @@ def arrow(start: Floats, end: Floats, radius: float, rgba: Floats) -> Shapes:
     ring = np.cos(turn) * aside + np.sin(turn) * across
     neck = end - _TIP_OF_ARROW * along
     outline = [start + 0 * ring, start + ring, neck + ring, neck + 2 * ring, end + 0 * ring]
-    quads = [_quads(inner, outer) for inner, outer in itertools.pairwise(outline)]
-    corners = np.concatenate(quads)
+    return _skin(outline, rgba)
+
+
+def cylinder(radius: float, height: float, rgba: Floats) -> Shapes:
+    """Return a cylinder along z around the origin, with its full height [m]."""
+    turn = np.linspace(0, 2 * np.pi, _SIDES_OF_CYLINDER, endpoint=False)
+    ring = radius * np.column_stack([np.cos(turn), np.sin(turn), 0 * turn])
+    up = np.array([0.0, 0.0, height / 2])
+    return _skin([0 * ring - up, ring - up, ring + up, 0 * ring + up], rgba)
+
+
+def _skin(rings: list[Floats], rgba: Floats) -> Shapes:
+    """Return the surface through rings of points, each (N, 3)."""
+    corners = np.concatenate([_quads(inner, outer) for inner, outer in itertools.pairwise(rings)])
     return _triangles(corners, np.tile(rgba, (len(corners), 1)))
 
 
@@ -247,11 +260,12 @@ class Drawings:
         visible = tuple(state for state in states if state is not None)
         before, merged = self._merged
         if visible != before:
-            merged = _merge(visible)
+            merged = merge(visible)
             self._merged = (visible, merged)
         return merged
 
 
-def _merge(parts: Iterable[Shapes]) -> Shapes:
+def merge(parts: Iterable[Shapes]) -> Shapes:
+    """Return all figures of several drawings."""
     by_kind = zip(NOTHING.batches, *(part.batches for part in parts), strict=True)
     return Shapes(*(Batch(*(np.concatenate(arrays) for arrays in zip(*kind, strict=True))) for kind in by_kind))

@@ -6,6 +6,10 @@ from ravemj.alias import install_finder
 
 
 def load_ipython_extension(ipython: Any) -> None:  # noqa: ANN401 - IPython's shell; IPython is not imported here
-    """Make ``import openravepy`` give ravemj, in this session; IPython calls it on ``%load_ext ravemj``."""
+    """Make ``import openravepy`` give ravemj, in this session; IPython calls it on ``%load_ext ravemj``.
+
+    Args:
+        ipython: The session.
+    """
     del ipython
     install_finder()

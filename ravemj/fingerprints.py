@@ -1,6 +1,5 @@
 """Short texts that are the same for bodies of the same structure, wherever they stand and whatever their limits."""
 
-import hashlib
 from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
 from typing import cast
@@ -65,6 +64,8 @@ def _joint(joint: Joint) -> tuple[object, ...]:
 
 
 def _digest(*parts: object) -> str:
+    import hashlib  # noqa: PLC0415 - slow to import
+
     return hashlib.md5(repr(_plain(parts)).encode(), usedforsecurity=False).hexdigest()
 
 

@@ -5,10 +5,12 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import ParamSpec, Self
 
+from ravemj.showing import Shown
+
 _Arguments = ParamSpec("_Arguments")
 
 
-class Handle:
+class Handle(Shown):
     """Holds something for as long as somebody holds the handle."""
 
     def __init__(

@@ -242,7 +242,8 @@ class BodyKinematics:
             motion = T_world_link0 @ inverse(self.link_transform(0))
             for link in self.roots:
                 self.write_root(link, motion @ self.link_transform(link))
-        self.write_root(0, T_world_link0)
+        if 0 in self.roots:
+            self.write_root(0, T_world_link0)
         mujoco.mj_kinematics(self.model, self.data)
 
     def write_root(self, link: int, T_world_link: Floats) -> None:
@@ -309,8 +310,10 @@ class BodyKinematics:
         """Return whether all values are finite numbers inside the limits; circular joints have none."""
         if self._bounds is None:
             return bool(((self._lowest <= values) & (values <= self._highest)).all())
-        pairs = zip(values.tolist(), self._bounds, strict=True)
-        return all(lower <= value <= upper for value, (lower, upper) in pairs)
+        for value, (lower, upper) in zip(values.tolist(), self._bounds, strict=True):  # noqa: SIM110 - faster than all
+            if not lower <= value <= upper:
+                return False
+        return True
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""

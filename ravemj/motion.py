@@ -67,7 +67,7 @@ class Motion:
 
     @classmethod
     def line(cls, start: ArrayLike, goal: ArrayLike, duration: float = 1.0) -> "Motion":
-        """Move on the straight line in joint space, at constant speed, from time 0 on.
+        """Return the motion on the straight line in joint space, at constant speed, from time 0 on.
 
         Args:
             start: (dof,) joint values at time 0 [rad or m].
@@ -118,9 +118,12 @@ class Motion:
         return max(1, math.ceil(steps - _SAME_FRAME)) + 1 if steps else 1
 
     def frames(self, fps: float) -> Iterator[Floats]:
-        """Yield the (dof,) joint values for each frame of a video, in a memory independent of the length.
+        """Return an iterator over the (dof,) joint values of each frame of a video; it never holds them all.
 
         Frame k shows the time start + k/fps, and the last frame is exactly the end of the motion.
+
+        Args:
+            fps: Frames per second.
         """
         count = self.number_of_frames(fps)
         start = float(self.times[0])
@@ -139,7 +142,7 @@ class Motion:
 
 
 def read_motion(path: str | os.PathLike[str], joint_names: Sequence[str], current: ArrayLike) -> Motion:
-    """Read a motion from a ``.csv`` or ``.npz`` file; the module's text describes both.
+    """Return the motion of a ``.csv`` or ``.npz`` file; the module's text describes both.
 
     Args:
         path: The file.

@@ -1,14 +1,16 @@
 """Finds a file and reads it by its kind."""
 
 import os
+from collections.abc import Callable
 from urllib.parse import unquote
 
+from ravemj import collada
 from ravemj.builder import BodyBuilder
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.openrave_xml import Reading, read, read_text
-from ravemj.openrave_xml.context import COLLADA_SUFFIXES, Context
+from ravemj.openrave_xml.context import Context
 from ravemj.openrave_xml.mesh_body import add_mesh, is_mesh
-from ravemj.scene import Scene
+from ravemj.scene import KinBody, Scene
 
 
 def read_file(path: str | os.PathLike[str]) -> Reading:
@@ -26,8 +28,8 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
     elif not os.path.isfile(found):
         kind = "folder" if os.path.isdir(found) else "device or pipe"
         failure = SourceError(f"this is a {kind}, not a model file", Source(found))
-    elif found.lower().endswith(COLLADA_SUFFIXES):
-        failure = SourceError("this version of ravemj does not read COLLADA yet", Source(found))
+    elif found.lower().endswith(collada.SUFFIXES):
+        return _read_collada(found, lambda context: collada.read_file(found, context.diagnostics, context.files))
     else:
         return read_mesh_file(found) if is_mesh(found) else read(found)
     return Reading(Scene(), Diagnostics(), failure)
@@ -37,9 +39,37 @@ def read_data(data: str | bytes) -> Reading:
     """Read the text of an OpenRAVE XML document, as ``read_file`` reads a file."""
     head = data[:1000] if isinstance(data, bytes) else data[:1000].encode()
     if b"<COLLADA" in head:
-        failure = SourceError("this version of ravemj does not read COLLADA yet", Source("data"))
-        return Reading(Scene(), Diagnostics(), failure)
+        text = data if isinstance(data, bytes) else data.encode()
+        return _read_collada(
+            "data", lambda context: collada.read_text(text, "data", context.diagnostics, context.files)
+        )
     return read_text(data, "data")
+
+
+def _read_collada(path: str, read_content: Callable[[Context], collada.Content]) -> Reading:
+    context = Context()
+    bodies: list[KinBody] = []
+    gravity = failure = None
+    try:
+        content = read_content(context)
+        gravity = content.gravity
+        if not content.bodies and not content.others:
+            raise SourceError("there is no body in it", Source(path))
+        if not content.bodies:
+            message = "without a kinematics scene, OpenRAVE loads no body of it into an environment"
+            context.diagnostics.error("no-kinematics", message, Source(path), "read it with ReadKinBodyURI")
+        for built in (*content.bodies, *content.others):
+            built.name = _unused(built.name or "body", {body.name for body in bodies})
+            bodies.append(built.freeze(context.diagnostics))
+    except SourceError as error:
+        failure = error
+    return Reading(Scene(tuple(bodies), None, gravity), context.diagnostics, failure, tuple(context.files))
+
+
+def _unused(name: str, taken: set[str]) -> str:
+    """Return a name, with a number behind it where it is taken."""
+    numbered = (f"{name}{count}" for count in range(len(taken) + 1))
+    return name if name not in taken else next(other for other in numbered if other not in taken)
 
 
 def find(name: str) -> str | None:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.drawing import NOTHING
+from ravemj.drawing import NOTHING, Shapes, merge
 from ravemj.errors import ArgumentError
 from ravemj.rendering import Camera, Renderer, bounding_sphere, open_renderer, three_quarter_view, view_from_above
 from ravemj.simulation import Simulation
@@ -35,14 +35,17 @@ class Studio:
         self._simulation = simulation
         self._kept = threading.local()
 
-    def picture(self, camera: Camera, background: ArrayLike, form: Format, drawings: bool = True) -> Frame:
+    def picture(
+        self, camera: Camera, background: ArrayLike, form: Format, drawings: bool = True, gizmos: Shapes = NOTHING
+    ) -> Frame:
         """Draw the bodies and the drawings as they are now.
 
         Args:
             camera: Where the picture is taken from.
             background: Colour where nothing is: red, green, blue from 0 to 1.
             form: Size and quality.
-            drawings: False: bodies only.
+            drawings: False: without the drawings of scripts.
+            gizmos: What else is drawn.
 
         Returns:
             Shape (height, width, 3), top row first.
@@ -53,7 +56,8 @@ class Studio:
         with self._simulation.lock:
             compiled = self._simulation.compile()
             shapes = self._simulation.drawings.shapes() if drawings else NOTHING
-            return self._renderer(form).render(compiled.data, camera, background, shapes)
+            shown = merge([shapes, gizmos]) if len(gizmos) else shapes
+            return self._renderer(form).render(compiled.data, camera, background, shown)
 
     def backend(self, form: Format) -> str:
         """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""

@@ -12,60 +12,47 @@ import ravemj
 
 PACKAGE = Path(ravemj.__file__).parent
 
-LEVELS: list[set[str]] = [
-    {"_mujoco", "errors", "transforms"},
-    {
-        "alias",
-        "api_names",
-        "arrays",
-        "clock",
-        "coverage_notes",
-        "drawing",
-        "examples",
-        "expressions",
-        "handles",
-        "metaclass",
-        "motion",
-        "ordering",
-        "output",
-        "python2",
-    },
-    {"geometry_functions", "scene", "video"},
-    {
-        "adjacency",
-        "bounds",
-        "following",
-        "hierarchy",
-        "inertia",
-        "joints",
-        "making",
-        "manipulators",
-        "meshes",
-        "summary",
-    },
-    {"chains", "fingerprints"},
-    {"builder", "mjcf", "reach"},
-    {"kinematics", "openrave_xml", "tessellation"},
-    {"coverage", "dynamics", "placement", "readers", "rendering", "trajectories"},
-    {"batch"},
-    {"simulation"},
-    {"collision", "export", "physics", "studio"},
-    {"viewers"},
-    {"extension", "rave"},
-    {"checking", "databases", "interfaces", "misc", "openravepy_int", "planningutils", "recording"},
-    {"__init__", "cli"},
-    {"__main__", "api_coverage", "openravepy"},
+
+def rooms(names: str) -> set[str]:
+    return set(names.split())
+
+
+LEVELS = [
+    rooms(row)
+    for row in (
+        "_mujoco errors showing transforms",
+        "alias api_names arrays clock coverage_notes drawing examples expressions handles metaclass motion ordering "
+        "output python2",
+        "geometry_functions scene video",
+        "adjacency bounds following hierarchy inertia joints making manipulators meshes summary",
+        "chains fingerprints",
+        "builder mjcf reach",
+        "collada",
+        "kinematics openrave_xml tessellation",
+        "coverage dynamics placement readers rendering trajectories",
+        "batch",
+        "simulation",
+        "collision export studio",
+        "physics",
+        "interaction",
+        "viewers",
+        "extension rave",
+        "checking databases interfaces misc openravepy_int planningutils recording",
+        "__init__ cli",
+        "__main__ api_coverage openravepy",
+    )
 ]
 """Rooms from the ground up: each may import those of lower levels only, within its own package what it likes."""
 
 ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
-WITHOUT_MUJOCO = {
-    "adjacency", "alias", "arrays", "bounds", "builder", "chains", "clock", "coverage", "drawing", "errors",
-    "expressions", "fingerprints", "following", "geometry_functions", "handles", "hierarchy", "inertia", "joints",
-    "making", "manipulators", "meshes", "mjcf", "motion", "openrave_xml", "ordering", "output", "reach", "readers",
-    "scene", "tessellation", "trajectories", "transforms", "video",
-}  # fmt: skip
+WITHOUT_MUJOCO = rooms(
+    """
+    adjacency alias arrays bounds builder chains clock collada coverage drawing errors expressions fingerprints
+    following geometry_functions handles hierarchy inertia joints making manipulators meshes mjcf motion
+    openrave_xml ordering output reach readers scene showing tessellation trajectories transforms video
+    """
+)
 
 
 def modules():

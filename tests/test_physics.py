@@ -164,14 +164,27 @@ def test_forces_push_and_turn(env):
     np.testing.assert_allclose(body.GetLinkVelocities()[0], moved, rtol=1e-6, atol=1e-9)
 
 
-def test_a_stand_that_holds_nothing_falls_with_its_bob(env):
+def test_what_nothing_holds_falls_as_a_whole(env):
     robot = pendulum(env, kind="dynamic")
     place(robot, [0, 0, 10])
     robot.SetDOFValues([0.4])
+    start = robot.GetTransform(), robot.GetCenterOfMass()
     run(env, 0.5)
-    np.testing.assert_allclose(robot.GetCenterOfMass()[2], robot.GetCenterOfMass()[2])
-    assert position(robot)[2] < 10 - 0.4 * G * 0.5**2
+    np.testing.assert_allclose(robot.GetCenterOfMass() - start[1], [0, 0, -G / 2 * 0.5**2], atol=1e-6)
+    np.testing.assert_allclose(position(robot) - start[0][:3, 3], [0, 0, -G / 2 * 0.5**2], atol=1e-6)
     assert robot.GetDOFValues()[0] == pytest.approx(0.4, abs=1e-6)
+
+
+def test_momentum_is_kept_when_a_joint_works(env):
+    env.GetPhysicsEngine().SetGravity([0, 0, 0])
+    robot = pendulum(env, kind="dynamic")
+    start = robot.GetCenterOfMass()
+    for _ in range(10):
+        robot.SetDOFTorques([3.0], False)
+        env.StepSimulation(0.01)
+    assert robot.GetDOFValues()[0] > 0.05
+    np.testing.assert_allclose(robot.GetCenterOfMass(), start, atol=1e-6)
+    assert np.abs(robot.GetLinkVelocities()).max() > 0.1
 
 
 def test_bodies_come_and_go_while_the_others_move_on(env):
@@ -234,16 +247,27 @@ def test_held_bodies_follow_and_weigh(env):
     assert position(load)[2] < height - 0.3
 
 
+def test_what_pushes_a_body_that_is_gone_is_forgotten(env):
+    body = box(env, "box", [0, 0, 10])
+    env.StepSimulation(0.01)
+    env.Remove(body)
+    body.GetLinks()[0].SetForce([1, 0, 0], [0, 0, 0], False)
+    env.StepSimulation(0.01)
+    env.Add(body)
+    env.StepSimulation(0.01)
+    assert position(body)[0] == 0
+
+
 def test_disabled_links_fall_through(env):
     box(env, "floor", [0, 0, -FLOOR_HALF], "static", FLOOR_HALF)
     body = box(env, "box", [0, 0, HALF])
     run(env, 0.1)
-    body.simulation_state.link_enabled = [False]
+    body.Enable(False)
     run(env, 0.2)
     assert position(body)[2] < HALF - 0.15
     place(body, [0, 0, HALF])
     body.SetVelocity([0, 0, 0], [0, 0, 0])
-    body.simulation_state.link_enabled = [True]
+    body.Enable(True)
     run(env, 0.2)
     assert position(body)[2] == pytest.approx(HALF, abs=2e-4)
 
@@ -305,11 +329,10 @@ def test_gravity_belongs_to_the_engine(env):
         env.SetPhysicsEngine("nonsense")
 
 
-def test_self_collisions_can_be_switched_off(env):
-    engine = env.GetPhysicsEngine()
-    assert engine.GetPhysicsOptions() == ravemj.PhysicsEngineOptions.SelfCollisions
+def three_spheres(env, distance):
+    """A robot of three spheres in a row, the outer ones on sliders of the first."""
     links = "".join(
-        f'<Body name="l{i}" type="dynamic"><Translation>{i * 0.6} 0 0</Translation>'
+        f'<Body name="l{i}" type="dynamic"><Translation>{i * distance} 0 0</Translation>'
         f'<Geom type="sphere"><radius>.2</radius></Geom></Body>'
         for i in range(3)
     )
@@ -319,18 +342,36 @@ def test_self_collisions_can_be_switched_off(env):
         for i in (1, 2)
     )
     add(env, f'<Robot name="r"><KinBody>{links}{joints}</KinBody></Robot>')
-    robot = env.GetRobot("r")
-    engine.SetGravity([0, 0, 0])
+    return env.GetRobot("r")
 
-    def run_into():
-        robot.SetDOFValues([0, 0])
-        robot.SetDOFVelocities([1, 0])
-        run(env, 0.5)
-        return robot.GetDOFValues()
 
-    assert run_into()[1] > 0.1
+def run_into(env, robot):
+    """Let the second sphere move towards the third, for half a metre; return both joint values."""
+    env.GetPhysicsEngine().SetGravity([0, 0, 0])
+    robot.SetDOFValues([0, 0])
+    robot.SetVelocity([0, 0, 0], [0, 0, 0])
+    robot.SetDOFVelocities([1, 0])
+    run(env, 0.5)
+    return robot.GetDOFValues()
+
+
+def test_self_collisions_can_be_switched_off(env):
+    engine, robot = env.GetPhysicsEngine(), three_spheres(env, 0.6)
+    assert engine.GetPhysicsOptions() == ravemj.PhysicsEngineOptions.SelfCollisions
+    assert run_into(env, robot)[1] > 0.1
     assert engine.SetPhysicsOptions(0)
-    np.testing.assert_allclose(run_into(), [0.5, 0], atol=1e-6)
+    assert engine.GetPhysicsOptions() == 0
+    np.testing.assert_allclose(run_into(env, robot), [0.5, 0], atol=1e-6)
+
+
+def test_links_that_openrave_never_tests_do_not_collide(env):
+    touching = three_spheres(env, 0.3)
+    np.testing.assert_allclose(run_into(env, touching), [0.5, 0], atol=1e-6)
+    env.Remove(touching)
+    declared = three_spheres(env, 0.6)
+    assert run_into(env, declared)[1] > 0.1
+    declared.SetAdjacentLinks(1, 2)
+    np.testing.assert_allclose(run_into(env, declared), [0.5, 0], atol=1e-6)
 
 
 def test_unstable_physics_stays_where_it_was(env, caplog):

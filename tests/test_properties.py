@@ -410,6 +410,19 @@ def test_nothing_follows_without_a_dof(write):
     np.testing.assert_allclose(body.GetLinkTransformations(), expected, atol=1e-12)
 
 
+def test_a_first_link_that_hangs_on_another_goes_where_it_is_put(write):
+    """Without a DOF, OpenRAVE directs no joint: the first link may be the child of a weld."""
+    joint = "<Joint name='j' enable='false'><Body>B</Body><Body>A</Body><limits>0 0</limits></Joint>"
+    link = "<Body name='B'><Translation>0 0 1</Translation></Body>"
+    (body,) = ravemj.load(write(f"<KinBody name='b'><Body name='A'/>{link}{joint}</KinBody>")).GetBodies()
+    goal = ravemj.matrixFromPose([0.5, 0.5, -0.5, 0.5, 1, -2, 3])
+    apart = np.linalg.inv(body.GetTransform()) @ body.GetLinks()[1].GetTransform()
+    body.SetTransform(goal)
+    body.SetDOFValues([])
+    np.testing.assert_allclose(body.GetTransform(), goal, atol=1e-12)
+    np.testing.assert_allclose(body.GetLinks()[1].GetTransform(), goal @ apart, atol=1e-12)
+
+
 SMOOTH = Taste(bodies=1, trees=True)
 """Models whose links all move smoothly with the DOFs, where no follower is at a limit."""
 

@@ -13,8 +13,8 @@ from ravemj.dynamics import BodyDynamics, Inertias, Posture
 from ravemj.kinematics import BodyKinematics
 from ravemj.transforms import Floats
 
-CHUNK = 60_000
-"""Poses of links that are worked out together: few enough for the cache, many enough for numpy."""
+POSES, MOTIONS = 60_000, 8_000
+"""Poses of links, and their motions, that are worked out together: few enough for the cache, enough for numpy."""
 
 
 class Batch:
@@ -29,9 +29,9 @@ class Batch:
         self._dynamics = dynamics
         self._chain = Chain(kinematics, dynamics.tree)
 
-    def _chunks(self, count: int) -> Iterator[slice]:
+    def _chunks(self, count: int, poses: int = POSES) -> Iterator[slice]:
         """Yield slices of like size that cover that many configurations."""
-        parts = -(-count // max(400, min(1000, CHUNK // len(self._kinematics.body_ids))))
+        parts = -(-count // max(100, min(1000, poses // len(self._kinematics.body_ids))))
         for part in range(parts):
             yield slice(part * count // parts, (part + 1) * count // parts)
 
@@ -81,7 +81,7 @@ class Batch:
             point: In the link's frame [m], shape (3,).
             out: Takes the derivatives of the point's position and the link's angular velocity, shape (N, 6, dof).
         """
-        for part in self._chunks(len(values)):
+        for part in self._chunks(len(values), MOTIONS):
             posture = self._posture(np.ascontiguousarray(values[part].T))
             place = posture.positions[link] + np.tensordot(point, posture.rotations[link], 1)
             out[part] = posture.jacobian(link, place).transpose(2, 1, 0)
@@ -97,7 +97,7 @@ class Batch:
             out: Takes torques [N m], for sliders forces [N], shape (N, dof).
         """
         armature, gravity = self._dynamics.armature[:, None], self._kinematics.model.opt.gravity.copy()
-        for part in self._chunks(len(values)):
+        for part in self._chunks(len(values), MOTIONS):
             now, speed, growth = (np.ascontiguousarray(one[part].T) for one in (values, rates, growths))
             posture = self._posture(now, second=True)
             slopes = posture.slopes

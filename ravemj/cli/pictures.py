@@ -22,7 +22,8 @@ from ravemj.rendering.contexts import INSTALL, RAY, requested_backend
 from ravemj.rendering.doctor import probe_backends
 from ravemj.studio import Format
 from ravemj.video import check_picture, check_target, write_frames, write_picture
-from ravemj.viewers import WindowViewer, has_display
+from ravemj.viewers import has_display
+from ravemj.viewers.window import WindowViewer
 
 
 def play(options: argparse.Namespace) -> int:

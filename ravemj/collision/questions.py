@@ -5,17 +5,30 @@ A body that holds others, or is held, takes part with all of them, and is not te
 
 from collections.abc import Iterable
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
+from ravemj.adjacency import Pair
+from ravemj.chains import dofs_moving
 from ravemj.collision.resting import tested_pairs
 from ravemj.collision.world import CollisionWorld, Pairs, cross, joined
 from ravemj.scene import KinBody
 from ravemj.simulation import BodyState
 from ravemj.transforms import Ints
 
-Links = frozenset[int] | None
+
+class MovedBy(NamedTuple):
+    """Stands for the links that some DOFs move, or the pairs of links that they move against each other."""
+
+    dofs: tuple[int, ...]
+
+
+Links = frozenset[int] | MovedBy | None
 """Indices of the links of a body that take part; None: all."""
+
+LinkPairs = frozenset[Pair] | MovedBy | None
+"""Pairs of links of a body, the smaller index first; None: all."""
 
 LinkOf = tuple[BodyState, int]
 """A body and the index of one of its links."""
@@ -81,34 +94,37 @@ def links(world: CollisionWorld, first: LinkOf, second: LinkOf) -> Pairs:
     return world.pairs(("links", first, second), find)
 
 
-def itself(world: CollisionWorld, body: BodyState, moved: Links = None) -> Pairs:
+def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> Pairs:
     """Return the pairs within a body and what it holds.
 
     Args:
         world: Where the body is.
         body: The body.
-        moved: Only pairs of one of these links, or what it holds, and one of the others; None: all.
+        asked: Only pairs of these links, or what they hold; those that DOFs move against each other; None: all.
     """
 
     def find() -> tuple[Ints, Ints]:
-        return joined(_within(world, body, moved))
+        wanted = moved_apart(body.scene, asked.dofs) if isinstance(asked, MovedBy) else asked
+        return joined(_within(world, body, wanted))
 
-    return world.pairs(("itself", body, moved), find)
+    return world.pairs(("itself", body, asked), find)
 
 
-def _within(world: CollisionWorld, body: BodyState, moved: Links) -> Iterable[tuple[Ints, Ints]]:
+def _within(
+    world: CollisionWorld, body: BodyState, asked: frozenset[Pair] | None = None
+) -> Iterable[tuple[Ints, Ints]]:
     tested = [link for link, one in enumerate(body.scene.links) if not one.self_collision_ignored]
     geoms = {link: world.geoms_of_link(body, link) for link in tested}
     held = [(grab, _held(world, grab.body)) for grab in body.grabs]
-    asked = [(a, b, (geoms[a], geoms[b])) for a, b in tested_pairs(world, body) if a in geoms and b in geoms]
-    asked += [(a, grab.link, (geoms[a], other)) for grab, other in held for a in tested if a not in grab.ignored]
-    asked += [(a.link, b.link, (one, other)) for (a, one), (b, other) in combinations(held, 2) if a.link != b.link]
-    for first, second, sets in asked:
-        if moved is None or (first in moved) != (second in moved):
+    found = [(a, b, (geoms[a], geoms[b])) for a, b in tested_pairs(world, body) if a in geoms and b in geoms]
+    found += [(a, grab.link, (geoms[a], other)) for grab, other in held for a in tested if a not in grab.ignored]
+    found += [(a.link, b.link, (one, other)) for (a, one), (b, other) in combinations(held, 2) if a.link != b.link]
+    for first, second, sets in found:
+        if asked is None or (min(first, second), max(first, second)) in asked:
             yield cross(*sets)
-    if moved is None:
+    if asked is None:
         for grab in body.grabs:
-            yield from _within(world, grab.body, None)
+            yield from _within(world, grab.body)
 
 
 def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) -> frozenset[int]:
@@ -117,29 +133,19 @@ def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) ->
     return frozenset(world.owner(first)[1] for first, _ in world.hits(pairs))
 
 
-def moved_links(body: KinBody, dofs: Iterable[int]) -> frozenset[int]:
-    """Return the links that any of the DOFs move, directly or through mimic joints."""
-    wanted, joints = set(dofs), (*body.joints, *body.passive_joints)
-    firsts = np.cumsum([0, *(len(joint.axes) for joint in body.joints)]).tolist()
-    placing = {joint.child: number for number, joint in enumerate(joints) if joint.places_child}
-
-    def is_moved(link: int) -> bool:
-        while link in placing:
-            number = placing[link]
-            joint = joints[number]
-            own = range(firsts[number], firsts[number] + len(joint.axes)) if number < len(body.joints) else ()
-            if not joint.static and wanted & set(own if joint.mimic is None else joint.mimic.dofs):
-                return True
-            link = joint.parent
-        return False
-
-    return frozenset(link for link in range(len(body.links)) if is_moved(link))
+def moved_apart(body: KinBody, dofs: Iterable[int]) -> frozenset[Pair]:
+    """Return the pairs of links, the smaller index first, that any of the DOFs moves against each other."""
+    movers = [dofs_moving(body, link) & set(dofs) for link in range(len(body.links))]
+    return frozenset((a, b) for a, b in combinations(range(len(movers)), 2) if movers[a] != movers[b])
 
 
 def _part(world: CollisionWorld, body: BodyState, links: Links) -> Ints:
     """Return the geoms of some links and what they hold, or of a body and all that is connected to it."""
     if links is None:
         return world.geoms_of_group(body)
+    if isinstance(links, MovedBy):
+        wanted = set(links.dofs)
+        links = frozenset(link for link in range(len(body.scene.links)) if wanted & dofs_moving(body.scene, link))
     own = [world.geoms_of_link(body, link) for link in sorted(links)]
     held = [_held(world, grab.body) for grab in body.grabs if grab.link in links]
     return np.concatenate([_nothing(), *own, *held])
@@ -147,7 +153,12 @@ def _part(world: CollisionWorld, body: BodyState, links: Links) -> Ints:
 
 def _held(world: CollisionWorld, body: BodyState) -> Ints:
     """Return the geoms of a body and of all that it holds."""
-    return np.concatenate([world.geoms_of_body(body), *(_held(world, grab.body) for grab in body.grabs)])
+    return np.concatenate([world.geoms_of_body(one) for one in held_with(body)])
+
+
+def held_with(body: BodyState) -> list[BodyState]:
+    """Return a body and all that it holds, and so on."""
+    return [body, *(one for grab in body.grabs for one in held_with(grab.body))]
 
 
 def _without(world: CollisionWorld, geoms: Ints, bodies: frozenset[BodyState], links: frozenset[LinkOf]) -> Ints:

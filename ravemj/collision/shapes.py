@@ -1,12 +1,14 @@
 """Whether two geoms touch, how far they are apart, how deep they are in each other."""
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import mujoco
 import numpy as np
 
-from ravemj.collision.triangles import TriangleTests
 from ravemj.transforms import Floats
+
+if TYPE_CHECKING:
+    from ravemj.collision.triangles import TriangleTests
 
 TOUCHING = 1e-10
 """Shapes this near [m] touch, and count as colliding."""
@@ -29,12 +31,18 @@ class Contact(NamedTuple):
     depth: float
 
 
+def _triangle_tests(model: mujoco.MjModel, data: mujoco.MjData) -> "TriangleTests":
+    from ravemj.collision.triangles import TriangleTests  # noqa: PLC0415 - most models have no meshes
+
+    return TriangleTests(model, data)
+
+
 class ShapeTests:
     """Exact tests of pairs of geoms of one compiled model, in its present state."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self._model, self._data = model, data
-        self._triangles = TriangleTests(model, data) if model.nmesh else None
+        self._triangles = _triangle_tests(model, data) if model.nmesh else None
         self._segment = np.zeros(6)
 
     def touch(self, first: int, second: int) -> bool:
@@ -61,7 +69,7 @@ class ShapeTests:
         return Contact((start + end) / 2, normal / length if length else np.array([0.0, 0.0, 1.0]), depth)
 
     def _exact(
-        self, triangles: TriangleTests, first: int, second: int, limit: float, enough: float, hulls: float = 0.0
+        self, triangles: "TriangleTests", first: int, second: int, limit: float, enough: float, hulls: float = 0.0
     ) -> float:
         """Return the distance with meshes that are not convex taken as triangles; ``hulls`` is that of the hulls."""
         if triangles.is_concave(first):

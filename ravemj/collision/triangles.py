@@ -4,6 +4,8 @@ MuJoCo measures distances between convex shapes. A triangle is one: a mesh of th
 scratch model with two such meshes and one geom of any other shape takes the triangles in turn.
 """
 
+from collections.abc import Iterator
+
 import mujoco
 import numpy as np
 
@@ -20,7 +22,11 @@ _XML = """<mujoco><asset>
 <geom type="mesh" mesh="a"/><geom type="mesh" mesh="b"/><geom size="1"/>
 </worldbody></mujoco>"""
 _TRIANGLE, _OTHER_TRIANGLE, _SOLID = range(3)
-_IDENTITY = np.eye(3)
+
+_CHUNK = 64  # triangles
+
+_Pair = tuple[int, int, float]
+"""Two triangles, and how far the boxes around them are apart."""
 
 
 class TriangleTests:
@@ -29,9 +35,10 @@ class TriangleTests:
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self._model, self._data = model, data
         self._is_convex: dict[int, bool] = {}
+        self._triangles: dict[int, _Triangles] = {}
         self._scratch = mujoco.MjModel.from_xml_string(_XML)
         self._scratch_data = mujoco.MjData(self._scratch)
-        self._scratch_data.geom_xmat[:] = _IDENTITY.ravel()
+        self._scratch_data.geom_xmat[:] = np.eye(3).ravel()
         self._corners = self._scratch.mesh_vert.reshape(2, 4, 3)
         self._segment = np.zeros(6)
 
@@ -44,7 +51,7 @@ class TriangleTests:
             self._is_convex[mesh] = _fills_its_hull(self._model, mesh)
         return not self._is_convex[mesh]
 
-    def distance(self, first: int, second: int, limit: float, enough: float, segment: Floats | None = None) -> float:
+    def distance(self, first: int, second: int, limit: float, enough: float, segment: Floats) -> float:
         """Return the signed distance [m] of two geoms, the first one a mesh, meshes taken as their triangles.
 
         What is inside a closed mesh and touches no triangle is apart from it.
@@ -59,62 +66,69 @@ class TriangleTests:
         Returns:
             The distance, or ``limit`` if it is not less.
         """
-        T_first = _pose(self._data, first)
-        T_second = _pose(self._data, second)
-        to_first = T_first[0].T @ T_second[0], T_first[0].T @ (T_second[1] - T_first[1])
-        triangles = _Triangles(self._corners_of(first))
-        others = self._solid_or_triangles(second, to_first)
-        box = _turned_box(self._model.geom_aabb[second], to_first)
+        rotation, position = self._data.geom_xmat[first].reshape(3, 3), self._data.geom_xpos[first]
+        second_rotation = self._data.geom_xmat[second].reshape(3, 3)
+        T_first_second = rotation.T @ second_rotation, rotation.T @ (self._data.geom_xpos[second] - position)
+        triangles = self._triangles_of(first)
+        box = _turned_box(self._model.geom_aabb[second], T_first_second)
+        others = self._prepare(first, second, T_first_second, limit)
         best = limit
-        for index, gap in triangles.nearest_first(*box, limit):
-            if gap > best:
+        for chunk in triangles.chunks(*box, limit):
+            if chunk[0][2] > best:
                 break
-            self._write(_TRIANGLE, triangles.corners[index])
-            found = self._distance_of_triangle(triangles, index, others, best)
-            if found < best:
-                best = found
-                if segment is not None:
-                    segment[:3] = T_first[0] @ self._segment[:3] + T_first[1]
-                    segment[3:] = T_first[0] @ self._segment[3:] + T_first[1]
-                if best <= enough:
-                    break
+            pairs = chunk if others is None else _pairs(triangles, chunk, others, best)
+            best = self._nearest(triangles, others, pairs, best, enough)
+            if best <= enough:
+                break
+        segment[:] = (self._segment.reshape(2, 3) @ rotation.T + position).ravel()
         return best
 
-    def _solid_or_triangles(self, geom: int, to_first: "tuple[Floats, Floats]") -> "_Triangles | None":
-        """Return the triangles of a mesh; or put another geom into the scratch model and return None."""
-        rotation, position = to_first
-        if self._model.geom_dataid[geom] >= 0:
-            return _Triangles(self._corners_of(geom) @ rotation.T + position)
-        self._scratch.geom_type[_SOLID] = self._model.geom_type[geom]
-        self._scratch.geom_size[_SOLID] = self._model.geom_size[geom]
-        self._scratch_data.geom_xpos[_SOLID] = position
-        self._scratch_data.geom_xmat[_SOLID] = rotation.ravel()
-        return None
-
-    def _distance_of_triangle(
-        self, triangles: "_Triangles", index: int, others: "_Triangles | None", limit: float
+    def _nearest(
+        self, triangles: "_Triangles", others: "_Triangles | None", pairs: "list[_Pair]", limit: float, enough: float
     ) -> float:
-        """Return the distance of the triangle in the scratch model, and keep where it is in ``_segment``."""
-        if others is None:
-            return mujoco.mj_geomDistance(self._scratch, self._scratch_data, _TRIANGLE, _SOLID, limit, self._segment)
+        """Return the least distance of some pairs, and keep where it is, in the frame of the first, in ``_segment``."""
         best, here = limit, np.zeros(6)
-        for other, gap in others.nearest_first(triangles.low[index], triangles.high[index], limit):
-            if gap > best:
+        place = _SOLID if others is None else _OTHER_TRIANGLE
+        for index, other, gap in pairs:
+            if gap > best or best <= enough:
                 break
-            self._write(_OTHER_TRIANGLE, others.corners[other])
-            found = mujoco.mj_geomDistance(self._scratch, self._scratch_data, _TRIANGLE, _OTHER_TRIANGLE, best, here)
+            self._write(_TRIANGLE, triangles.corners[index])
+            if others is not None:
+                self._write(_OTHER_TRIANGLE, others.corners[other])
+            found = mujoco.mj_geomDistance(self._scratch, self._scratch_data, _TRIANGLE, place, best, here)
             if found < best:
                 best, self._segment[:] = found, here
         return best
 
+    def _prepare(
+        self, first: int, second: int, T_first_second: tuple[Floats, Floats], limit: float
+    ) -> "_Triangles | None":
+        """Return the triangles of the second geom that the first may reach, in the first one's frame.
+
+        What is no mesh goes into the scratch model, and None is returned.
+        """
+        rotation, position = T_first_second
+        if self._model.geom_dataid[second] >= 0:
+            box = _turned_box(self._model.geom_aabb[first], (rotation.T, -rotation.T @ position))
+            triangles = self._triangles_of(second)
+            near, _ = triangles.near(*box, limit)
+            return _Triangles(triangles.corners[near] @ rotation.T + position)
+        self._scratch.geom_type[_SOLID] = self._model.geom_type[second]
+        self._scratch.geom_size[_SOLID] = self._model.geom_size[second]
+        self._scratch_data.geom_xpos[_SOLID] = position
+        self._scratch_data.geom_xmat[_SOLID] = rotation.ravel()
+        return None
+
+    def _triangles_of(self, geom: int) -> "_Triangles":
+        mesh = int(self._model.geom_dataid[geom])
+        if mesh not in self._triangles:
+            vertices, triangles = _mesh_arrays(self._model, mesh)
+            self._triangles[mesh] = _Triangles(vertices[triangles])
+        return self._triangles[mesh]
+
     def _write(self, place: int, corners: Floats) -> None:
         self._corners[place, :3] = corners
         self._corners[place, 3] = corners[2]
-
-    def _corners_of(self, geom: int) -> Floats:
-        mesh = int(self._model.geom_dataid[geom])
-        vertices, triangles = _mesh_arrays(self._model, mesh)
-        return vertices[triangles]
 
 
 class _Triangles:
@@ -124,17 +138,37 @@ class _Triangles:
         self.corners = corners
         self.low, self.high = corners.min(axis=1), corners.max(axis=1)
 
-    def nearest_first(self, low: Floats, high: Floats, limit: float) -> list[tuple[int, float]]:
-        """Return the triangles whose boxes are no farther than ``limit`` from a box, with that distance."""
-        apart = np.maximum(np.maximum(self.low - high, low - self.high), 0.0)
-        gaps = np.sqrt((apart * apart).sum(axis=1))
+    def near(self, low: Floats, high: Floats, limit: float) -> tuple[Ints, Floats]:
+        """Return the triangles whose boxes are no farther than ``limit`` from a box, and how far; the nearest first."""
+        gaps = _gaps(self.low, self.high, low, high)
         near = np.flatnonzero(gaps <= limit)
         near = near[np.argsort(gaps[near], kind="stable")]
-        return list(zip(near.tolist(), gaps[near].tolist(), strict=True))
+        return near, gaps[near]
+
+    def chunks(self, low: Floats, high: Floats, limit: float) -> "Iterator[list[_Pair]]":
+        """Yield what ``near`` returns, some triangles at a time, as pairs with nothing."""
+        near, gaps = self.near(low, high, limit)
+        for start in range(0, len(near), _CHUNK):
+            part = slice(start, start + _CHUNK)
+            yield [(index, -1, gap) for index, gap in zip(near[part].tolist(), gaps[part].tolist(), strict=True)]
 
 
-def _pose(data: mujoco.MjData, geom: int) -> tuple[Floats, Floats]:
-    return data.geom_xmat[geom].reshape(3, 3), data.geom_xpos[geom]
+def _pairs(triangles: _Triangles, chunk: list[_Pair], others: _Triangles, limit: float) -> list[_Pair]:
+    """Return the pairs of triangles whose boxes are no farther apart than ``limit``, and how far; the nearest first."""
+    chosen = np.array([index for index, _, _ in chunk])
+    low, high = triangles.low[chosen], triangles.high[chosen]
+    near, _ = others.near(low.min(axis=0), high.max(axis=0), limit)
+    gaps = _gaps(low[:, None], high[:, None], others.low[near], others.high[near])
+    rows, columns = np.nonzero(gaps <= limit)
+    found = gaps[rows, columns]
+    order = np.argsort(found, kind="stable")
+    return list(zip(chosen[rows[order]].tolist(), near[columns[order]].tolist(), found[order].tolist(), strict=True))
+
+
+def _gaps(low: Floats, high: Floats, other_low: Floats, other_high: Floats) -> Floats:
+    """Return how far boxes are apart; arrays of corners are broadcast, their last axis is x, y, z."""
+    apart = np.maximum(np.maximum(low - other_high, other_low - high), 0.0)
+    return np.sqrt((apart * apart).sum(axis=-1))
 
 
 def _turned_box(aabb: Floats, T_a_b: tuple[Floats, Floats]) -> tuple[Floats, Floats]:

@@ -88,8 +88,8 @@ class BodyDynamics:
         by_movers = np.zeros((count, 6, count))
         by_movers[:, :3] = np.where(before[:, None], pairs[0], pairs[0].transpose(2, 1, 0))
         by_movers[:, 3:] = np.where(before[:, None], pairs[1], 0.0)
-        P = slopes.forward(np.eye(self._kinematics.dof))
-        hessian = np.einsum("ai,axb,bj->ixj", P, by_movers, P, optimize=True)
+        by_columns = slopes.backward(by_movers.transpose(2, 1, 0))
+        hessian = slopes.backward(by_columns.transpose(2, 1, 0))
         for mover, along, dof, value in slopes.second:
             hessian[along, :, dof] += value * columns[mover]
         return hessian[:, :3].copy(), hessian[:, 3:].copy()
@@ -138,16 +138,15 @@ class BodyDynamics:
         arms = transforms[children, :3, 3] - transforms[parents, :3, 3]
         moving = after[:, :3] - before[:, :3] - cross(before[:, 3:], arms)
         turning = after[:, 3:] - before[:, 3:]
-        shown: list[Floats] = []
-        for joint, parent, moved, turned in zip(joints, transforms[parents], moving, turning, strict=True):
-            rotation = parent[:3, :3]
+        directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3)
+        slides = np.array([joint.kind == "slider" for joint in joints], dtype=bool).reshape(-1, 1)
+        axes = (transforms[parents, :3, :3] @ directions[:, :, None])[:, :, 0]
+        shown = list((axes * np.where(slides, moving, turning)).sum(axis=1, keepdims=True))
+        for index, joint in enumerate(joints):
             if joint.kind == "spherical":
-                shown.append(self._ball_velocity(joint, rotation.T @ turned))
+                shown[index] = self._ball_velocity(joint, transforms[joint.parent, :3, :3].T @ turning[index])
             elif joint.kind == "hinge2":
-                shown.append(np.linalg.pinv(self._two_axes(joint)) @ turned)
-            else:
-                along = moved if joint.kind == "slider" else turned
-                shown.append(np.array([(rotation @ joint.axes[0].direction) @ along]))
+                shown[index] = np.linalg.pinv(self._two_axes(joint)) @ turning[index]
         return shown
 
     def dof_velocities(self, velocities: Floats) -> Floats:

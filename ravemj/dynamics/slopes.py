@@ -13,7 +13,7 @@ import numpy as np
 
 from ravemj.dynamics.tree import Tree
 from ravemj.kinematics import WELDED, Ball, BodyKinematics, Follower
-from ravemj.transforms import Floats, rows_from_wxyz
+from ravemj.transforms import Floats, Ints, rows_from_wxyz
 
 if TYPE_CHECKING:
     from ravemj.expressions import Expression
@@ -30,32 +30,40 @@ class Slopes:
     """P and its derivative at given joint values, of one configuration or of many (a last axis).
 
     Attributes:
-        constant: The part of P that does not change, shape (movers, dof).
+        dof: How many DOFs there are.
+        count: How many movers there are.
+        dofs: The DOFs that move a mover one to one.
+        movers: These movers.
         first: Further entries of P: mover, DOF, value.
         second: Entries of P's derivative: mover, the DOF that changes, the DOF of the column, value.
     """
 
-    constant: Floats
+    dof: int
+    count: int
+    dofs: Ints
+    movers: Ints
     first: list[tuple[int, int, Floats]]
     second: list[tuple[int, int, int, Floats]]
 
     def forward(self, rates: Floats) -> Floats:
         """Return the movers' velocities of those of the DOFs, shape (dof, ...) to (movers, ...)."""
-        moved = np.tensordot(self.constant, rates, 1)
+        moved = np.zeros((self.count, *rates.shape[1:]))
+        moved[self.movers] = rates[self.dofs]
         for mover, dof, value in self.first:
             moved[mover] += value * rates[dof]
         return moved
 
     def backward(self, forces: Floats) -> Floats:
         """Return P^T times something, shape (movers, ...) to (dof, ...)."""
-        collected = np.tensordot(self.constant.T, forces, 1)
+        collected = np.zeros((self.dof, *forces.shape[1:]))
+        collected[self.dofs] = forces[self.movers]
         for mover, dof, value in self.first:
             collected[dof] += value * forces[mover]
         return collected
 
     def bend(self, rates: Floats) -> Floats:
         """Return the movers' accelerations while the DOFs keep their velocities, shape (dof, ...) to (movers, ...)."""
-        bent = np.zeros((len(self.constant), *rates.shape[1:]))
+        bent = np.zeros((self.count, *rates.shape[1:]))
         for mover, along, dof, value in self.second:
             bent[mover] += value * rates[along] * rates[dof]
         return bent
@@ -67,16 +75,15 @@ class VelocityMap:
     def __init__(self, kinematics: BodyKinematics, tree: Tree) -> None:
         self._kinematics = kinematics
         mover_of = tree.mover_of_qpos(kinematics.model)
-        self._constant = np.zeros((tree.count, kinematics.dof))
-        for dof, qpos in enumerate(kinematics.qpos_indices.tolist()):
-            if qpos != WELDED:
-                self._constant[mover_of[qpos], dof] = 1.0
+        dofs = np.flatnonzero(kinematics.qpos_indices != WELDED)
+        movers = np.array([mover_of[qpos] for qpos in kinematics.qpos_indices[dofs].tolist()], dtype=int)
+        self._one_to_one = kinematics.dof, tree.count, dofs, movers
         self._balls = [(ball, mover_of[ball.qpos.start]) for ball in kinematics.balls]
         self._followers = [
             (follower, mover_of.get(follower.qpos, WELDED), _Partials(self._expression(follower)))
             for follower in kinematics.followers
         ]
-        self._plain = None if self._balls or self._followers else Slopes(self._constant, [], [])
+        self._plain = None if self._balls or self._followers else Slopes(*self._one_to_one, [], [])
 
     @property
     def is_constant(self) -> bool:
@@ -99,7 +106,7 @@ class VelocityMap:
         """
         if self._plain is not None:
             return self._plain
-        slopes = Slopes(self._constant, [], [])
+        slopes = Slopes(*self._one_to_one, [], [])
         for ball, mover in self._balls:
             _add_ball(slopes, ball, mover, values[ball.dofs], second=second)
         self._add_followers(slopes, values, second=second)

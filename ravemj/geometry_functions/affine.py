@@ -72,6 +72,10 @@ def RaveGetAffineDOF(affinedofs: int) -> int:
 def RaveGetAffineDOFFromIndex(affinedofs: int, index: int) -> DOFAffine:
     """Return which part a value belongs to.
 
+    Args:
+        affinedofs: ``DOFAffine`` combined with ``|``.
+        index: A place among the affine values.
+
     Raises:
         ArgumentError: there are not so many values.
     """
@@ -83,6 +87,10 @@ def RaveGetAffineDOFFromIndex(affinedofs: int, index: int) -> DOFAffine:
 
 def RaveGetIndexFromAffineDOF(affinedofs: int, dof: int) -> int:
     """Return where the first value of a part is.
+
+    Args:
+        affinedofs: ``DOFAffine`` combined with ``|``.
+        dof: One of the ``DOFAffine``.
 
     Raises:
         ArgumentError: the part is not among ``affinedofs``.
@@ -106,7 +114,7 @@ def RaveGetAffineDOFValuesFromTransform(
         rotationaxis: The axis of ``RotationAxis``; None: z.
 
     Returns:
-        X, Y, Z [m], then the rotation, as far as they are among ``affinedofs``.
+        X, Y, Z [m], then the rotation, as far as they are among ``affinedofs``; shape (n,).
     """
     return affine_values(arguments.pose(transform, "transform"), affinedofs, _axis(rotationaxis))
 

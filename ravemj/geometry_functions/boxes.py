@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.geometry_functions import arguments
+from ravemj.showing import Shown
 from ravemj.transforms import ZERO, Floats, Pose
 
 
-class Ray:
+class Ray(Shown):
     """A ray; its length is that of its direction.
 
     Example:
@@ -35,7 +36,7 @@ class Ray:
         return f"<{_listed((*self._pos, *self._dir), ' ')}>"
 
 
-class AABB:
+class AABB(Shown):
     """A box along the axes of the world.
 
     Example:
@@ -66,7 +67,7 @@ class AABB:
         return f"<{_listed((*self._pos, *self._extents), ' ')}>"
 
 
-class OrientedBox:
+class OrientedBox(Shown):
     """A box that may be turned."""
 
     def __init__(self, transform: ArrayLike = (1, 0, 0, 0, 0, 0, 0), extents: ArrayLike = ZERO) -> None:
@@ -83,7 +84,7 @@ class OrientedBox:
 
     def pose(self) -> Floats:
         """Return the pose of the centre, quaternion first, shape (7,)."""
-        return np.array([*self._pose.wxyz, *self._pose.position])
+        return self._pose.numbers()
 
     def toDict(self) -> dict[str, Floats]:
         """Return the box as ``transform``, a pose of 7 numbers, and ``extents``."""
@@ -101,25 +102,44 @@ def _listed(numbers: Iterable[float], separator: str = ",") -> str:
 
 
 def OrientedBoxFromAABB(aabb: AABB, transform: ArrayLike) -> OrientedBox:
-    """Return a box moved by a transform, a matrix of 4x4 or a pose of 7 numbers."""
+    """Return a box moved by a transform, a matrix of 4x4 or a pose of 7 numbers.
+
+    Args:
+        aabb: The box.
+        transform: A matrix 4x4 or 3x4, or [w, x, y, z, tx, ty, tz].
+    """
     x, y, z = aabb.pos().tolist()
     moved = arguments.pose(transform, "transform") @ Pose((x, y, z))
-    return OrientedBox([*moved.wxyz, *moved.position], aabb.extents())
+    return OrientedBox(moved.numbers(), aabb.extents())
 
 
 def AABBFromOrientedBox(obb: OrientedBox) -> AABB:
-    """Return the smallest box along the axes of the world that holds a box."""
+    """Return the smallest box along the axes of the world that holds a box.
+
+    Args:
+        obb: The turned box.
+    """
     transform = obb.transform()
     return AABB(transform[:3, 3], np.abs(transform[:3, :3]) @ obb.extents())
 
 
 def CheckAABBCollision(aabb1: AABB, aabb2: AABB) -> bool:
-    """Return whether two boxes along the axes of the world overlap or touch."""
+    """Return whether two boxes along the axes of the world overlap or touch.
+
+    Args:
+        aabb1: A box.
+        aabb2: The other.
+    """
     return bool(np.all(np.abs(aabb1.pos() - aabb2.pos()) <= aabb1.extents() + aabb2.extents()))
 
 
 def CheckOBBCollision(obb1: OrientedBox, obb2: OrientedBox) -> bool:
-    """Return whether two boxes overlap or touch: no plane along their faces or edges separates them."""
+    """Return whether two boxes overlap or touch: no plane along their faces or edges separates them.
+
+    Args:
+        obb1: A turned box.
+        obb2: The other.
+    """
     first, second = obb1.transform(), obb2.transform()
     edges1, edges2 = first[:3, :3].T, second[:3, :3].T
     crossed = np.cross(edges1[:, None], edges2[None]).reshape(-1, 3)
@@ -130,10 +150,20 @@ def CheckOBBCollision(obb1: OrientedBox, obb2: OrientedBox) -> bool:
 
 
 def CheckAABBAndOBBCollision(aabb: AABB, obb: OrientedBox) -> bool:
-    """Return whether a box along the axes of the world and another box overlap or touch."""
+    """Return whether a box along the axes of the world and another box overlap or touch.
+
+    Args:
+        aabb: The box.
+        obb: The turned box.
+    """
     return CheckOBBCollision(OrientedBoxFromAABB(aabb, np.eye(4)), obb)
 
 
 def CheckBoxAtOriginAndOBBCollision(extents: ArrayLike, obb: OrientedBox) -> bool:
-    """Return whether a box in the origin, given by half its edge lengths, and another box overlap or touch."""
+    """Return whether a box in the origin, given by half its edge lengths, and another box overlap or touch.
+
+    Args:
+        extents: Half the edge lengths of the first box [m], shape (3,).
+        obb: The turned box.
+    """
     return CheckAABBAndOBBCollision(AABB(ZERO, extents), obb)

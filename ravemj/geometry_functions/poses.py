@@ -43,14 +43,18 @@ def poseFromMatrix(transform: ArrayLike) -> Floats:
 
 
 def poseFromMatrices(transforms: ArrayLike) -> Floats:
-    """Return the poses, shape (n, 7), of matrices of 4x4 or 3x4."""
+    """Return the poses, shape (n, 7), of matrices of 4x4 or 3x4.
+
+    Args:
+        transforms: Matrices, shape (n, 4, 4).
+    """
     matrices = checked_numbers(transforms, "transforms")
     return np.array([poseFromMatrix(matrix) for matrix in matrices]).reshape(-1, 7)
 
 
 def InvertPose(pose: ArrayLike) -> Floats:
     """Return the inverse of a pose, shape (7,)."""
-    return _numbers(_pose(pose).inverse())
+    return _pose(pose).inverse().numbers()
 
 
 def InvertPoses(poses: ArrayLike) -> Floats:
@@ -68,7 +72,7 @@ def MultiplyPose(pose1: ArrayLike, pose2: ArrayLike) -> Floats:
         ArgumentError: the product's quaternion is far from unit length.
     """
     product = _pose(pose1) @ _pose(pose2)
-    return _numbers(Pose(product.position, arguments.unit_wxyz(product.wxyz, "pose1 * pose2")))
+    return Pose(product.position, arguments.unit_wxyz(product.wxyz, "pose1 * pose2")).numbers()
 
 
 poseMult = MultiplyPose
@@ -99,7 +103,12 @@ def transformPoints(T: ArrayLike, points: ArrayLike) -> Floats:
 
 
 def transformInversePoints(T: ArrayLike, points: ArrayLike) -> Floats:
-    """Return points moved by the inverse of a rigid matrix; arguments as for ``transformPoints``."""
+    """Return points moved by the inverse of a rigid matrix; arguments as for ``transformPoints``.
+
+    Args:
+        T: The matrix, shape (4, 4).
+        points: Points [m], shape (n, 3).
+    """
     linear, offset = _linear(T)
     return (arguments.table(points, len(offset), "points") - offset) @ linear
 
@@ -145,12 +154,23 @@ def ComputePoseDistSqr(pose0: ArrayLike, pose1: ArrayLike, quatweight: float = 1
     """Return the squared distance of two poses: of the positions, plus ``quatweight`` times that of the quaternions.
 
     The sign of a quaternion does not count.
+
+    Args:
+        pose0: A pose [w, x, y, z, tx, ty, tz], shape (7,).
+        pose1: The other, shape (7,).
+        quatweight: Weight of the rotations against the positions.
     """
     return float(ComputePoseArrayDistSqr(pose0, [arguments.numbers(pose1, 7, "pose1")], quatweight)[0])
 
 
 def ComputePoseArrayDistSqr(pose0: ArrayLike, posearray: ArrayLike, quatweight: float = 1.0) -> Floats:
-    """Return the squared distances, shape (n,), of a pose to poses of shape (n, 7); see ``ComputePoseDistSqr``."""
+    """Return the squared distances, shape (n,), of a pose to poses of shape (n, 7); see ``ComputePoseDistSqr``.
+
+    Args:
+        pose0: A pose [w, x, y, z, tx, ty, tz], shape (7,).
+        posearray: Poses, a row each, shape (n, 7).
+        quatweight: Weight of the rotations against the positions.
+    """
     first, others = arguments.numbers(pose0, 7, "pose0"), arguments.table(posearray, 7, "posearray")
     squares = [((others[:, :4] - sign * first[:4]) ** 2).sum(axis=1) for sign in (1, -1)]
     return ((others[:, 4:] - first[4:]) ** 2).sum(axis=1) + quatweight * np.minimum(*squares)
@@ -158,7 +178,7 @@ def ComputePoseArrayDistSqr(pose0: ArrayLike, posearray: ArrayLike, quatweight: 
 
 def poseSerialization(pose: ArrayLike) -> str:
     """Return a transform, a pose of 7 numbers or a matrix of 4x4, as the text of its 7 numbers."""
-    return _text(_numbers(arguments.pose(pose, "pose")))
+    return _text(arguments.pose(pose, "pose").numbers())
 
 
 def matrixSerialization(transform: ArrayLike) -> str:
@@ -176,7 +196,3 @@ def _position(pose: ArrayLike) -> Vec3:
 
 def _pose(pose: ArrayLike) -> Pose:
     return Pose(_position(pose), arguments.wxyz(pose, "pose"))
-
-
-def _numbers(pose: Pose) -> Floats:
-    return np.array([*pose.wxyz, *pose.position])

@@ -42,7 +42,13 @@ def quatFromAxisAngle(
 def rotationMatrixFromAxisAngle(
     axisangle: ArrayLike | None = None, angle: float | None = None, *, axis: ArrayLike | None = None
 ) -> Floats:
-    """Return the matrix of a turn about an axis, shape (3, 3); arguments as for ``quatFromAxisAngle``."""
+    """Return the matrix of a turn about an axis, shape (3, 3); arguments as for ``quatFromAxisAngle``.
+
+    Args:
+        axisangle: Unit axis times angle [rad], shape (3,); with ``angle``, the axis alone.
+        angle: The angle [rad]; None: the length of the first argument.
+        axis: Which axis of the joint.
+    """
     return np.array(rows_from_wxyz(_turn(axisangle if axis is None else axis, angle)))
 
 
@@ -50,6 +56,11 @@ def matrixFromAxisAngle(
     axisangle: ArrayLike | None = None, angle: float | None = None, *, axis: ArrayLike | None = None
 ) -> Floats:
     """Return the transform of a turn about an axis, shape (4, 4); arguments as for ``quatFromAxisAngle``.
+
+    Args:
+        axisangle: Unit axis times angle [rad], shape (3,); with ``angle``, the axis alone.
+        angle: The angle [rad]; None: the length of the first argument.
+        axis: Which axis of the joint.
 
     Example:
         >>> T = matrixFromAxisAngle([0, 0, numpy.pi / 2])
@@ -88,7 +99,11 @@ def axisAngleFromRotationMatrix(rotation: ArrayLike) -> Floats:
 
 
 def axisAngleFromQuat(quat: ArrayLike) -> Floats:
-    """Return the axis times the angle [rad], up to pi, of a quaternion of any length, shape (3,)."""
+    """Return the axis times the angle [rad], up to pi, of a quaternion of any length, shape (3,).
+
+    Args:
+        quat: A quaternion [w, x, y, z], shape (4,).
+    """
     return _axis_angle(arguments.wxyz(quat, "quat"))
 
 
@@ -104,6 +119,9 @@ def _axis_angle(quaternion: Wxyz) -> Floats:
 def rotationMatrixFromQuat(quat: ArrayLike) -> Floats:
     """Return the rotation matrix of a quaternion, shape (3, 3).
 
+    Args:
+        quat: A quaternion [w, x, y, z], shape (4,).
+
     Raises:
         ArgumentError: the quaternion is far from unit length.
     """
@@ -111,12 +129,19 @@ def rotationMatrixFromQuat(quat: ArrayLike) -> Floats:
 
 
 def rotationMatrixFromQArray(quatarray: ArrayLike) -> list[Floats]:
-    """Return the rotation matrices, each of shape (3, 3), of quaternions of shape (n, 4)."""
+    """Return the rotation matrices, each of shape (3, 3), of quaternions of shape (n, 4).
+
+    Args:
+        quatarray: Quaternions, a row each, shape (n, 4).
+    """
     return [rotationMatrixFromQuat(quat) for quat in arguments.table(quatarray, 4, "quatarray")]
 
 
 def matrixFromQuat(quat: ArrayLike) -> Floats:
     """Return the transform that turns by a quaternion, shape (4, 4).
+
+    Args:
+        quat: A quaternion [w, x, y, z], shape (4,).
 
     Raises:
         ArgumentError: the quaternion is far from unit length.
@@ -139,7 +164,11 @@ MultiplyQuat = quatMult = quatMultiply
 
 
 def quatInverse(quat: ArrayLike) -> Floats:
-    """Return the quaternion that turns back: the conjugate, shape (4,)."""
+    """Return the quaternion that turns back: the conjugate, shape (4,).
+
+    Args:
+        quat: A quaternion [w, x, y, z], shape (4,).
+    """
     return np.array(conjugate(arguments.wxyz(quat, "quat")))
 
 
@@ -147,12 +176,21 @@ InvertQuat = quatInverse
 
 
 def quatRotate(q: ArrayLike, trans: ArrayLike) -> Floats:
-    """Return a vector turned by a unit quaternion, shape (3,)."""
+    """Return a vector turned by a unit quaternion, shape (3,).
+
+    Args:
+        q: A quaternion [w, x, y, z], shape (4,).
+        trans: A point or direction, shape (3,).
+    """
     return np.array(rotate(arguments.wxyz(q, "q"), arguments.vec3(trans, "trans")))
 
 
 def ExtractAxisFromQuat(quat: ArrayLike, iaxis: int) -> Floats:
     """Return where a unit quaternion turns the x, y or z axis (``iaxis`` 0, 1, 2), shape (3,).
+
+    Args:
+        quat: A quaternion [w, x, y, z], shape (4,).
+        iaxis: 0, 1 or 2 for x, y or z.
 
     Raises:
         ArgumentError: there is no such axis.

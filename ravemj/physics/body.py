@@ -48,7 +48,7 @@ class PhysicalBody:
     def take_over(self) -> None:
         """Go where the body is in the simulation, and as fast, if somebody changed that."""
         if self._stamp != self.state.stamp:
-            configuration, _ = self.state.configuration()
+            configuration = self.state.configuration().last_placed
             assert configuration is not None
             self.kinematics.restore(configuration)
             for root in self._free:

@@ -32,16 +32,16 @@ class Loads:
         motor: What drives joints, or None.
     """
 
-    def __init__(self, state: BodyState) -> None:
+    def __init__(self, state: BodyState, motor: Motor | None = None) -> None:
         self._state = state
-        self.motor: Motor | None = None
-        self.clear()
-
-    def clear(self) -> None:
-        """Forget all but the motor."""
-        links = len(self._state.scene.links)
-        self.torques = np.zeros(len(self._state.scene.dof_axes))
+        self.motor = motor
+        links = len(state.scene.links)
+        self.torques = np.zeros(len(state.scene.dof_axes))
         self._forces, self._levers, self._moments = np.zeros((links, 3)), np.zeros((links, 3)), np.zeros((links, 3))
+
+    def next(self) -> "Loads":
+        """Return what is left for the step after: the motor."""
+        return Loads(self._state, self.motor)
 
     def push(self, link: int, force: Floats, position: Floats, *, add: bool) -> None:
         """Let a force act on a link.

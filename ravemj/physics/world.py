@@ -5,15 +5,17 @@ link are free. It has no state that the simulation has not: before each step it 
 it the simulation follows. So it can be made anew whenever bodies come, go or change.
 """
 
+import itertools
 import logging
 import math
-from collections.abc import Iterator
 
 import mujoco
 import numpy as np
 
+from ravemj.collision.resting import tested_pairs
+from ravemj.collision.world import world_of
 from ravemj.errors import Diagnostics
-from ravemj.mjcf import BodyNames, Mjcf, Options
+from ravemj.mjcf import Mjcf, Options
 from ravemj.physics.body import PhysicalBody
 from ravemj.physics.loads import Loads
 from ravemj.scene import Scene
@@ -65,9 +67,9 @@ class Physics:
         model.opt.gravity[:] = self._simulation.gravity
         model.opt.timestep = timestep / count
         before = data.qpos.copy()
-        data.qfrc_applied[:] = 0.0
-        for state, loads in self._loads.items():
-            loads.apply(self._bodies[state])
+        data.qfrc_applied[:], data.xfrc_applied[:] = 0.0, 0.0
+        for body in self._bodies.values():
+            self.loads(body.state).apply(body)
         applied = data.qfrc_applied.copy()
         for _ in range(count):
             self._drive(applied)
@@ -76,23 +78,25 @@ class Physics:
             _LOG.error("physics got unstable and starts again at rest; very light links or strong forces do that")
             mujoco.mj_resetData(model, data)
             data.qpos[:] = before
-        for loads in self._loads.values():
-            loads.clear()
+        self._loads = {state: loads.next() for state, loads in self._loads.items() if loads.motor is not None}
         self._give_back()
 
     def _drive(self, applied: Floats) -> None:
         """Let motors act during the next time step."""
-        if any(loads.motor is not None for loads in self._loads.values()):
+        driven = [body for body in self._bodies.values() if self.loads(body.state).motor is not None]
+        if driven:
             self._data.qfrc_applied[:] = applied
             mujoco.mj_forward(self._model, self._data)
-            for state, loads in self._loads.items():
-                loads.drive(self._bodies[state], applied)
+            for body in driven:
+                self.loads(body.state).drive(body, applied)
 
     def _prepare(self) -> None:
         """Make the model anew if the bodies are others, and take over what users moved."""
         self._simulation.compile()
         states = self._simulation.bodies
-        made_of: list[object] = [part for state in states for part in (state, state.scene, *state.grabs)]
+        made_of: list[object] = [
+            part for state in states for part in (state, state.scene, state.rest_poses, *state.grabs)
+        ]
         if len(made_of) != len(self._made_of) or any(a is not b for a, b in zip(made_of, self._made_of, strict=True)):
             self._make(states)
             self._made_of = made_of
@@ -101,7 +105,7 @@ class Physics:
 
     def _make(self, states: tuple[BodyState, ...]) -> None:
         scene = Scene(tuple(state.scene for state in states), None)
-        compiled = Compiled(scene, Diagnostics(), Options(free_bases=True), self._add_grabs)
+        compiled = Compiled(scene, Diagnostics(), Options(free_bases=True, excludes=False), self._add_grabs)
         self._model, self._data = compiled.model, compiled.data
         self._model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
         self._model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
@@ -109,7 +113,6 @@ class Physics:
             state: PhysicalBody(state, self._model, self._data, names)
             for state, names in zip(states, compiled.mjcf.names, strict=True)
         }
-        self._loads = {state: loads for state, loads in self._loads.items() if state in self._bodies}
 
     def _add_grabs(self, spec: mujoco.MjSpec, written: Mjcf) -> None:
         """Hang what bodies hold on them, and let them not collide with it."""
@@ -125,9 +128,13 @@ class Physics:
                 for link in {grab.link, *grab.ignored}:
                     for name in held.links:
                         spec.add_exclude(bodyname1=own.links[link], bodyname2=name)
-            if not self.self_collisions:
-                for first, second in _pairs(own):
-                    spec.add_exclude(bodyname1=first, bodyname2=second)
+            for first, second in self._untested_pairs(state):
+                spec.add_exclude(bodyname1=own.links[first], bodyname2=own.links[second])
+
+    def _untested_pairs(self, state: BodyState) -> set[tuple[int, int]]:
+        """Return the pairs of a body's links that do not collide, by index."""
+        pairs = set(itertools.combinations(range(len(state.scene.links)), 2))
+        return pairs.difference(tested_pairs(world_of(self._simulation), state)) if self.self_collisions else pairs
 
     def joint_wrench(self, state: BodyState, child: int, anchor: Floats) -> tuple[Floats, Floats]:
         """Return the force on a link from its parent [N], and the torque about a point [N m], in world axes.
@@ -186,9 +193,3 @@ class Physics:
             body.settle()
         for body in moving:
             body.give_velocities()
-
-
-def _pairs(names: BodyNames) -> Iterator[tuple[str, str]]:
-    for place, first in enumerate(names.links):
-        for second in names.links[place + 1 :]:
-            yield first, second

@@ -98,7 +98,7 @@ from ravemj.rave.plugins import (
 )
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.robot import Robot
-from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, Sensor
+from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, CameraSensorData, Sensor
 from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
 from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 from ravemj.rave.trimesh import TriMesh
@@ -112,6 +112,7 @@ __all__ = [
     "AttachedSensor",
     "CameraGeomData",
     "CameraIntrinsics",
+    "CameraSensorData",
     "CheckLimitsAction",
     "CloningOptions",
     "CollisionAction",

@@ -9,6 +9,7 @@ from ravemj.errors import ErrorCode, UnsupportedError
 from ravemj.geometry_functions import Ray, quatFromRotationMatrix
 from ravemj.rave.enums import IkParameterizationType
 from ravemj.rave.ikparameterization import IkParameterization
+from ravemj.showing import Shown
 from ravemj.transforms import Floats, inverse
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 INVERSE_KINEMATICS = "inverse kinematics"
 
 
-class ArmGoals:
+class ArmGoals(Shown):
     """Part of the API of a manipulator."""
 
     @property
@@ -48,7 +49,12 @@ class ArmGoals:
         return False
 
     def FindIKSolution(self, param: ArrayLike | IkParameterization, *arguments: Any, **options: Any) -> Floats | None:  # noqa: ANN401 - OpenRAVE's overloads
-        """Find joint values that take the tool to a goal.
+        """Return joint values that take the tool to a goal, in the order of ``GetArmIndices()``, shape (n,).
+
+        Args:
+            param: ``T_world_tool``, or an ``IkParameterization``.
+            arguments: ``IkFilterOptions``, and what OpenRAVE's other overloads take.
+            options: The same by name.
 
         Raises:
             UnsupportedError: always; there is no solver.
@@ -56,7 +62,12 @@ class ArmGoals:
         raise UnsupportedError("FindIKSolution", INVERSE_KINEMATICS, ErrorCode.Failed)
 
     def FindIKSolutions(self, param: ArrayLike | IkParameterization, *arguments: Any, **options: Any) -> Floats:  # noqa: ANN401 - OpenRAVE's overloads
-        """Find all joint values that take the tool to a goal.
+        """Return joint values that take the tool to a goal, each way in a row, shape (k, n).
+
+        Args:
+            param: ``T_world_tool``, or an ``IkParameterization``.
+            arguments: ``IkFilterOptions``, and what OpenRAVE's other overloads take.
+            options: The same by name.
 
         Raises:
             UnsupportedError: always; there is no solver.

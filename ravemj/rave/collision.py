@@ -2,13 +2,12 @@
 
 import logging
 from collections.abc import Iterable, Sequence
-from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Self, cast
 
 import numpy as np
 
 from ravemj.collision import questions
-from ravemj.collision.questions import LinkOf, Links
+from ravemj.collision.questions import LinkOf, Links, MovedBy
 from ravemj.collision.rays import RayHit
 from ravemj.collision.world import CollisionWorld, Pairs, world_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -18,6 +17,7 @@ from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
 from ravemj.rave.interface import Annotations, Interface, checked_environment, checked_kind
 from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact, Part
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 from ravemj.transforms import Floats
 
@@ -51,6 +51,7 @@ class CollisionChecker(Interface):
     """
 
     _interface_type = InterfaceType.collisionchecker
+    _internal = ("answer", "cast")
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
         self._env = env
@@ -90,7 +91,11 @@ class CollisionChecker(Interface):
         return self._options
 
     def SetTolerance(self, tolerance: float) -> None:
-        """Set the distance [m] of ``CollisionOptions.UseTolerance``."""
+        """Set the distance [m] of ``CollisionOptions.UseTolerance``.
+
+        Args:
+            tolerance: The distance [m].
+        """
         self._tolerance = float(tolerance)
 
     def GetTolerance(self) -> float:
@@ -98,7 +103,7 @@ class CollisionChecker(Interface):
         return self._tolerance
 
     def CheckCollision(self, *arguments: object, report: CollisionReport | None = None, **named: object) -> bool:
-        """Return whether things touch; see ``env.CheckCollision``."""
+        """Return whether things touch; arguments and ``report`` as for ``env.CheckCollision``."""
         if named:
             arguments = (*arguments, *(named.pop(name) for name in _ARGUMENTS if name in named))
         if named:
@@ -127,10 +132,12 @@ class CollisionChecker(Interface):
             world = world_of(self._simulation)
             if isinstance(linkbody, Link):
                 state, link = _key(linkbody)
-                pairs = questions.itself(world, state, frozenset({link}))
+                others = range(len(state.scene.links))
+                pairs = questions.itself(world, state, frozenset((min(link, a), max(link, a)) for a in others))
             else:
                 state = _state(linkbody)
-                pairs = questions.itself(world, state, self._active_links(state))
+                active = self._options & _ACTIVE_DOFS
+                pairs = questions.itself(world, state, MovedBy(self._env.wrap(state).active_dofs()) if active else None)
             return self.answer(world, pairs, report)
 
     def _pairs(self, world: CollisionWorld, arguments: Sequence[object]) -> Pairs:
@@ -177,7 +184,8 @@ class CollisionChecker(Interface):
         """Return the links to which the option ``ActiveDOFs`` restricts the tests; None: all."""
         if not self._options & _ACTIVE_DOFS:
             return None
-        return self._env.wrap(state).active_links()
+        body = self._env.wrap(state)
+        return None if body.moves_as_a_whole() else MovedBy(body.active_dofs())
 
     def answer(self, world: CollisionWorld, pairs: Pairs, report: CollisionReport | None) -> bool:
         """Test pairs of geoms as the options say, fill the report, and return whether there is a collision.
@@ -265,6 +273,11 @@ class CollisionChecker(Interface):
                 raise _not_understood((Ray(start, direction), target))
         return world.ray(start, direction, geoms)
 
+    def __repr__(self) -> str:
+        if self._env.GetCollisionChecker() is self:
+            return f"{self._env!r}.GetCollisionChecker()"
+        return f"RaveCreateCollisionChecker({self._env!r}, {self._name!r})"
+
 
 class NoCollisionChecker(CollisionChecker):
     """A checker for which nothing collides: that of ``env.SetCollisionChecker(None)``."""
@@ -284,7 +297,7 @@ class NoCollisionChecker(CollisionChecker):
         del world, start, direction, target
 
 
-class CollisionOptionsStateSaver(AbstractContextManager["CollisionOptionsStateSaver"]):
+class CollisionOptionsStateSaver(Shown):
     """Sets the options of a checker, and sets the old ones again at the end of its ``with``.
 
     Example:
@@ -307,6 +320,9 @@ class CollisionOptionsStateSaver(AbstractContextManager["CollisionOptionsStateSa
         self._old = p.GetCollisionOptions()
         if not p.SetCollisionOptions(newoptions) and required:
             raise ArgumentError(f"CollisionOptionsStateSaver: newoptions are {newoptions}, which are not all known")
+
+    def __enter__(self) -> Self:
+        return self
 
     def __exit__(self, *exception: object) -> None:
         self._checker.SetCollisionOptions(self._old)

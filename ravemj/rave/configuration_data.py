@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import arguments
+from ravemj.showing import Shown
 from ravemj.trajectories import extraction, layout
 from ravemj.trajectories.conversion import FindBody, convert_group, converted, nobody
 from ravemj.trajectories.groups import Group, ik_type
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from ravemj.rave.specification import ConfigurationSpecification
 
 
-class ConfigurationData:
+class ConfigurationData(Shown):
     """The part of ``ConfigurationSpecification`` that works on numbers."""
 
     _groups: list[Group]
@@ -55,6 +56,13 @@ class ConfigurationData:
     ) -> bool:
         """Write joint values into a configuration; the others stay. Arguments as for ``ExtractJointValues``.
 
+        Args:
+            data: The configuration; it is changed. Shape (dof,).
+            values: The numbers.
+            body: The body.
+            indices: The DOFs that the values are of.
+            timederivative: 0 for values, 1 for velocities, 2 for accelerations.
+
         Returns:
             Whether there are values of the body.
         """
@@ -79,8 +87,8 @@ class ConfigurationData:
             timederivative: 1 for velocities, 2 for accelerations and so on.
 
         Returns:
-            Values in the order X, Y, Z, rotation, 0 for those that are not there; None where there are none of the
-            body. (OpenRAVE looks for positions under a name that no group has, and finds none.)
+            Values in the order X, Y, Z, rotation, shape (n,); 0 for those that are not there; None where there are
+            none of the body. (OpenRAVE looks for positions under a name that no group has, and finds none.)
         """
         values, order = self._checked(data), checked_order(timederivative)
         return extraction.affine_values(self._groups, values, _name(body), affinedofs, order)
@@ -130,12 +138,21 @@ class ConfigurationData:
         return goal
 
     def ExtractDeltaTime(self, data: ArrayLike) -> float | None:
-        """Return the time since the last waypoint [s], or None where the configuration has none."""
+        """Return the time since the last waypoint [s], or None where the configuration has none.
+
+        Args:
+            data: Numbers of one configuration, shape (dof,).
+        """
         column = extraction.time_column(self._groups)
         return None if column is None else float(self._checked(data)[column])
 
     def InsertDeltaTime(self, data: MutableSequence[float] | Floats, deltatime: float) -> bool:
-        """Write the time since the last waypoint [s] into a configuration; return whether it has a place for it."""
+        """Write the time since the last waypoint [s] into a configuration; return whether it has a place for it.
+
+        Args:
+            data: The configuration; it is changed. Shape (dof,).
+            deltatime: Seconds since the configuration before.
+        """
         column = extraction.time_column(self._groups)
         if column is None:
             return False
@@ -144,7 +161,11 @@ class ConfigurationData:
         return True
 
     def ExtractUsedBodies(self, env: "Environment") -> "list[KinBody]":
-        """Return the bodies of an environment whose values there are."""
+        """Return the bodies of an environment whose values there are.
+
+        Args:
+            env: Where the bodies are.
+        """
         bodies = (env.GetKinBody(name) for name in extraction.used_bodies(self._groups))
         return [body for body in bodies if body is not None]
 
@@ -171,7 +192,7 @@ class ConfigurationData:
             filluninitialized: False: zeros stand for it.
 
         Returns:
-            The configurations, one behind the other.
+            The configurations, one behind the other, shape (numpoints * dof,).
         """
         target = np.zeros(numpoints * targetspec.GetDOF())
         return self._converted(target, targetspec, sourcedata, numpoints, _finder(env) if filluninitialized else None)
@@ -184,7 +205,15 @@ class ConfigurationData:
         numpoints: int,
         env: "Environment | None",
     ) -> Floats:
-        """Return configurations in another specification; what they lack is taken from ``targetdata``."""
+        """Return configurations in another specification; what they lack is taken from ``targetdata``.
+
+        Args:
+            targetdata: Numbers in the layout of the target; they are changed.
+            targetspec: The layout of the target.
+            sourcedata: Numbers in the layout of this one, shape (numpoints, dof).
+            numpoints: How many configurations there are.
+            env: Where the bodies are.
+        """
         del env
         return self._converted(checked_numbers(targetdata, "targetdata"), targetspec, sourcedata, numpoints, None)
 
@@ -209,7 +238,16 @@ class ConfigurationData:
         env: "Environment | None",
         filluninitialized: bool = True,
     ) -> Floats:
-        """Return the values of a group as those of another group of its kind; see ``ConvertData``."""
+        """Return the values of a group as those of another group of its kind; see ``ConvertData``.
+
+        Args:
+            gtarget: The group to convert to.
+            sourcedata: Numbers of the group, shape (numpoints, dof).
+            gsource: The group that the data are of.
+            numpoints: How many configurations there are.
+            env: Where the bodies are.
+            filluninitialized: Whether values that the source has not are taken from the environment.
+        """
         target = np.zeros((numpoints, gtarget.dof))
         source = _rows(sourcedata, numpoints, gsource.dof, "sourcedata")
         convert_group(gsource, source, gtarget, target, _finder(env) if filluninitialized else None)

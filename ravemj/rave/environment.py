@@ -18,7 +18,6 @@ from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
-from ravemj.readers import read_file
 from ravemj.simulation import Simulation
 
 _numbers = itertools.count(1)
@@ -38,6 +37,8 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
         >>> picture = env.render(640, 480)
     """
 
+    _internal = ("simulation",)
+
     def __init__(self, options: int = 1) -> None:
         """Make an empty environment.
 
@@ -54,7 +55,11 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
         return self._number
 
     def SetDebugLevel(self, level: int) -> None:
-        """Set how much is logged, for all environments; see ``RaveSetDebugLevel``."""
+        """Set how much is logged, for all environments; see ``RaveSetDebugLevel``.
+
+        Args:
+            level: A ``DebugLevel``.
+        """
         RaveSetDebugLevel(level)
 
     def GetDebugLevel(self) -> int:
@@ -66,7 +71,16 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
         self._simulation.clear()
 
     def Destroy(self) -> None:
-        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm."""
+        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm.
+
+        Example:
+            >>> env = ravemj.Environment()
+            >>> try:
+            ...     env.Load("models/env.xml")
+            ... finally:
+            ...     env.Destroy()
+            True
+        """
         self.StopSimulation()
         self.SetViewer("")
         self.Reset()
@@ -108,12 +122,20 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
 
 
 def RaveGetEnvironment(id: int) -> Environment | None:  # OpenRAVE's name of the argument
-    """Return the environment of that number, as ``repr(env)`` shows it, or None."""
+    """Return the environment of that number, as ``repr(env)`` shows it, or None.
+
+    Args:
+        id: The number.
+    """
     return _environments.get(id)
 
 
 def RaveGetEnvironmentId(env: Environment) -> int:
-    """Return the environment's number, as ``RaveGetEnvironment`` takes it."""
+    """Return the environment's number, as ``RaveGetEnvironment`` takes it.
+
+    Args:
+        env: The environment.
+    """
     return checked_environment(env, "RaveGetEnvironmentId").GetId()
 
 
@@ -146,6 +168,8 @@ def load(path: str | os.PathLike[str]) -> Environment:
         >>> env.GetRobots()[0].GetDOF()
         2
     """
+    from ravemj.readers import read_file  # noqa: PLC0415 - slow to import
+
     reading = read_file(path)
     env = Environment()
     try:

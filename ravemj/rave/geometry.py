@@ -11,16 +11,16 @@ from ravemj.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.bounds import geometry_bounds
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import AABB
-from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.geometry import TYPES, GeometryInfo
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 from ravemj.tessellation import triangulated
-from ravemj.transforms import Floats
+from ravemj.transforms import Floats, pose_of
 
 
-class Geometry:
+class Geometry(Shown):
     """A shape of a link; ``link.GetGeometries()`` makes it. What it does not have, its getters raise for.
 
     Setters act at once, also in viewers and in pictures.
@@ -76,7 +76,7 @@ class Geometry:
 
     def GetTransformPose(self) -> Floats:
         """Return the pose in the link as [w, x, y, z, tx, ty, tz], shape (7,)."""
-        return pose_from_matrix(self.GetTransform())
+        return pose_of(self.GetTransform()).numbers()
 
     def GetBoxExtents(self) -> Floats:
         """Return half the edge lengths of a box [m], shape (3,)."""
@@ -147,7 +147,11 @@ class Geometry:
         return trimesh_of(triangulated(self._scene.shape))
 
     def InitCollisionMesh(self, fTessellation: float = 1.0) -> bool:
-        """Return True; the triangles of ``GetCollisionMesh`` are always there, in one fineness."""
+        """Return True; the triangles of ``GetCollisionMesh`` are always there, in one fineness.
+
+        Args:
+            fTessellation: Not used.
+        """
         del fTessellation
         return True
 
@@ -184,7 +188,11 @@ class Geometry:
         return np.array(self._scene.diffuse)
 
     def SetDiffuseColor(self, color: ArrayLike) -> None:
-        """Set the colour: red, green, blue from 0 to 1. What a render file draws keeps its own colours."""
+        """Set the colour: red, green, blue from 0 to 1. What a render file draws keeps its own colours.
+
+        Args:
+            color: Red, green, blue from 0 to 1.
+        """
         self._edit(diffuse=_checked_colour(color, "SetDiffuseColor"))
 
     def GetAmbientColor(self) -> Floats:
@@ -192,7 +200,11 @@ class Geometry:
         return np.array(self._scene.ambient)
 
     def SetAmbientColor(self, color: ArrayLike) -> None:
-        """Set the colour in the shade: red, green, blue from 0 to 1. Pictures do not use it."""
+        """Set the colour in the shade: red, green, blue from 0 to 1. Pictures do not use it.
+
+        Args:
+            color: Red, green, blue from 0 to 1.
+        """
         self._edit(ambient=_checked_colour(color, "SetAmbientColor"))
 
     def GetTransparency(self) -> float:
@@ -211,14 +223,22 @@ class Geometry:
     IsDraw = IsVisible
 
     def SetVisible(self, visible: bool) -> bool:
-        """Draw the geometry or not; it collides all the same. Return whether that changed something."""
+        """Draw the geometry or not; it collides all the same. Return whether that changed something.
+
+        Args:
+            visible: False hides it.
+        """
         changed = self._scene.visible != bool(visible)
         if changed:
             self._edit(visible=bool(visible))
         return changed
 
     def SetDraw(self, draw: bool) -> None:
-        """Draw the geometry or not: an old name of ``SetVisible``."""
+        """Draw the geometry or not: an old name of ``SetVisible``.
+
+        Args:
+            draw: False hides it.
+        """
         self.SetVisible(draw)
 
     def IsModifiable(self) -> bool:
@@ -269,6 +289,11 @@ class Geometry:
         return self._link, self._index, self._group
 
     def __repr__(self) -> str:
+        body: Any = self._state.api_object
+        chosen = "GetGeometries()" if self._group is None else f"GetGeometriesFromGroup({self._group!r})"
+        return f"{body.GetLinks()[self._link]!r}.{chosen}[{self._index}]"
+
+    def __str__(self) -> str:
         return f"<geometry:{self.GetName()}, type={self.GetType().name}>"
 
 

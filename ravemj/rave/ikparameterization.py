@@ -12,6 +12,7 @@ from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.geometry_functions import Ray
 from ravemj.rave.enums import IkParameterizationType
 from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.showing import Shown
 from ravemj.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
 
 _Type = IkParameterizationType
@@ -21,7 +22,7 @@ _CUSTOM_DATA = 0x10000
 _ANGLE_WEIGHT = 0.4
 
 
-class IkParameterization:
+class IkParameterization(Shown):
     """A pose, a direction, a point or a ray that the tool of an arm shall reach.
 
     The numbers are, by type: ``Transform6D`` the pose [w, x, y, z, tx, ty, tz]; ``Rotation3D`` the quaternion;
@@ -97,14 +98,27 @@ class IkParameterization:
     def GetConfigurationSpecification(
         self, interpolation: str = "", robotname: str = "", manipname: str = ""
     ) -> ConfigurationSpecification:
-        """Return the layout of a goal of this type in a trajectory."""
+        """Return the layout of a goal of this type in a trajectory.
+
+        Args:
+            interpolation: How the values change between waypoints.
+            robotname: Name of the robot; empty: any.
+            manipname: Name of the arm; empty: any.
+        """
         return self.GetConfigurationSpecificationFromType(self._type, interpolation, robotname, manipname)
 
     @staticmethod
     def GetConfigurationSpecificationFromType(
         type: int, interpolation: str = "", robotname: str = "", manipname: str = ""
     ) -> ConfigurationSpecification:
-        """Return the layout of a goal of a type in a trajectory."""
+        """Return the layout of a goal of a type in a trajectory.
+
+        Args:
+            type: A type of goal.
+            interpolation: How the values change between waypoints.
+            robotname: Name of the robot; empty: any.
+            manipname: Name of the arm; empty: any.
+        """
         spec = ConfigurationSpecification()
         name = " ".join(filter(None, ["ikparam_values", str(int(type)), robotname, manipname]))
         spec.AddGroup(name, IkParameterization.GetNumberOfValuesFromType(type), interpolation)
@@ -113,7 +127,11 @@ class IkParameterization:
     # One pair of methods for each type
 
     def SetTransform6D(self, transform: ArrayLike) -> None:
-        """Set the goal to a pose: 4x4 or [w, x, y, z, tx, ty, tz]."""
+        """Set the goal to a pose: 4x4 or [w, x, y, z, tx, ty, tz].
+
+        Args:
+            transform: A matrix 4x4 or 3x4, or [w, x, y, z, tx, ty, tz].
+        """
         self._set(_Type.Transform6D, transform)
 
     def GetTransform6D(self) -> Floats:
@@ -125,7 +143,11 @@ class IkParameterization:
         return self._of(_Type.Transform6D)
 
     def SetRotation3D(self, quat: ArrayLike) -> None:
-        """Set the goal to a rotation: a quaternion [w, x, y, z]."""
+        """Set the goal to a rotation: a quaternion [w, x, y, z].
+
+        Args:
+            quat: [w, x, y, z], shape (4,).
+        """
         self._set(_Type.Rotation3D, quat)
 
     def GetRotation3D(self) -> Floats:
@@ -165,7 +187,11 @@ class IkParameterization:
         return _ray(self._of(_Type.Ray4D))
 
     def SetTranslationDirection5D(self, ray: Ray) -> None:
-        """Set the goal to a point and a direction."""
+        """Set the goal to a point and a direction.
+
+        Args:
+            ray: The tool's position and direction.
+        """
         self._set(_Type.TranslationDirection5D, ray)
 
     def GetTranslationDirection5D(self) -> Ray:
@@ -201,7 +227,11 @@ class IkParameterization:
         return self.Transform(transform)
 
     def ComputeDistanceSqr(self, other: "IkParameterization") -> float:
-        """Return the squared distance to another goal of the same type; angles count in radians, and less for poses."""
+        """Return the squared distance to another goal of the same type; angles count in radians, and less for poses.
+
+        Args:
+            other: Another goal of the same type.
+        """
         a, b = self._values, other._of(self._type)
         if self._type == _Type.Transform6D:
             return _length2(a[4:] - b[4:]) + _ANGLE_WEIGHT * _turn(a[:4], b[:4]) ** 2
@@ -219,13 +249,18 @@ class IkParameterization:
     # Data of users
 
     def SetCustomValues(self, name: str, values: ArrayLike) -> None:
-        """Attach numbers under a name without spaces."""
+        """Attach numbers under a name without spaces.
+
+        Args:
+            name: The name.
+            values: The numbers, shape (n,).
+        """
         if not name or name.split() != [name]:
             raise ArgumentError(f"name: is '{name}', and should be a word")
         self._custom[name] = checked_numbers(values, "values")
 
     def GetCustomValues(self, name: str) -> Floats | None:
-        """Return the numbers under a name, or None."""
+        """Return the numbers under a name, shape (n,), or None."""
         return self._custom[name].copy() if name in self._custom else None
 
     def GetCustomDataMap(self) -> dict[str, Floats]:
@@ -267,8 +302,7 @@ class IkParameterization:
 def _numbers(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: ANN401 - as the type asks for
     """Return the numbers of a goal that a user gave as a matrix, a ray or a vector."""
     if kind == _Type.Transform6D:
-        pose = pose_of(checked_transform(value, "value"))
-        return np.array([*pose.wxyz, *pose.position])
+        return pose_of(checked_transform(value, "value")).numbers()
     if kind in _RAYS:
         if not isinstance(value, Ray):
             raise ArgumentError(f"value: is a {type(value).__name__}, and should be a Ray")
@@ -281,8 +315,7 @@ def _moved(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
     """Return the numbers of a goal that is moved by a pose."""
     matrix = pose.matrix()
     if kind == _Type.Transform6D:
-        moved = pose @ _pose(values)
-        return np.array([*moved.wxyz, *moved.position])
+        return (pose @ _pose(values)).numbers()
     if kind == _Type.Rotation3D:
         return np.array(multiply(pose.wxyz, _wxyz(values)))
     if kind == _Type.Direction3D:

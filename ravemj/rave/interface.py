@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
+from ravemj.showing import Shown
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -40,7 +41,7 @@ class Annotations:
         self.data: dict[str, Any] = {}
 
 
-class UserData:
+class UserData(Shown):
     """Keeps data of users."""
 
     _annotations: Annotations
@@ -54,11 +55,19 @@ class UserData:
         self._annotations.data[str(key)] = data
 
     def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
-        """Return what ``SetUserData`` attached under that name, or None."""
+        """Return what ``SetUserData`` attached under that name, or None.
+
+        Args:
+            key: The name; left out: the one without a name.
+        """
         return self._annotations.data.get(key)
 
     def RemoveUserData(self, key: str = "") -> bool:
-        """Forget what is attached under a name; return whether there was something."""
+        """Forget what is attached under a name; return whether there was something.
+
+        Args:
+            key: The name; left out: the one without a name.
+        """
         return self._annotations.data.pop(key, None) is not None
 
 
@@ -72,7 +81,12 @@ class Interface(UserData):
     _interface_type: InterfaceType
 
     def GetEnv(self) -> "Environment":
-        """Return the environment that the object was made for, also before it is added."""
+        """Return the environment that the object was made for, also before it is added.
+
+        Example:
+            >>> robot.GetEnv() == env
+            True
+        """
         return self._env
 
     def GetInterfaceType(self) -> InterfaceType:
@@ -92,16 +106,32 @@ class Interface(UserData):
         return self._annotations.description
 
     def SetDescription(self, description: str) -> None:
-        """Attach a text."""
+        """Attach a text.
+
+        Args:
+            description: The text.
+        """
         self._annotations.description = str(description)
 
     def SupportsCommand(self, cmd: str) -> bool:
-        """Return whether ``SendCommand`` knows a command; no command is known here."""
+        """Return whether ``SendCommand`` knows a command; no command is known here.
+
+        Args:
+            cmd: The name of the command, and behind a blank its arguments.
+        """
         del cmd
         return False
 
     def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str | None:
         """Run a command of OpenRAVE's plugins by its text.
+
+        Args:
+            cmd: The name of the command, and behind a blank its arguments.
+            releasegil: Not used.
+            lockenv: Not used.
+
+        Returns:
+            Its answer; None if it failed.
 
         Raises:
             openrave_exception: the command is not known (``CommandNotSupported``); none is, here.

@@ -8,11 +8,13 @@ from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_indices, checked_vector
 from ravemj.joints import directions_at, measured_values, relative_pose, reported_anchor
+from ravemj.rave.body.limits import wrapped_angle
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
 from ravemj.rave.joints.following import JointFollowing
 from ravemj.rave.joints.limits import JointLimits
 from ravemj.rave.link import Link
+from ravemj.rave.tables import joint_table
 from ravemj.transforms import Floats, Pose, pose_of
 
 if TYPE_CHECKING:
@@ -46,7 +48,12 @@ class Joint(JointLimits, JointFollowing):
         return self._index if self._is_active else -1
 
     def GetDOFIndex(self) -> int:
-        """Return the joint's first position in the vectors of DOF values; -1 for a passive joint."""
+        """Return the joint's first position in the vectors of DOF values; -1 for a passive joint.
+
+        Example:
+            >>> index = robot.GetJoint("Joint1").GetDOFIndex()
+            >>> robot.SetDOFValues([0.5], [index])
+        """
         if not self._is_active:
             return -1
         return sum(len(joint.axes) for joint in self._state.scene.joints[: self._index])
@@ -64,7 +71,11 @@ class Joint(JointLimits, JointFollowing):
             return self._state.kinematics.values()[first : first + self.GetDOF()]
 
     def GetValue(self, axis: int = 0) -> float:
-        """Return the joint's value about or along one of its axes [rad or m]."""
+        """Return the joint's value about or along one of its axes [rad or m].
+
+        Args:
+            axis: Which axis of the joint.
+        """
         return float(self.GetValues()[axis])
 
     def GetVelocities(self) -> Floats:
@@ -73,7 +84,11 @@ class Joint(JointLimits, JointFollowing):
             return self._state.dynamics.joint_velocities(self._state.link_velocities(), [self._scene])[0]
 
     def GetVelocity(self, axis: int = 0) -> float:
-        """Return the joint's velocity about or along one of its axes [rad/s or m/s]."""
+        """Return the joint's velocity about or along one of its axes [rad/s or m/s].
+
+        Args:
+            axis: Which axis of the joint.
+        """
         return float(self.GetVelocities()[axis])
 
     def AddTorque(self, torques: ArrayLike) -> bool:
@@ -99,7 +114,7 @@ class Joint(JointLimits, JointFollowing):
             ``value0 - value1``; for a circular joint the shorter way round, from -pi to pi.
         """
         difference = float(value0) - float(value1)
-        return (difference + np.pi) % (2 * np.pi) - np.pi if self._scene.axes[axis].circular else difference
+        return float(wrapped_angle(difference)) if self._scene.axes[axis].circular else difference
 
     def SubtractValues(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
         """Return the differences of the values of all axes, as ``SubtractValue``.
@@ -116,7 +131,11 @@ class Joint(JointLimits, JointFollowing):
         return np.array([self.SubtractValue(first, second, axis) for axis, (first, second) in enumerate(pairs)])
 
     def GetWrapOffset(self, axis: int = 0) -> float:
-        """Return the value about which ``SetWrapOffset`` chose the turn that the joint's value is in [rad]."""
+        """Return the value about which ``SetWrapOffset`` chose the turn that the joint's value is in [rad].
+
+        Args:
+            axis: Which axis of the joint.
+        """
         return self._scene.axes[axis].wrap_offset
 
     def SetWrapOffset(self, offset: float, axis: int = 0) -> None:
@@ -150,7 +169,11 @@ class Joint(JointLimits, JointFollowing):
         return 0 <= axis < len(self._scene.axes) and self._scene.kind == "slider"
 
     def IsCircular(self, axis: int = 0) -> bool:
-        """Return whether the joint turns without end."""
+        """Return whether the joint turns without end.
+
+        Args:
+            axis: Which axis of the joint.
+        """
         return self._scene.axes[axis].circular
 
     def IsStatic(self) -> bool:
@@ -236,7 +259,11 @@ class Joint(JointLimits, JointFollowing):
         return hash((id(self._state), self._index))
 
     def __repr__(self) -> str:
-        return f"{self._parent.GetEnv()!r}.GetKinBody('{self._parent.GetName()}').GetJoint('{self.GetName()}')"
+        return f"{self._parent.GetEnv()!r}.GetKinBody({self._parent.GetName()!r}).GetJoint({self.GetName()!r})"
+
+    def _repr_html_(self) -> str:
+        """Return the table that notebooks show for a joint."""
+        return joint_table(self)
 
     def __str__(self) -> str:
         place = f"({self.GetJointIndex()}), dof={self.GetDOFIndex()}"

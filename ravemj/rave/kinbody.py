@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from ravemj.rave.body.base import both_locks
 from ravemj.rave.body.building import Building
 from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.body.grabbing import Grabbing
@@ -18,6 +19,7 @@ from ravemj.rave.infos import GeometryInfo, JointInfo, KinBodyInfo, LinkInfo
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
+from ravemj.rave.tables import body_table
 from ravemj.simulation import BodyState
 
 if TYPE_CHECKING:
@@ -57,6 +59,11 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
 
         Raises:
             openrave_exception: another body of the environment has it (``BodyNameConflict``), or it is empty.
+
+        Example:
+            >>> robot.SetName("swing")
+            >>> env.GetRobot("swing") == robot
+            True
         """
         self._simulation.rename(self._state, name)
 
@@ -79,7 +86,9 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
             openrave_exception: this body is in an environment.
         """
         del cloningoptions
-        self._state.copy(checked_kind(reference, KinBody, "Clone: reference").simulation_state)
+        source = checked_kind(reference, KinBody, "Clone: reference").simulation_state
+        with both_locks(self._simulation, source.simulation):
+            self._state.copy(source)
 
     GetEnvironmentId = GetEnvironmentBodyIndex
 
@@ -90,7 +99,11 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
         return hash(id(self._state))
 
     def __repr__(self) -> str:
-        return f"{self._env!r}.Get{'Robot' if self.IsRobot() else 'KinBody'}('{self.GetName()}')"
+        return f"{self._env!r}.Get{'Robot' if self.IsRobot() else 'KinBody'}({self.GetName()!r})"
+
+    def _repr_html_(self) -> str:
+        """Return the tables that notebooks show for a body."""
+        return body_table(self)
 
     def __str__(self) -> str:
         kind = self._interface_type.name

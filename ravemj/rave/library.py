@@ -7,7 +7,6 @@ from functools import wraps
 from pathlib import Path
 from typing import ParamSpec, TypeVar
 
-from ravemj import readers
 from ravemj.rave import logs
 from ravemj.rave.enums import DebugLevel
 from ravemj.rave.environment import RaveDestroy
@@ -34,7 +33,7 @@ def RaveInitialize(load_all_plugins: bool = True, level: int = DebugLevel.Info) 
 
 
 def with_destroy(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
-    """Make a function destroy all environments when it ends.
+    """Return a function that destroys all environments when it ends; OpenRAVE's examples put it above ``main``.
 
     Example:
         >>> @with_destroy
@@ -54,6 +53,9 @@ def with_destroy(function: Callable[Parameters, Result]) -> Callable[Parameters,
 
 def RaveLoadPlugin(filename: str) -> bool:
     """Say that there is no way to load OpenRAVE's native plugins.
+
+    Args:
+        filename: Name of the plugin.
 
     Returns:
         False, as OpenRAVE does when it cannot load a plugin; a warning is logged.
@@ -94,9 +96,15 @@ def RaveFindDatabaseFile(filename: str, bRead: bool = True) -> str:
 def RaveFindLocalFile(filename: str, curdir: str = "") -> str:
     """Return the path of a file in a folder, else in the working folder or those of ``OPENRAVE_DATA``.
 
+    Args:
+        filename: A path, relative to the folder or to one of ``OPENRAVE_DATA``.
+        curdir: The folder to look in first.
+
     Returns:
         The absolute path, or an empty text.
     """
     beside = os.path.join(curdir, filename)
-    found = beside if curdir and os.path.exists(beside) else readers.find(filename)
+    from ravemj.readers import find  # noqa: PLC0415 - slow to import
+
+    found = beside if curdir and os.path.exists(beside) else find(filename)
     return os.path.abspath(found) if found else ""

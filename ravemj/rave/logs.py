@@ -51,32 +51,56 @@ def RaveLog(log: str, level: int = DebugLevel.Info) -> None:  # OpenRAVE's name 
 
 
 def RaveLogFatal(log: str) -> None:
-    """Log that nothing can go on."""
+    """Log that nothing can go on.
+
+    Args:
+        log: The text.
+    """
     RaveLog(log, DebugLevel.Fatal)
 
 
 def RaveLogError(log: str) -> None:
-    """Log an error."""
+    """Log an error.
+
+    Args:
+        log: The text.
+    """
     RaveLog(log, DebugLevel.Error)
 
 
 def RaveLogWarn(log: str) -> None:
-    """Log a warning."""
+    """Log a warning.
+
+    Args:
+        log: The text.
+    """
     RaveLog(log, DebugLevel.Warn)
 
 
 def RaveLogInfo(log: str) -> None:
-    """Log something of interest."""
+    """Log something of interest.
+
+    Args:
+        log: The text.
+    """
     RaveLog(log, DebugLevel.Info)
 
 
 def RaveLogDebug(log: str) -> None:
-    """Log something for those who look for a mistake."""
+    """Log something for those who look for a mistake.
+
+    Args:
+        log: The text.
+    """
     RaveLog(log, DebugLevel.Debug)
 
 
 def RaveLogVerbose(log: str) -> None:
-    """Log something for those who want all."""
+    """Log something for those who want all.
+
+    Args:
+        log: The text.
+    """
     RaveLog(log, DebugLevel.Verbose)
 
 

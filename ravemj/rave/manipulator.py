@@ -10,8 +10,8 @@ from ravemj import chains, fingerprints, scene
 from ravemj.arrays import checked_transform, checked_vector
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.manipulators import joint_dofs
+from ravemj.rave.arm_collision import ArmCollision
 from ravemj.rave.arm_goals import ArmGoals
-from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Manipulator(ArmGoals):
+class Manipulator(ArmGoals, ArmCollision):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
     def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
@@ -80,8 +80,9 @@ class Manipulator(ArmGoals):
             That of the tool point [m/s] and the angular one [rad/s], shape (6,).
         """
         effector = self._effector()
-        velocity = effector.GetVelocity()
-        arm = self.GetTransform()[:3, 3] - effector.GetTransform()[:3, 3]
+        with self._state.simulation.lock:
+            velocity = effector.GetVelocity()
+            arm = self.GetTransform()[:3, 3] - effector.GetTransform()[:3, 3]
         velocity[:3] += np.cross(velocity[3:], arm)
         return velocity
 
@@ -91,8 +92,9 @@ class Manipulator(ArmGoals):
         Returns:
             Derivative of its position in the world by the values of ``GetArmIndices()``, shape (3, arm dof).
         """
-        tool = self.GetTransform()[:3, 3]
-        return self._robot.ComputeJacobianTranslation(self._effector().GetIndex(), tool)[:, self.GetArmIndices()]
+        with self._state.simulation.lock:
+            tool = self.GetTransform()[:3, 3]
+            return self._robot.ComputeJacobianTranslation(self._effector().GetIndex(), tool)[:, self.GetArmIndices()]
 
     def CalculateAngularVelocityJacobian(self) -> Floats:
         """Return the angular velocity of the tool, in world axes, per unit of the arm's, shape (3, arm dof)."""
@@ -100,12 +102,13 @@ class Manipulator(ArmGoals):
 
     def CalculateRotationJacobian(self) -> Floats:
         """Return how the tool's quaternion [w, x, y, z] changes with the arm's joints, shape (4, arm dof)."""
-        wxyz = wxyz_from_rows(self.GetTransform()[:3, :3].tolist())
-        return self._robot.CalculateRotationJacobian(self._effector().GetIndex(), wxyz)[:, self.GetArmIndices()]
+        with self._state.simulation.lock:
+            wxyz = wxyz_from_rows(self.GetTransform()[:3, :3].tolist())
+            return self._robot.CalculateRotationJacobian(self._effector().GetIndex(), wxyz)[:, self.GetArmIndices()]
 
     def GetTransformPose(self) -> Floats:
         """Return the pose of the tool in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""
-        return pose_from_matrix(self.GetTransform())
+        return pose_of(self.GetTransform()).numbers()
 
     def GetLocalToolTransform(self) -> Floats:
         """Return the pose of the tool in the effector.
@@ -138,9 +141,10 @@ class Manipulator(ArmGoals):
         self._edit(direction=tuple((given / length).tolist()))
 
     def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Manipulator
-        arms = list(self._state.scene.manipulators)
-        arms[self._index] = replace(arms[self._index], **changes)
-        self._state.edit(manipulators=tuple(arms))
+        with self._state.simulation.lock:
+            arms = list(self._state.scene.manipulators)
+            arms[self._index] = replace(arms[self._index], **changes)
+            self._state.edit(manipulators=tuple(arms))
 
     def GetArmIndices(self) -> Ints:
         """Return the DOF indices of the joints between base and effector, the base first.
@@ -157,7 +161,7 @@ class Manipulator(ArmGoals):
         return len(self._scene.arm_dofs)
 
     def GetArmDOFValues(self) -> Floats:
-        """Return the joint values of the arm [rad or m], in the order of ``GetArmIndices()``."""
+        """Return the joint values of the arm [rad or m], in the order of ``GetArmIndices()``, shape (n,)."""
         return self._robot.GetDOFValues(self.GetArmIndices())
 
     def GetGripperIndices(self) -> Ints:
@@ -171,7 +175,7 @@ class Manipulator(ArmGoals):
         return len(self._scene.gripper_dofs)
 
     def GetGripperDOFValues(self) -> Floats:
-        """Return the joint values of the gripper [rad or m], in the order of ``GetGripperIndices()``."""
+        """Return the joint values of the gripper [rad or m], in the order of ``GetGripperIndices()``, shape (n,)."""
         return self._robot.GetDOFValues(self.GetGripperIndices())
 
     def GetChuckingDirection(self) -> Ints:
@@ -181,7 +185,11 @@ class Manipulator(ArmGoals):
     GetClosingDirection = GetChuckingDirection
 
     def SetChuckingDirection(self, chuckingdirection: ArrayLike) -> None:
-        """Set for each DOF of the gripper the sign of closing."""
+        """Set for each DOF of the gripper the sign of closing.
+
+        Args:
+            chuckingdirection: -1, 0 or 1 for each of the gripper's DOFs.
+        """
         count = len(self._scene.gripper_dofs)
         signs = checked_vector(chuckingdirection, count, "SetChuckingDirection: chuckingdirection")
         self._edit(chucking_direction=tuple(signs.tolist()))
@@ -238,7 +246,7 @@ class Manipulator(ArmGoals):
         return hash((id(self._state), "manipulator", self._index))
 
     def __repr__(self) -> str:
-        return f"{self._robot!r}.GetManipulator('{self.GetName()}')"
+        return f"{self._robot!r}.GetManipulator({self.GetName()!r})"
 
     def __str__(self) -> str:
         return f"<manipulator:{self.GetName()}, parent={self._robot.GetName()}>"

@@ -7,13 +7,13 @@ from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_numbers, checked_vector
 from ravemj.errors import ArgumentError
-from ravemj.physics import Loads, Physics
 from ravemj.rave.enums import InterfaceType, PhysicsEngineOptions
 from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.simulation import BodyState
 from ravemj.transforms import ZERO, Floats, Vec3
 
 if TYPE_CHECKING:
+    from ravemj.physics import Loads
     from ravemj.rave.environment import Environment
     from ravemj.rave.joint import Joint
     from ravemj.rave.link import Link
@@ -27,6 +27,7 @@ class PhysicsEngine(Interface):
     """
 
     _interface_type = InterfaceType.physicsengine
+    _internal = ("attach", "detach", "is_simulated", "loads")
     is_simulated = False
     """Whether bodies fall and collide."""
 
@@ -45,6 +46,9 @@ class PhysicsEngine(Interface):
         """Set the acceleration of free fall in the world [m/s^2], shape (3,).
 
         It belongs to the engine: a new one has its own.
+
+        Args:
+            gravity: The acceleration in the world [m/s^2], shape (3,).
 
         Raises:
             IndexError: there are fewer than three numbers, as in OpenRAVE.
@@ -65,7 +69,11 @@ class PhysicsEngine(Interface):
         return np.array(self._env.simulation.gravity if self._is_attached else self._gravity)
 
     def SetPhysicsOptions(self, physicsoptions: int) -> bool:
-        """Set which collisions count, ``PhysicsEngineOptions``; return whether the engine has options."""
+        """Set which collisions count, ``PhysicsEngineOptions``; return whether the engine has options.
+
+        Args:
+            physicsoptions: ``PhysicsEngineOptions`` combined with ``|``.
+        """
         del physicsoptions
         return False
 
@@ -74,7 +82,11 @@ class PhysicsEngine(Interface):
         return PhysicsEngineOptions(0)
 
     def SimulateStep(self, timestep: float) -> None:
-        """Let the bodies move for a step of time [s]; ``StepSimulation`` calls this."""
+        """Let the bodies move for a step of time [s]; ``StepSimulation`` calls this.
+
+        Args:
+            timestep: How long [s].
+        """
 
     def GetJointForceTorque(self, joint: "Joint") -> tuple[Floats, Floats]:
         """Return what a joint transmits to its child: what holds it, moves it and stops it.
@@ -109,9 +121,10 @@ class PhysicsEngine(Interface):
             Whether the engine moves bodies.
         """
         checked = checked_vector(force, 3, "force"), checked_vector(position, 3, "position")
-        loads = self.loads(link.GetParent().simulation_state)
-        if loads is not None:
-            loads.push(link.GetIndex(), *checked, add=add)
+        with self._env.simulation.lock:
+            loads = self.loads(link.GetParent().simulation_state)
+            if loads is not None:
+                loads.push(link.GetIndex(), *checked, add=add)
         return loads is not None
 
     def SetBodyTorque(self, link: "Link", torque: ArrayLike, add: bool) -> bool:
@@ -126,9 +139,10 @@ class PhysicsEngine(Interface):
             Whether the engine moves bodies.
         """
         checked = checked_vector(torque, 3, "torque")
-        loads = self.loads(link.GetParent().simulation_state)
-        if loads is not None:
-            loads.turn(link.GetIndex(), checked, add=add)
+        with self._env.simulation.lock:
+            loads = self.loads(link.GetParent().simulation_state)
+            if loads is not None:
+                loads.turn(link.GetIndex(), checked, add=add)
         return loads is not None
 
     def AddJointTorque(self, joint: "Joint", torques: ArrayLike) -> bool:
@@ -148,9 +162,10 @@ class PhysicsEngine(Interface):
         first = joint.GetDOFIndex()
         if first < 0:
             raise ArgumentError(f"joint '{joint.GetName()}' is passive, and takes no torques")
-        loads = self.loads(joint.GetParent().simulation_state)
-        if loads is not None:
-            loads.torques[first : first + len(checked)] += checked
+        with self._env.simulation.lock:
+            loads = self.loads(joint.GetParent().simulation_state)
+            if loads is not None:
+                loads.torques[first : first + len(checked)] += checked
         return loads is not None
 
     def attach(self) -> None:
@@ -163,10 +178,15 @@ class PhysicsEngine(Interface):
         self._gravity = self._env.simulation.gravity
         self._is_attached = False
 
-    def loads(self, state: BodyState) -> Loads | None:
+    def loads(self, state: BodyState) -> "Loads | None":
         """Return what pushes a body during the next step, to be changed; None where nothing moves bodies."""
         del state
         return None
+
+    def __repr__(self) -> str:
+        if self._is_attached:
+            return f"{self._env!r}.GetPhysicsEngine()"
+        return f"RaveCreatePhysicsEngine({self._env!r}, {self._xml_id!r})"
 
 
 class SimulatedEngine(PhysicsEngine):
@@ -186,6 +206,8 @@ class SimulatedEngine(PhysicsEngine):
 
     def __init__(self, env: "Environment", xml_id: str) -> None:
         super().__init__(env, xml_id)
+        from ravemj.physics import Physics  # noqa: PLC0415 - slow to import
+
         self._physics = Physics(env.simulation)
 
     def SetPhysicsOptions(self, physicsoptions: int) -> bool:
@@ -231,7 +253,7 @@ class SimulatedEngine(PhysicsEngine):
         with self._env.simulation.lock:
             return self._physics.link_wrench(link.GetParent().simulation_state, link.GetIndex())
 
-    def loads(self, state: BodyState) -> Loads | None:
+    def loads(self, state: BodyState) -> "Loads":
         """Return what pushes a body during the next step, to be changed."""
         return self._physics.loads(state)
 

@@ -41,9 +41,19 @@ class Planner:
         raise UnsupportedError("Planner", PLANNING)
 
     def InitPlan(self, robot: object, params: object) -> bool:
-        """Take over a problem."""
+        """Take over a problem; return whether it can be solved.
+
+        Args:
+            robot: The robot.
+            params: The problem.
+        """
         raise UnsupportedError("Planner.InitPlan", PLANNING)
 
     def PlanPath(self, traj: object, releasegil: bool = True) -> PlannerStatus:
-        """Solve the problem, into a trajectory."""
+        """Solve the problem, into a trajectory; return a ``PlannerStatus``.
+
+        Args:
+            traj: Where the motion goes.
+            releasegil: Not used.
+        """
         raise UnsupportedError("Planner.PlanPath", PLANNING)

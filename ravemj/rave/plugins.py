@@ -90,7 +90,11 @@ RaveCreateProblem = RaveCreateModule
 
 
 def RaveCreatePlanner(env: Environment, name: str) -> Planner | None:
-    """Refuse to make a planner: None where OpenRAVE does not know the name either.
+    """Refuse to make a planner; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the planner is one of OpenRAVE's own.
@@ -99,7 +103,11 @@ def RaveCreatePlanner(env: Environment, name: str) -> Planner | None:
 
 
 def RaveCreateIkSolver(env: Environment, name: str) -> None:
-    """Refuse to make a solver of inverse kinematics: None where OpenRAVE does not know the name either.
+    """Refuse to make a solver of inverse kinematics; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the solver is one of OpenRAVE's own.
@@ -108,7 +116,11 @@ def RaveCreateIkSolver(env: Environment, name: str) -> None:
 
 
 def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
-    """Refuse to make a sensor: None where OpenRAVE does not know the name either.
+    """Refuse to make a sensor; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the sensor is one of OpenRAVE's own.
@@ -117,7 +129,11 @@ def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
 
 
 def RaveCreateSpaceSampler(env: Environment, name: str) -> None:
-    """Refuse to make a sampler: None where OpenRAVE does not know the name either.
+    """Refuse to make a sampler; return None where OpenRAVE does not know the name either.
+
+    Args:
+        env: The environment.
+        name: The name.
 
     Raises:
         UnsupportedError: the sampler is one of OpenRAVE's own.
@@ -141,9 +157,9 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
     """Return the names that ``RaveCreate…`` of each kind makes something for."""
     made: dict[InterfaceType, list[str]] = {
         InterfaceType.collisionchecker: ["ode"],
-        InterfaceType.controller: ["IdealController"],
+        InterfaceType.controller: ["IdealController", "IdealVelocityController", "odevelocity"],
         InterfaceType.kinbody: [""],
-        InterfaceType.physicsengine: ["GenericPhysicsEngine"],
+        InterfaceType.physicsengine: ["GenericPhysicsEngine", "ode", "bullet", "mujoco"],
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],
         InterfaceType.viewer: list(VIEWERS),

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ravemj.showing import Shown
 from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ class Part:
         return self.link.GetParent().GetName(), self.link.GetName(), geometry
 
 
-class CollisionPairInfo:
+class CollisionPairInfo(Shown):
     """Two links that collide, or a link that a ray hits."""
 
     def __init__(self, first: Part, second: Part | None) -> None:
@@ -73,8 +74,11 @@ class CollisionPairInfo:
         names = (":".join(filter(None, part.names)) for part in (self.first, self.second) if part)
         return f"({')x('.join(names)}) contacts={len(self.contacts)}"
 
+    def __repr__(self) -> str:
+        return f"<collision:{self}>"
 
-class CollisionReport:
+
+class CollisionReport(Shown):
     """What a call of collision checking found; hand one in to get it filled.
 
     OpenRAVE renamed the content over time; both sets of names are here: ``collisionInfos`` of newer versions, and
@@ -154,3 +158,6 @@ class CollisionReport:
 
     def __str__(self) -> str:
         return "\n".join(map(str, self.collisionInfos)) or "no collision"
+
+    def __repr__(self) -> str:
+        return f"<report:{self}>"

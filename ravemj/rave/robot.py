@@ -3,7 +3,6 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ravemj.collision.questions import moved_links
 from ravemj.geometry_functions import DOFAffine
 from ravemj.rave.body.active import ActiveChoice
 from ravemj.rave.body.active_motion import ActiveMotion
@@ -38,6 +37,7 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
     RobotStateSaver = StateSaver
 
     _interface_type = InterfaceType.robot
+    _internal = ("active_choice", "affine_kinds", "powered_sensors", "take_choices")
     default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
@@ -45,6 +45,7 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
         self.active_choice = ActiveChoice()
         self.affine_kinds = default_kinds()
         self._active_manipulator = None
+        self.powered_sensors: set[str] = set()
 
     def GetXMLId(self) -> str:
         """Return OpenRAVE's name of the kind of robot."""
@@ -71,7 +72,7 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
         return False if link is None else super().Grab(body, link, ignored)
 
     def CreateRobotStateSaver(self, options: int | None = None) -> StateSaver:
-        """Save the robot's state; see ``CreateKinBodyStateSaver``.
+        """Return what keeps the robot's state; see ``CreateKinBodyStateSaver``.
 
         Args:
             options: What to save, ``SaveParameters`` combined with ``|``; None: poses, joint values, enabled links,
@@ -106,11 +107,13 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
             found.append(lambda body, tool=tool, transform=transform: _set_tool(body, tool, transform))
         return found
 
-    def active_links(self) -> frozenset[int] | None:
-        """Return the indices of the links that the active DOFs move; None: all."""
-        return (
-            None if self.active_choice.affine else moved_links(self._state.scene, self.GetActiveDOFIndices().tolist())
-        )
+    def active_dofs(self) -> tuple[int, ...]:
+        """Return the active joints' DOFs."""
+        return tuple(self.GetActiveDOFIndices().tolist())
+
+    def moves_as_a_whole(self) -> bool:
+        """Return whether active DOFs move the robot's base."""
+        return bool(self.active_choice.affine)
 
     def GetAttachedSensors(self) -> list[AttachedSensor]:
         """Return the sensors on the robot's links, in the order of the file."""

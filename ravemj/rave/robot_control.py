@@ -26,6 +26,8 @@ POLL = 1e-3
 class RobotControl(BodyPart):
     """What moves a robot in time."""
 
+    _internal = ("step_controller",)
+
     _controller: "Controller | EllipsisType | None" = ...
 
     def GetController(self) -> Controller | None:

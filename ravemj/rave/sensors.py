@@ -4,18 +4,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ravemj import scene
-from ravemj.errors import UnsupportedError
+from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
 from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.infos import AttachedSensorInfo
 from ravemj.rave.link import Link
-from ravemj.rendering import CameraIntrinsics
+from ravemj.rendering import Camera, CameraIntrinsics, Pinhole
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
+from ravemj.studio import Format
 from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
-    from ravemj.rave.kinbody import KinBody
+    from ravemj.rave.robot import Robot
 
 SENSING = "simulation of sensors"
 
@@ -40,11 +43,43 @@ class CameraGeomData:
         return self.intrinsics.K
 
 
-class Sensor:
-    """A device that measures; ``attached.GetSensor()`` makes it."""
+@dataclass(eq=False)
+class CameraSensorData:
+    """A camera's picture.
+
+    Attributes:
+        transform: ``T_world_camera`` when it was taken, shape (4, 4); z forward, y down.
+        imagedata: Shape (height, width, 3), uint8, top row first.
+        intrinsics: The camera matrix, wrapped.
+        stamp: Simulation time when it was taken [microseconds].
+        type: The kind of data.
+    """
+
+    transform: Floats
+    imagedata: NDArray[np.uint8]
+    intrinsics: CameraIntrinsics
+    stamp: int
+    type: SensorType = SensorType.Camera
+
+    @property
+    def KK(self) -> Floats:
+        """The camera matrix [pixels], shape (3, 3)."""
+        return self.intrinsics.K
+
+
+class Sensor(Shown):
+    """A device that measures; ``attached.GetSensor()`` makes it.
+
+    Example:
+        >>> camera = robot.GetAttachedSensor("camera").GetSensor()
+        >>> camera.Configure(Sensor.ConfigureCommand.PowerOn)
+        1
+        >>> picture = camera.GetSensorData().imagedata
+    """
 
     Type = SensorType
     ConfigureCommand = SensorCommand
+    CameraSensorData = CameraSensorData
 
     def __init__(self, attached: "AttachedSensor", description: scene.AttachedSensor, kind: str) -> None:
         self._attached = attached
@@ -52,24 +87,80 @@ class Sensor:
         self._kind = kind
 
     def GetName(self) -> str:
-        """Return the sensor's name, unique in its environment: ``robot:sensor``."""
-        return f"{self._attached.GetRobot().GetName()}:{self._scene.name}"
-
-    def GetTransform(self) -> Floats:
-        """Return the pose in the world, shape (4, 4); a camera looks along z, with y down."""
-        return self._attached.GetTransform()
-
-    def Configure(self, command: SensorCommand, blocking: bool = False) -> int:
-        """Switch the sensor on or off."""
-        raise UnsupportedError("Sensor.Configure", SENSING)
-
-    def GetSensorData(self, type: SensorType | None = None) -> object:  # OpenRAVE's name
-        """Return what the sensor measured last."""
-        raise UnsupportedError("Sensor.GetSensorData", SENSING)
+        """Return the names of the robot and of the attached sensor, with a colon between them."""
+        return f"{self._attached.GetRobot().GetName()}:{self._attached.GetName()}"
 
     def GetXMLId(self) -> str:
         """Return OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``."""
         return self._kind
+
+    def GetTransform(self) -> Floats:
+        """Return the pose in the world, shape (4, 4): that of the attached sensor."""
+        return self._attached.GetTransform()
+
+    def Supports(self, type: SensorType) -> bool:  # OpenRAVE's name
+        """Return whether the sensor gives this kind of data: cameras do.
+
+        Args:
+            type: A ``Sensor.Type``.
+        """
+        return type == SensorType.Camera and self._scene.camera is not None
+
+    def Configure(self, command: int, blocking: bool = False) -> int:
+        """Switch the sensor on or off, or ask whether it is on.
+
+        Args:
+            command: ``Sensor.ConfigureCommand.PowerOn``, ``PowerOff`` or ``PowerCheck``; what is said about drawing
+                of data and shapes has no effect here.
+            blocking: OpenRAVE's; ignored.
+
+        Returns:
+            1 if it was done, or if the answer is yes; else 0.
+        """
+        del blocking
+        powered = self._attached.GetRobot().powered_sensors
+        if command == SensorCommand.PowerCheck:
+            return int(self._scene.name in powered)
+        if command == SensorCommand.PowerOn:
+            powered.add(self._scene.name)
+        elif command == SensorCommand.PowerOff:
+            powered.discard(self._scene.name)
+        return int(command in {SensorCommand.PowerOn, SensorCommand.PowerOff})
+
+    def SimulationStep(self, timestep: float) -> None:
+        """Do nothing: data is taken when it is asked for.
+
+        Args:
+            timestep: How long [s].
+        """
+
+    def GetSensorData(self, type: SensorType | None = None) -> CameraSensorData:  # OpenRAVE's name
+        """Return what the sensor sees now.
+
+        Args:
+            type: The kind of data; None: the sensor's own.
+
+        Returns:
+            A picture with the camera's own intrinsics.
+
+        Raises:
+            openrave_exception: the sensor is off, or gives no data of this kind.
+            UnsupportedError: it is no camera.
+        """
+        camera, geometry = self._scene.camera, self.GetSensorGeometry()
+        if camera is None or geometry is None:
+            raise UnsupportedError(f"sensor '{self._kind}'", "simulation of sensors that are no cameras")
+        if type not in {None, SensorType.Camera}:
+            raise ArgumentError(f"GetSensorData: a camera has no data of type {SensorType(type).name}")
+        if not self.Configure(SensorCommand.PowerCheck):
+            raise RavemjError("GetSensorData: the camera is off; Configure(Sensor.ConfigureCommand.PowerOn)")
+        env = self._attached.GetRobot().GetEnv()
+        with env.simulation.lock:
+            transform = self.GetTransform()
+            pinhole = Pinhole(camera.fx, camera.fy, camera.cx, camera.cy)
+            form = Format(camera.width, camera.height)
+            picture = env.studio.picture(Camera(transform, calibration=pinhole), env.background, form, drawings=False)
+            return CameraSensorData(transform, picture, geometry.intrinsics, env.clock.now)
 
     def GetSensorGeometry(self, type: SensorType | None = None) -> CameraGeomData | None:  # OpenRAVE's name
         """Return what is fixed about the sensor; None unless it is a camera.
@@ -83,11 +174,20 @@ class Sensor:
         matrix = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
         return CameraGeomData(CameraIntrinsics(matrix), camera.width, camera.height)
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sensor) and self._attached == other._attached
 
-class AttachedSensor:
+    def __hash__(self) -> int:
+        return hash((Sensor, self._attached))
+
+    def __repr__(self) -> str:
+        return f"{self._attached!r}.GetSensor()"
+
+
+class AttachedSensor(Shown):
     """A place on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
 
-    def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
+    def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:
         self._robot = robot
         self._state = state
         self._scene = state.scene.sensors[index]
@@ -96,7 +196,7 @@ class AttachedSensor:
         """Return the attached sensor's name."""
         return self._scene.name
 
-    def GetRobot(self) -> "KinBody":
+    def GetRobot(self) -> "Robot":
         """Return the robot that carries the sensor."""
         return self._robot
 
@@ -131,5 +231,11 @@ class AttachedSensor:
 
     UpdateAndGetInfo = GetInfo
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, AttachedSensor) and self._state is other._state and self.GetName() == other.GetName()
+
+    def __hash__(self) -> int:
+        return hash((id(self._state), "sensor", self.GetName()))
+
     def __repr__(self) -> str:
-        return f"{self._robot!r}.GetAttachedSensor('{self.GetName()}')"
+        return f"{self._robot!r}.GetAttachedSensor({self.GetName()!r})"

@@ -28,6 +28,7 @@ class ConfigurationSpecification(ConfigurationData):
     """
 
     Group = Group
+    _internal = ("of",)
 
     def __init__(self, spec: "ConfigurationSpecification | Group | str | None" = None) -> None:
         """Make a specification.
@@ -94,11 +95,21 @@ class ConfigurationSpecification(ConfigurationData):
         return None if found is None else layout.copied([found])[0]
 
     def FindTimeDerivativeGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return the group with the time derivative of another; a copy, or None. See ``FindCompatibleGroup``."""
+        """Return the group with the time derivative of another; a copy, or None. See ``FindCompatibleGroup``.
+
+        Args:
+            name: A group, or its name.
+            exactmatch: Whether the rest of the name has to be the same, too.
+        """
         return self._shifted(name, 1, exactmatch)
 
     def FindTimeIntegralGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return the group of which another is the time derivative; a copy, or None. See ``FindCompatibleGroup``."""
+        """Return the group of which another is the time derivative; a copy, or None. See ``FindCompatibleGroup``.
+
+        Args:
+            name: A group, or its name.
+            exactmatch: Whether the rest of the name has to be the same, too.
+        """
         return self._shifted(name, -1, exactmatch)
 
     def _shifted(self, name: "str | Group", steps: int, exactmatch: bool) -> Group | None:
@@ -168,11 +179,19 @@ class ConfigurationSpecification(ConfigurationData):
         return self.ConvertToDerivativeSpecification(1)
 
     def ConvertToDerivativeSpecification(self, timederivative: int) -> "ConfigurationSpecification":
-        """Return a specification with derivatives in place of positions: 1 for velocities, 2 for accelerations."""
+        """Return a specification with derivatives in place of positions: 1 for velocities, 2 for accelerations.
+
+        Args:
+            timederivative: 0 for values, 1 for velocities, 2 for accelerations.
+        """
         return self.of(layout.derived(self._groups, checked_order(timederivative)))
 
     def GetTimeDerivativeSpecification(self, timederivative: int) -> "ConfigurationSpecification":
-        """Return the groups of a time derivative alone: 0 for positions, 1 for velocities and so on."""
+        """Return the groups of a time derivative alone: 0 for positions, 1 for velocities and so on.
+
+        Args:
+            timederivative: 0 for values, 1 for velocities, 2 for accelerations.
+        """
         return self.of(layout.of_order(self._groups, checked_order(timederivative)))
 
     def SerializeJSON(self) -> dict[str, list[dict[str, Any]]]:
@@ -180,7 +199,11 @@ class ConfigurationSpecification(ConfigurationData):
         return {"groups": [dict(vars(group)) for group in sorted(self._groups, key=lambda group: group.offset)]}
 
     def DeserializeJSON(self, obj: dict[str, list[dict[str, Any]]]) -> None:
-        """Take the groups that ``SerializeJSON`` returned."""
+        """Take the groups that ``SerializeJSON`` returned.
+
+        Args:
+            obj: What ``SerializeJSON`` returned.
+        """
         self._groups = [Group(**group) for group in obj["groups"]]
 
     def __eq__(self, other: object) -> bool:

@@ -4,7 +4,7 @@ import math
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +16,6 @@ from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.groups import Group
-from ravemj.trajectories.serialization import AS_TEXT, Stored, read, to_bytes, to_text
 from ravemj.trajectories.waypoints import Waypoints
 from ravemj.transforms import Floats
 
@@ -58,6 +57,10 @@ class Trajectory(Interface):
 
         Args:
             spec: A specification, or a group; it is copied.
+
+        Example:
+            >>> trajectory = ravemj.RaveCreateTrajectory(env, "")
+            >>> trajectory.Init(robot.GetActiveConfigurationSpecification())
         """
         if spec is None:  # pyright: ignore[reportUnnecessaryComparison] - users give it
             raise ArgumentError("Init: spec is None, and should be a ConfigurationSpecification")
@@ -96,7 +99,8 @@ class Trajectory(Interface):
             ArgumentError: the number of numbers does not fit, or there is no such waypoint.
 
         Example:
-            >>> trajectory.Insert(trajectory.GetNumWaypoints(), robot.GetDOFValues(), robot_spec)
+            >>> spec = robot.GetConfigurationSpecification()
+            >>> trajectory.Insert(trajectory.GetNumWaypoints(), robot.GetConfigurationValues(), spec)
         """
         if isinstance(spec, bool | int | np.bool_):
             spec, overwrite = None, bool(spec)
@@ -110,7 +114,12 @@ class Trajectory(Interface):
         self._known().remove(startindex, endindex)
 
     def GetNumWaypoints(self) -> int:
-        """Return the number of waypoints."""
+        """Return the number of waypoints.
+
+        Example:
+            >>> for index in range(trajectory.GetNumWaypoints()):
+            ...     point = trajectory.GetWaypoint(index)
+        """
         return len(self._known())
 
     def GetWaypoint(self, index: int, spec: Spec | None = None) -> Floats:
@@ -122,6 +131,10 @@ class Trajectory(Interface):
 
         Returns:
             Shape (dof,).
+
+        Example:
+            >>> last = trajectory.GetWaypoint(-1)
+            >>> values = trajectory.GetWaypoint(-1, robot.GetConfigurationSpecification())
         """
         count = len(self._known())
         if not -count <= index < count:
@@ -130,11 +143,23 @@ class Trajectory(Interface):
         return self.GetWaypoints(start, start + 1, spec)
 
     def GetWaypoints(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
-        """Return the waypoints from ``startindex`` to before ``endindex``, one behind the other; a copy."""
+        """Return the waypoints from ``startindex`` to before ``endindex``, one behind the other, shape (n * dof,).
+
+        Args:
+            startindex: The first one.
+            endindex: The one behind the last.
+            spec: The layout of the answer; None: that of the trajectory.
+        """
         return self.GetWaypoints2D(startindex, endindex, spec).ravel()
 
     def GetWaypoints2D(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
-        """Return the waypoints from ``startindex`` to before ``endindex``, shape (n, dof); a copy."""
+        """Return the waypoints from ``startindex`` to before ``endindex``, shape (n, dof); a copy.
+
+        Args:
+            startindex: The first one.
+            endindex: The one behind the last.
+            spec: The layout of the answer; None: that of the trajectory.
+        """
         return self._as(self._known().rows(startindex, endindex), spec)
 
     def GetAllWaypoints2D(self, spec: Spec | None = None) -> Floats:
@@ -182,13 +207,24 @@ class Trajectory(Interface):
         return self._as(self._known().sample(time, restamped=spec is None)[None], spec)[0]
 
     def SampleFromPrevious(self, data: ArrayLike, time: float, spec: Spec) -> Floats:
-        """Return the configuration at a time; what the trajectory lacks is taken from ``data``. See ``Sample``."""
+        """Return the configuration at a time; what the trajectory lacks is taken from ``data``. See ``Sample``.
+
+        Args:
+            data: Numbers of one configuration, shape (dof,).
+            time: Seconds from the start.
+            spec: The layout of the data.
+        """
         source = self._known().sample(time, restamped=False)
         target = ConfigurationSpecification(spec)
         return self.GetConfigurationSpecification().ConvertDataFromPrevious(data, target, source, 1, self._env)
 
     def SamplePoints2D(self, times: ArrayLike, spec: Spec | None = None) -> Floats:
-        """Return the configurations at some times [s], shape (n, dof). See ``Sample``."""
+        """Return the configurations at some times [s], shape (n, dof). See ``Sample``.
+
+        Args:
+            times: Seconds from the start, shape (n,).
+            spec: The layout of the answer; None: that of the trajectory.
+        """
         rows = [self.Sample(float(time), spec) for time in checked_numbers(times, "times").ravel()]
         dof = (self.GetConfigurationSpecification() if spec is None else ConfigurationSpecification(spec)).GetDOF()
         return np.array(rows).reshape(len(rows), dof)
@@ -229,14 +265,23 @@ class Trajectory(Interface):
         return self.SamplePoints2D(times, spec)
 
     def Clone(self, ref: "Trajectory", cloningoptions: int = 0) -> None:
-        """Take over the specification, the waypoints and the description of another trajectory."""
+        """Take over the specification, the waypoints and the description of another trajectory.
+
+        Args:
+            ref: The other trajectory.
+            cloningoptions: Not used.
+        """
         del cloningoptions
         known = ref._waypoints
         self._waypoints = None if known is None else Waypoints(known.groups, known.data)
         self.SetDescription(ref.GetDescription())
 
     def Swap(self, traj: "Trajectory") -> None:
-        """Exchange specification and waypoints with another trajectory."""
+        """Exchange specification and waypoints with another trajectory.
+
+        Args:
+            traj: The other trajectory.
+        """
         self._waypoints, traj._waypoints = traj._waypoints, self._waypoints
 
     def serialize(self, options: int | None = 0) -> bytes | str:
@@ -248,11 +293,16 @@ class Trajectory(Interface):
         Returns:
             Bytes; text for XML.
         """
+        from ravemj.trajectories.serialization import AS_TEXT, Stored, to_bytes, to_text  # noqa: PLC0415 - rarely wanted
+
         stored = Stored(self._known(), self.GetDescription())
         return to_text(stored, self._xmlid) if (options or 0) & AS_TEXT else to_bytes(stored)
 
     def deserialize(self, data: bytes | str) -> Self:
         """Take over what ``serialize`` returned, of either form.
+
+        Args:
+            data: What ``serialize`` returned.
 
         Returns:
             The trajectory itself.
@@ -260,12 +310,18 @@ class Trajectory(Interface):
         Raises:
             ArgumentError: that is no trajectory; nothing has changed then.
         """
+        from ravemj.trajectories.serialization import read  # noqa: PLC0415 - rarely wanted
+
         self._waypoints, description = read(data)
         self.SetDescription(description)
         return self
 
     def SaveToFile(self, filename: AnyPath, options: int | None = 0) -> None:
         """Write the trajectory to a file, as ``serialize`` has it.
+
+        Args:
+            filename: The file.
+            options: 0x8000 for XML, else binary.
 
         Raises:
             OutputError: the file cannot be written.
@@ -276,6 +332,9 @@ class Trajectory(Interface):
 
     def LoadFromFile(self, filename: AnyPath) -> None:
         """Take over the trajectory in a file, of either form.
+
+        Args:
+            filename: The file.
 
         Raises:
             openrave_exception: the file cannot be read, or is no trajectory.
@@ -301,7 +360,15 @@ class Trajectory(Interface):
         return True
 
     def __repr__(self) -> str:
-        return f"RaveCreateTrajectory({self._env!r}, '{self._xmlid}')"
+        from ravemj.trajectories.serialization import AS_TEXT  # noqa: PLC0415 - rarely wanted
+
+        made = f"RaveCreateTrajectory({self._env!r}, {self._xmlid!r})"
+        return made if self._waypoints is None else f"{made}.deserialize({self.serialize(AS_TEXT)!r})"
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
+        """Print the short text in IPython, where ``repr`` would fill the screen."""
+        del cycle
+        printer.text(str(self))
 
     def __str__(self) -> str:
         state = "not initialized" if self._waypoints is None else f"waypoints={len(self._waypoints)}"

@@ -17,30 +17,27 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ravemj.drawing import NOTHING, Shapes
-from ravemj.errors import ArgumentError
 from ravemj.rendering.camera import (
     Camera,
     CameraIntrinsics,
     Pinhole,
     bounding_sphere,
+    geom_corners,
     three_quarter_view,
     view_from_above,
 )
 from ravemj.rendering.camera_file import read_camera, write_camera
-from ravemj.rendering.contexts import GL_BACKENDS, RAY, make_with_any_backend, make_with_backend, requested_backend
 from ravemj.rendering.frame import WHITE
-from ravemj.rendering.gl import GlRenderer
-from ravemj.rendering.ray import RayRenderer
-from ravemj.rendering.stage import Quality, Stage
+from ravemj.rendering.visibility import drawn_geoms
 
 __all__ = [
     "Camera",
     "CameraIntrinsics",
     "Pinhole",
-    "Quality",
     "Renderer",
-    "Stage",
     "bounding_sphere",
+    "drawn_geoms",
+    "geom_corners",
     "open_renderer",
     "read_camera",
     "three_quarter_view",
@@ -128,26 +125,9 @@ def open_renderer(
         ArgumentError: a size that is not positive, or an argument that is not among those named here.
         RenderingError: the backend that was asked for does not work here; the message says why.
     """
-    quality = Quality(width, height, shadows, samples)
-    _check(quality, backend)
-    renderer = _open(model, quality, backend or requested_backend())
+    from ravemj.rendering.opening import opened  # noqa: PLC0415 - slow to import
+    from ravemj.rendering.stage import Quality  # noqa: PLC0415
+
+    renderer = opened(model, Quality(width, height, shadows, samples), backend)
     _LOG.info("pictures of %d x %d are drawn by %s", width, height, renderer.backend)
     return renderer
-
-
-def _open(model: mujoco.MjModel, quality: Quality, backend: str | None) -> Renderer:
-    renderer: Renderer | None = None
-    if backend is None:
-        renderer = make_with_any_backend(lambda context: GlRenderer(model, context, quality))
-    elif backend != RAY:
-        renderer = make_with_backend(backend, lambda context: GlRenderer(model, context, quality))
-    return renderer or RayRenderer(model, quality.width, quality.height, quality.samples)
-
-
-def _check(quality: Quality, backend: str | None) -> None:
-    if quality.width < 1 or quality.height < 1:
-        raise ArgumentError(f"picture size {quality.width} x {quality.height}: expected at least 1 x 1 pixels")
-    if quality.samples not in (0, 4):
-        raise ArgumentError(f"samples is {quality.samples}, expected 0 or 4")
-    if backend is not None and backend not in (*GL_BACKENDS, RAY):
-        raise ArgumentError(f"backend is {backend!r}, expected one of {', '.join((*GL_BACKENDS, RAY))}")

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.errors import ArgumentError
 from ravemj.rendering.visibility import drawn_geoms
-from ravemj.transforms import Floats, normalize, rows_from_wxyz
+from ravemj.transforms import Floats, Ints, normalize, rows_from_wxyz
 
 DEFAULT_FOVY = math.radians(45)
 """Vertical field of view of OpenRAVE's viewers [rad]."""
@@ -195,14 +195,20 @@ def bounding_sphere(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Floats,
     if not shown.any():
         return np.zeros(3), 1.0
     position = data.geom_xpos[shown]
-    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
-    boxes = model.geom_aabb[shown]
-    corners = boxes[:, None, :3] + signs * boxes[:, None, 3:]
-    corners = np.einsum("gij,gcj->gci", data.geom_xmat[shown].reshape(-1, 3, 3), corners) + position[:, None]
+    corners = geom_corners(model, data, np.flatnonzero(shown))
     center = 0.5 * (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1)))
     by_corners = np.linalg.norm(corners - center, axis=2).max(axis=1)
     by_spheres = np.linalg.norm(position - center, axis=1) + model.geom_rbound[shown]
     return center, float(np.minimum(by_corners, by_spheres).max())
+
+
+def geom_corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints) -> Floats:
+    """Return the corners of the boxes around geoms, in the world, (N, 8, 3) [m]."""
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
+    boxes = model.geom_aabb[geoms]
+    corners = boxes[:, None, :3] + signs * boxes[:, None, 3:]
+    turned: Floats = np.einsum("gij,gcj->gci", data.geom_xmat[geoms].reshape(-1, 3, 3), corners)
+    return turned + data.geom_xpos[geoms][:, None]
 
 
 def _looking_at(

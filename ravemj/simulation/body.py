@@ -2,12 +2,10 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ravemj.batch import Batch
-from ravemj.dynamics import BodyDynamics, Inertias
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.kinematics import BodyKinematics, Configuration
 from ravemj.mjcf import rgba
@@ -17,6 +15,8 @@ from ravemj.simulation.compiled import write_inertial
 from ravemj.transforms import Floats, Pose, inverse, pose_of
 
 if TYPE_CHECKING:
+    from ravemj.batch import Batch
+    from ravemj.dynamics import BodyDynamics, Inertias
     from ravemj.simulation.world import Simulation
 
 _LOOKS = {"name", "diffuse", "ambient", "transparency"}
@@ -37,6 +37,20 @@ class GrabbedBody:
     link: int
     T_link_body: Floats
     ignored: frozenset[int] = frozenset()
+
+
+class SavedConfiguration(NamedTuple):
+    """State of joints and links.
+
+    Attributes:
+        last_placed: How joints placed the links, if ever they did.
+        poses: Where the links are, shape (links, 4, 4).
+        is_moved: Whether links were moved since then, while there was no model.
+    """
+
+    last_placed: Configuration | None
+    poses: Floats
+    is_moved: bool
 
 
 class BodyState:
@@ -92,8 +106,9 @@ class BodyState:
 
     @link_enabled.setter
     def link_enabled(self, enabled: Iterable[bool]) -> None:
-        self._link_enabled = tuple(enabled)
-        self.simulation.collision_stamp += 1
+        with self.simulation.lock:
+            self._link_enabled = tuple(enabled)
+            self.simulation.collision_stamp += 1
 
     @property
     def grabs(self) -> tuple[GrabbedBody, ...]:
@@ -121,23 +136,29 @@ class BodyState:
         return self._kinematics
 
     @property
-    def dynamics(self) -> BodyDynamics:
+    def dynamics(self) -> "BodyDynamics":
         """Jacobians and inverse dynamics in the present model."""
         if self._dynamics is None:
+            from ravemj.dynamics import BodyDynamics  # noqa: PLC0415 - slow to import
+
             self._dynamics = BodyDynamics(self.kinematics)
         return self._dynamics
 
     @property
-    def batch(self) -> Batch:
+    def batch(self) -> "Batch":
         """The chain of links, ready for many configurations."""
         if self._batch is None:
+            from ravemj.batch import Batch  # noqa: PLC0415 - slow to import
+
             self._batch = Batch(self.kinematics, self.dynamics)
         return self._batch
 
     @property
-    def inertias(self) -> Inertias:
+    def inertias(self) -> "Inertias":
         """Mass properties of the links, as the scene has them now."""
         if self._inertias is None or self._inertias[0] is not self.scene.links:
+            from ravemj.dynamics import Inertias  # noqa: PLC0415 - slow to import
+
             self._inertias = (self.scene.links, Inertias.of(self.scene.links))
         return self._inertias[1]
 
@@ -274,23 +295,33 @@ class BodyState:
             self.grabs = (*self.grabs, grab)
         self._carry(grab)
 
+    def carries(self, body: "BodyState") -> bool:
+        """Return whether a body is this one, or held by it or by what it holds."""
+        return body is self or any(grab.body.carries(body) for grab in self.grabs)
+
     def release(self, body: "BodyState") -> None:
         """Let go of a body; nothing happens if it is not held."""
         self.grabs = [grab for grab in self.grabs if grab.body is not body]
 
-    def configuration(self) -> "tuple[Configuration | None, Floats]":
+    def configuration(self) -> SavedConfiguration:
         """Return the state of joints and links, for ``restore``."""
-        configuration = self._configuration if self._kinematics is None else self._kinematics.configuration()
-        return configuration, self.link_transforms()
+        if self._kinematics is not None:
+            return SavedConfiguration(self._kinematics.configuration(), self._kinematics.link_transforms(), False)
+        is_moved = self._is_moved or self._configuration is None
+        return SavedConfiguration(self._configuration, self._kept_poses().copy(), is_moved)
 
-    def restore(self, saved: "tuple[Configuration | None, Floats]") -> None:
+    def restore(self, saved: SavedConfiguration) -> None:
         """Bring joints and links back to a state that ``configuration`` returned, of this body or one like it."""
-        configuration, poses = saved
-        if self._kinematics is not None and configuration is not None and self._kinematics.restore(configuration):
-            self._kinematics.update()
-            self.moved()
+        kinematics = self._kinematics
+        if kinematics is None:
+            self._configuration, self._poses, self._is_moved = saved.last_placed, saved.poses.copy(), True
         else:
-            self.place_links(poses)
+            is_placed = saved.last_placed is not None and kinematics.restore(saved.last_placed)
+            if is_placed:
+                kinematics.update()
+            if saved.is_moved or not is_placed:
+                place_links(kinematics, saved.poses, kinematics.values())
+        self.moved()
 
     def copy(self, other: "BodyState", name: str | None = None) -> None:
         """Become like another body, its configuration and flags included; what it holds is left out.
@@ -300,8 +331,7 @@ class BodyState:
         """
         self.rebuild(other.scene if name is None else replace(other.scene, name=name))
         self.link_enabled = other.link_enabled
-        self._configuration, self._poses = other.configuration()
-        self._is_moved = self._configuration is None
+        self._configuration, self._poses, self._is_moved = other.configuration()
         self._velocities = other.link_velocities()
 
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody

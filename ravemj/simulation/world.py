@@ -73,8 +73,12 @@ class Simulation:
         self.insert(body)
         return body
 
-    def insert(self, body: BodyState) -> None:
-        """Take a body into the world, at the first free index, in the pose that it has.
+    def insert(self, body: BodyState, index: int | None = None) -> None:
+        """Take a body into the world, in the pose that it has.
+
+        Args:
+            body: The body.
+            index: Its index, which is free; None: the first free one.
 
         Raises:
             RavemjError: a body of that name is already there, or the name is empty.
@@ -82,11 +86,9 @@ class Simulation:
         with self.lock:
             self.check_name(body, body.scene.name)
             self.forget_model()
-            if None not in self._places:
-                self._places.append(None)
-            place = self._places.index(None)
-            self._places[place] = self._by_name[body.scene.name] = body
-            body.index = place + 1
+            body.index = index or [*self._places, None].index(None) + 1
+            self._places += [None] * (body.index - len(self._places))
+            self._places[body.index - 1] = self._by_name[body.scene.name] = body
             body.rest_poses = body.link_transforms()
 
     def remove(self, body: BodyState) -> bool:
@@ -169,9 +171,9 @@ class Simulation:
         Raises:
             CompileError: MuJoCo refuses the model.
         """
-        if self._compiled is not None:
-            return self._compiled
         with self.lock:
+            if self._compiled is not None:
+                return self._compiled
             self.diagnostics = Diagnostics()
             scene = Scene(tuple(body.scene for body in self.bodies), self.view)
             compiled = Compiled(scene, self.diagnostics)

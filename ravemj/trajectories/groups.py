@@ -23,7 +23,7 @@ INTERPOLATIONS = ("next", "linear", "quadratic", "cubic", "quartic", "quintic", 
 """Interpolations in which each is the derivative of the following one."""
 
 
-@dataclass
+@dataclass(repr=False)
 class Group:
     """Some values of a configuration that belong together.
 
@@ -39,6 +39,10 @@ class Group:
     offset: int = 0
     dof: int = 0
     interpolation: str = ""
+
+    def __repr__(self) -> str:
+        values = f"{self.name!r}, {self.offset}, {self.dof}, {self.interpolation!r}"
+        return f"ConfigurationSpecification.Group({values})"
 
     @property
     def columns(self) -> slice:

@@ -1,16 +1,20 @@
 """Layouts as OpenRAVE's XML."""
 
 from collections.abc import Sequence
-from xml.sax.saxutils import quoteattr
+from typing import TYPE_CHECKING
 
 from ravemj.errors import ArgumentError, ErrorCode, SourceError
-from ravemj.openrave_xml.tree import Element, parse
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.layout import flaw
+
+if TYPE_CHECKING:
+    from ravemj.openrave_xml.tree import Element
 
 
 def layout_text(groups: Sequence[Group]) -> str:
     """Return the ``<configuration>`` element of a layout, a group a line."""
+    from xml.sax.saxutils import quoteattr  # noqa: PLC0415 - imports urllib, which is slow
+
     lines = [
         f"<group name={quoteattr(group.name)} offset={quoteattr(str(group.offset))} dof={quoteattr(str(group.dof))} "
         f"interpolation={quoteattr(group.interpolation)}/>"
@@ -33,12 +37,14 @@ def read_layout(text: str) -> list[Group]:
     return groups
 
 
-def read_element(text: str, tag: str) -> Element:
+def read_element(text: str, tag: str) -> "Element":
     """Return the root element of a text.
 
     Raises:
         ArgumentError: the text is no XML, or its root has another name.
     """
+    from ravemj.openrave_xml.tree import parse  # noqa: PLC0415 - slow to import
+
     try:
         document = parse(text.encode(), tag)
     except SourceError as error:
@@ -48,7 +54,7 @@ def read_element(text: str, tag: str) -> Element:
     return document.root
 
 
-def groups_of(configuration: Element) -> list[Group]:
+def groups_of(configuration: "Element") -> list[Group]:
     """Return the groups in a ``<configuration>`` element.
 
     Raises:

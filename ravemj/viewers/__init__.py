@@ -11,9 +11,8 @@ from ravemj.errors import RenderingError
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
 from ravemj.viewers.viewer import Viewer
-from ravemj.viewers.window import WindowViewer
 
-__all__ = ["VIEWERS", "Viewer", "WindowViewer", "has_display", "open_viewer"]
+__all__ = ["VIEWERS", "Viewer", "has_display", "open_viewer"]
 
 VIEWERS = ("window", "qtcoin", "qtosg", "qtogre", "offscreen")
 """Names of viewers: ours, and those that OpenRAVE's scripts ask for."""
@@ -38,15 +37,24 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
         show: False for a viewer without a window.
 
     Returns:
-        A window where there is a display; else a viewer that draws when it is asked for pictures. None, and an error in
-        the log, for an unknown name.
+        A window where there is a display; else a viewer that draws when it is asked for pictures; the log says which.
+        None, and an error in the log, for an unknown name.
     """
     if name not in VIEWERS:
         _LOG.error("there is no viewer '%s'; the viewers are: %s", name, ", ".join(VIEWERS))
         return None
-    if show and name != "offscreen" and has_display():
-        try:
-            return WindowViewer(simulation, studio, name)
-        except RenderingError as error:
-            _LOG.warning("%s; pictures are drawn without a window", error)
+    if show and name != "offscreen":
+        if has_display():
+            from ravemj.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
+
+            try:
+                viewer = WindowViewer(simulation, studio, name)
+            except RenderingError as error:
+                _LOG.warning("%s; pictures are drawn without a window", error)
+            else:
+                _LOG.info("viewer '%s' is a window", name)
+                return viewer
+        elif name == "window":
+            _LOG.warning("no window can be opened: there is no display; pictures are drawn without a window")
+    _LOG.info("viewer '%s' has no window", name)
     return Viewer(simulation, studio, name)

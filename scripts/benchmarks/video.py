@@ -21,8 +21,9 @@ import numpy as np
 import ravemj
 from benchmarks.measure import CAMERA, MODEL, Row, run_python, take_turns
 from ravemj.recording import Shot, draw_frames
-from ravemj.rendering import Quality, Renderer, Stage, open_renderer, read_camera
+from ravemj.rendering import Renderer, open_renderer, read_camera
 from ravemj.rendering.contexts import RAY, OffscreenContext
+from ravemj.rendering.stage import Quality, Stage
 from ravemj.studio import Format, Frame
 from ravemj.video import write_frames
 

@@ -41,6 +41,7 @@ class ColladaDocument:
             name = element.get("id")
             if name is not None:
                 self._by_id.setdefault((local_name(element), name), element)
+        self._of_any_kind: dict[str, list[Element]] = {}
 
     def source(self, element: Element) -> Source:
         """Return the place of an element, for messages."""
@@ -52,6 +53,13 @@ class ColladaDocument:
         One id may belong to elements of several kinds: some writers give a geometry and an effect the same one.
         """
         return self._by_id.get((kind, (url or "").strip().removeprefix("#")))
+
+    def identified(self, name: str) -> list[Element]:
+        """Return the elements with an id, one of each kind at most."""
+        if not self._of_any_kind:
+            for (_, known), element in self._by_id.items():
+                self._of_any_kind.setdefault(known, []).append(element)
+        return self._of_any_kind.get(name, [])
 
 
 def local_name(element: Element) -> str:

@@ -106,7 +106,14 @@ class ActiveDofs(Placement, Limits, Motion, AffineSettings):
         return np.array(self.active_choice.axis)
 
     def GetActiveDOFValues(self) -> Floats:
-        """Return the active values: joints [rad or m], then the base's X, Y, Z [m] and rotation."""
+        """Return the active values: joints [rad or m], then the base's X, Y, Z [m] and rotation; shape (n,).
+
+        Example:
+            >>> robot.SetDOFValues([0.5, -0.5])
+            >>> robot.SetActiveDOFs([1])
+            >>> robot.GetActiveDOFValues()
+            array([-0.5])
+        """
         with self._simulation.lock:
             joints = self.GetDOFValues()[self.GetActiveDOFIndices()]
             base = affine_values(self._state.pose(), self.active_choice.affine, self.active_choice.axis)
@@ -122,6 +129,10 @@ class ActiveDofs(Placement, Limits, Motion, AffineSettings):
 
         Raises:
             ArgumentError: there are too few values, or one is infinite. Nothing has changed then.
+
+        Example:
+            >>> robot.SetActiveDOFs([1], ravemj.DOFAffine.X)
+            >>> robot.SetActiveDOFValues([0.5, 2.0])  # the second joint to 0.5 rad, the base to x = 2 m
         """
         given = checked_numbers(values, "SetActiveDOFValues: values")
         count = self.GetActiveDOF()
@@ -179,29 +190,29 @@ class ActiveDofs(Placement, Limits, Motion, AffineSettings):
             self.SetDOFVelocities(full, linear, angular, checklimits)
 
     def GetActiveDOFLimits(self) -> tuple[Floats, Floats]:
-        """Return the lower and upper limits of the active values; ±100 m and ±10000 rad for the base by default."""
+        """Return the lower and upper limits of the active values, shape (n,) each; the base has ±100 m, ±10000 rad."""
         dofs = self._active_dofs()
         lower, upper = self.GetDOFLimits(dofs)
         return self._with_affine(lower, "lower"), self._with_affine(upper, "upper")
 
     def GetActiveDOFMaxVel(self) -> Floats:
-        """Return the velocity limits of the active values."""
+        """Return the velocity limits of the active values [rad/s or m/s], shape (n,)."""
         return self._with_affine(self.GetDOFVelocityLimits(self._active_dofs()), "max_velocity")
 
     GetActiveDOFVelocityLimits = GetActiveDOFMaxVel
 
     def GetActiveDOFMaxAccel(self) -> Floats:
-        """Return the acceleration limits of the active values; for the base its velocity limits, as in OpenRAVE."""
+        """Return the acceleration limits of the active values, shape (n,); for the base its velocity limits."""
         return self._with_affine(self.GetDOFAccelerationLimits(self._active_dofs()), "max_velocity")
 
     GetActiveDOFAccelerationLimits = GetActiveDOFMaxAccel
 
     def GetActiveDOFResolutions(self) -> Floats:
-        """Return the steps of planners for the active values."""
+        """Return the steps of planners for the active values [rad or m], shape (n,)."""
         return self._with_affine(self.GetDOFResolutions(self._active_dofs()), "resolution")
 
     def GetActiveDOFWeights(self) -> Floats:
-        """Return the weights of the active values in distances."""
+        """Return the weights of the active values in distances, shape (n,)."""
         return self._with_affine(self.GetDOFWeights(self._active_dofs()), "weight")
 
     def _with_affine(self, joints: Floats, name: str) -> Floats:
@@ -243,6 +254,9 @@ class ActiveDofs(Placement, Limits, Motion, AffineSettings):
         Args:
             values0: Active values.
             values1: Active values to subtract.
+
+        Returns:
+            ``values0 - values1``, shape (n,).
 
         Raises:
             ArgumentError: they are not as many as there are active values.

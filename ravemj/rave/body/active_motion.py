@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_vector
-from ravemj.dynamics import rotation_rate
 from ravemj.geometry_functions.affine import DOFAffine, affine_values
 from ravemj.rave.body.active import ActiveDofs
 from ravemj.rave.body.motion import Motion, quaternion_rates
@@ -18,7 +17,7 @@ class ActiveMotion(ActiveDofs, Motion):
     """How the active DOFs move the robot. The base's parts move all of it."""
 
     def GetActiveDOFVelocities(self) -> Floats:
-        """Return the velocities of the active values: of joints [rad/s or m/s], then of the base."""
+        """Return the velocities of the active values: of joints [rad/s or m/s], then of the base; shape (n,)."""
         with self._simulation.lock:
             base = self._state.link_velocities()[0]
             linear = [base[i] for i, part in enumerate(_AXES) if part & self.active_choice.affine]
@@ -69,6 +68,9 @@ class ActiveMotion(ActiveDofs, Motion):
     def CalculateActiveAngularVelocityJacobian(self, linkindex: int) -> Floats:
         """Return the angular velocity of a link, in world axes, per unit of the active values' velocity.
 
+        Args:
+            linkindex: Index of the link.
+
         Returns:
             Shape (3, active dof).
         """
@@ -96,6 +98,8 @@ class ActiveMotion(ActiveDofs, Motion):
         if affine & DOFAffine.RotationAxis:
             return np.array(self.active_choice.axis).reshape(3, 1)
         if affine & DOFAffine.Rotation3D:
+            from ravemj.dynamics import rotation_rate  # noqa: PLC0415 - rarely wanted
+
             rate, _ = rotation_rate(affine_values(pose, DOFAffine.Rotation3D))
             return rate.T  # the left Jacobian of SO(3) is the right one's transpose
         if affine & DOFAffine.RotationQuat:

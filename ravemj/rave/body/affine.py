@@ -69,7 +69,11 @@ class AffineSettings(BodyPart):
         return self._get_affine("Translation", "max_velocity")
 
     def SetAffineTranslationMaxVels(self, velocities: ArrayLike) -> None:
-        """Set the velocity limits of the base's X, Y and Z [m/s], shape (3,)."""
+        """Set the velocity limits of the base's X, Y and Z [m/s], shape (3,).
+
+        Args:
+            velocities: Largest velocities [m/s or rad/s].
+        """
         self._set_affine("Translation", max_velocity=velocities)
 
     def GetAffineTranslationResolution(self) -> Floats:
@@ -77,7 +81,11 @@ class AffineSettings(BodyPart):
         return self._get_affine("Translation", "resolution")
 
     def SetAffineTranslationResolution(self, resolution: ArrayLike) -> None:
-        """Set the planners' steps of the base's X, Y and Z [m], shape (3,)."""
+        """Set the planners' steps of the base's X, Y and Z [m], shape (3,).
+
+        Args:
+            resolution: The step [m or rad].
+        """
         self._set_affine("Translation", resolution=resolution)
 
     def GetAffineTranslationWeights(self) -> Floats:
@@ -101,7 +109,11 @@ class AffineSettings(BodyPart):
         return self._get_affine("RotationAxis", "max_velocity")
 
     def SetAffineRotationAxisMaxVels(self, velocities: ArrayLike) -> None:
-        """Set the velocity limits of the base's angle, for x, y, z and other axes [rad/s], shape (4,)."""
+        """Set the velocity limits of the base's angle, for x, y, z and other axes [rad/s], shape (4,).
+
+        Args:
+            velocities: Largest velocities [m/s or rad/s].
+        """
         self._set_affine("RotationAxis", max_velocity=velocities)
 
     def GetAffineRotationAxisResolution(self) -> Floats:
@@ -109,7 +121,11 @@ class AffineSettings(BodyPart):
         return self._get_affine("RotationAxis", "resolution")
 
     def SetAffineRotationAxisResolution(self, resolution: ArrayLike) -> None:
-        """Set the planners' steps of the base's angle, for x, y, z and other axes [rad], shape (4,)."""
+        """Set the planners' steps of the base's angle, for x, y, z and other axes [rad], shape (4,).
+
+        Args:
+            resolution: The step [m or rad].
+        """
         self._set_affine("RotationAxis", resolution=resolution)
 
     def GetAffineRotationAxisWeights(self) -> Floats:
@@ -133,7 +149,11 @@ class AffineSettings(BodyPart):
         return self._get_affine("Rotation3D", "max_velocity")
 
     def SetAffineRotation3DMaxVels(self, velocities: ArrayLike) -> None:
-        """Set the velocity limits of the base's rotation vector [rad/s], shape (3,)."""
+        """Set the velocity limits of the base's rotation vector [rad/s], shape (3,).
+
+        Args:
+            velocities: Largest velocities [m/s or rad/s].
+        """
         self._set_affine("Rotation3D", max_velocity=velocities)
 
     def GetAffineRotation3DResolution(self) -> Floats:
@@ -141,7 +161,11 @@ class AffineSettings(BodyPart):
         return self._get_affine("Rotation3D", "resolution")
 
     def SetAffineRotation3DResolution(self, resolution: ArrayLike) -> None:
-        """Set the planners' steps of the base's rotation vector [rad], shape (3,)."""
+        """Set the planners' steps of the base's rotation vector [rad], shape (3,).
+
+        Args:
+            resolution: Step for each component, shape (3,).
+        """
         self._set_affine("Rotation3D", resolution=resolution)
 
     def GetAffineRotation3DWeights(self) -> Floats:
@@ -165,7 +189,11 @@ class AffineSettings(BodyPart):
         return self._get_affine("RotationQuat", "max_velocity")
 
     def SetAffineRotationQuatMaxVels(self, velocities: ArrayLike) -> None:
-        """Set the velocity limits of the base's quaternion [1/s], shape (4,)."""
+        """Set the velocity limits of the base's quaternion [1/s], shape (4,).
+
+        Args:
+            velocities: Largest velocities [m/s or rad/s].
+        """
         self._set_affine("RotationQuat", max_velocity=velocities)
 
     def GetAffineRotationQuatResolution(self) -> Floats:
@@ -173,7 +201,11 @@ class AffineSettings(BodyPart):
         return self._get_affine("RotationQuat", "resolution")
 
     def SetAffineRotationQuatResolution(self, resolution: ArrayLike) -> None:
-        """Set the planners' steps of the base's quaternion [1], shape (4,)."""
+        """Set the planners' steps of the base's quaternion [1], shape (4,).
+
+        Args:
+            resolution: The step [m or rad].
+        """
         self._set_affine("RotationQuat", resolution=resolution)
 
     def GetAffineRotationQuatWeights(self) -> Floats:

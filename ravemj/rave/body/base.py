@@ -1,5 +1,7 @@
 """What the parts of a body's API share."""
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from ravemj.rave.interface import Annotations, Interface
@@ -9,8 +11,18 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
+@contextmanager
+def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
+    """Hold the locks of two environments; taken in the same order by all, so that nobody waits for one another."""
+    first, second = sorted((one, other), key=id)
+    with first.lock, second.lock:
+        yield
+
+
 class BodyPart(Interface):
     """Part of the API of a body; ``KinBody`` joins the parts."""
+
+    _internal = ("simulation_state",)
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
         self._env = env
@@ -19,13 +31,22 @@ class BodyPart(Interface):
         self._annotations = Annotations()
 
     def GetName(self) -> str:
-        """Return the body's name, unique in its environment."""
+        """Return the body's name, unique in its environment.
+
+        Example:
+            >>> [body.GetName() for body in env.GetBodies()]
+            ['Pendulum']
+        """
         return self._state.scene.name
 
     def GetDOF(self) -> int:
         """Return the number of degrees of freedom: the joint axes that ``SetDOFValues`` sets.
 
         Passive joints are not counted.
+
+        Example:
+            >>> robot.GetDOF()
+            2
         """
         return len(self._state.scene.dof_axes)
 

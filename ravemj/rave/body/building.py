@@ -21,6 +21,8 @@ from ravemj.transforms import Floats, Pose
 class Building(Mechanism):
     """Makes the body anew; it must not be in an environment meanwhile."""
 
+    _internal = ("extracted",)
+
     def InitFromBoxes(self, boxes: ArrayLike, draw: bool = True, uri: str = "") -> bool:
         """Make the body one static link of boxes, in place of what it was.
 
@@ -124,6 +126,9 @@ class Building(Mechanism):
         Args:
             linkinfos: The descriptions of the links.
             uri: Not used.
+
+        Returns:
+            True.
         """
         return self.Init(linkinfos, [], uri)
 

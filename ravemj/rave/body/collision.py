@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from ravemj.arrays import checked_numbers, checked_transform
 from ravemj.bounds import Bounds, links_bounds
 from ravemj.collision.batch import batch_collides
-from ravemj.collision.questions import moved_links
+from ravemj.collision.questions import moved_apart
 from ravemj.collision.resting import tested_pairs
 from ravemj.collision.world import world_of
 from ravemj.errors import ArgumentError
@@ -27,6 +27,7 @@ class BodyCollision(BodyPart):
     """Collision of the body with itself, what takes part in it, and how much room the body needs."""
 
     AdjacentOptions = AdjacentOptions
+    _internal = ("active_dofs", "moves_as_a_whole")
 
     _self_checker: "CollisionChecker | None" = None
 
@@ -52,7 +53,11 @@ class BodyCollision(BodyPart):
         return checker.CheckSelfCollision(self, report)
 
     def SetSelfCollisionChecker(self, collisionchecker: "CollisionChecker | None") -> None:
-        """Choose the checker of ``CheckSelfCollision``; None: that of the environment."""
+        """Choose the checker of ``CheckSelfCollision``; None: that of the environment.
+
+        Args:
+            collisionchecker: The checker; None: the environment's.
+        """
         self._self_checker = collisionchecker
 
     def GetSelfCollisionChecker(self) -> "CollisionChecker | None":
@@ -83,12 +88,20 @@ class BodyCollision(BodyPart):
         with self._simulation.lock:
             return batch_collides(self._state, rows, itself_too=itself_too)
 
-    def active_links(self) -> frozenset[int] | None:
-        """Return the indices of the links that the active DOFs move; None: all."""
-        return moved_links(self._state.scene, range(self.GetDOF()))
+    def active_dofs(self) -> tuple[int, ...]:
+        """Return the active joints' DOFs: all, where ``SetActiveDOFs`` has not chosen any."""
+        return tuple(range(self.GetDOF()))
+
+    def moves_as_a_whole(self) -> bool:
+        """Return whether active DOFs move the body's base."""
+        return False
 
     def Enable(self, enable: bool) -> None:
-        """Enable or disable all links for collision checking; nothing else changes."""
+        """Enable or disable all links for collision checking; nothing else changes.
+
+        Args:
+            enable: Whether it takes part.
+        """
         self._state.link_enabled = [bool(enable)] * len(self._state.link_enabled)
 
     def IsEnabled(self) -> bool:
@@ -119,7 +132,11 @@ class BodyCollision(BodyPart):
         return (padded << np.arange(64, dtype=np.uint64)).sum(axis=1, dtype=np.uint64)
 
     def SetLinkEnableStatesMasks(self, masks: Iterable[int]) -> None:
-        """Enable the links whose bits are set, as ``GetLinkEnableStatesMasks`` returns them."""
+        """Enable the links whose bits are set, as ``GetLinkEnableStatesMasks`` returns them.
+
+        Args:
+            masks: Numbers of 64 bits each, one bit for each link.
+        """
         bits = [bool(int(mask) >> bit & 1) for mask in masks for bit in range(64)]
         count = len(self._state.link_enabled)
         if len(bits) < count:
@@ -137,11 +154,17 @@ class BodyCollision(BodyPart):
         if adjacentoptions & AdjacentOptions.Enabled:
             enabled = self._state.link_enabled
             pairs = [(first, second) for first, second in pairs if enabled[first] and enabled[second]]
-        moved = self.active_links() if adjacentoptions & AdjacentOptions.ActiveDOFs else None
-        return pairs if moved is None else [(a, b) for a, b in pairs if (a in moved) != (b in moved)]
+        if adjacentoptions & AdjacentOptions.ActiveDOFs:
+            apart = moved_apart(self._state.scene, self.active_dofs())
+            pairs = [pair for pair in pairs if pair in apart]
+        return pairs
 
     def SetAdjacentLinks(self, linkindex0: int, linkindex1: int) -> None:
         """Leave a pair of links out of ``CheckSelfCollision``.
+
+        Args:
+            linkindex0: Index of a link.
+            linkindex1: Index of the other.
 
         Raises:
             openrave_exception: there is no such link, or both are the same.
@@ -149,7 +172,11 @@ class BodyCollision(BodyPart):
         self.SetAdjacentLinksPairs([(linkindex0, linkindex1)])
 
     def SetAdjacentLinksCombinations(self, linkIndices: Sequence[int]) -> None:
-        """Leave all pairs of some links out of ``CheckSelfCollision``."""
+        """Leave all pairs of some links out of ``CheckSelfCollision``.
+
+        Args:
+            linkIndices: Indices of the links.
+        """
         self.SetAdjacentLinksPairs([(a, b) for a in linkIndices for b in linkIndices if a < b])
 
     def SetAdjacentLinksPairs(self, pairs: Iterable[Sequence[int]]) -> None:
@@ -185,7 +212,7 @@ class BodyCollision(BodyPart):
             geometries it is the point where its first link is.
 
         Example:
-            >>> box = table.ComputeAABB()
+            >>> box = robot.ComputeAABB()
             >>> height = box.pos()[2] + box.extents()[2]
         """
         with self._simulation.lock:
@@ -204,7 +231,11 @@ class BodyCollision(BodyPart):
         return self._bounds(T_world_body @ inverse(poses[0]) @ poses if len(poses) else poses, enabledOnlyLinks)
 
     def ComputeLocalAABB(self, enabledOnlyLinks: bool = False) -> AABB:
-        """Return the box of ``ComputeAABB`` along the axes of the first link and in its frame."""
+        """Return the box of ``ComputeAABB`` along the axes of the first link and in its frame.
+
+        Args:
+            enabledOnlyLinks: Whether to leave out links that are not enabled.
+        """
         return self.ComputeAABBFromTransform(np.eye(4), enabledOnlyLinks)
 
     def _bounds(self, poses: Floats, enabled_only: bool) -> AABB:

@@ -13,6 +13,7 @@ from ravemj.collision.questions import touching_links
 from ravemj.collision.world import world_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
+from ravemj.rave.infos.content import Info
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.link import Link
 from ravemj.simulation import BodyState
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-@dataclass
-class GrabbedInfo:
+@dataclass(eq=False, repr=False)
+class GrabbedInfo(Info):
     """What ``ResetGrabbed`` needs to hold a body as before.
 
     Attributes:
@@ -33,6 +34,8 @@ class GrabbedInfo:
         _trelative: ``T_link_body``, shape (4, 4).
         _setIgnoreRobotLinkNames: Names of the holder's links that the held body does not collide with.
     """
+
+    _called = "GrabbedInfo"
 
     _grabbedname: str = ""
     _robotlinkname: str = ""
@@ -84,8 +87,12 @@ class Grabbing(BodyPart):
             if not self._simulation.holds(state):
                 message = f"Grab: '{state.scene.name}' is not in this environment; add it first"
                 raise RavemjError(message, ErrorCode.NotInitialized)
-        if held is self._state or self._state in _attached(held, downwards_only=True):
-            raise ArgumentError(f"Grab: '{self.GetName()}' cannot hold '{body.GetName()}', by which it is held itself")
+        self._check_not_carried_by(held)
+
+    def _check_not_carried_by(self, held: BodyState) -> None:
+        if held.carries(self._state):
+            name = held.scene.name
+            raise ArgumentError(f"Grab: '{self.GetName()}' cannot hold '{name}', by which it is held itself")
 
     def _link_index(self, link: Link | int | str) -> int:
         if isinstance(link, Link):
@@ -147,6 +154,9 @@ class Grabbing(BodyPart):
     def ResetGrabbed(self, grabbedinfos: Sequence[GrabbedInfo]) -> None:
         """Hold the bodies that the infos of ``GetGrabbedInfo`` name, each in the pose that it had, and no others.
 
+        Args:
+            grabbedinfos: What ``GetGrabbedInfo`` returned.
+
         Raises:
             openrave_exception: a body or link is not there. Nothing has changed then.
         """
@@ -159,6 +169,7 @@ class Grabbing(BodyPart):
         body = self._simulation.body(info._grabbedname)
         if body is None:
             raise ArgumentError(f"ResetGrabbed: there is no body '{info._grabbedname}' in the environment")
+        self._check_not_carried_by(body)
         ignored = frozenset(self._link_index(name) for name in info._setIgnoreRobotLinkNames)
         return GrabbedBody(body, self._link_index(info._robotlinkname), np.array(info._trelative, dtype=float), ignored)
 
@@ -171,14 +182,13 @@ class Grabbing(BodyPart):
         return checked_kind(body, BodyPart, "IsAttached: body", "a KinBody").simulation_state in _attached(self._state)
 
 
-def _attached(start: BodyState, *, downwards_only: bool = False) -> list[BodyState]:
+def _attached(start: BodyState) -> list[BodyState]:
     """Return a body and all that are connected to it by grabbing."""
     found, pending = [start], [start]
     while pending:
         body = pending.pop()
         near = [grab.body for grab in body.grabs]
-        if not downwards_only:
-            near += [one for one in body.simulation.bodies if any(grab.body is body for grab in one.grabs)]
+        near += [one for one in body.simulation.bodies if any(grab.body is body for grab in one.grabs)]
         for one in near:
             if one not in found:
                 found.append(one)

@@ -27,6 +27,10 @@ class Limits(BodyPart):
 
         Raises:
             IndexError: there is no such DOF.
+
+        Example:
+            >>> lower, upper = robot.GetDOFLimits()
+            >>> middle = (lower + upper) / 2
         """
         return self._of_axes("lower", indices), self._of_axes("upper", indices)
 
@@ -45,7 +49,11 @@ class Limits(BodyPart):
         self._set_axes("SetDOFLimits", {"lower": lower, "upper": upper}, indices)
 
     def GetDOFVelocityLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the velocity limits, the same in both directions [rad/s or m/s], shape (dof,)."""
+        """Return the velocity limits, the same in both directions [rad/s or m/s], shape (dof,).
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+        """
         return self._of_axes("max_velocity", indices)
 
     GetDOFMaxVel = GetDOFVelocityLimits
@@ -55,7 +63,11 @@ class Limits(BodyPart):
         self._set_axes("SetDOFVelocityLimits", {"max_velocity": limits}, indices)
 
     def GetDOFAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the acceleration limits, the same in both directions [rad/s^2 or m/s^2], shape (dof,)."""
+        """Return the acceleration limits, the same in both directions [rad/s^2 or m/s^2], shape (dof,).
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+        """
         return self._of_axes("max_acceleration", indices)
 
     GetDOFMaxAccel = GetDOFAccelerationLimits
@@ -65,7 +77,11 @@ class Limits(BodyPart):
         self._set_axes("SetDOFAccelerationLimits", {"max_acceleration": limits}, indices)
 
     def GetDOFTorqueLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the torque limits [N m, for sliders N], shape (dof,); 0 where the file says nothing."""
+        """Return the torque limits [N m, for sliders N], shape (dof,); 0 where the file says nothing.
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+        """
         return self._of_axes("max_torque", indices)
 
     GetDOFMaxTorque = GetDOFTorqueLimits
@@ -75,11 +91,19 @@ class Limits(BodyPart):
         self._set_axes("SetDOFTorqueLimits", {"max_torque": limits}, indices)
 
     def GetDOFWeights(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the weights in distances between configurations, shape (dof,)."""
+        """Return the weights in distances between configurations, shape (dof,).
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+        """
         return self._of_axes("weight", indices)
 
     def SetDOFWeights(self, weights: ArrayLike, indices: "ArrayLike | None" = None) -> None:
         """Set the weights in distances between configurations; all should be positive.
+
+        Args:
+            weights: Weights, shape (dof,), or one for each index.
+            indices: The DOFs that they are of; left out: all.
 
         Raises:
             openrave_exception: there are too few or too many weights, or one is not positive.
@@ -88,11 +112,20 @@ class Limits(BodyPart):
         self._set_axes("SetDOFWeights", {"weight": weights}, indices)
 
     def GetDOFResolutions(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the steps of planners [rad or m], shape (dof,)."""
+        """Return the steps of planners [rad or m], shape (dof,).
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+        """
         return self._of_axes("resolution", indices)
 
     def SetDOFResolutions(self, resolutions: ArrayLike, indices: "ArrayLike | None" = None) -> None:
-        """Set the steps of planners [rad or m], as many as there are DOFs, or as there are indices; all positive."""
+        """Set the steps of planners [rad or m], as many as there are DOFs, or as there are indices; all positive.
+
+        Args:
+            resolutions: Steps [rad or m], shape (dof,).
+            indices: The DOFs that they are of; left out: all.
+        """
         self._check_positive(resolutions, "SetDOFResolutions: resolutions")
         self._set_axes("SetDOFResolutions", {"resolution": resolutions}, indices)
 
@@ -152,6 +185,6 @@ class Limits(BodyPart):
         return np.where(circular, wrapped_angle(difference), difference)
 
 
-def wrapped_angle(angle: Floats) -> Floats:
+def wrapped_angle(angle: ArrayLike) -> Floats:
     """Return angles with full turns added so that they lie in (-pi, pi]."""
-    return np.pi - (np.pi - angle) % (2 * np.pi)
+    return np.pi - (np.pi - np.asarray(angle, dtype=np.float64)) % (2 * np.pi)

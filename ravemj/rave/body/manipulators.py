@@ -35,7 +35,11 @@ class Manipulators(BodyPart):
         return next(iter(self.GetManipulators(name)), None)
 
     def GetActiveManipulator(self) -> Manipulator | None:
-        """Return the manipulator that calls without one refer to, or None."""
+        """Return the manipulator that calls without one refer to, or None.
+
+        Example:
+            >>> T_world_tool = robot.GetActiveManipulator().GetTransform()
+        """
         return next(iter(self.GetManipulators(self._active_manipulator)), None)
 
     def GetRobotStructureHash(self) -> str:
@@ -53,6 +57,9 @@ class Manipulators(BodyPart):
         Args:
             manipinfo: Its description.
             removeduplicate: Whether it replaces one of the same name.
+
+        Returns:
+            The new manipulator.
 
         Raises:
             openrave_exception: there is one of that name, or no joints lead from its base to its effector. Nothing has
@@ -107,6 +114,10 @@ class Manipulators(BodyPart):
 
         Raises:
             ArgumentError: there is no such manipulator. Nothing has changed then.
+
+        Example:
+            >>> manipulator = robot.SetActiveManipulator("arm")
+            >>> robot.SetActiveDOFs(manipulator.GetArmIndices())
         """
         names = [one.name for one in self._state.scene.manipulators]
         name = manip.GetName() if isinstance(manip, Manipulator) else manip

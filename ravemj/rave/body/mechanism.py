@@ -25,12 +25,22 @@ class Mechanism(BodyPart):
 
         Args:
             indices: Which links; None: all.
+
+        Example:
+            >>> [link.GetName() for link in robot.GetLinks()]
+            ['Base', 'Arm0', 'Arm1']
         """
         links = [Link(self._body, self._state, index) for index in range(len(self._state.scene.links))]
         return [links[index] for index in checked_indices(... if indices is None else indices, len(links), "indices")]
 
     def GetLink(self, name: str) -> Link | None:
-        """Return the link of that name, or None."""
+        """Return the link of that name, or None.
+
+        Example:
+            >>> T_world_link = robot.GetLink("Arm1").GetTransform()
+            >>> robot.GetLink("no such link") is None
+            True
+        """
         return next((link for link in self.GetLinks() if link.GetName() == name), None)
 
     def GetJoints(self, indices: Sequence[int] | None = None) -> list[Joint]:
@@ -49,7 +59,14 @@ class Mechanism(BodyPart):
         return [Joint(self._body, self._state, index) for index in range(first, first + len(body.passive_joints))]
 
     def GetJoint(self, name: str) -> Joint | None:
-        """Return the joint of that name, passive or not, or None."""
+        """Return the joint of that name, passive or not, or None.
+
+        Example:
+            >>> robot.GetJoint("Joint1").GetDOFIndex()
+            1
+            >>> robot.GetJoint("no such joint") is None
+            True
+        """
         joints = (*self.GetJoints(), *self.GetPassiveJoints())
         return next((joint for joint in joints if joint.GetName() == name), None)
 

@@ -69,11 +69,20 @@ class Motion(Velocities, Many):
         return _columns(self._jacobian(linkindex, np.zeros(3))[1], dofindices)
 
     def CalculateJacobian(self, linkindex: int, position: ArrayLike) -> Floats:
-        """Return ``ComputeJacobianTranslation`` for all DOFs; its older name."""
+        """Return ``ComputeJacobianTranslation`` for all DOFs; its older name.
+
+        Args:
+            linkindex: Index of the link.
+            position: A point in the world [m], shape (3,).
+        """
         return self.ComputeJacobianTranslation(linkindex, position)
 
     def CalculateAngularVelocityJacobian(self, linkindex: int) -> Floats:
-        """Return ``ComputeJacobianAxisAngle`` for all DOFs; its older name."""
+        """Return ``ComputeJacobianAxisAngle`` for all DOFs, shape (3, dof); its older name.
+
+        Args:
+            linkindex: Index of the link.
+        """
         return self.ComputeJacobianAxisAngle(linkindex)
 
     def CalculateRotationJacobian(self, linkindex: int, quat: ArrayLike) -> Floats:

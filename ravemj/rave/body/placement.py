@@ -10,7 +10,7 @@ from ravemj.arrays import checked_transform, checked_vector
 from ravemj.errors import RavemjError
 from ravemj.rave.body.values import JointValues
 from ravemj.rave.enums import CheckLimitsAction
-from ravemj.transforms import Floats, wxyz_from_rows
+from ravemj.transforms import Floats, pose_of
 
 
 class Placement(JointValues):
@@ -21,13 +21,17 @@ class Placement(JointValues):
 
         Returns:
             ``T_world_link0``, shape (4, 4); a copy. The identity for a body without links.
+
+        Example:
+            >>> position = robot.GetTransform()[:3, 3]
+            >>> x_axis = robot.GetTransform()[:3, 0]
         """
         with self._simulation.lock:
             return self._state.link_transform(0) if self._state.scene.links else np.eye(4)
 
     def GetTransformPose(self) -> Floats:
         """Return the body's pose as [w, x, y, z, tx, ty, tz]: unit quaternion and position [m], shape (7,)."""
-        return pose_from_matrix(self.GetTransform())
+        return pose_of(self.GetTransform()).numbers()
 
     def SetTransform(self, transform: ArrayLike) -> None:
         """Move the whole body rigidly; joint values stay as they are.
@@ -120,8 +124,3 @@ class Placement(JointValues):
     def GetUpdateStamp(self) -> int:
         """Return a number that grows with every change of pose."""
         return self._state.stamp
-
-
-def pose_from_matrix(transform: Floats) -> Floats:
-    """Return [w, x, y, z, tx, ty, tz] of a 4x4 matrix, shape (7,)."""
-    return np.array([*wxyz_from_rows(transform[:3, :3].tolist()), *transform[:3, 3]])

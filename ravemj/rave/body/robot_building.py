@@ -54,6 +54,9 @@ class RobotBuilding(Building):
 
         Args:
             info: The description, for instance of ``ExtractInfo``.
+
+        Returns:
+            True.
         """
         return self.InitFromKinBodyInfo(info)
 

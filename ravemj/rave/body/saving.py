@@ -1,6 +1,6 @@
 """State savers: change a body, and have it back as it was."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Self, cast
@@ -10,6 +10,9 @@ from ravemj.rave.body.base import BodyPart
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import SaveParameters
 from ravemj.rave.interface import checked_kind
+from ravemj.showing import Shown
+from ravemj.simulation import BodyState
+from ravemj.simulation.body import GrabbedBody
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -27,6 +30,8 @@ _AXIS_FIELDS = {
 
 class Saving(Placement):
     """State savers: ``with body:`` and ``body.CreateKinBodyStateSaver``."""
+
+    _internal = ("default_saved", "restorers")
 
     default_saved = SaveParameters.LinkTransformation | SaveParameters.LinkEnable
     _open_savers: "list[StateSaver]"
@@ -52,8 +57,8 @@ class Saving(Placement):
         state = self._state
         found: list[Restorer] = []
         if options & SaveParameters.GrabbedBodies:
-            grabs = list(state.grabs)
-            found.append(lambda body: setattr(body.simulation_state, "grabs", list(grabs)))
+            grabs = state.grabs
+            found.append(lambda body: _hold(body.simulation_state, grabs))
         if options & SaveParameters.LinkTransformation:
             saved = state.configuration()
             found.append(lambda body: body.simulation_state.restore(saved))
@@ -94,7 +99,7 @@ class Saving(Placement):
             self._simulation.lock.release()
 
 
-class StateSaver:
+class StateSaver(Shown):
     """Keeps a state of a body; ``body.CreateKinBodyStateSaver()`` and ``robot.CreateRobotStateSaver()`` make it."""
 
     def __init__(self, body: "KinBody", options: int | None = None) -> None:
@@ -141,6 +146,17 @@ class StateSaver:
 
 def _structure(body: "KinBody") -> tuple[int, int]:
     return len(body.GetLinks()), body.GetDOF()
+
+
+def _hold(state: BodyState, grabs: Sequence[GrabbedBody]) -> None:
+    """Let a body hold what is still there; in another environment, the bodies of the same names."""
+    world = state.simulation
+    bodies = [one.body if one.body.simulation is world else world.body(one.body.scene.name) for one in grabs]
+    state.grabs = [
+        replace(grab, body=body)
+        for grab, body in zip(grabs, bodies, strict=True)
+        if body is not None and world.holds(state) and world.holds(body) and not body.carries(state)
+    ]
 
 
 def _set_axes(body: "KinBody", kept: list[dict[str, float]]) -> None:

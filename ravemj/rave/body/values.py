@@ -30,6 +30,13 @@ class JointValues(BodyPart):
 
         Raises:
             IndexError: there is no such DOF.
+
+        Example:
+            >>> robot.SetDOFValues([0.5, -0.5])
+            >>> robot.GetDOFValues()
+            array([ 0.5, -0.5])
+            >>> robot.GetDOFValues([1])  # the second joint only
+            array([-0.5])
         """
         with self._simulation.lock:
             values = self._state.kinematics.values()
@@ -113,4 +120,5 @@ class JointValues(BodyPart):
     @property
     def qpos_indices(self) -> Ints:
         """Where each DOF is in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld."""
-        return self._state.kinematics.qpos_indices.copy()
+        with self._simulation.lock:
+            return self._state.kinematics.qpos_indices.copy()

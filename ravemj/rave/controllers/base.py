@@ -43,6 +43,9 @@ class Controller(Interface):
             robot: The robot.
             dofindices: Which of its DOFs, in which order; None: all.
             controltransform: Whether it moves the robot's base, too.
+
+        Returns:
+            True.
         """
         indices = None if dofindices is None else checked_indices(dofindices, robot.GetDOF())
         with robot.simulation_state.simulation.lock:
@@ -110,26 +113,34 @@ class Controller(Interface):
         T_world_base = None if transform is None else checked_transform(transform, "SetDesired: transform")
         with self._robot.simulation_state.simulation.lock:
             self._desire(checked, T_world_base if self._moves_base else None)
-        self._env.wake_clock()
+        self._env.clock.wake()
         return True
 
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
         raise self._cannot("take single values")
 
     def SetPath(self, traj: Trajectory | None) -> bool:
-        """Play a trajectory in simulation time, from its first point on."""
+        """Play a trajectory in simulation time, from its first point on; return True.
+
+        Args:
+            traj: The trajectory; it is copied.
+        """
         del traj
         raise self._cannot("play paths")
 
     def SimulationStep(self, timestep: float) -> None:
-        """Act for a step of time [s]; ``StepSimulation`` and the thread of simulation time call this."""
+        """Act for a step of time [s]; ``StepSimulation`` and the thread of simulation time call this.
+
+        Args:
+            timestep: How long [s].
+        """
 
     def GetVelocity(self) -> Floats:
-        """Return the present velocities of the DOFs that the controller moves [rad/s or m/s]."""
+        """Return the present velocities of the DOFs that the controller moves [rad/s or m/s], shape (n,)."""
         return self._robot.GetDOFVelocities()[self._robot_dofs()]
 
     def GetTorque(self) -> Floats:
-        """Return the torques that the controller applies [N m or N]: none, for it places the robot."""
+        """Return the torques that the controller applies [N m or N], shape (n,): none, for it places the robot."""
         return np.zeros(len(self._robot_dofs()))
 
     def _robot_dofs(self) -> Ints:
@@ -145,4 +156,7 @@ class Controller(Interface):
         return RavemjError(f"{type(self).__name__} cannot {what}", ErrorCode.NotImplemented)
 
     def __repr__(self) -> str:
-        return f"RaveCreateController({self._env!r}, '{self._xml_id}')"
+        robot = self._attached_robot
+        if robot is not None and robot.GetController() is self:
+            return f"{robot!r}.GetController()"
+        return f"RaveCreateController({self._env!r}, {self._xml_id!r})"

@@ -52,8 +52,9 @@ class IdealController(Controller):
         Args:
             options: OpenRAVE has no meaning for them.
         """
-        self._path = self._desired = None
-        super().Reset(options)
+        with self._env.simulation.lock:
+            self._path = self._desired = None
+            super().Reset(options)
 
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
         if T_world_base is None and self._moves_base:
@@ -75,6 +76,12 @@ class IdealController(Controller):
 
         Raises:
             openrave_exception: it is None, has no points, or no times. What is played goes on then.
+
+        Example:
+            >>> robot.GetController().SetPath(trajectory)
+            True
+            >>> robot.WaitForController(0)
+            True
         """
         if traj is None:
             raise RavemjError("SetPath: traj is None; Reset() stops a path")
@@ -85,7 +92,7 @@ class IdealController(Controller):
             path.trajectory.Sample(0.0)
             self._path, self._desired = path, None
             self._time, self._is_done = 0.0, False
-        self._env.wake_clock()
+        self._env.clock.wake()
         return True
 
     def _prepared(self, traj: Trajectory) -> _Path:
@@ -101,7 +108,11 @@ class IdealController(Controller):
         return _Path(copy, columns, dofs, has_base and self._moves_base)
 
     def SimulationStep(self, timestep: float) -> None:
-        """Go on by a step of time [s]; ``StepSimulation`` and the thread of simulation time call this."""
+        """Go on by a step of time [s]; ``StepSimulation`` and the thread of simulation time call this.
+
+        Args:
+            timestep: How long [s].
+        """
         if self._path is not None:
             self._play(self._path, timestep)
         elif self._desired is not None:

@@ -72,7 +72,11 @@ class MultiController(Controller):
         self._parts = tuple(part for part in self._parts if part.controller is not controller)
 
     def GetController(self, dof: int) -> Controller | None:
-        """Return the controller of a DOF, or None."""
+        """Return the controller of a DOF, or None.
+
+        Args:
+            dof: Index of the DOF.
+        """
         owners = (part.controller for part in self._parts if dof in part.controller.GetControlDOFIndices())
         return next(owners, None)
 
@@ -86,7 +90,11 @@ class MultiController(Controller):
             part.controller.Reset(options)
 
     def SetPath(self, traj: Trajectory | None) -> bool:
-        """Play a trajectory: each controller its part of it. See ``IdealController.SetPath``."""
+        """Play a trajectory: each controller its part of it; return True. See ``IdealController.SetPath``.
+
+        Args:
+            traj: The trajectory; it is copied.
+        """
         return all([part.controller.SetPath(traj) for part in self._parts])
 
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
@@ -94,7 +102,11 @@ class MultiController(Controller):
             part.controller.SetDesired(values[part.places], T_world_base)
 
     def SimulationStep(self, timestep: float) -> None:
-        """Let all controllers act for a step of time [s]."""
+        """Let all controllers act for a step of time [s].
+
+        Args:
+            timestep: How long [s].
+        """
         for part in self._parts:
             part.controller.SimulationStep(timestep)
 
@@ -107,7 +119,7 @@ class MultiController(Controller):
         return max((part.controller.GetTime() for part in self._parts), default=0.0)
 
     def GetTorque(self) -> Floats:
-        """Return the torques that the controllers apply [N m or N]."""
+        """Return the torques that the controllers apply [N m or N], shape (n,)."""
         torques = np.zeros(len(self._robot_dofs()))
         for part in self._parts:
             torques[part.places] = part.controller.GetTorque()

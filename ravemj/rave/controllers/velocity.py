@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ravemj.physics import Motor
 from ravemj.rave.controllers.base import Controller
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.transforms import Floats
@@ -30,8 +29,9 @@ class VelocityController(Controller):
         Args:
             options: OpenRAVE has no meaning for them.
         """
-        super().Reset(options)
-        self._drive(None)
+        with self._env.simulation.lock:
+            super().Reset(options)
+            self._drive(None)
 
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
         del T_world_base
@@ -44,10 +44,16 @@ class VelocityController(Controller):
         if self._attached_robot is not None:
             loads = self._env.GetPhysicsEngine().loads(self._attached_robot.simulation_state)
             if loads is not None:
+                from ravemj.physics import Motor  # noqa: PLC0415 - imported with the engine
+
                 loads.motor = None if velocities is None else Motor(self._robot_dofs(), velocities)
 
     def SimulationStep(self, timestep: float) -> None:
-        """Move the joints for a step of time [s], unless physics does."""
+        """Move the joints for a step of time [s], unless physics does.
+
+        Args:
+            timestep: How long [s].
+        """
         if self._velocities is None:
             return
         if self._env.GetPhysicsEngine().is_simulated:

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, cast
 
-from ravemj.errors import Diagnostics, ErrorCode, RavemjError
+from ravemj.errors import Diagnostic, ErrorCode, RavemjError
 from ravemj.rave.interface import Annotations, UserData
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
@@ -17,12 +17,14 @@ if TYPE_CHECKING:
 class EnvironmentPart(UserData):
     """Part of the API of an environment; ``Environment`` joins the parts."""
 
+    _internal = ("wrap",)
+
     def __init__(self) -> None:
         self._simulation = Simulation()
         self._studio = Studio(self._simulation)
         self._viewer: Viewer | None = None
-        self._found = Diagnostics()
-        self._files: list[str] = []
+        self._found: dict[Diagnostic, None] = {}  # as ordered sets, which loading a file again does not let grow
+        self._files: dict[str, None] = {}
         self._annotations = Annotations()
         self._is_destroyed = False
 
@@ -41,7 +43,8 @@ class EnvironmentPart(UserData):
 
     def wrap(self, state: BodyState) -> KinBody:
         """Return the one object that users have for a body."""
-        if state.api_object is None:
-            state.api_object = (Robot if state.scene.is_robot else KinBody)(self._environment, state)
-        assert isinstance(state.api_object, KinBody)
-        return state.api_object
+        with self._simulation.lock:
+            if state.api_object is None:
+                state.api_object = (Robot if state.scene.is_robot else KinBody)(self._environment, state)
+            assert isinstance(state.api_object, KinBody)
+            return state.api_object

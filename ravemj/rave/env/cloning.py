@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from ravemj.rave.body.base import both_locks
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.contents import Contents
 from ravemj.rave.interface import checked_environment
@@ -48,7 +49,7 @@ class Cloning(Contents):
         source = reference.simulation
         if source is self._simulation:
             return
-        with source.lock, self._simulation.lock:
+        with both_locks(source, self._simulation):
             self._simulation.clear()
             self._simulation.view = source.view
             self._simulation.set_gravity(source.gravity)
@@ -61,7 +62,7 @@ class Cloning(Contents):
     def _copy(self, original: BodyState) -> BodyState:
         copy = self._simulation.create(original.scene)
         copy.copy(original)
-        self._simulation.insert(copy)
+        self._simulation.insert(copy, original.index)
         copy.rest_poses = original.rest_poses
         body, other = self.wrap(copy), original.api_object
         if isinstance(body, Robot) and isinstance(other, Robot):

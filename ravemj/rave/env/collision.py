@@ -13,13 +13,14 @@ from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.report import CollisionReport
+from ravemj.showing import Shown
 from ravemj.transforms import Floats
 
 CollisionCallback = Callable[[CollisionReport, bool], int]
 """Takes a report of one collision and whether time runs, and returns a ``CollisionAction``."""
 
 
-class CollisionCallbackHandle:
+class CollisionCallbackHandle(Shown):
     """Keeps a function registered; it is not called any more once this is closed or gone."""
 
     def __init__(self, callbacks: list[CollisionCallback], callback: CollisionCallback) -> None:
@@ -37,6 +38,8 @@ class CollisionCallbackHandle:
 
 class Collision(EnvironmentPart):
     """Tests whether things touch."""
+
+    _internal = ("collision_callbacks",)
 
     def __init__(self) -> None:
         super().__init__()
@@ -99,7 +102,7 @@ class Collision(EnvironmentPart):
             >>> env.CheckCollision(ravemj.Ray([0, 0, 5], [0, 0, -10]), report)
             True
             >>> report.contacts[0].pos
-            array([0. , 0. , 0.1])
+            array([0.  , 0.  , 0.03])
         """
         self._check_alive()
         checker = self._checker or self.GetCollisionChecker()

@@ -46,7 +46,12 @@ class Contents(EnvironmentPart):
         raise ArgumentError(f"Add: takes a body or robot, not {kind}")
 
     def AddKinBody(self, body: KinBody, addMode: Any = False) -> None:  # noqa: ANN401 - a number or an enumeration
-        """Add a body to the environment; see ``Add``."""
+        """Add a body to the environment; see ``Add``.
+
+        Args:
+            body: The body.
+            addMode: As ``anonymous`` of ``Add``.
+        """
         self._check_alive()
         self._check_ours(body, "Add")
         state = body.simulation_state
@@ -64,8 +69,17 @@ class Contents(EnvironmentPart):
 
         It stays usable as a body that is not added, and can be added again. What it held, and what held it, let go.
 
+        Args:
+            obj: A body, a robot or a viewer.
+
         Returns:
             False if it was not there.
+
+        Example:
+            >>> env.Remove(env.GetKinBody("Pendulum"))
+            True
+            >>> env.GetBodies()
+            []
         """
         if not isinstance(obj, KinBody):
             return self._remove_other(obj)
@@ -93,6 +107,9 @@ class Contents(EnvironmentPart):
         Returns:
             A new list in the order in which they were added; one that was added after another was removed has that
             one's place.
+
+        Example:
+            >>> robots = [body for body in env.GetBodies() if body.IsRobot()]
         """
         bodies = [self.wrap(state) for state in self._simulation.bodies]
         return bodies if checkname is None else [body for body in bodies if body.GetName() == checkname]
@@ -113,7 +130,13 @@ class Contents(EnvironmentPart):
         return [body for body in self.GetBodies(checkname) if isinstance(body, Robot)]
 
     def GetKinBody(self, name: str) -> KinBody | None:
-        """Return the body or robot of that name, or None."""
+        """Return the body or robot of that name, or None.
+
+        Example:
+            >>> body = env.GetKinBody("Pendulum")
+            >>> env.GetKinBody("no such body") is None
+            True
+        """
         state = self._simulation.body(name)
         return None if state is None else self.wrap(state)
 
@@ -136,7 +159,11 @@ class Contents(EnvironmentPart):
         return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
 
     def GetBodyFromEnvironmentBodyIndex(self, bodyIndex: int) -> KinBody | None:
-        """Return the body with that number, as ``body.GetEnvironmentBodyIndex()`` gives it, or None."""
+        """Return the body with that number, as ``body.GetEnvironmentBodyIndex()`` gives it, or None.
+
+        Args:
+            bodyIndex: The number, from 1.
+        """
         state = self._simulation.body_at(bodyIndex)
         return None if state is None else self.wrap(state)
 

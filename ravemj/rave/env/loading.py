@@ -4,14 +4,16 @@ import logging
 import os
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from ravemj.errors import ArgumentError, Diagnostic, send_warnings
-from ravemj.openrave_xml import Reading
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
-from ravemj.readers import read_data, read_file
+
+if TYPE_CHECKING:
+    from ravemj.openrave_xml import Reading
 
 Attributes = Mapping[str, str]
 """OpenRAVE's options of reading; all are ignored."""
@@ -39,12 +41,13 @@ class Loading(EnvironmentPart):
             openrave_exception: a body of that name is in the environment already (``BodyNameConflict``).
 
         Example:
-            >>> env.Load("env.xml")
+            >>> env = ravemj.Environment()
+            >>> env.Load("models/env.xml")
             True
         """
         del atts
         checked_kind(filename, (str, os.PathLike), "Load: filename", "a path")
-        return self._take(read_file(filename))
+        return self._take(_read_file(filename))
 
     LoadURI = Load
 
@@ -67,29 +70,29 @@ class Loading(EnvironmentPart):
         """
         del atts
         checked_kind(data, (str, bytes), "LoadData: data", "a text")
-        return self._take(read_data(data))
+        return self._take(_read_data(data))
 
-    def _take(self, reading: Reading) -> bool:
+    def _take(self, reading: "Reading") -> bool:
         self._add(reading)
         if reading.failure is not None:
             _LOG.error("%s", reading.failure)
         return reading.failure is None and all(finding.severity != "error" for finding in reading.diagnostics)
 
-    def _add(self, reading: Reading) -> None:
+    def _add(self, reading: "Reading") -> None:
         self._note(reading)
-        for body in reading.scene.bodies:
-            self._simulation.add(body)
-        if reading.scene.view is not None:
-            self._simulation.view = reading.scene.view
-        if reading.scene.gravity is not None:
-            self._simulation.set_gravity(reading.scene.gravity)
+        with self._simulation.lock:
+            for body in reading.scene.bodies:
+                self._simulation.add(body)
+            if reading.scene.view is not None:
+                self._simulation.view = reading.scene.view
+            if reading.scene.gravity is not None:
+                self._simulation.set_gravity(reading.scene.gravity)
         send_warnings(reading.diagnostics)
 
-    def _note(self, reading: Reading) -> None:
+    def _note(self, reading: "Reading") -> None:
         self._check_alive()
-        self._files.extend(reading.files)
-        for finding in reading.diagnostics:
-            self._found.add(finding)
+        self._files.update(dict.fromkeys(reading.files))
+        self._found.update(dict.fromkeys(reading.diagnostics))
 
     def ReadKinBodyURI(self, *arguments: "KinBody | str | Attributes | None") -> KinBody | None:
         """Read a body from a file without adding it: ``ReadKinBodyURI(filename[, atts])``.
@@ -104,37 +107,37 @@ class Loading(EnvironmentPart):
             >>> env.Add(mug)
         """
         body, filename = _read_arguments("ReadKinBodyURI", arguments)
-        return self._read(read_file(filename), body, is_robot=False)
+        return self._read(_read_file(filename), body, is_robot=False)
 
     ReadKinBodyXMLFile = ReadKinBodyURI
 
     def ReadKinBodyData(self, *arguments: "KinBody | str | Attributes | None") -> KinBody | None:
-        """Read a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
+        """Return a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
         body, data = _read_arguments("ReadKinBodyData", arguments)
-        return self._read(read_data(data), body, is_robot=False)
+        return self._read(_read_data(data), body, is_robot=False)
 
     ReadKinBodyXMLData = ReadKinBodyData
 
     def ReadRobotURI(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
-        """Read a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
+        """Return a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
 
         A body that the file does not call a robot becomes one.
         """
         body, filename = _read_arguments("ReadRobotURI", arguments)
-        robot = self._read(read_file(filename), body, is_robot=True)
+        robot = self._read(_read_file(filename), body, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLFile = ReadRobotURI
 
     def ReadRobotData(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
-        """Read a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
+        """Return a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
         body, data = _read_arguments("ReadRobotData", arguments)
-        robot = self._read(read_data(data), body, is_robot=True)
+        robot = self._read(_read_data(data), body, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLData = ReadRobotData
 
-    def _read(self, reading: Reading, into: KinBody | None, *, is_robot: bool) -> KinBody | None:
+    def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
         """Make a body of what was read, that is not added; the first one counts."""
         self._note(reading)
         send_warnings(reading.diagnostics)
@@ -145,7 +148,8 @@ class Loading(EnvironmentPart):
         scene = replace(scene, is_robot=scene.is_robot or is_robot)
         if into is None:
             return self.wrap(self._simulation.create(scene))
-        into.simulation_state.rebuild(replace(scene, is_robot=into.IsRobot()))
+        with self._simulation.lock:
+            into.simulation_state.rebuild(replace(scene, is_robot=into.IsRobot()))
         return into
 
     @property
@@ -156,7 +160,7 @@ class Loading(EnvironmentPart):
     @property
     def files(self) -> tuple[str, ...]:
         """Paths of all files that were read: models, what they include, and meshes."""
-        return tuple(dict.fromkeys(self._files))
+        return tuple(self._files)
 
 
 def _read_arguments(
@@ -168,3 +172,18 @@ def _read_arguments(
     if not given:
         raise ArgumentError(f"{caller}: takes a text, optionally after a body, not {arguments!r}")
     return into, os.fspath(given[0])
+
+
+# Readers are imported when they are asked for: that takes a while, and not every script reads a file.
+
+
+def _read_file(path: str | os.PathLike[str]) -> "Reading":
+    from ravemj.readers import read_file  # noqa: PLC0415
+
+    return read_file(path)
+
+
+def _read_data(data: str | bytes) -> "Reading":
+    from ravemj.readers import read_data  # noqa: PLC0415
+
+    return read_data(data)

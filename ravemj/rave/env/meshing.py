@@ -5,12 +5,10 @@ from collections.abc import Callable
 from enum import IntEnum
 
 from ravemj.errors import Source, SourceError
-from ravemj.meshes import read_mesh
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.trimesh import TriMesh, trimesh_of
-from ravemj.readers import find
 from ravemj.scene import KinBody as Description
 from ravemj.scene import Mesh
 from ravemj.simulation import BodyState
@@ -69,6 +67,9 @@ class Meshing(EnvironmentPart):
         Returns:
             The triangles, or None, with the reason in the log, where there is no such file or it is broken.
         """
+        from ravemj.meshes import read_mesh  # noqa: PLC0415 - slow to import
+        from ravemj.readers import find  # noqa: PLC0415
+
         path = find(filename)
         try:
             if path is None:

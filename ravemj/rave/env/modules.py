@@ -8,7 +8,7 @@ class Modules(EnvironmentPart):
     """Takes no modules, and says so."""
 
     def AddModule(self, module: object, args: str = "") -> int:
-        """Refuse a module: there is none, since ``RaveCreateModule`` makes none.
+        """Refuse a module: there is none, since ``RaveCreateModule`` makes none; it never returns.
 
         Args:
             module: What ``RaveCreateModule`` returned.

@@ -6,8 +6,10 @@ from ravemj.clock import Clock
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
+from ravemj.rave.kinbody import KinBody
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.robot import Robot
+from ravemj.rave.sensors import Sensor
 from ravemj.simulation import DEFAULT_GRAVITY
 
 
@@ -17,6 +19,8 @@ class Running(EnvironmentPart):
     Time passes by itself from the first command to a controller, or the first question for the time, until
     ``StopSimulation``; before that no thread runs. While ``with env:`` holds the environment, it stands still.
     """
+
+    _internal = ("clock", "wake_clock")
 
     def __init__(self) -> None:
         super().__init__()
@@ -105,15 +109,27 @@ class Running(EnvironmentPart):
         """Return what holds gravity and moves bodies in time; never None."""
         return self._engine
 
-    def wake_clock(self) -> None:
-        """Let time pass by itself from now on, unless it was stopped."""
-        self._clock.wake()
+    def GetSensors(self) -> list[Sensor]:
+        """Return the devices of all attached sensors of all robots."""
+        attached = [one for body in self._bodies() if isinstance(body, Robot) for one in body.GetAttachedSensors()]
+        return [sensor for one in attached if (sensor := one.GetSensor()) is not None]
+
+    def GetSensor(self, name: str) -> Sensor | None:
+        """Return the device of that name, as ``sensor.GetName()`` says it (robot, colon, attached sensor), or None."""
+        return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
+
+    def _bodies(self) -> list[KinBody]:
+        return [self.wrap(state) for state in self._simulation.bodies]
+
+    @property
+    def clock(self) -> Clock:
+        """What counts simulation time and lets it pass; below the OpenRAVE API."""
+        return self._clock
 
     def _advance(self, timestep: float) -> None:
         """Let time pass by one step, under the lock."""
         self._engine.SimulateStep(timestep)
-        for state in self._simulation.bodies:
-            body = self.wrap(state)
+        for body in self._bodies():
             if isinstance(body, Robot):
                 body.step_controller(timestep)
 

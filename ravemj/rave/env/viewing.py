@@ -14,6 +14,8 @@ from ravemj.viewers import Viewer, open_viewer
 class Viewing(EnvironmentPart):
     """Shows the environment."""
 
+    _internal = ("studio",)
+
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
         """Attach a viewer, in place of the one before.
 
@@ -24,8 +26,9 @@ class Viewing(EnvironmentPart):
         moves it.
 
         Args:
-            viewername: ``'window'`` or one of OpenRAVE's names, such as ``'qtcoin'``: a window if there is a display.
-                ``'offscreen'``: never a window. ``''`` removes the viewer.
+            viewername: ``'window'``: a window; a warning says so where there is no display for it. ``'offscreen'``: no
+                window. One of OpenRAVE's names, such as ``'qtcoin'``: the best that works here; the log says which.
+                ``''`` removes the viewer.
             showviewer: False: never a window.
 
         Returns:
@@ -51,7 +54,7 @@ class Viewing(EnvironmentPart):
         return bool(viewername)
 
     def SetDefaultViewer(self, showviewer: bool = True) -> bool:
-        """Attach the viewer that the environment variable ``OPENRAVE_DEFAULT_VIEWER`` names, else a window.
+        """Attach the viewer that the variable ``OPENRAVE_DEFAULT_VIEWER`` names, else the best that works here.
 
         Args:
             showviewer: False: never a window.
@@ -59,13 +62,18 @@ class Viewing(EnvironmentPart):
         Returns:
             What ``SetViewer`` returns.
         """
-        return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "window", showviewer)
+        return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "qtcoin", showviewer)
 
     def GetViewer(self, name: str | None = None) -> Viewer | None:
         """Return the viewer, or None where there is none.
 
         Args:
             name: None or empty, or the name that ``SetViewer`` was given: None is returned for any other.
+
+        Example:
+            >>> viewer = env.GetViewer()
+            >>> if viewer is not None:
+            ...     viewer.SetBkgndColor([0.8, 0.85, 0.9])
         """
         viewer = self._viewer
         return viewer if viewer is None or not name or name == viewer.GetXMLId() else None

@@ -16,6 +16,7 @@ from ravemj.arrays import checked_transform
 from ravemj.builder import BodyBuilder
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.making import MADE
+from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.joint import JointInfo
 from ravemj.rave.infos.link import LinkInfo
 from ravemj.rave.infos.numbers import identity
@@ -33,8 +34,8 @@ class ExtractInfoOptions(IntFlag):
     """Leave the joint values out."""
 
 
-@dataclass(eq=False)
-class KinBodyInfo:
+@dataclass(eq=False, repr=False)
+class KinBodyInfo(Info):
     """What a body is made of.
 
     Attributes:
@@ -45,6 +46,8 @@ class KinBodyInfo:
         _dofValues: Joint values that differ from ``JointInfo._vcurrentvalues``: a list of ((name, axis), value).
         _isRobot: Whether it is a robot.
     """
+
+    _called = "KinBody.KinBodyInfo"
 
     _name: str = ""
     _vLinkInfos: Sequence[LinkInfo] = field(default_factory=list[LinkInfo])
@@ -67,7 +70,7 @@ class KinBodyInfo:
         return {(str(name), int(axis)): float(value) for (name, axis), value in self._dofValues}
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class RobotBaseInfo(KinBodyInfo):
     """What a robot is made of.
 
@@ -75,6 +78,8 @@ class RobotBaseInfo(KinBodyInfo):
         _vManipInfos: Its arms, a list of ``ManipulatorInfo``.
         _vAttachedSensorInfos: Its sensors, a list of ``AttachedSensorInfo``.
     """
+
+    _called = "Robot.RobotBaseInfo"
 
     _isRobot: bool = True
     _vManipInfos: Sequence[ManipulatorInfo] = field(default_factory=list[ManipulatorInfo])

@@ -14,16 +14,17 @@ from ravemj import scene
 from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceError
 from ravemj.making import MADE
-from ravemj.meshes import MeshPart, read_mesh
+from ravemj.meshes import MeshPart
 from ravemj.rave.enums import GeometryType
+from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, identity, pose, vector
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
-from ravemj.readers import find
 from ravemj.tessellation import merged
 from ravemj.transforms import Floats
 
 TYPES: dict[type[scene.Shape], GeometryType] = {
     scene.Box: GeometryType.Box,
+    scene.CalibrationBoard: GeometryType.CalibrationBoard,
     scene.Sphere: GeometryType.Sphere,
     scene.Cylinder: GeometryType.Cylinder,
     scene.Capsule: GeometryType.Capsule,
@@ -34,8 +35,8 @@ TYPES: dict[type[scene.Shape], GeometryType] = {
 }
 
 
-@dataclass(eq=False)
-class GeometryInfo:
+@dataclass(eq=False, repr=False)
+class GeometryInfo(Info):
     """A shape of a link.
 
     Attributes:
@@ -67,6 +68,8 @@ class GeometryInfo:
         True
     """
 
+    _called = "KinBody.GeometryInfo"
+
     _type: GeometryType = GeometryType.None_
     _t: ArrayLike = field(default_factory=identity)
     _vGeomData: ArrayLike = field(default_factory=filled(0, 4))
@@ -86,7 +89,9 @@ class GeometryInfo:
     _filenamecollision: str | None = None
     _vRenderScale: ArrayLike = field(default_factory=filled(1))
     _vCollisionScale: ArrayLike = field(default_factory=filled(1))
-    _drawn: "tuple[str | None, tuple[scene.Surface, ...] | None]" = (None, None)
+    _drawn: "tuple[str | None, tuple[scene.Surface, ...] | None]" = field(
+        default=(None, None), repr=False, compare=False
+    )
 
     @classmethod
     def of(cls, geometry: scene.Geometry) -> Self:
@@ -218,6 +223,9 @@ def _file(name: str | None, scale: ArrayLike) -> scene.MeshFile | None:
 
 def _parts(file: scene.MeshFile) -> tuple[MeshPart, ...]:
     """Read a mesh file."""
+    from ravemj.meshes import read_mesh  # noqa: PLC0415 - slow to import
+    from ravemj.readers import find  # noqa: PLC0415
+
     path = find(file.name)
     if path is None:
         raise SourceError("there is no such file", Source(file.name), "check the path, or set OPENRAVE_DATA")

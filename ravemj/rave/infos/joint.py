@@ -6,7 +6,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,11 +17,14 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.following import Equations
 from ravemj.joints import about, directions_at, reported_anchor, wxyz_from_rotation_vector
 from ravemj.making import MADE
-from ravemj.openrave_xml.actuator import Motor, motor_of
 from ravemj.rave.enums import JointType
+from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, per_axis, vector
 from ravemj.rave.infos.parameters import ParameterFields
 from ravemj.transforms import Vec3, add, conjugate, dot, rotate, scale
+
+if TYPE_CHECKING:
+    from ravemj.openrave_xml.actuator import Motor
 
 _KINDS: dict[JointType, scene.JointKind] = {
     JointType.Hinge: "hinge",
@@ -33,8 +36,8 @@ _AXES: dict[scene.JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "sphe
 _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-@dataclass(eq=False)
-class ElectricMotorActuatorInfo:
+@dataclass(eq=False, repr=False)
+class ElectricMotorActuatorInfo(Info):
     """An electric motor behind a gear. Its torque wins over ``JointInfo._vmaxtorque``.
 
     Attributes:
@@ -43,6 +46,8 @@ class ElectricMotorActuatorInfo:
         nominal_torque: Torque of the motor for long [N m]; taken where the other is 0.
         rotor_inertia: Inertia of the rotor [kg m^2].
     """
+
+    _called = "ElectricMotorActuatorInfo"
 
     model_type: str = ""
     gear_ratio: float = 0.0
@@ -63,13 +68,15 @@ class ElectricMotorActuatorInfo:
     coloumb_friction: float = 0.0
     viscous_friction: float = 0.0
 
-    def motor(self) -> Motor:
+    def motor(self) -> "Motor":
         """Return torque and inertia at the joint."""
         names = ("gear_ratio", "max_instantaneous_torque", "nominal_torque", "rotor_inertia")
+        from ravemj.openrave_xml.actuator import motor_of  # noqa: PLC0415 - rarely wanted
+
         return motor_of({name: float(getattr(self, name)) for name in names})
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class JointInfo(ParameterFields):
     """A joint between two links. Fields with a number for each axis may be longer than there are axes.
 
@@ -98,6 +105,8 @@ class JointInfo(ParameterFields):
         >>> body.Init([upper, lower], [info])
         True
     """
+
+    _called = "KinBody.JointInfo"
 
     _type: JointType = field(default_factory=lambda: JointType(0))
     _name: str | None = None

@@ -21,7 +21,7 @@ from ravemj.rave.infos.parameters import ParameterFields
 from ravemj.transforms import Floats
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class LinkInfo(ParameterFields):
     """A link of a body.
 
@@ -39,6 +39,8 @@ class LinkInfo(ParameterFields):
         _bIsEnabled: Whether collision checking looks at it.
         _bVisible: False hides all its shapes.
     """
+
+    _called = "KinBody.LinkInfo"
 
     _name: str | None = None
     _t: ArrayLike = field(default_factory=identity)

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_numbers
+from ravemj.rave.infos.content import Info
 from ravemj.scene import Parameters
 
 
-@dataclass(eq=False)
-class ParameterFields:
+@dataclass(eq=False, repr=False)
+class ParameterFields(Info):
     """The fields of links and joints that hold parameters."""
 
     _mapFloatParameters: Mapping[str, ArrayLike] = field(default_factory=dict[str, ArrayLike])

@@ -15,6 +15,7 @@ from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError
 from ravemj.making import MADE
 from ravemj.manipulators import ManipulatorBuilder
+from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import identity, pose, vector
 
 
@@ -22,8 +23,8 @@ def _ahead() -> ArrayLike:
     return np.array([0.0, 0.0, 1.0])
 
 
-@dataclass(eq=False)
-class ManipulatorInfo:
+@dataclass(eq=False, repr=False)
+class ManipulatorInfo(Info):
     """An arm of a robot.
 
     Attributes:
@@ -36,6 +37,8 @@ class ManipulatorInfo:
         _vChuckingDirection: For each of their DOFs the sign of closing; OpenRAVE 0.9 calls it ``_vClosingDirection``.
         _sIkSolverXMLId: Name of an IK solver; not used.
     """
+
+    _called = "Robot.ManipulatorInfo"
 
     _name: str | None = None
     _sBaseLinkName: str | None = None
@@ -89,8 +92,8 @@ class ManipulatorInfo:
         )
 
 
-@dataclass(eq=False)
-class AttachedSensorInfo:
+@dataclass(eq=False, repr=False)
+class AttachedSensorInfo(Info):
     """A sensor on a link.
 
     Attributes:
@@ -100,11 +103,13 @@ class AttachedSensorInfo:
         _sensorname: OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``; empty for a mere frame.
     """
 
+    _called = "Robot.AttachedSensorInfo"
+
     _name: str | None = None
     _linkname: str | None = None
     _trelative: ArrayLike = field(default_factory=identity)
     _sensorname: str | None = None
-    _camera: scene.Intrinsics | None = None
+    _camera: scene.Intrinsics | None = field(default=None, repr=False)
     _id: str | None = None
 
     @classmethod

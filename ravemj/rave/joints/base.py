@@ -3,13 +3,14 @@
 from typing import TYPE_CHECKING
 
 from ravemj import scene
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class JointPart:
+class JointPart(Shown):
     """Part of the API of a joint; ``Joint`` joins the parts."""
 
     def __init__(self, parent: "KinBody", state: BodyState, index: int) -> None:

@@ -34,7 +34,11 @@ class JointFollowing(JointPart):
         return (mimic.position, mimic.velocity, mimic.acceleration)[itype]
 
     def GetMimicDOFIndices(self, axis: int = 0) -> Ints:
-        """Return the DOFs in the joint's own equation; as in OpenRAVE, not those of other followers in it."""
+        """Return the DOFs in the joint's own equation; as in OpenRAVE, not those of other followers in it.
+
+        Args:
+            axis: Which axis of the joint.
+        """
         mimic = self._scene.mimic
         if mimic is None or axis or mimic.expression is None:
             return np.array([], dtype=np.int_)

@@ -69,15 +69,27 @@ class JointLimits(JointPart):
         self._set_axes("SetTorqueLimits", max_torque=maxlimits)
 
     def GetMaxVel(self, axis: int = 0) -> float:
-        """Return the velocity limit [rad/s or m/s]."""
+        """Return the velocity limit [rad/s or m/s].
+
+        Args:
+            axis: Which axis of the joint.
+        """
         return self._scene.axes[axis].max_velocity
 
     def GetMaxAccel(self, axis: int = 0) -> float:
-        """Return the acceleration limit [rad/s^2 or m/s^2]."""
+        """Return the acceleration limit [rad/s^2 or m/s^2].
+
+        Args:
+            axis: Which axis of the joint.
+        """
         return self._scene.axes[axis].max_acceleration
 
     def GetMaxTorque(self, axis: int = 0) -> float:
-        """Return the torque or force limit [N m or N]; 0 where the file says nothing."""
+        """Return the torque or force limit [N m or N]; 0 where the file says nothing.
+
+        Args:
+            axis: Which axis of the joint.
+        """
         return self._scene.axes[axis].max_torque
 
     def GetWeights(self) -> Floats:
@@ -85,7 +97,11 @@ class JointLimits(JointPart):
         return self._of_axes("weight")
 
     def GetWeight(self, axis: int = 0) -> float:
-        """Return the weight in distances between configurations."""
+        """Return the weight in distances between configurations.
+
+        Args:
+            axis: Which axis of the joint.
+        """
         return self._scene.axes[axis].weight
 
     def SetWeights(self, weights: ArrayLike) -> None:
@@ -103,7 +119,11 @@ class JointLimits(JointPart):
         return self._of_axes("resolution")
 
     def GetResolution(self, axis: int = 0) -> float:
-        """Return the step of planners [rad or m]."""
+        """Return the step of planners [rad or m].
+
+        Args:
+            axis: Which axis of the joint.
+        """
         return self._scene.axes[axis].resolution
 
     def SetResolution(self, resolution: float) -> None:

@@ -3,13 +3,14 @@
 from typing import TYPE_CHECKING
 
 from ravemj import scene
+from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class LinkPart:
+class LinkPart(Shown):
     """Part of the API of a link; ``Link`` joins the parts."""
 
     def __init__(self, parent: "KinBody", state: BodyState, index: int) -> None:

@@ -16,7 +16,12 @@ class LinkShapes(LinkPart):
     """The geometries of a link, and other sets of them that can be swapped in."""
 
     def GetGeometries(self) -> list[Geometry]:
-        """Return the link's shapes, in the order of the file."""
+        """Return the link's shapes, in the order of the file.
+
+        Example:
+            >>> for geometry in robot.GetLink("Arm0").GetGeometries():
+            ...     geometry.SetTransparency(0.5)
+        """
         return [Geometry(self._state, self._index, index) for index in range(len(self._scene.geometries))]
 
     def GetGeometry(self, index: int) -> Geometry:
@@ -94,12 +99,19 @@ class LinkShapes(LinkPart):
         self._set_groups(dict(self._scene.groups) | {str(name): geometries_of(geometryinfos)})
 
     def GetGroupNumGeometries(self, name: str) -> int:
-        """Return the number of shapes in a group, or -1 where there is no such group."""
+        """Return the number of shapes in a group, or -1 where there is no such group.
+
+        Args:
+            name: Name of the set.
+        """
         groups = dict(self._scene.groups)
         return len(groups[name]) if name in groups else -1
 
     def GetGeometriesFromGroup(self, name: str) -> list[Geometry]:
         """Return the shapes of a group.
+
+        Args:
+            name: Name of the set.
 
         Raises:
             openrave_exception: there is no such group.
@@ -110,6 +122,9 @@ class LinkShapes(LinkPart):
 
     def SetGeometriesFromGroup(self, name: str) -> None:
         """Give the link the shapes of a group in place of its own.
+
+        Args:
+            name: Name of the set.
 
         Raises:
             openrave_exception: there is no such group. Nothing has changed then.

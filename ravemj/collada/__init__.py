@@ -1,0 +1,55 @@
+"""COLLADA 1.5: files with kinematics, ``.dae`` and ``.zae``, become bodies.
+
+A document names one scene of nodes that are seen, one of kinematics, and one of physics, and binds them to each other.
+``scenes`` walks over it and fills a ``BodyBuilder`` for each robot; the other modules each read one kind of element.
+What a file refers to may stand in other files. Whatever leads nowhere is reported and left out, as OpenRAVE does it.
+"""
+
+from collections.abc import Callable
+
+from ravemj.collada.library import Library
+from ravemj.collada.scenes import Content, read_document
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.meshes.collada.document import ColladaDocument
+
+SUFFIXES = (".dae", ".zae")
+"""Ends of the names of the files, in lower case."""
+
+
+def read_file(path: str, diagnostics: Diagnostics, files: list[str], included_from: Source | None = None) -> Content:
+    """Read a ``.dae`` or ``.zae`` file.
+
+    Args:
+        path: Where it lies.
+        diagnostics: Takes every finding.
+        files: Takes the paths of the files that are read.
+        included_from: The element that names the file, or None.
+
+    Raises:
+        SourceError: The file is broken, or something in it is impossible.
+    """
+    library = Library(diagnostics, files, included_from)
+    return _read(library, path, lambda: library.open_file(path))
+
+
+def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str]) -> Content:
+    """Read a document that is no file, as ``read_file`` reads a file.
+
+    Args:
+        data: The document; files that it names are looked for in the working folder.
+        name: What to call it in messages.
+        diagnostics: Takes every finding.
+        files: Takes the paths of the files that are read.
+    """
+    library = Library(diagnostics, files, None)
+    return _read(library, name, lambda: library.open_text(data, name))
+
+
+def _read(library: Library, path: str, opened: Callable[[], ColladaDocument]) -> Content:
+    try:
+        return read_document(library, opened())
+    except (RecursionError, MemoryError, OverflowError) as error:
+        message = f"the file is too large or nested too deep ({type(error).__name__})"
+        raise SourceError(message, Source(path)) from error
+    except ArithmeticError as error:
+        raise SourceError("a number in the file is too large to compute with", Source(path)) from error

@@ -1,0 +1,267 @@
+"""What the mouse and the keys do: events in, changes of bodies, of the camera and of what is drawn out.
+
+There is no window and no OpenGL here. A shell hands in events, and draws a model from ``view.camera`` with the
+figures, the text and the rectangles of ``overlay()``.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from enum import Enum
+from typing import NamedTuple
+
+from ravemj.drawing import Shapes
+from ravemj.interaction import layout
+from ravemj.interaction.events import Button, Event, Key, Leave, Move, Press, Release, Resize, Wheel
+from ravemj.interaction.layout import Panel, Tool
+from ravemj.interaction.picking import Hit, pick
+from ravemj.interaction.selecting import OnSelect, Selection, Selector, point_line
+from ravemj.interaction.view import View
+from ravemj.rendering import Camera, bounding_sphere
+from ravemj.simulation import Simulation
+
+_CLICK = 4.0
+"""Farthest way of the pointer [points] between press and release of a click."""
+
+_STEP = 0.9
+"""How much nearer a step of the wheel brings the focus."""
+
+_ZOOM = 4.0
+"""Powers of e by which the distance changes over the height of the view."""
+
+
+class Mode(Enum):
+    """What the left button does."""
+
+    CAMERA = "camera"
+    INTERACTION = "interaction"
+
+
+class Overlay(NamedTuple):
+    """What is drawn over the bodies.
+
+    Attributes:
+        shapes: Figures in the world.
+        lines: Text for the top left corner.
+        panels: Buttons and wheels.
+    """
+
+    shapes: Shapes
+    lines: tuple[str, ...]
+    panels: tuple[Panel, ...]
+
+
+_Follow = Callable[[float, float], None]
+
+
+class Interaction:
+    """The mouse and the keys of one view on a simulation.
+
+    Attributes:
+        view: The camera.
+        mode: What the left button does.
+        version: Grows with everything that changes the view or the overlay; what moves bodies changes these as well.
+    """
+
+    def __init__(
+        self, simulation: Simulation, camera: Camera, size: tuple[int, int], on_select: OnSelect | None = None
+    ) -> None:
+        """Begin in camera mode.
+
+        Args:
+            simulation: What is seen and moved.
+            camera: Where from.
+            size: Width and height of the view [points].
+            on_select: Asked before something is selected, with the simulation locked.
+        """
+        self._simulation = simulation
+        self.view = View(camera, 0.0, size)
+        self.mode = Mode.CAMERA
+        self._selector = Selector(simulation, on_select)
+        self.version = 0
+        self._pointer: tuple[float, float] | None = None
+        self._hovered = False
+        self._buttons: set[Button] = set()
+        self._keys: set[str] = set()
+        self._press: Press | None = None
+        self._follow: _Follow | None = None
+
+    def look_from(self, camera: Camera, distance: float = 0.0) -> None:
+        """Take another camera; what the mouse does with the old one ends.
+
+        Args:
+            camera: The camera.
+            distance: How far its focus is [m]; 0: as far as before.
+        """
+        with self._simulation.lock:
+            if self.mode is Mode.CAMERA:
+                self._follow = None
+            self.view = replace(self.view, camera=camera, distance=distance or self.view.distance)
+            self.version += 1
+
+    def handle(self, event: Event) -> None:
+        """Do what an event asks for. The simulation is locked meanwhile."""
+        with self._simulation.lock:
+            self._forget_what_is_gone()
+            self._do(event)
+            hovers = self.hover is not None
+            if not isinstance(event, Move) or self._buttons or hovers or self._hovered:
+                self.version += 1
+            self._hovered = hovers
+
+    @property
+    def selection(self) -> Selection | None:
+        """What is selected, or None."""
+        with self._simulation.lock:
+            self._forget_what_is_gone()
+            return self._selector.selection
+
+    @property
+    def hover(self) -> Hit | None:
+        """What is under the pointer now; None while a button is held."""
+        if self._pointer is None or self._buttons:
+            return None
+        if not all(0 <= place < length for place, length in zip(self._pointer, self.view.size, strict=True)):
+            return None
+        with self._simulation.lock:
+            return pick(self._simulation, self.view.ray(*self._pointer))
+
+    def overlay(self) -> Overlay:
+        """Return what is to be drawn over the bodies as they are now. The simulation is locked meanwhile."""
+        with self._simulation.lock:
+            self._forget_what_is_gone()
+            chosen = Tool.CAMERA if self.mode is Mode.CAMERA else Tool.INTERACT
+            hit = self.hover
+            at = (
+                self._selector.point_line() if hit is None else point_line(hit.body, hit.link, hit.position, hit.normal)
+            )
+            lines = (*([at] if at else []), *self._selector.lines())
+            return Overlay(self._selector.shapes(), lines, layout.panels(self.view.size, chosen))
+
+    def _forget_what_is_gone(self) -> None:
+        if self._selector.forget_what_is_gone():
+            self._press = self._follow = None
+
+    # --- events
+
+    def _do(self, event: Event) -> None:
+        match event:
+            case Press():
+                self._on_press(event)
+            case Move(x, y):
+                self._on_move(x, y)
+            case Release():
+                self._on_release(event)
+            case Wheel(steps):
+                self._on_wheel(steps)
+            case Key(name, pressed):
+                self._on_key(name.lower(), pressed)
+            case Resize(width, height):
+                self.view = replace(self.view, size=(max(width, 1), max(height, 1)))
+            case Leave():
+                self._on_leave()
+
+    def _on_press(self, press: Press) -> None:
+        self._buttons.add(press.button)
+        self._press = self._follow = None
+        self._pointer = press.x, press.y
+        tool = layout.tool_at(self.view.size, press.x, press.y)
+        if tool is not None:
+            self._use(tool, press)
+        elif press.button is Button.LEFT and "s" in self._keys:
+            self._centre(press)
+        elif self.mode is Mode.CAMERA:
+            self._move_camera(press)
+        elif press.button is Button.LEFT:
+            self._press = press
+
+    def _on_move(self, x: float, y: float) -> None:
+        self._pointer = x, y
+        press = self._press
+        if press is not None and self._follow is None and math.hypot(x - press.x, y - press.y) > _CLICK:
+            self._press, self._follow = None, self._hold(press)
+        if self._follow is not None:
+            self._follow(x, y)
+
+    def _on_release(self, release: Release) -> None:
+        self._on_move(release.x, release.y)
+        self._buttons.discard(release.button)
+        press, self._press, self._follow = self._press, None, None
+        if press is not None and press.button is release.button:
+            self._selector.click(self.view, press)
+
+    def _on_wheel(self, steps: float) -> None:
+        if self.mode is Mode.CAMERA:
+            self.view = self._focused().zoomed(math.log(_STEP) * steps)
+
+    def _on_key(self, name: str, pressed: bool) -> None:
+        if not pressed:
+            self._keys.discard(name)
+            return
+        if name == "escape" and name not in self._keys:
+            self._set_mode(Mode.INTERACTION if self.mode is Mode.CAMERA else Mode.CAMERA)
+        self._keys.add(name)
+
+    def _on_leave(self) -> None:
+        self._buttons.clear()
+        self._keys.clear()
+        self._press = self._follow = self._pointer = None
+
+    def _set_mode(self, mode: Mode) -> None:
+        self.mode = mode
+        self._press = self._follow = None
+
+    def _use(self, tool: Tool, press: Press) -> None:
+        """Press a button, or hold one of the wheels."""
+        if press.button is not Button.LEFT:
+            return
+        view = self._focused()
+        match tool:
+            case Tool.INTERACT:
+                self._set_mode(Mode.INTERACTION)
+            case Tool.CAMERA:
+                self._set_mode(Mode.CAMERA)
+            case Tool.ROT_X:
+                self._follow = self._steered(press, lambda _, down: view.turned(0.0, down))
+            case Tool.ROT_Y:
+                self._follow = self._steered(press, lambda right, _: view.turned(right, 0.0))
+            case Tool.DOLLY:
+                self._follow = self._steered(press, lambda _, down: view.zoomed(-_ZOOM * down / view.size[1]))
+
+    # --- the camera
+
+    def _focused(self) -> View:
+        """Return the view with a focus: before one was set, as deep as the middle of the scene."""
+        if self.view.distance > 0:
+            return self.view
+        compiled = self._simulation.compile()
+        center, radius = bounding_sphere(compiled.model, compiled.data)
+        depth = float((center - self.view.camera.position) @ self.view.camera.rotation[:, 2])
+        return replace(self.view, distance=depth if depth > 0 else radius)
+
+    def _steered(self, press: Press, change: Callable[[float, float], View]) -> _Follow:
+        """Return what changes the view by how far the pointer goes from here."""
+
+        def follow(x: float, y: float) -> None:
+            self.view = replace(change(x - press.x, y - press.y), size=self.view.size)
+
+        return follow
+
+    def _move_camera(self, press: Press) -> None:
+        view = self._focused()
+        if {Button.LEFT, Button.MIDDLE} <= self._buttons:
+            self._follow = self._steered(press, lambda _, down: view.zoomed(-_ZOOM * down / view.size[1]))
+        elif press.button is Button.MIDDLE or (press.button is Button.LEFT and press.shift):
+            self._follow = self._steered(press, view.shifted)
+        elif press.button is Button.LEFT:
+            self._follow = self._steered(press, view.turned)
+
+    def _centre(self, press: Press) -> None:
+        hit = pick(self._simulation, self.view.ray(press.x, press.y))
+        if hit is not None:
+            self.view = self.view.centred(hit.position)
+
+    def _hold(self, press: Press) -> _Follow | None:
+        """Take hold of the cube or the cylinder where the button went down."""
+        follow = self._selector.hold(self.view, press)
+        return None if follow is None else lambda x, y: follow(self.view.ray(x, y))

@@ -1,0 +1,79 @@
+"""What people do with mouse and keys, in points of the screen: (0, 0) is the top left corner of the view."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Button(Enum):
+    """A button of the mouse."""
+
+    LEFT = "left"
+    MIDDLE = "middle"
+    RIGHT = "right"
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """A button goes down.
+
+    Attributes:
+        x: Column of the pointer [points].
+        y: Row of the pointer [points].
+        button: Which button.
+        ctrl: Whether Ctrl is held.
+        shift: Whether Shift is held.
+    """
+
+    x: float
+    y: float
+    button: Button = Button.LEFT
+    ctrl: bool = False
+    shift: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """The pointer is now elsewhere [points]."""
+
+    x: float
+    y: float
+
+
+@dataclass(frozen=True, slots=True)
+class Release:
+    """A button goes up."""
+
+    x: float
+    y: float
+    button: Button = Button.LEFT
+
+
+@dataclass(frozen=True, slots=True)
+class Wheel:
+    """The wheel turns; positive steps are away from the hand."""
+
+    steps: float
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """A key goes down or up; ``escape`` and letters such as ``s`` are known."""
+
+    name: str
+    pressed: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Resize:
+    """The view has another size [points]."""
+
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, slots=True)
+class Leave:
+    """The view is left: keys and buttons that are held do not count any more."""
+
+
+Event = Press | Move | Release | Wheel | Key | Resize | Leave

@@ -1,0 +1,125 @@
+"""The buttons and wheels on the view, as rectangles that every shell can draw."""
+
+from enum import Enum
+from typing import NamedTuple
+
+_MARGIN = 8
+_BUTTON = 36
+_WHEEL_LENGTH, _WHEEL_WIDTH = 120, 18
+_RIDGES = 9
+_LABEL_WIDTH, _LABEL_HEIGHT = 44, 20
+
+_Rgba = tuple[float, float, float, float]
+_BACK: _Rgba = (0.15, 0.15, 0.17, 0.75)
+_CHOSEN: _Rgba = (0.95, 0.95, 0.97, 1.0)
+_RIDGE: _Rgba = (0.6, 0.6, 0.63, 1.0)
+_RED: _Rgba = (0.85, 0.1, 0.1, 1.0)
+_GREY: _Rgba = (0.5, 0.5, 0.55, 1.0)
+_LENS: _Rgba = (0.2, 0.3, 0.5, 1.0)
+
+
+class Rect(NamedTuple):
+    """A rectangle; x and y are its top left corner [points]."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+    def contains(self, x: float, y: float) -> bool:
+        """Return whether a point is in it."""
+        return self.x <= x < self.x + self.width and self.y <= y < self.y + self.height
+
+
+class Panel(NamedTuple):
+    """A rectangle to draw, behind those that come after it.
+
+    Attributes:
+        rect: Where.
+        rgba: Its colour, in 0..1; with no opacity, only the text is drawn.
+        text: What stands in its middle, in white.
+    """
+
+    rect: Rect
+    rgba: _Rgba
+    text: str = ""
+
+
+class Tool(Enum):
+    """What can be pressed; the values are the names that people read."""
+
+    INTERACT = "Interaction mode"
+    CAMERA = "Camera mode"
+    ROT_X = "RotX"
+    ROT_Y = "RotY"
+    DOLLY = "Dolly"
+
+
+def tools(size: tuple[int, int]) -> dict[Tool, Rect]:
+    """Return where the buttons and wheels are on a view of some size [points]; none where it is too small."""
+    width, height = size
+    right, bottom = width - _MARGIN, height - _MARGIN
+    if width < 3 * _WHEEL_LENGTH or height < 2 * _WHEEL_LENGTH:
+        return {}
+    upright = bottom - _WHEEL_WIDTH - _MARGIN - _WHEEL_LENGTH
+    return {
+        Tool.INTERACT: Rect(right - _BUTTON, _MARGIN, _BUTTON, _BUTTON),
+        Tool.CAMERA: Rect(right - _BUTTON, 2 * _MARGIN + _BUTTON, _BUTTON, _BUTTON),
+        Tool.ROT_X: Rect(_MARGIN, upright, _WHEEL_WIDTH, _WHEEL_LENGTH),
+        Tool.ROT_Y: Rect(2 * _MARGIN + _WHEEL_WIDTH, bottom - _WHEEL_WIDTH, _WHEEL_LENGTH, _WHEEL_WIDTH),
+        Tool.DOLLY: Rect(right - _WHEEL_WIDTH, upright, _WHEEL_WIDTH, _WHEEL_LENGTH),
+    }
+
+
+def tool_at(size: tuple[int, int], x: float, y: float) -> Tool | None:
+    """Return the button or wheel at a point of the view [points], or None."""
+    return next((tool for tool, rect in tools(size).items() if rect.contains(x, y)), None)
+
+
+def panels(size: tuple[int, int], chosen: Tool) -> tuple[Panel, ...]:
+    """Return what to draw for the buttons and wheels.
+
+    Args:
+        size: Width and height of the view [points].
+        chosen: The button of the present mode.
+    """
+    drawn: list[Panel] = []
+    for tool, rect in tools(size).items():
+        drawn.append(Panel(rect, _CHOSEN if tool is chosen else _BACK))
+        if tool is Tool.INTERACT:
+            drawn += _arrow(rect)
+        elif tool is Tool.CAMERA:
+            drawn += _camera(rect)
+        else:
+            drawn += _ridges(rect)
+            drawn.append(Panel(_label(tool, rect), _BACK, tool.value))
+    return tuple(drawn)
+
+
+def _arrow(rect: Rect) -> list[Panel]:
+    """Return a red arrow that points up and to the left, as a mouse pointer does."""
+    head = [Panel(Rect(rect.x + 9, rect.y + 5 + row, 2 + 0.8 * row, 1), _RED) for row in range(18)]
+    tail = [Panel(Rect(rect.x + 14 + 0.5 * row, rect.y + 22 + row, 5, 1), _RED) for row in range(9)]
+    return head + tail
+
+
+def _camera(rect: Rect) -> list[Panel]:
+    return [
+        Panel(Rect(rect.x + 13, rect.y + 9, 8, 5), _GREY),
+        Panel(Rect(rect.x + 6, rect.y + 12, 24, 16), _GREY),
+        Panel(Rect(rect.x + 13, rect.y + 15, 10, 10), _LENS),
+    ]
+
+
+def _ridges(rect: Rect) -> list[Panel]:
+    steps = [(number + 1) / (_RIDGES + 1) for number in range(_RIDGES)]
+    if rect.height > rect.width:
+        return [Panel(Rect(rect.x + 3, rect.y + step * rect.height, rect.width - 6, 2), _RIDGE) for step in steps]
+    return [Panel(Rect(rect.x + step * rect.width, rect.y + 3, 2, rect.height - 6), _RIDGE) for step in steps]
+
+
+def _label(tool: Tool, rect: Rect) -> Rect:
+    if tool is Tool.ROT_Y:
+        return Rect(rect.x + rect.width + 2, rect.y + rect.height - _LABEL_HEIGHT, _LABEL_WIDTH, _LABEL_HEIGHT)
+    x = rect.x if tool is Tool.ROT_X else rect.x + rect.width - _LABEL_WIDTH
+    return Rect(x, rect.y - _LABEL_HEIGHT - 2, _LABEL_WIDTH, _LABEL_HEIGHT)

@@ -1,0 +1,582 @@
+"""Collision checking: against independent tests of shapes, and the rules of who takes part."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import ravemj
+from ravemj import CollisionOptions, CollisionReport, KinBody, Ray
+from ravemj.geometry_functions import CheckOBBCollision, OrientedBox
+
+pytestmark = pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
+
+ARM = """<Environment><Robot name="arm"><KinBody>
+<Body name="base"><Geom type="box"><extents>.2 .2 .1</extents></Geom></Body>
+<Body name="upper"><offsetfrom>base</offsetfrom><Translation>0 0 .3</Translation>
+<Geom type="box"><Translation>.5 0 0</Translation><extents>.5 .05 .05</extents></Geom></Body>
+<Body name="fore"><offsetfrom>upper</offsetfrom><Translation>1.1 0 0</Translation>
+<Geom type="box"><Translation>.4 0 0</Translation><extents>.3 .05 .05</extents></Geom></Body>
+<Body name="finger"><offsetfrom>fore</offsetfrom><Translation>.8 0 0</Translation>
+<Geom type="box"><Translation>.1 0 0</Translation><extents>.05 .02 .02</extents></Geom></Body>
+<Joint name="j0" type="hinge"><Body>base</Body><Body>upper</Body><offsetfrom>upper</offsetfrom><axis>0 0 1</axis>
+<limitsrad>-3 3</limitsrad></Joint>
+<Joint name="j1" type="hinge"><Body>upper</Body><Body>fore</Body><offsetfrom>fore</offsetfrom><axis>0 0 1</axis>
+<limitsrad>-3.1 3.1</limitsrad></Joint>
+<Joint name="j2" type="hinge"><Body>fore</Body><Body>finger</Body><offsetfrom>finger</offsetfrom><axis>0 0 1</axis>
+<limitsrad>-1 1</limitsrad></Joint>
+</KinBody><Manipulator name="hand"><base>base</base><effector>fore</effector><joints>j2</joints>
+<closingdirection>1</closingdirection></Manipulator></Robot></Environment>"""
+
+BOX = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+BOX_TRIANGLES = np.array([0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4])
+BOX_TRIANGLES = np.append(BOX_TRIANGLES, [1, 5, 7, 1, 7, 3]).reshape(12, 3)
+
+
+@pytest.fixture
+def env():
+    return ravemj.Environment()
+
+
+@pytest.fixture
+def arm(env):
+    env.LoadData(ARM)
+    return env.GetRobot("arm")
+
+
+def added(env, name, fill, position=(0.0, 0.0, 0.0)):
+    body = ravemj.RaveCreateKinBody(env, "")
+    fill(body)
+    body.SetName(name)
+    env.Add(body)
+    place(body, position)
+    return body
+
+
+def box(env, name, position=(0.0, 0.0, 0.0), half=(0.5, 0.5, 0.5)):
+    return added(env, name, lambda body: body.InitFromBoxes([[0, 0, 0, *half]]), position)
+
+
+def sphere(env, name, position=(0.0, 0.0, 0.0), radius=0.5):
+    return added(env, name, lambda body: body.InitFromSpheres([[0, 0, 0, radius]]), position)
+
+
+def mesh(env, name, vertices, triangles, position=(0.0, 0.0, 0.0)):
+    return added(env, name, lambda body: body.InitFromTrimesh(ravemj.TriMesh(vertices, triangles)), position)
+
+
+def u_shape():
+    """Return two legs and a floor, around the gap |x| < 0.9, z > -0.9."""
+    boxes = [((-1, 0, 0), (0.1, 0.5, 1)), ((1, 0, 0), (0.1, 0.5, 1)), ((0, 0, -1), (1, 0.5, 0.1))]
+    vertices = np.vstack([BOX * half + centre for centre, half in boxes])
+    return vertices, np.vstack([BOX_TRIANGLES + 8 * number for number in range(3)])
+
+
+def place(body, position, turn=(0.0, 0.0, 0.0)):
+    T = ravemj.matrixFromAxisAngle(turn)
+    T[:3, 3] = position
+    body.SetTransform(T)
+
+
+def colliding(report):
+    return {
+        frozenset((info.bodyLinkGeom1Name.split()[0], info.bodyLinkGeom2Name.split()[0]))
+        for info in report.collisionInfos
+    }
+
+
+turns = st.tuples(*[st.floats(-3, 3)] * 3)
+positions = st.tuples(*[st.floats(-2, 2)] * 3)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(positions, turns, st.tuples(*[st.floats(0.05, 1.0)] * 3)), min_size=2, max_size=7))
+def test_all_pairs_of_boxes_are_found(boxes):
+    """Against separating axes, for every pair of bodies, none of which ever moves by a joint."""
+    env = ravemj.Environment()
+    bodies = [box(env, f"b{number}", half=half) for number, (_, _, half) in enumerate(boxes)]
+    for body, (position, turn, _) in zip(bodies, boxes, strict=True):
+        place(body, position, turn)
+    env.GetCollisionChecker().SetCollisionOptions(CollisionOptions.AllLinkCollisions)
+    solids = [OrientedBox(body.GetTransform(), half) for body, (_, _, half) in zip(bodies, boxes, strict=True)]
+    expected = {
+        frozenset((f"b{i}", f"b{j}"))
+        for i, j in itertools.combinations(range(len(boxes)), 2)
+        if CheckOBBCollision(solids[i], solids[j])
+    }
+    found = set()
+    for body in bodies:
+        report = CollisionReport()
+        assert env.CheckCollision(body, report) == bool(report.collisionInfos)
+        assert all(info.bodyLinkGeom1Name.split()[0] == body.GetName() for info in report.collisionInfos)
+        found |= colliding(report)
+    assert found == expected
+    for one, other in itertools.permutations(bodies, 2):
+        assert env.CheckCollision(one, other) == (frozenset((one.GetName(), other.GetName())) in expected)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(positions, st.floats(0.05, 1.0)), min_size=2, max_size=7))
+def test_distances_and_contacts_of_spheres(spheres):
+    env = ravemj.Environment()
+    bodies = [sphere(env, f"s{i}", position, radius) for i, (position, radius) in enumerate(spheres)]
+    checker = env.GetCollisionChecker()
+    checker.SetCollisionOptions(CollisionOptions.Distance | CollisionOptions.Contacts)
+    for (one, (p, r)), (other, (q, s)) in itertools.permutations(zip(bodies, spheres, strict=True), 2):
+        report = CollisionReport()
+        apart = math.dist(p, q) - r - s
+        assert env.CheckCollision(one, other, report) == (apart <= 0)
+        assert report.minDistance == pytest.approx(max(apart, 0.0), abs=1e-9)
+        if apart < -1e-3 and math.dist(p, q) > 1e-3:
+            (contact,) = report.contacts
+            assert contact.depth == pytest.approx(-apart, abs=1e-9)
+            np.testing.assert_allclose(contact.norm, np.subtract(p, q) / math.dist(p, q), atol=1e-6)
+
+
+@settings(max_examples=40, deadline=None)
+@given(positions, turns, st.tuples(*[st.floats(0.15, 1.0)] * 3))  # too thick to be inside of a leg
+def test_meshes_are_their_triangles(position, turn, half):
+    """A box against a U of three boxes, whose hull is no answer."""
+    env = ravemj.Environment()
+    u = mesh(env, "u", *u_shape())
+    other = box(env, "box", half=half)
+    place(other, position, turn)
+    parts = [
+        OrientedBox([1, 0, 0, 0, *centre], extents)
+        for centre, extents in [((-1, 0, 0), (0.1, 0.5, 1)), ((1, 0, 0), (0.1, 0.5, 1)), ((0, 0, -1), (1, 0.5, 0.1))]
+    ]
+    solid = OrientedBox(other.GetTransform(), half)
+    expected = any(CheckOBBCollision(part, solid) for part in parts)
+    assert env.CheckCollision(u, other) == expected
+    assert env.CheckCollision(other, u) == expected
+
+
+def test_mesh_against_mesh(env):
+    one = mesh(env, "one", *u_shape())
+    other = mesh(env, "other", *u_shape())
+    assert env.CheckCollision(one, other)
+    place(other, [0, 0, 1.25], [0, math.pi, 0])  # turned over, its legs beside those of the first, its floor above
+    assert env.CheckCollision(one, other)
+    place(other, [1.0, 0, 1.25], [0, math.pi, 0])  # each has a leg in the gap of the other
+    assert not env.CheckCollision(one, other)
+    checker = env.GetCollisionChecker()
+    checker.SetCollisionOptions(CollisionOptions.Distance)
+    report = CollisionReport()
+    env.CheckCollision(one, other, report)
+    assert report.minDistance == pytest.approx(0.8, abs=1e-6)
+
+
+def test_convex_meshes_are_solid(env):
+    mesh(env, "cube", BOX, BOX_TRIANGLES)
+    assert env.CheckCollision(box(env, "inside", half=(0.1, 0.1, 0.1)))
+
+
+def test_open_meshes_are_hollow(env):
+    mesh(env, "open", BOX, BOX_TRIANGLES[2:])
+    assert not env.CheckCollision(box(env, "inside", half=(0.1, 0.1, 0.1)))
+    assert env.CheckCollision(box(env, "across", (0, 1, 0), half=(0.1, 0.1, 0.1)))
+
+
+def test_reports_are_symmetric(env):
+    one, other = box(env, "one"), sphere(env, "other", (0.7, 0.1, 0.2))
+    env.GetCollisionChecker().SetCollisionOptions(CollisionOptions.Contacts)
+    here, there = CollisionReport(), CollisionReport()
+    assert env.CheckCollision(one, other, here)
+    assert env.CheckCollision(other, one, report=there)
+    assert (here.plink1, here.plink2) == (there.plink2, there.plink1)
+    assert here.plink1.GetParent() == one
+    assert here.vLinkColliding == [(here.plink1, here.plink2)]
+    assert here.numCols == 1
+    (contact,), (mirrored,) = here.contacts, there.contacts
+    np.testing.assert_allclose(contact.norm, -mirrored.norm, atol=1e-9)
+    np.testing.assert_allclose(contact.pos, mirrored.pos, atol=1e-9)
+    assert contact.depth == pytest.approx(mirrored.depth, abs=1e-9)
+    assert contact.depth > 0
+
+
+def test_a_geometry_of_a_link_is_named(env):
+    boxes = [[0, 0, 0, 0.1, 0.1, 0.1], [1, 0, 0, 0.1, 0.1, 0.1], [2, 0, 0, 0.1, 0.1, 0.1]]
+    row = added(env, "row", lambda body: body.InitFromBoxes(boxes))
+    box(env, "other", (1.15, 0, 0), (0.1, 0.1, 0.1))
+    report = CollisionReport()
+    assert env.CheckCollision(row, report)
+    np.testing.assert_allclose(report.pgeom1.GetTransform()[:3, 3], [1, 0, 0])
+    box(env, "plate", (1, 0, 0.1), (2, 0.1, 0.05))
+    env.GetCollisionChecker().SetCollisionOptions(CollisionOptions.AllLinkCollisions)
+    assert env.CheckCollision(row, report)
+    assert report.numCols == 2
+    env.GetCollisionChecker().SetCollisionOptions(CollisionOptions.AllGeometryCollisions)
+    assert env.CheckCollision(row, report)
+    assert report.numCols == 4
+
+
+def test_touching_collides(env):
+    one = box(env, "one")
+    other = box(env, "other", (1, 0, 0))
+    assert env.CheckCollision(one, other)
+    place(other, (1 + 1e-6, 0, 0))
+    assert not env.CheckCollision(one, other)
+
+
+def test_excluded_bodies_and_links(env, arm):
+    box(env, "near", (0, 0, 0), (0.1, 0.1, 0.1))
+    near = env.GetKinBody("near")
+    assert env.CheckCollision(near)
+    assert not env.CheckCollision(near, [arm], [])
+    assert not env.CheckCollision(near, [], [arm.GetLink("base")])
+    assert env.CheckCollision(near, [], [arm.GetLink("upper")])
+    assert env.CheckCollision(arm.GetLink("base"), [], [])
+    assert not env.CheckCollision(arm.GetLink("base"), [near], [])
+
+
+def test_links(env, arm):
+    wall = box(env, "wall", (1.9, 0, 0.3), (0.2, 0.2, 0.2))
+    fore, upper, base = (arm.GetLink(name) for name in ("fore", "upper", "base"))
+    assert env.CheckCollision(fore)
+    assert env.CheckCollision(fore, wall)
+    assert env.CheckCollision(wall, fore)
+    assert not env.CheckCollision(upper, wall)
+    assert env.CheckCollision(fore, wall.GetLinks()[0])
+    assert not env.CheckCollision(fore, arm)
+    fore.SetTransform(np.eye(4))
+    assert env.CheckCollision(fore, base)
+    assert not env.CheckCollision(fore, fore)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [((), "InvalidArguments"), ((None,), "Assert"), ((3,), "InvalidArguments"), ((np.eye(4),), "InvalidArguments")],
+)
+def test_nonsense_is_refused(env, arguments, code):
+    with pytest.raises(ravemj.openrave_exception) as error:
+        env.CheckCollision(*arguments)
+    assert error.value.GetCode() == code
+    with pytest.raises(TypeError, match="has no argument thing"):
+        env.CheckCollision(thing=1)
+
+
+def test_disabling_counts_at_once(env, arm):
+    wall = box(env, "wall", (1.9, 0, 0.3), (0.2, 0.2, 0.2))
+    assert env.CheckCollision(arm)
+    arm.GetLink("fore").Enable(False)
+    arm.GetLink("finger").Enable(False)
+    assert not env.CheckCollision(arm)
+    assert list(arm.GetLinkEnableStates()) == [1, 1, 0, 0]
+    assert list(arm.GetLinkEnableStatesMasks()) == [3]
+    arm.SetLinkEnableStatesMasks([0b0111])
+    assert env.CheckCollision(arm)
+    with env:
+        with arm:
+            arm.Enable(False)
+            assert not arm.IsEnabled()
+            assert not env.CheckCollision(wall)
+        assert env.CheckCollision(wall)
+    with pytest.raises(ravemj.openrave_exception):
+        arm.SetLinkEnableStates([1])
+
+
+def test_held_bodies_take_part(env, arm):
+    thing = box(env, "thing", (2.2, 0, 0.3), (0.2, 0.03, 0.03))
+    arm.Grab(thing)
+    assert not env.CheckCollision(arm)
+    assert not env.CheckCollision(thing)
+    box(env, "wall", (2.35, 0, 0.3), (0.05, 0.5, 0.5))
+    report = CollisionReport()
+    assert env.CheckCollision(arm, report)
+    assert report.plink1.GetParent() == thing
+    assert env.CheckCollision(thing)
+    arm.Release(thing)
+    assert env.CheckCollision(arm, thing)
+    place(thing, (5, 0, 0))
+    assert not env.CheckCollision(arm)
+
+
+def test_held_bodies_collide_with_the_holder(env, arm):
+    thing = box(env, "thing", (1.9, 0, 0.3), (0.4, 0.03, 0.03))
+    arm.Grab(thing)
+    assert not arm.CheckSelfCollision()  # touches finger and forearm
+    arm.SetDOFValues([0, 2.95, 0])
+    assert arm.CheckSelfCollision()  # reaches the upper arm
+    arm.SetDOFValues([0, 0.5, 0])
+    assert not arm.CheckSelfCollision()
+
+
+def test_two_held_bodies(env, arm):
+    one = box(env, "one", (1.5, 0, 0.4), (0.05, 0.05, 0.05))
+    other = box(env, "other", (0.5, 0, 0.4), (0.6, 0.05, 0.05))
+    arm.Grab(one, arm.GetLink("fore"))
+    arm.Grab(other, arm.GetLink("upper"))
+    assert not arm.CheckSelfCollision()
+    arm.SetDOFValues([0, 3.1, 0])
+    report = CollisionReport()
+    env.GetCollisionChecker().SetCollisionOptions(CollisionOptions.AllLinkCollisions)
+    assert arm.CheckSelfCollision(report)
+    assert {"one", "other"} in colliding(report)
+
+
+def test_declared_pose_is_free_of_self_collision(arm):
+    arm.GetLink("fore").SetTransform(np.eye(4))
+    assert arm.CheckSelfCollision()
+    arm.SetNonCollidingConfiguration()
+    assert not arm.CheckSelfCollision()
+    assert (0, 2) not in arm.GetNonAdjacentLinks()
+    np.testing.assert_array_equal(arm.GetLink("fore").GetTransform(), np.eye(4))
+
+
+def test_links_touching_when_added_are_looked_up_where_they_were(env, arm):
+    """The pose of the time counts, not that of the first question."""
+    arm.SetDOFValues([0, 3.05, 0])
+    folded = arm.GetLink("finger").GetTransform()
+    pairs = arm.GetNonAdjacentLinks()
+    np.testing.assert_array_equal(arm.GetLink("finger").GetTransform(), folded)
+    assert pairs == [(0, 2), (0, 3), (1, 3)]
+
+
+def test_end_effector(env, arm):
+    hand = arm.GetActiveManipulator()
+    box(env, "wall", (1.9, 0.6, 0.3), (0.1, 0.1, 0.1))
+    assert not hand.CheckEndEffectorCollision()
+    T = hand.GetTransform()
+    T[1, 3] += 0.6
+    before = arm.GetLinkTransformations()
+    report = CollisionReport()
+    assert hand.CheckEndEffectorCollision(T, report)
+    assert report.plink1.GetName() in {"fore", "finger"}
+    assert not hand.CheckEndEffectorSelfCollision(T)
+    assert hand.CheckEndEffectorSelfCollision(np.eye(4))
+    assert hand.CheckEndEffectorSelfCollision(np.eye(4), ignoreManipulatorLinks=True)
+    over_upper = np.eye(4)
+    over_upper[:3, 3] = [0.3, 0, 0.3]
+    assert not hand.CheckEndEffectorSelfCollision(over_upper, ignoreManipulatorLinks=True)
+    assert not hand.CheckIndependentCollision()
+    box(env, "foot", (0, 0, -0.1), (0.1, 0.1, 0.1))
+    assert hand.CheckIndependentCollision()
+    np.testing.assert_array_equal(arm.GetLinkTransformations(), before)
+
+
+def test_active_dofs_choose_what_is_tested(env, arm):
+    """Pairs that they move against each other; links that they move against the world."""
+    arm.SetDOFValues([0, 2.95, 1])
+    checker = env.GetCollisionChecker()
+    assert arm.CheckSelfCollision()
+    checker.SetCollisionOptions(CollisionOptions.ActiveDOFs)
+    assert arm.CheckSelfCollision()
+    assert arm.GetNonAdjacentLinks(KinBody.AdjacentOptions.ActiveDOFs) == [(0, 2), (0, 3), (1, 3)]
+    arm.SetActiveDOFs([0])  # turns all links but the base together
+    assert not arm.CheckSelfCollision()
+    assert arm.GetNonAdjacentLinks(KinBody.AdjacentOptions.ActiveDOFs) == [(0, 2), (0, 3)]
+    box(env, "foot", (0, 0, -0.1), (0.1, 0.1, 0.1))
+    assert not env.CheckCollision(arm)
+    arm.SetActiveDOFs([0], ravemj.DOFAffine.X)
+    assert env.CheckCollision(arm)
+
+
+def test_one_link_against_the_others(env, arm):
+    checker = env.GetCollisionChecker()
+    arm.GetLink("fore").SetTransform(np.eye(4))
+    assert checker.CheckSelfCollision(arm.GetLink("fore"))
+    assert checker.CheckSelfCollision(arm.GetLink("base"))
+    assert not checker.CheckSelfCollision(arm.GetLink("upper"))
+    assert checker.CheckSelfCollision(arm)
+
+
+def test_callbacks_decide(env):
+    one, other, third = box(env, "one"), box(env, "other", (0.5, 0, 0)), box(env, "third", (-0.5, 0, 0))
+    seen = []
+
+    def ignore_other(report, fromphysics):
+        seen.append((report.plink2.GetParent().GetName(), fromphysics))
+        return ravemj.CollisionAction.Ignore if report.plink2.GetParent() == other else 0
+
+    handle = env.RegisterCollisionCallback(ignore_other)
+    assert not env.CheckCollision(one, other)
+    assert env.CheckCollision(one)
+    assert env.CheckCollision(one, third)
+    assert seen == [("other", False), ("other", False), ("third", False), ("third", False)]
+    env.GetCollisionChecker().SetCollisionOptions(CollisionOptions.IgnoreCallbacks)
+    assert env.CheckCollision(one, other)
+    env.GetCollisionChecker().SetCollisionOptions(0)
+    handle.Close()
+    handle.Close()
+    assert env.CheckCollision(one, other)
+    handle = env.RegisterCollisionCallback(ignore_other)
+    del handle
+    assert env.CheckCollision(one, other)
+
+
+def test_options(env, caplog):
+    checker = ravemj.RaveCreateCollisionChecker(env, "ODE")
+    assert checker.GetXMLId() == "ODE"
+    assert ravemj.RaveCreateCollisionChecker(env, "ode")
+    assert [record.message for record in caplog.records if "'ODE'" in record.message or "'ode'" in record.message]
+    assert ravemj.RaveCreateCollisionChecker(env, "nosuch") is None
+    assert not checker.SetCollisionOptions(1 << 12)
+    with pytest.raises(ravemj.openrave_exception), ravemj.CollisionOptionsStateSaver(checker, 1 << 12):
+        pass
+    with ravemj.CollisionOptionsStateSaver(checker, 1 << 12, required=False):
+        assert checker.GetCollisionOptions() == 0
+
+
+def test_tolerance(env):
+    one = box(env, "one")
+    box(env, "other", (1.1, 0, 0))
+    box(env, "far", (-1.5, 0, 0))
+    checker = env.GetCollisionChecker()
+    checker.SetCollisionOptions(CollisionOptions.UseTolerance)
+    report = CollisionReport()
+    for tolerance, count in ((0.05, 0), (0.1 + 1e-9, 1), (0.6, 2)):
+        checker.SetTolerance(tolerance)
+        assert not env.CheckCollision(one, report)
+        assert report.numWithinTol == count
+
+
+@settings(max_examples=100, deadline=None)
+@given(positions, positions, turns, st.tuples(*[st.floats(0.1, 1.0)] * 3))
+def test_rays_at_a_box(start, end, turn, half):
+    """Against slabs."""
+    env = ravemj.Environment()
+    body = box(env, "box", half=half)
+    place(body, (0, 0, 0), turn)
+    rotation = body.GetTransform()[:3, :3]
+    p, d = rotation.T @ start, rotation.T @ np.subtract(end, start)
+    if np.abs(d).min() < 1e-6 or np.abs(np.abs(p) - half).min() < 1e-6:
+        return
+    a, b = (-np.array(half) - p) / d, (np.array(half) - p) / d
+    enter, leave = np.minimum(a, b).max(), np.maximum(a, b).min()
+    first = enter if enter >= 0 else leave
+    if abs(first - 1) < 1e-6 or abs(enter - leave) < 1e-6 or min(abs(enter), abs(leave)) < 1e-6:
+        return
+    hit = enter <= leave and 0 <= first <= 1
+    report = CollisionReport()
+    assert env.CheckCollision(Ray(start, np.subtract(end, start)), report) == hit
+    flags, rows = env.CheckCollisionRays([[*start, *np.subtract(end, start)]])
+    assert flags.tolist() == [hit]
+    if hit:
+        point = np.array(start) + first * np.subtract(end, start)
+        np.testing.assert_allclose(report.contacts[0].pos, point, atol=1e-9)
+        np.testing.assert_allclose(rows[0], [*point, *report.contacts[0].norm], atol=1e-9)
+        assert report.minDistance == pytest.approx(first * math.dist(start, end), abs=1e-9)
+    else:
+        assert not rows.any()
+
+
+def test_many_rays(env):
+    wall, inside = box(env, "wall", (2, 0, 0)), sphere(env, "inside", (2, 0, 0), 0.2)
+    rays = [[0, 0, 0, 4, 0, 0], [0, 0, 0, 1, 0, 0], [2, 0, 0, 4, 0, 0], [0, 0, 0, 0, 0, 0]]
+    hits, points = env.CheckCollisionRays(rays)
+    assert hits.tolist() == [True, False, True, False]
+    np.testing.assert_allclose(points[0], [1.5, 0, 0, -1, 0, 0], atol=1e-9)
+    assert env.CheckCollisionRays(rays, front_facing_only=True)[0].tolist() == [True, False, False, False]
+    np.testing.assert_allclose(env.CheckCollisionRays(rays, inside)[1][0], [1.8, 0, 0, -1, 0, 0], atol=1e-9)
+    wall.Enable(False)
+    np.testing.assert_allclose(env.CheckCollisionRays(rays)[1][0], [1.8, 0, 0, -1, 0, 0], atol=1e-9)
+    assert env.CheckCollisionRays(np.zeros((0, 6)))[1].shape == (0, 6)
+    with pytest.raises(ravemj.openrave_exception, match="shape"):
+        env.CheckCollisionRays([[1, 2, 3]])
+
+
+def test_rays_see_the_gap_of_a_mesh(env):
+    mesh(env, "u", *u_shape())
+    assert not env.CheckCollision(Ray([0, -3, 0], [0, 6, 0]))
+    assert env.CheckCollision(Ray([-1, -3, 0], [0, 6, 0]))
+
+
+def test_nothing_collides_without_a_checker(env):
+    one = box(env, "one")
+    box(env, "other")
+    env.SetCollisionChecker(None)
+    report = CollisionReport()
+    assert not env.CheckCollision(one, report)
+    assert not one.CheckSelfCollision()
+    assert not env.CheckCollision(Ray([-2, 0, 0], [4, 0, 0]))
+    assert not env.CheckCollisionRays([[-2, 0, 0, 4, 0, 0]])[0].any()
+
+
+def test_batch_agrees_with_single_questions(env, arm):
+    for number, position in enumerate([(1.2, 0.7, 0.3), (-0.5, 1.0, 0.3), (0.3, -1.2, 0.3)]):
+        box(env, f"box{number}", position, (0.2, 0.2, 0.2))
+    thing = box(env, "thing", (2.2, 0, 0.3), (0.1, 0.03, 0.03))
+    arm.Grab(thing)
+    values = np.random.default_rng(4).uniform(*arm.GetDOFLimits(), (60, arm.GetDOF()))
+    arm.SetDOFValues([0.1, 0.2, 0.3])
+    before, held = arm.GetLinkTransformations(), thing.GetTransform()
+    with_itself, without = arm.batch_collides(values), arm.batch_collides(values, itself_too=False)
+    np.testing.assert_array_equal(arm.GetLinkTransformations(), before)
+    np.testing.assert_array_equal(arm.GetDOFValues(), [0.1, 0.2, 0.3])
+    np.testing.assert_array_equal(thing.GetTransform(), held)
+    for row, all_hits, hits in zip(values, with_itself, without, strict=True):
+        arm.SetDOFValues(row)
+        assert env.CheckCollision(arm) == hits
+        assert (env.CheckCollision(arm) or arm.CheckSelfCollision()) == all_hits
+    assert 0 < without.sum() < with_itself.sum() < len(values)
+    assert arm.batch_collides(np.zeros((0, 3))).shape == (0,)
+    with pytest.raises(ravemj.openrave_exception, match="shape"):
+        arm.batch_collides([0, 0, 0])
+
+
+def test_thousands_of_bodies(env):
+    """A grid in which each body touches none, and one across two of them."""
+    for number in range(1500):
+        x, y = divmod(number, 50)
+        sphere(env, f"s{number}", (x, y, 0), 0.3)
+    probe = box(env, "probe", (10.5, 20, 0), (0.4, 0.1, 0.1))
+    env.GetCollisionChecker().SetCollisionOptions(CollisionOptions.AllLinkCollisions)
+    report = CollisionReport()
+    assert env.CheckCollision(probe, report)
+    assert colliding(report) == {frozenset(("probe", f"s{x * 50 + 20}")) for x in (10, 11)}
+    place(probe, (10.5, 20.5, 0))
+    assert not env.CheckCollision(probe)
+    assert not any(env.CheckCollision(env.GetKinBody(f"s{number}")) for number in range(0, 1500, 100))
+
+
+SHAPES = st.sampled_from(["box", "sphere", "cylinder", "capsule", "trimesh"])
+
+
+@settings(max_examples=60, deadline=None)
+@given(SHAPES, positions, turns, st.tuples(*[st.floats(0.1, 1.0)] * 3))
+def test_bounds_hold_the_shape_tightly(kind, position, turn, sizes):
+    """Against many points of the surface."""
+    env = ravemj.Environment()
+    points = added(env, "shape", lambda body: body.InitFromGeometries([geometry_info(kind, sizes)]))
+    place(points, position, turn)
+    bounds = points.ComputeAABB()
+    surface = surface_points(kind, sizes) @ points.GetTransform()[:3, :3].T + position
+    low, high = surface.min(axis=0), surface.max(axis=0)
+    slack = 1e-9 if kind in {"box", "trimesh"} else 0.01
+    assert (bounds.pos() - bounds.extents() <= low + 1e-9).all()
+    assert (bounds.pos() + bounds.extents() >= high - 1e-9).all()
+    np.testing.assert_allclose(bounds.pos() - bounds.extents(), low, atol=slack)
+    np.testing.assert_allclose(bounds.pos() + bounds.extents(), high, atol=slack)
+    local = points.ComputeLocalAABB()
+    link = points.GetLinks()[0]
+    np.testing.assert_allclose(link.ComputeLocalAABB().extents(), local.extents(), atol=1e-12)
+    np.testing.assert_allclose(link.ComputeAABB().extents(), bounds.extents(), atol=1e-12)
+    np.testing.assert_allclose(
+        link.GetGeometries()[0].ComputeAABB(points.GetTransform()).pos(), bounds.pos(), atol=1e-12
+    )
+
+
+def geometry_info(kind, sizes):
+    info = KinBody.GeometryInfo()
+    info._type = getattr(ravemj.GeometryType, kind.capitalize())
+    info._vGeomData = {"sphere": sizes[:1], "box": sizes}.get(kind, sizes[:2])
+    if kind == "trimesh":
+        info._meshcollision = ravemj.TriMesh(BOX * sizes, BOX_TRIANGLES)
+    return info
+
+
+def surface_points(kind, sizes):
+    if kind in {"box", "trimesh"}:
+        return BOX * sizes
+    angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 200), np.linspace(-np.pi / 2, np.pi / 2, 101))
+    ball = np.stack([np.cos(height) * np.cos(angle), np.cos(height) * np.sin(angle), np.sin(height)], -1).reshape(-1, 3)
+    radius, half_height = sizes[0], sizes[1] / 2
+    if kind == "sphere":
+        return ball * radius
+    if kind == "capsule":
+        return ball * radius + np.sign(np.round(ball[:, 2:], 9)) * [0, 0, half_height]
+    rim = ball / np.maximum(np.linalg.norm(ball[:, :2], axis=1, keepdims=True), 1e-9) * radius
+    return np.column_stack([rim[:, :2], np.where(ball[:, 2] < 0, -half_height, half_height)])

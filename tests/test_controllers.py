@@ -1,0 +1,181 @@
+"""Controllers, beyond what OpenRAVE's answers in tests/data show."""
+
+import numpy as np
+import pytest
+
+import ravemj
+
+
+@pytest.fixture
+def env():
+    env = ravemj.Environment()
+    env.StopSimulation()
+    env.Load("models/env.xml")
+    yield env
+    env.Destroy()
+
+
+@pytest.fixture
+def robot(env):
+    return env.GetRobots()[0]
+
+
+def path(env, robot, *points, name=None):
+    """A trajectory through joint values, each followed by the seconds since the one before."""
+    spec = ravemj.ConfigurationSpecification()
+    spec.AddGroup(f"joint_values {name or robot.GetName()} 0 1", 2, "linear")
+    spec.AddDeltaTimeGroup()
+    trajectory = ravemj.RaveCreateTrajectory(env, "")
+    trajectory.Init(spec)
+    trajectory.Insert(0, np.ravel(points))
+    return trajectory
+
+
+def step(env, *timesteps):
+    for timestep in timesteps:
+        env.StepSimulation(timestep)
+
+
+def test_names(env):
+    assert ravemj.RaveCreateController(env, "IDEALcontroller with arguments").GetXMLId() == "IDEALcontroller"
+    assert isinstance(ravemj.RaveCreateController(env, "odevelocity"), ravemj.VelocityController)
+    assert ravemj.RaveCreateController(env, "nonsense") is None
+    assert ravemj.RaveCreateController(env, "") is None
+    assert ravemj.RaveCreateMultiController(env).GetXMLId() == "GenericMultiController"
+    assert ravemj.RaveCreateMultiController(env, "IdealController") is None
+
+
+def test_controllers_without_a_robot_take_no_commands(env, robot):
+    controller = ravemj.RaveCreateController(env, "IdealController")
+    assert controller.GetRobot() is None
+    assert controller.IsDone()
+    assert len(controller.GetControlDOFIndices()) == 0
+    for command in (
+        lambda: controller.SetDesired([0, 0]),
+        lambda: controller.SetPath(path(env, robot, [0, 0, 0], [1, 1, 1])),
+    ):
+        with pytest.raises(ravemj.openrave_exception) as caught:
+            command()
+        assert caught.value.GetCode() == "NotInitialized"
+
+
+def test_all_dofs_means_those_that_there_are_then(env, robot):
+    made = ravemj.RaveCreateRobot(env, "")
+    controller = made.GetController()
+    assert len(controller.GetControlDOFIndices()) == 0
+    np.testing.assert_array_equal(robot.GetController().GetControlDOFIndices(), [0, 1])
+
+
+def test_what_a_state_saver_undoes_comes_back_with_the_next_step(env, robot):
+    with robot:
+        robot.GetController().SetDesired([0.4, 0.5])
+        np.testing.assert_allclose(robot.GetDOFValues(), [0.4, 0.5])
+    np.testing.assert_array_equal(robot.GetDOFValues(), [0, 0])
+    step(env, 0.01)
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.4, 0.5])
+    assert robot.GetController().IsDone()
+
+
+@pytest.mark.parametrize("values", [[0.1], [0.1, 0.2, 0.3], [0.1, np.nan], [[0.1, 0.2]]])
+def test_wrong_values_change_nothing(env, robot, values):
+    controller = robot.GetController()
+    controller.SetPath(path(env, robot, [0, 0, 0], [1, 1, 1]))
+    step(env, 0.5)
+    with pytest.raises(ravemj.ArgumentError, match="values"):
+        controller.SetDesired(values)
+    step(env, 0.1)
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.5, 0.5])
+
+
+def test_a_path_for_another_robot_moves_nothing(env, robot):
+    robot.SetDOFValues([0.7, 0.7])
+    controller = robot.GetController()
+    assert controller.SetPath(path(env, robot, [0, 0, 0], [1, 1, 0.1], name="other"))
+    step(env, 0.06, 0.06)
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.7, 0.7])
+    assert not controller.IsDone()
+    step(env, 0.06)
+    assert controller.IsDone()
+
+
+def test_a_path_is_copied_and_ends_exactly(env, robot):
+    trajectory = path(env, robot, [0, 0, 0], [1, -1, 0.1])
+    controller = robot.GetController()
+    controller.SetPath(trajectory)
+    trajectory.Remove(0, 2)
+    step(env, *[0.03] * 5)
+    assert controller.IsDone()
+    np.testing.assert_array_equal(robot.GetDOFValues(), [1, -1])
+    assert controller.GetTime() == pytest.approx(0.1)
+    robot.SetDOFValues([0.2, 0.2])
+    step(env, 0.03)
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.2, 0.2])
+
+
+def test_a_controller_of_one_joint_plays_its_part_of_a_path(env, robot):
+    controller = ravemj.RaveCreateController(env, "IdealController")
+    assert robot.SetController(controller, [1], 0)
+    robot.SetDOFValues([0.3, 0.3])
+    controller.SetPath(path(env, robot, [0, 0, 0], [1, -1, 0.1]))
+    step(env, 0.1, 0.1)
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.3, -1])
+
+
+def test_set_controller_in_its_old_form(env, robot):
+    controller = ravemj.RaveCreateController(env, "IdealController")
+    assert robot.SetController(controller, "arguments")
+    np.testing.assert_array_equal(controller.GetControlDOFIndices(), [0, 1])
+    assert robot.SetController(None)
+    assert robot.GetController() is None
+    assert not robot.WaitForController(0)
+    with pytest.raises(IndexError):
+        robot.SetController(controller, [2], 0)
+    assert robot.GetController() is None
+
+
+def test_a_multi_controller_shares_the_joints_out(env, robot):
+    multi = ravemj.RaveCreateMultiController(env)
+    first, second = (ravemj.RaveCreateController(env, "IdealController") for _ in range(2))
+    with pytest.raises(ravemj.openrave_exception):
+        multi.AttachController(first, [0], 0)
+    assert robot.SetController(multi)
+    assert multi.AttachController(second, [1], 0)
+    assert multi.AttachController(first, [0], 0)
+    with pytest.raises(ravemj.ArgumentError, match="DOF 1 has a controller"):
+        multi.AttachController(ravemj.RaveCreateController(env, "IdealController"), [1], 0)
+    assert multi.GetController(0) is first
+    multi.SetDesired([0.1, 0.2])
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.1, 0.2])
+    assert not multi.IsDone()
+    step(env, 0.01)
+    assert multi.IsDone()
+    second.SetDesired([0.5])
+    assert not multi.IsDone()
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.1, 0.5])
+    multi.SetPath(path(env, robot, [0, 0, 0], [1, -1, 0.1]))
+    step(env, 0.05, 0.05)
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.5, -0.5])
+    assert multi.GetTime() == pytest.approx(0.1)
+    np.testing.assert_array_equal(multi.GetTorque(), [0, 0])
+    multi.Reset()
+    assert multi.IsDone()
+    multi.RemoveController(first)
+    assert multi.GetController(0) is None
+
+
+def test_velocities_without_physics(env, robot):
+    controller = ravemj.RaveCreateController(env, "IdealVelocityController")
+    robot.SetController(controller, [0, 1], 0)
+    robot.SetDOFLimits([-0.5, -5], [0.5, 5])
+    assert controller.SetDesired([-1, 100])
+    assert controller.IsDone()
+    step(env, 0.1, 0.1)
+    fastest = robot.GetDOFVelocityLimits()[1]
+    np.testing.assert_allclose(robot.GetDOFValues(), [-0.2, 0.2 * fastest])
+    np.testing.assert_allclose(controller.GetVelocity(), [-1, fastest])
+    controller.Reset()
+    step(env, 0.1)
+    np.testing.assert_allclose(robot.GetDOFValues(), [-0.2, 0.2 * fastest])
+    with pytest.raises(ravemj.openrave_exception) as caught:
+        controller.SetPath(None)
+    assert caught.value.GetCode() == "NotImplemented"

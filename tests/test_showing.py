@@ -1,0 +1,206 @@
+"""Objects as a prompt shows them: repr, str, tables, tab completion."""
+
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+import ravemj
+from ravemj import (
+    GeometryType,
+    JointType,
+    KinBody,
+    RaveCreateController,
+    RaveCreateKinBody,
+    RaveCreateTrajectory,
+    TriMesh,
+)
+
+HOSTILE = """it's <b onload="x">&amp;</b> \\ "1" """.strip()
+
+ROBOT = """<Environment>
+  <Robot name="arm">
+    <KinBody>
+      <Body name="a"><Geom type="box" name="block"><extents>1 1 1</extents></Geom></Body>
+      <Body name="b"><Translation>0 0 3</Translation><Geom type="sphere"><radius>.5</radius></Geom></Body>
+      <Body name="c"><Geom type="sphere"><radius>.1</radius></Geom></Body>
+      <Joint name="turn" type="hinge"><body>a</body><body>b</body><limitsrad>-1 2</limitsrad></Joint>
+      <Joint name="slide" type="slider"><body>b</body><body>c</body><axis>1 0 0</axis><limits>0 .25</limits></Joint>
+    </KinBody>
+    <Manipulator name="hand"><base>a</base><effector>b</effector></Manipulator>
+    <AttachedSensor name="eye">
+      <link>b</link>
+      <Sensor type="BaseCamera"><image_dimensions>64 48 3</image_dimensions></Sensor>
+    </AttachedSensor>
+  </Robot>
+</Environment>"""
+
+
+@pytest.fixture
+def env():
+    env = ravemj.Environment()
+    assert env.LoadData(ROBOT)
+    yield env
+    env.Destroy()
+
+
+def hostile_body(env):
+    """A body of links and a joint whose names would break texts and pages."""
+    first, second, joint = KinBody.LinkInfo(), KinBody.LinkInfo(), KinBody.JointInfo()
+    first._name, second._name, joint._name = HOSTILE + "1", HOSTILE + "2", HOSTILE
+    joint._linkname0, joint._linkname1, joint._type = first._name, second._name, JointType.Hinge
+    joint._vaxes, joint._vlowerlimit, joint._vupperlimit = [[0, 0, 1]], [-1], [1]
+    first._vgeometryinfos = [KinBody.GeometryInfo(_type=GeometryType.Box, _vGeomData=[1, 1, 1])]
+    body = RaveCreateKinBody(env, "")
+    assert body.Init([first, second], [joint])
+    body.SetName(HOSTILE)
+    env.Add(body)
+    return body
+
+
+def shown(env):
+    """Everything that shows itself."""
+    robot, hostile = env.GetRobots()[0], hostile_body(env)
+    eye, spec = robot.GetAttachedSensor("eye"), robot.GetConfigurationSpecification()
+    named = robot.CreateRobotStateSaver(), env.plot3([0, 0, 1], 5), ravemj.CollisionReport()
+    trajectory = RaveCreateTrajectory(env, "")
+    trajectory.Init(spec)
+    trajectory.Insert(0, np.arange(2.0 * spec.GetDOF()))
+    values = [
+        *(env, robot, *robot.GetLinks(), *robot.GetJoints(), *robot.GetManipulators(), eye, eye.GetSensor()),
+        *(hostile, *hostile.GetLinks(), *hostile.GetJoints(), *hostile.GetLinks()[0].GetGeometries()),
+        *(robot.GetLinks()[0].GetGeometries()[0], robot.GetController(), env.GetPhysicsEngine()),
+        *(env.GetCollisionChecker(), spec, *spec.GetGroups()),
+        *(thing.GetInfo() for thing in [*robot.GetLinks(), *robot.GetJoints(), *robot.GetManipulators()]),
+        *(hostile.GetLinks()[0].GetInfo(), hostile.GetJoints()[0].GetInfo()),
+        *(KinBody.LinkInfo(), KinBody.GeometryInfo(), KinBody.JointInfo(), hostile.ExtractInfo()),
+    ]
+    return values, [
+        *named,
+        trajectory,
+        RaveCreateController(env, "IdealController"),
+        eye.GetInfo(),
+        robot.ExtractInfo(),
+    ]
+
+
+def evaluated(text):
+    """What an expression is in a script that imports all of ravemj."""
+    return eval(text, dict(vars(ravemj)))
+
+
+def test_repr_leads_back(env):
+    for thing in shown(env)[0]:
+        assert evaluated(repr(thing)) == thing, repr(thing)
+
+
+def test_no_address_is_shown(env):
+    values, others = shown(env)
+    env.CheckCollision(env.GetRobots()[0], others[2])
+    for thing in [*values, *others]:
+        assert "0x" not in repr(thing) + str(thing)
+        assert " at " not in repr(thing) + str(thing)
+
+
+def test_repr_of_a_trajectory_makes_one_with_the_same_waypoints(env):
+    trajectory = shown(env)[1][3]
+    again = evaluated(repr(trajectory))
+    assert again.serialize(0x8000) == trajectory.serialize(0x8000)
+    assert again.GetNumWaypoints() == 2
+
+
+def test_infos_compare_by_content(env):
+    robot = env.GetRobots()[0]
+    first, second = robot.ExtractInfo(), robot.ExtractInfo()
+    assert first == second
+    second._vLinkInfos[1]._vgeometryinfos[0]._vGeomData[0] += 1e-9
+    assert first != second
+    assert KinBody.LinkInfo() != KinBody.JointInfo()
+    meshes = [KinBody.GeometryInfo(_meshcollision=TriMesh(np.eye(3) * size, [[0, 1, 2]])) for size in (1, 1, 2)]
+    assert meshes[0] == meshes[1] != meshes[2]
+
+
+# Names that are not OpenRAVE's, and that users call all the same
+OURS = """
+    background batch_collides batch_inverse_dynamics batch_jacobians batch_link_transforms camera close com_jacobian
+    data default_camera diagnostics drawarrow drawbox drawlinelist drawlinestrip drawplane drawtrimesh files
+    link_transforms mjcf model plot3 qpos_indices render spec collisionInfos contacts minDistance nKeepPrevious numCols
+    numWithinTol options pgeom1 pgeom2 plink1 plink2 vLinkColliding deserialize serialize extents pos dir main
+    quitmainloop body columns dof interpolation kind name names offset toDict
+"""
+
+
+def test_dir_lists_what_users_call(env):
+    env.SetViewer("offscreen")
+    values, others = shown(env)
+    for thing in [*values, *others, env.GetViewer(), env.GetRobots()[0].ComputeAABB(), ravemj.Ray()]:
+        names = {name for name in dir(thing) if not name.startswith("__")}
+        assert names, thing
+        assert all(hasattr(thing, name) for name in names)
+        if not type(thing).__name__.endswith("Info"):
+            assert {name for name in names if not name[0].isupper()} <= set(OURS.split()), thing
+    assert "_vGeomData" in dir(KinBody.GeometryInfo())
+    assert "_drawn" not in dir(KinBody.GeometryInfo())
+
+
+def test_dir_runs_nothing(env):
+    dir(env), dir(env.GetRobots()[0]), repr(env.GetRobots()[0].GetLinks()), str(env)
+    assert env.simulation._compiled is None
+
+
+class Page(HTMLParser):
+    """The texts and tags of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.texts, self.open = [], [], []
+        self.feed(text)
+        assert not self.open
+
+    def handle_starttag(self, tag, attrs):
+        assert not attrs, "themes choose how it looks"
+        self.tags.append(tag)
+        self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+    def row(self, *cells):
+        """Whether these cells stand one after the other."""
+        return any(tuple(self.texts[start:][: len(cells)]) == cells for start in range(len(self.texts)))
+
+
+def test_table_of_a_robot(env):
+    robot = env.GetRobots()[0]
+    robot.SetDOFValues([0.5, 0.125])
+    page = Page(robot._repr_html_())
+    assert page.row("DOF", "joint", "value", "limits", "unit")
+    assert page.row("0", "turn", "0.5", "-1 … 2", "rad")
+    assert page.row("1", "slide", "0.125", "0 … 0.25", "m")
+    assert page.row("index", "link", "mass", "0", "a", f"{robot.GetLink('a').GetMass():.4g} kg")
+    assert page.texts[0] == "arm"
+    assert len(robot._repr_html_()) < 1500
+    joint = Page(robot.GetJoint("slide")._repr_html_())
+    assert joint.row("1", "slide", "0.125", "0 … 0.25", "m")
+
+
+def test_tables_escape_names(env):
+    body = hostile_body(env)
+    for text in (body._repr_html_(), body.GetJoints()[0]._repr_html_()):
+        page = Page(text)
+        assert set(page.tags) <= {"b", "table", "thead", "tbody", "tr", "th", "td", "details", "summary"}
+        assert HOSTILE in page.texts
+
+
+def test_table_of_a_body_that_is_not_added(env):
+    robot = env.GetRobots()[0]
+    env.Remove(robot)
+    page = Page(robot._repr_html_())
+    assert page.row("0", "turn", "?", "-1 … 2", "rad")
+    body = RaveCreateKinBody(env, "")
+    body.InitFromBoxes(np.array([[0, 0, 0, 1, 1, 1]]))
+    assert re.search("<b></b> \\(body, 0 DOF\\)<details>", body._repr_html_())
