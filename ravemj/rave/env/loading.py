@@ -25,9 +25,9 @@ class Loading(EnvironmentPart):
         """Add the content of a model file to the environment.
 
         Args:
-            filename: An OpenRAVE XML file with an environment, a robot or a kinbody, a COLLADA file (``.dae``, ``.zae``),
-                or a mesh file. It is looked for in the working folder, then in the folders of the environment variable
-                ``OPENRAVE_DATA``.
+            filename: An OpenRAVE XML file with an environment, a robot or a kinbody, a COLLADA file (``.dae``,
+                ``.zae``), or a mesh file. It is looked for in the working folder, then in the folders of the
+                environment variable ``OPENRAVE_DATA``.
             atts: OpenRAVE's options of reading; ignored.
 
         Returns:
