@@ -17,7 +17,7 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
     """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
 
     Args:
-        path: An OpenRAVE XML file, or a mesh file, which becomes a static body.
+        path: An OpenRAVE XML file, a COLLADA file, or a mesh file, which becomes a static body.
 
     Returns:
         What was read; its ``failure`` says what ended the reading.
@@ -36,7 +36,7 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
 
 
 def read_data(data: str | bytes) -> Reading:
-    """Read the text of an OpenRAVE XML document, as ``read_file`` reads a file."""
+    """Read the text of an OpenRAVE XML or COLLADA document, as ``read_file`` reads a file."""
     head = data[:1000] if isinstance(data, bytes) else data[:1000].encode()
     if b"<COLLADA" in head:
         text = data if isinstance(data, bytes) else data.encode()

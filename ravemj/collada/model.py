@@ -22,6 +22,7 @@ from ravemj.scene import Axis, JointKind
 from ravemj.transforms import UNIT_WXYZ, Floats, Pose, Vec3, Wxyz, conjugate, multiply, rotate, wxyz_from_axis_angle
 
 _MAX_LINKS = 20_000
+_SHIFT = 1e-6  # of nodes, below which nobody sees it
 _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.:/-]")
 
 
@@ -149,10 +150,14 @@ class ModelReader:
 
     def _read_shapes(self, link: LinkBuilder, node: Node, T_world_link: Pose) -> None:
         T_link_world = T_world_link.inverse().matrix()
-        shapes = self._scene.geometry.read(
-            node, lambda inner: T_link_world @ self._world(inner), lambda inner: inner in self._scene.moved
-        )
-        link.geometries += shapes
+
+        def pose_in_link(inner: Node) -> Floats:
+            if np.abs(T_link_world @ inner.world - np.eye(4)).max() > _SHIFT:
+                message = "OpenRAVE draws the triangles of this node as if it had no pose of its own in its link"
+                self._library.warn("openrave-bug", message, inner.element, "put the transforms into the vertices")
+            return T_link_world @ self._world(inner)
+
+        link.geometries += self._scene.geometry.read(node, pose_in_link, lambda inner: inner in self._scene.moved)
 
     def _world(self, node: Node) -> Floats:
         """Return the pose of a node as OpenRAVE composes it: in the first link, from below that link's node on.

@@ -28,8 +28,9 @@ class Loading(EnvironmentPart):
         """Add the content of a model file to the environment.
 
         Args:
-            filename: An OpenRAVE XML file with an environment, a robot or a kinbody. It is looked for in the working
-                folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
+            filename: An OpenRAVE XML file with an environment, a robot or a kinbody, a COLLADA file (``.dae``,
+                ``.zae``), or a mesh file. It is looked for in the working folder, then in the folders of the
+                environment variable ``OPENRAVE_DATA``.
             atts: OpenRAVE's options of reading; ignored.
 
         Returns:
@@ -55,7 +56,7 @@ class Loading(EnvironmentPart):
         """Add the content of a model that is given as text, as ``Load`` adds that of a file.
 
         Args:
-            data: An OpenRAVE XML document; files that it names are looked for in the working folder.
+            data: An OpenRAVE XML or COLLADA document; files that it names are looked for in the working folder.
             atts: OpenRAVE's options of reading; ignored.
 
         Returns:
