@@ -45,11 +45,15 @@ def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name
     """Return indices as an array; None stands for none, ``...`` for all.
 
     Raises:
+        ArgumentError: they are no whole numbers.
         IndexError: one is not from 0 to ``count - 1``.
     """
     if indices is ...:
         return np.arange(count)
-    checked = np.array([] if indices is None else indices, dtype=np.int_).reshape(-1)
+    given = checked_numbers([] if indices is None else indices, name).reshape(-1)
+    if not np.all(given == np.round(given)) or not np.isfinite(given).all():
+        raise ArgumentError(f"{name} are {given.tolist()}, and should be whole numbers")
+    checked = given.astype(np.int_)
     if checked.size and not (checked.min() >= 0 and checked.max() < count):
         raise IndexError(f"{name} are {checked.tolist()}, and should be from 0 to {count - 1}")
     return checked

@@ -14,7 +14,9 @@ from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.following import Equations, Follower, evaluation_order, leaders, resolve
 from ravemj.joints import measured_values, place_links
 from ravemj.manipulators import ManipulatorBuilder, freeze_manipulator
-from ravemj.transforms import UNIT_WXYZ, UNMOVED, ZERO, Pose, Vec3, Wxyz, conjugate, multiply, rotate, scale
+from ravemj.transforms import UNMOVED, ZERO, Pose, Vec3, Wxyz, rotate, scale
+
+_ROUNDING = 1e-9  # of values that were degrees
 
 DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 0.4)))
 """A link without mass properties weighs 1 kg, like a unit sphere."""
@@ -40,7 +42,7 @@ class JointBuilder:
     """A joint as listed: anchor and axis directions are in the frame of the first listed link.
 
     Attributes:
-        frame: Rotation in the first link of the frame that the file gives the axes in.
+        weld_turn: What turns the axes of a weld into those that OpenRAVE reports; None: the second link's rotation.
     """
 
     name: str
@@ -49,7 +51,7 @@ class JointBuilder:
     T_first_second: Pose
     anchor: Vec3
     axes: tuple[scene.Axis, ...]
-    frame: Wxyz = UNIT_WXYZ
+    weld_turn: Wxyz | None = None
     enabled: bool
     equations: Equations | None = None
     parameters: scene.Parameters = scene.NO_PARAMETERS
@@ -64,7 +66,12 @@ class JointBuilder:
     def fixed(self) -> bool:
         """True for a weld."""
         moves = self.equations is not None and self.equations.position
-        return not moves and all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
+        return not moves and self.has_no_room
+
+    @property
+    def has_no_room(self) -> bool:
+        """True where the limits of all axes are equal."""
+        return all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
 
 
 @dataclass(slots=True)
@@ -110,7 +117,7 @@ class BodyBuilder:
             return self._frozen([link.pose for link in self.links], [], 0)
         listed = self._in_order()
         has_dofs = bool(listed and listed[0].active)
-        mimics = resolve(_followers(listed), diagnostics)
+        mimics = _with_welds(listed, resolve(_followers(listed), diagnostics))
         decided = self._decide(listed, mimics)
         poses = [link.pose for link in self.links]
         joints = [
@@ -151,7 +158,8 @@ class BodyBuilder:
             mimic = mimics.get(index)
             follows = leaders(mimic.expression) if mimic is not None and mimic.expression is not None else ()
             passive = tuple(leader for leader in follows if not listed[leader].active)
-            edges.append(hierarchy.Edge(joint.links, joint.fixed and index not in mimics, joint.active, passive))
+            fixed = joint.fixed if mimic is None else mimic.static
+            edges.append(hierarchy.Edge(joint.links, fixed, joint.active, passive))
         return hierarchy.decide([link.static for link in self.links], edges)
 
     def _settled(
@@ -159,7 +167,8 @@ class BodyBuilder:
     ) -> list[scene.Joint]:
         """Return the joints with their values: measured, or as the file asks, moved into the limits."""
         values = [list(measured_values(joint, poses[joint.parent].inverse() @ poses[joint.child])) for joint in joints]
-        values = _limited(joints, values, diagnostics)
+        findings = diagnostics if self.joint_values is None else Diagnostics()
+        values = _limited(joints, values, findings)
         active = sum(1 for joint in self.joints if joint.active)
         values = self._asked(joints[:active], values, diagnostics)
         follow(joints, values)
@@ -213,6 +222,15 @@ def _followers(listed: Sequence[JointBuilder]) -> list[Follower]:
     return followers
 
 
+def _with_welds(listed: Sequence[JointBuilder], mimics: dict[int, scene.Mimic]) -> dict[int, scene.Mimic]:
+    """Return the followers; those that are welds and follow nothing but welds are marked."""
+    fixed = [joint.has_no_room for joint in listed if joint.active for _ in joint.axes]
+    return {
+        index: replace(mimic, static=listed[index].has_no_room and all(fixed[dof] for dof in mimic.dofs))
+        for index, mimic in mimics.items()
+    }
+
+
 def _directed(
     joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, places_child: bool, has_dofs: bool
 ) -> scene.Joint:
@@ -224,9 +242,9 @@ def _directed(
         T_parent_child = T_parent_child.inverse()
         anchor = T_parent_child.apply(anchor)
         axes = tuple(replace(axis, direction=scale(rotate(T_parent_child.wxyz, axis.direction), -1.0)) for axis in axes)
-    if joint.fixed and has_dofs:  # OpenRAVE moves the frame of a weld to its child
+    if (joint.fixed if mimic is None else mimic.static) and has_dofs:  # OpenRAVE moves the frame of a weld to its child
         anchor = T_parent_child.position
-        turn = multiply(T_parent_child.wxyz, conjugate(joint.frame))
+        turn = T_parent_child.wxyz if joint.weld_turn is None else joint.weld_turn
         axes = tuple(replace(axis, direction=rotate(turn, axis.direction)) for axis in axes)
     return scene.Joint(
         name=joint.name,
@@ -254,7 +272,7 @@ def _limited(
             continue
         limited.append([_inside(axis, value) for axis, value in zip(joint.axes, joint_values, strict=True)])
         for axis, value, inside in zip(joint.axes, joint_values, limited[-1], strict=True):
-            if value != inside:
+            if abs(value - inside) > _ROUNDING:
                 diagnostics.warn(
                     "value-outside-limits",
                     f"joint '{joint.name}' loads at {inside:.6g}, not at {value:.6g}, which its limits "

@@ -53,13 +53,18 @@ def _read_collada(path: str, read_content: Callable[[Context], collada.Content])
     try:
         content = read_content(context)
         gravity = content.gravity
+        if not content.bodies and not content.others:
+            raise SourceError("there is no body in it", Source(path))
         if not content.bodies:
-            raise SourceError("there is no kinematics scene with a body in it", Source(path))
+            message = "without a kinematics scene, OpenRAVE loads no body of it into an environment"
+            context.diagnostics.error("no-kinematics", message, Source(path), "read it with ReadKinBodyURI")
         for built in (*content.bodies, *content.others):
             built.name = _unused(built.name or "body", {body.name for body in bodies})
             bodies.append(built.freeze(context.diagnostics))
     except SourceError as error:
         failure = error
+    except ArithmeticError:
+        failure = SourceError("a number in the file is too large to compute with", Source(path))
     return Reading(Scene(tuple(bodies), None, gravity), context.diagnostics, failure, tuple(context.files))
 
 

@@ -3,12 +3,14 @@
 import threading
 from typing import NamedTuple
 
+import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.drawing import NOTHING
+from ravemj.drawing import NOTHING, Shapes, merge
 from ravemj.errors import ArgumentError
 from ravemj.rendering import Camera, Renderer, bounding_sphere, open_renderer, three_quarter_view, view_from_above
+from ravemj.rendering.contexts import RAY
 from ravemj.simulation import Simulation
 
 Frame = NDArray[np.uint8]
@@ -29,20 +31,26 @@ class Format(NamedTuple):
 
 
 class Studio:
-    """Draws a simulation; each thread keeps the renderer of its last picture, for the next one."""
+    """Draws a simulation; each thread keeps the renderer of its last picture, for the next one.
+
+    The simulation is locked while its state is copied, and free while OpenGL draws.
+    """
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self._kept = threading.local()
 
-    def picture(self, camera: Camera, background: ArrayLike, form: Format, drawings: bool = True) -> Frame:
+    def picture(
+        self, camera: Camera, background: ArrayLike, form: Format, drawings: bool = True, gizmos: Shapes = NOTHING
+    ) -> Frame:
         """Draw the bodies and the drawings as they are now.
 
         Args:
             camera: Where the picture is taken from.
             background: Colour where nothing is: red, green, blue from 0 to 1.
             form: Size and quality.
-            drawings: False: bodies only.
+            drawings: False: without the drawings of scripts.
+            gizmos: What else is drawn.
 
         Returns:
             Shape (height, width, 3), top row first.
@@ -53,7 +61,12 @@ class Studio:
         with self._simulation.lock:
             compiled = self._simulation.compile()
             shapes = self._simulation.drawings.shapes() if drawings else NOTHING
-            return self._renderer(form).render(compiled.data, camera, background, shapes)
+            shown = merge([shapes, gizmos]) if len(gizmos) else shapes
+            renderer = self._renderer(form)
+            if renderer.backend == RAY:  # it hides geoms of the model while it draws
+                return renderer.render(compiled.data, camera, background, shown)
+            mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
+        return renderer.render(self._kept.data, camera, background, shown)
 
     def backend(self, form: Format) -> str:
         """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""
@@ -65,6 +78,7 @@ class Studio:
         if getattr(self._kept, "key", None) != key:
             self.close()
             model = self._simulation.compile().model
+            self._kept.data = mujoco.MjData(model)
             self._kept.renderer = open_renderer(model, form.width, form.height, shadows=form.shadows)
             self._kept.key = (self._simulation.version, form)
         return self._kept.renderer

@@ -56,6 +56,10 @@ class Pose(NamedTuple):
         matrix[:3, 3] = self.position
         return matrix
 
+    def numbers(self) -> Floats:
+        """Return [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return np.array([*self.wxyz, *self.position])
+
 
 UNMOVED = Pose()
 

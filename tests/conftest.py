@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
+from screens import display, folder  # noqa: F401 - fixtures
 
 import ravemj
 

@@ -21,8 +21,9 @@ def blocks(page: Path, language: str) -> list[str]:
 def test_python_runs(page, tmp_path, monkeypatch, capsys):
     (tmp_path / "models").symlink_to(ROOT / "models")
     monkeypatch.chdir(tmp_path)
+    session: dict[str, object] = {"__name__": "__main__"}  # a page is read from its top
     for block in blocks(page, "python"):
-        exec(compile(block, str(page), "exec"), {"__name__": "__main__"})
+        exec(compile(block, str(page), "exec"), session)
     if page.name == "README.md":
         assert capsys.readouterr().out.startswith("2 [0. 0.]\n[[")
         assert (tmp_path / "swing.mp4").stat().st_size > 1000

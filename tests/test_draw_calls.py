@@ -6,10 +6,12 @@ import time
 
 import numpy as np
 import pytest
+from conftest import MODELS
 from PIL import Image
 
 import ravemj
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.interaction import Key, Press, Release
 from ravemj.viewers import Viewer
 
 P = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]])
@@ -211,6 +213,60 @@ def test_dropping_a_handle_waits_for_no_lock(env):
 
 
 # --- viewers
+
+
+def test_the_log_says_which_viewer_was_chosen(env, caplog, monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    caplog.set_level("INFO", "ravemj")
+    for name, level, text in (
+        ("qtcoin", "INFO", "viewer 'qtcoin' has no window"),
+        ("offscreen", "INFO", "viewer 'offscreen' has no window"),
+        ("window", "WARNING", "there is no display"),
+    ):
+        caplog.clear()
+        assert env.SetViewer(name)
+        assert env.GetViewer().GetXMLId() == name
+        assert caplog.records[0].levelname == level
+        assert text in caplog.records[0].message
+
+
+def test_what_is_selected_is_told_and_may_be_refused():
+    env = ravemj.load(MODELS / "env.xml")
+    env.SetViewer("offscreen")
+    viewer, robot = env.GetViewer(), env.GetRobots()[0]
+    viewer.SetCamera([[0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+    assert (viewer.GetSelectedBody(), viewer.GetSelectedLink(), viewer.GetSelectedJoint()) == (None, None, None)
+    told = []
+    handle = viewer.RegisterItemSelectionCallback(lambda *what: told.append(what))
+    click(viewer, [0.01, 0, -0.3], Key("escape"), ctrl=True)
+    assert viewer.GetSelectedBody() is robot
+    assert viewer.GetSelectedLink() == robot.GetLinks()[2]
+    assert viewer.GetSelectedJoint() == robot.GetJoints()[1]
+    ((link, point, direction),) = told
+    assert link == robot.GetLinks()[2]
+    np.testing.assert_allclose(point, [0.01, 0, -0.3], atol=1e-9)
+    np.testing.assert_allclose(direction, np.array([-0.99, 0, -0.3]) / np.hypot(0.99, 0.3), atol=1e-9)
+    with_cylinder = viewer.render(96, 72)
+    click(viewer, [0.01, 0, -0.3])
+    assert viewer.GetSelectedJoint() is None
+    handle.close()
+    kept = viewer.RegisterItemSelectionCallback(lambda *_: True)
+    click(viewer, [0.01, 0, -0.1], ctrl=True)
+    assert viewer.GetSelectedBody() is None, "a callback that returns True has dealt with the click"
+    kept.close()
+    click(viewer, [0.01, 0, -0.1])
+    env.Remove(robot)
+    assert viewer.GetSelectedBody() is None
+    assert len(told) == 2
+    env.Add(robot)
+    assert not np.array_equal(viewer.render(96, 72), with_cylinder)
+
+
+def click(viewer, point, *events, **modifiers):
+    ((x, y),), _ = viewer.camera.project([point], 640, 480)
+    for event in (*events, Press(x, y, **modifiers), Release(x, y)):
+        viewer.interaction.handle(event)
 
 
 def test_viewers_are_found_by_name(env, caplog, monkeypatch):

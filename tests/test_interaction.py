@@ -47,7 +47,7 @@ class Hand:
 
     @property
     def selection(self):
-        return self.gui.selector.selection
+        return self.gui.selection
 
     def at(self, point) -> tuple[float, float]:
         """Where a point of the world is on the screen."""

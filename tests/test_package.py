@@ -27,6 +27,7 @@ LEVELS = [
         "adjacency bounds following hierarchy inertia joints making manipulators meshes summary",
         "chains fingerprints",
         "builder mjcf reach",
+        "collada",
         "kinematics openrave_xml tessellation",
         "coverage dynamics placement readers rendering trajectories",
         "batch",
@@ -47,9 +48,9 @@ ALLOWED_UPWARD = {("cli", "__init__")}  # the version, at the time of the call
 
 WITHOUT_MUJOCO = rooms(
     """
-    adjacency alias arrays bounds builder chains clock coverage drawing errors expressions fingerprints following
-    geometry_functions handles hierarchy inertia joints making manipulators meshes mjcf motion openrave_xml ordering
-    output reach readers scene showing tessellation trajectories transforms video
+    adjacency alias arrays bounds builder chains clock collada coverage drawing errors expressions fingerprints
+    following geometry_functions handles hierarchy inertia joints making manipulators meshes mjcf motion
+    openrave_xml ordering output reach readers scene showing tessellation trajectories transforms video
     """
 )
 

@@ -7,6 +7,8 @@ What a file refers to may stand in other files. Whatever leads nowhere is report
 
 from collections.abc import Callable
 
+import numpy as np
+
 from ravemj.collada.library import Library
 from ravemj.collada.scenes import Content, read_document
 from ravemj.errors import Diagnostics, Source, SourceError
@@ -16,18 +18,19 @@ SUFFIXES = (".dae", ".zae")
 """Ends of the names of the files, in lower case."""
 
 
-def read_file(path: str, diagnostics: Diagnostics, files: list[str]) -> Content:
+def read_file(path: str, diagnostics: Diagnostics, files: list[str], included_from: Source | None = None) -> Content:
     """Read a ``.dae`` or ``.zae`` file.
 
     Args:
         path: Where it lies.
         diagnostics: Takes every finding.
         files: Takes the paths of the files that are read.
+        included_from: The element that names the file, or None.
 
     Raises:
         SourceError: The file is broken, or something in it is impossible.
     """
-    library = Library(diagnostics, files)
+    library = Library(diagnostics, files, included_from)
     return _read(library, path, lambda: library.open_file(path))
 
 
@@ -40,13 +43,14 @@ def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str]
         diagnostics: Takes every finding.
         files: Takes the paths of the files that are read.
     """
-    library = Library(diagnostics, files)
+    library = Library(diagnostics, files, None)
     return _read(library, name, lambda: library.open_text(data, name))
 
 
 def _read(library: Library, path: str, opened: Callable[[], ColladaDocument]) -> Content:
     try:
-        return read_document(library, opened())
+        with np.errstate(all="ignore"):  # what is not finite in the end is refused
+            return read_document(library, opened())
     except (RecursionError, MemoryError, OverflowError) as error:
         message = f"the file is too large or nested too deep ({type(error).__name__})"
         raise SourceError(message, Source(path)) from error

@@ -9,6 +9,7 @@ from urllib.parse import unquote
 from lxml import etree
 
 from ravemj.errors import Source, SourceError
+from ravemj.meshes.collada.document import words
 from ravemj.meshes.files import MAX_BYTES, read_bytes
 
 _MOST_MEMBERS = 10_000
@@ -92,7 +93,7 @@ class Archive:
         except etree.XMLSyntaxError as error:
             raise SourceError(f"not well-formed XML: {error.msg}", self._manifest) from error
         elements = [] if root is None else [*root.iter("{*}dae_root")]
-        name = unquote("".join(elements[0].itertext()).strip().partition("#")[0]) if elements else ""
+        name = unquote("".join(words(elements[0])).partition("#")[0]) if elements else ""
         if name.startswith("/") or ":" in name or ".." in name.split("/"):
             raise SourceError(f"the manifest names '{name}', which lies outside of the archive", self._manifest)
         return name or None

@@ -67,6 +67,19 @@ class AxisReader:
             max_acceleration=self._rate(info.motion, "acceleration", speed_factor, 50.0),
         )
 
+    def wrap(self, element: Element, info: AxisInfo) -> float:
+        """Return the middle of limits beyond half a turn, about which OpenRAVE counts turns [rad]; 0 within them."""
+        written = self._written_limits(element, info)
+        return sum(written) / 2 if written and max(map(abs, written)) > math.pi else 0.0
+
+    def dof_index(self, info: AxisInfo) -> float:
+        """Return the DOF that OpenRAVE's writer gave to an axis; infinity for none."""
+        for element in children(info.kinematics, "index"):
+            value = self._references.number(element) if element.get("semantic") == "OpenRAVE" else None
+            if value is not None and value >= 0:
+                return value
+        return math.inf
+
     def _limits(self, element: Element, info: AxisInfo) -> tuple[float, float, bool]:
         """Return the limits, and whether the axis turns without end."""
         revolute = local_name(element) == "revolute"
@@ -74,18 +87,24 @@ class AxisReader:
             return 0.0, 0.0, False
         if revolute and self._is_circular(info.kinematics):
             return -UNLIMITED, UNLIMITED, True
-        factor = self._factor(element, math.pi / 180)
-        for owner in (info.kinematics, element):
-            limits = child(owner, "limits")
-            if limits is None or owner is None:
-                continue
-            found = [self._references.number(child(limits, name), owner) for name in ("min", "max")]
-            lower, upper = (None if value is None or math.isnan(value) else value * factor for value in found)
-            if lower is not None and upper is not None:
-                return (0.0, 0.0, False) if lower == upper else (min(lower, upper), max(lower, upper), False)
+        written = self._written_limits(element, info)
+        if written is not None:
+            lower, upper = sorted(written)
+            return (0.0, 0.0, False) if lower == upper else (lower, upper, False)
         if revolute:
             return -UNLIMITED, UNLIMITED, True
         return -_UNLIMITED_SLIDE, _UNLIMITED_SLIDE, False
+
+    def _written_limits(self, element: Element, info: AxisInfo) -> tuple[float, float] | None:
+        """Return the limits as written: those of the system, or else those of the axis itself [rad or m]."""
+        factor = self._factor(element, math.pi / 180)
+        for owner in (info.kinematics, element):
+            limits = child(owner, "limits")
+            if limits is not None and owner is not None:
+                lower, upper = (self._references.number(child(limits, name), owner) for name in ("min", "max"))
+                if lower is not None and upper is not None and not math.isnan(lower + upper):
+                    return lower * factor, upper * factor
+        return None
 
     def _is_circular(self, info: Element | None) -> bool:
         found = (item for item in children(info, "newparam") if item.get("sid") == "circular")

@@ -13,7 +13,7 @@ from ravemj.meshes.collada.geometry import primitive_groups
 from ravemj.meshes.collada.materials import bindings, read_material
 from ravemj.meshes.obj import transparency
 from ravemj.meshes.parts import check_finite, check_size, weld
-from ravemj.scene import Box, Container, Cylinder, Geometry, Rgb, Shape, Sphere, TriMesh
+from ravemj.scene import Box, CalibrationBoard, Container, Cylinder, Geometry, Rgb, Shape, Sphere, TriMesh
 from ravemj.transforms import ZERO, Floats, Pose, Vec3, wxyz_from_axis_angle
 
 _DIFFUSE: Rgb = (1.0, 0.5, 0.5)
@@ -77,7 +77,7 @@ class GeometryReader:
                 return
 
     def _mesh(self, corners: Floats, scaling: Floats | None, T_link_frame: Pose, geometry: Element) -> TriMesh:
-        """Return triangles in the frame of their geometry; OpenRAVE takes the numbers as if the link's frame was meant."""
+        """Return triangles in the frame of their geometry; OpenRAVE takes the file's for those of the link."""
         self._triangles += len(corners)
         source = self._library.source(geometry)
         check_size(self._triangles, source)
@@ -149,7 +149,8 @@ def _vector(element: Element, name: str, metres: float) -> Vec3 | None:
 
 def _box(element: Element, metres: float) -> tuple[Shape, Pose] | None:
     sizes = _vector(element, "half_extents", metres)
-    return None if sizes is None else (Box(sizes), Pose())
+    kind = CalibrationBoard if local_name(element) == "calibration_board" else Box
+    return None if sizes is None else (kind(sizes), Pose())
 
 
 def _sphere(element: Element, metres: float) -> tuple[Shape, Pose] | None:

@@ -24,8 +24,9 @@ class Library:
         files: Paths of the files that were read, in their order.
     """
 
-    def __init__(self, diagnostics: Diagnostics, files: list[str]) -> None:
+    def __init__(self, diagnostics: Diagnostics, files: list[str], included_from: Source | None) -> None:
         self.diagnostics = diagnostics
+        self._included_from = included_from
         self.files = files
         self._archives: dict[str, Archive] = {}
         self._documents: dict[str, ColladaDocument] = {}
@@ -58,7 +59,7 @@ class Library:
 
     def source(self, element: Element) -> Source:
         """Return the place of an element, for messages."""
-        return self.document_of(element).source(element)
+        return self.document_of(element).source(element)._replace(included_from=self._included_from)
 
     def warn(self, code: str, message: str, element: Element, hint: str = "") -> None:
         """Report a finding about an element, which its nearest id names; the same one only once."""

@@ -1,23 +1,25 @@
 """``<kinematics_model>``: links and joints, filled into a body."""
 
+import math
 import re
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+import numpy as np
+
 from ravemj.builder import BodyBuilder, JointBuilder, LinkBuilder
-from ravemj.collada import formula
 from ravemj.collada.axis import AxisInfo, AxisReader
 from ravemj.collada.bindings import Bindings
+from ravemj.collada.formulas import read_formulas
 from ravemj.collada.geometry import GeometryReader
 from ravemj.collada.library import Library
 from ravemj.collada.physics import NO_MASS, Physics
 from ravemj.collada.placing import rigid
-from ravemj.collada.references import Found, References
+from ravemj.collada.references import References
 from ravemj.collada.visual import Node, transform_of
-from ravemj.following import Equations
-from ravemj.meshes.collada.document import Element, child, children, local_name, numbers, words
+from ravemj.meshes.collada.document import Element, child, children, local_name, numbers
 from ravemj.scene import Axis, JointKind
-from ravemj.transforms import Floats, Pose, Vec3, rotate
+from ravemj.transforms import UNIT_WXYZ, Floats, Pose, Vec3, Wxyz, conjugate, multiply, rotate, wxyz_from_axis_angle
 
 _MAX_LINKS = 20_000
 _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.:/-]")
@@ -45,6 +47,7 @@ class Scene:
 
     @property
     def axes(self) -> AxisReader:
+        """A reader of axes."""
         return AxisReader(self.library, self.references)
 
 
@@ -52,16 +55,16 @@ class _FoundJoint(NamedTuple):
     """A joint that an attachment names.
 
     Attributes:
-        holder: What the attachment names.
         keys: All elements that stand for the joint.
         built: The joint.
         values: The bound values of its axes.
+        place: Its first DOF as the file says it.
     """
 
-    holder: Element
     keys: tuple[Element, ...]
     built: JointBuilder
     values: list[float]
+    place: float
 
 
 class ModelReader:
@@ -93,7 +96,6 @@ class ModelReader:
         self._axes = scene.axes
         self._root = scene.bindings.node_of(owner, instance, model)
         self._T_world_root = Pose()
-        self._formulas = self._read_formulas()
         self.links: dict[Element, int] = {}
         self.joints: dict[Element, int] = {}
         self.values: dict[int, list[float]] = {}
@@ -103,19 +105,16 @@ class ModelReader:
         """Read all links, each with those that its joints carry."""
         common = child(self.model, "technique_common")
         for link in children(common, "link"):
-            T = Pose()
-            if self._root is not None and self._root.parent is not None:
-                T = rigid(self._root.parent.world, self._library.source(link))
-            self._T_world_root = T @ self._pose(link)
+            parent = None if self._root is None else self._root.parent
+            T_world_parent = Pose() if parent is None else rigid(parent.world, self._library.source(link))
+            self._T_world_root = T_world_parent @ self._pose(link)
             self._read_link(link, self._root, self._T_world_root)
-        self._settle_joints(common)
-        self._read_equations()
+        self._settle_joints()
+        read_formulas(self._library, self._scene.references, self.model, self.joints, self.body)
 
-    def _settle_joints(self, common: Element | None) -> None:
-        """Give the joints to the body, in the order in which the model lists them."""
-        listed = [*children(common, "joint", "instance_joint")]
-        place = {element: index for index, element in enumerate(listed)}
-        for found in sorted(self._found, key=lambda found: place.get(found.holder, len(listed))):
+    def _settle_joints(self) -> None:
+        """Give the joints to the body, those with an index of OpenRAVE's in its order."""
+        for found in sorted(self._found, key=lambda found: found.place):
             index = len(self.body.joints)
             self.joints |= dict.fromkeys(found.keys, index)
             self.values[index] = found.values
@@ -184,7 +183,8 @@ class ModelReader:
         built = self._built_joint(joint, axes, links, T_parent_frame, T_parent_child)
         written = [None if item is None else item.value for item in bound]
         values = [self._axes.value(axis, value) for axis, value in zip(axes, written, strict=True)]
-        self._found.append(_FoundJoint(holder, (holder, joint, *axes), built, values[: len(built.axes)]))
+        place = min(self._axes.dof_index(self._infos.get(axis, AxisInfo())) for axis in axes)
+        self._found.append(_FoundJoint((holder, joint, *axes), built, values[: len(built.axes)], place))
         self._read_link(inner, node, T_world_parent @ T_parent_child)
 
     def _joint(self, attachment: Element) -> tuple[Element, Element]:
@@ -213,11 +213,11 @@ class ModelReader:
             links=links,
             T_first_second=T_parent_child,
             anchor=T_parent_frame.position,
-            frame=T_parent_frame.wxyz,
             axes=tuple(
                 self._axis(axis, info, T_parent_frame)
                 for axis, info in zip(axes[: 2 if kind == "hinge2" else 1], infos, strict=False)
             ),
+            weld_turn=self._weld_turn(kind, axes[0], infos[0], T_parent_frame, T_parent_child),
             enabled=all(self._axes.is_active(info) for info in infos),
             source=self._library.source(joint),
         )
@@ -232,56 +232,18 @@ class ModelReader:
         return "hinge" if kinds[0] == "revolute" else "slider"
 
     def _axis(self, element: Element, info: AxisInfo, T_parent_frame: Pose) -> Axis:
-        values = numbers(child(element, "axis"))[:3].tolist()
-        direction = _unit((values[0], values[1], values[2])) if len(values) == 3 else (0.0, 0.0, 1.0)
-        return self._axes.read(element, rotate(T_parent_frame.wxyz, direction), info)
+        return self._axes.read(element, rotate(T_parent_frame.wxyz, _direction(element)), info)
 
-    def _read_formulas(self) -> list[tuple[Element, Found]]:
-        """Return the formulas, and the joint or axis that each is for."""
-        found: list[tuple[Element, Found]] = []
-        for item in children(child(self.model, "technique_common"), "formula", "instance_formula"):
-            element = self._library.follow(item) if local_name(item) == "instance_formula" else item
-            path = "".join(words(child(element, "target", "param")))
-            target = self._scene.references.resolve(path, self.model) if path else None
-            if element is None or target is None:
-                self._library.warn("broken-reference", f"there is no joint '{path}' for the formula", item)
-            else:
-                found.append((element, target))
-        return found
-
-    def _read_equations(self) -> None:
-        """Give the followers their equations."""
-        for element, target in self._formulas:
-            index = self.joints.get(target.element)
-            if index is None:
-                self._library.warn("broken-reference", "the joint of the formula is not in the model", element)
-                continue
-            joint = self.body.joints[index]
-            try:
-                position = formula.equation(formula.position_math(element), self._joint_name)
-            except formula.FormulaError as error:
-                message = f"joint '{joint.name}' cannot follow: {error}; it stays where it is"
-                self._library.warn("bad-mimic", message, element)
-                joint.enabled = False
-                continue
-            first, second = (self._partials(element, kind) for kind in ("first_partial", "second_partial"))
-            joint.equations = Equations(position, first, second)
-
-    def _partials(self, element: Element, kind: str) -> str:
-        """Return the derivatives by each joint, as OpenRAVE writes them."""
-        text = ""
-        for item in formula.content_of(element, kind):
-            name = self._joint_name(item.get("target") or "")
-            try:
-                text += f"|{name} {formula.equation(child(item, 'math'), self._joint_name)} " if name else ""
-            except formula.FormulaError as error:
-                self._library.warn("bad-mimic", f"a derivative is left out: {error}", item)
-        return text
-
-    def _joint_name(self, path: str) -> str | None:
-        found = self._scene.references.resolve(path, self.model) if path else None
-        index = None if found is None else self.joints.get(found.element)
-        return None if index is None else self.body.joints[index].name
+    def _weld_turn(
+        self, kind: JointKind, axis: Element, info: AxisInfo, T_parent_frame: Pose, T_parent_child: Pose
+    ) -> Wxyz:
+        """Return what OpenRAVE turns the axis of a joint by when its limits leave it no room."""
+        if kind == "slider":
+            return UNIT_WXYZ
+        T_frame_child = T_parent_frame.inverse() @ T_parent_child
+        turn = wxyz_from_axis_angle(_direction(axis), self._axes.wrap(axis, info))
+        turned = multiply(multiply(turn, T_frame_child.wxyz), conjugate(T_parent_frame.wxyz))
+        return multiply(T_parent_frame.wxyz, turned)
 
 
 def _unused(name: str, taken: set[str]) -> str:
@@ -294,7 +256,11 @@ def _unused(name: str, taken: set[str]) -> str:
     return unused
 
 
-def _unit(vector: Vec3) -> Vec3:
-    x, y, z = vector
-    length = (x * x + y * y + z * z) ** 0.5
-    return (x / length, y / length, z / length) if length > 0 else (0.0, 0.0, 1.0)
+def _direction(element: Element) -> Vec3:
+    """Return the unit vector of an axis; z where the file has none."""
+    values = numbers(child(element, "axis"))[:3]
+    length = float(np.linalg.norm(values))
+    if len(values) < 3 or not 0 < length < math.inf:
+        return (0.0, 0.0, 1.0)
+    x, y, z = (values / length).tolist()
+    return x, y, z

@@ -14,7 +14,7 @@ from ravemj.collada.references import References
 from ravemj.collada.robot import ExtraReader, interface_kind
 from ravemj.collada.visual import Node, expand
 from ravemj.meshes.collada.document import ColladaDocument, Element, child, children
-from ravemj.transforms import Floats, Vec3, inverse
+from ravemj.transforms import Vec3, inverse
 
 _MAX_DEPTH = 20
 
@@ -114,21 +114,25 @@ def _take_apart(scene: Scene, instance: Element, parts: _System, motions: dict[E
     parts.systems.append(system)
     motion, kinematics = child(system, "motion"), child(system, "kinematics")
     if motion is not None:
-        inner = dict(motions)
-        for info in children(child(motion, "technique_common"), "axis_info"):
-            found = scene.references.resolve(info.get("axis") or "", motion)
-            if found is not None:
-                inner[found.element] = info
+        inner = {**motions, **_axis_infos(scene, motion)}
         for item in children(motion, "instance_articulated_system"):
             _take_apart(scene, item, parts, inner, depth + 1)
     if kinematics is not None:
-        for info in children(child(kinematics, "technique_common"), "axis_info"):
-            found = scene.references.resolve(info.get("axis") or "", kinematics)
-            if found is None:
-                scene.library.warn("broken-reference", f"there is no axis '{info.get('axis')}'", info)
-            else:
-                parts.infos[found.element] = AxisInfo(info, motions.get(info, motions.get(found.element)))
+        for axis, info in _axis_infos(scene, kinematics).items():
+            parts.infos[axis] = AxisInfo(info, motions.get(info, motions.get(axis)))
         parts.models.extend(children(kinematics, "instance_kinematics_model"))
+
+
+def _axis_infos(scene: Scene, part: Element) -> dict[Element, Element]:
+    """Return the ``<axis_info>`` elements of a part of a system, by what they say something about."""
+    infos: dict[Element, Element] = {}
+    for info in children(child(part, "technique_common"), "axis_info"):
+        found = scene.references.resolve(info.get("axis") or "", part)
+        if found is None:
+            scene.library.warn("broken-reference", f"there is no axis '{info.get('axis')}'", info)
+        else:
+            infos[found.element] = info
+    return infos
 
 
 def _node_body(library: Library, geometry: GeometryReader, node: Node) -> BodyBuilder | None:
@@ -137,11 +141,7 @@ def _node_body(library: Library, geometry: GeometryReader, node: Node) -> BodyBu
     name = valid_name(node.name)
     T_world_link = rigid(node.world, source)
     T_link_world = inverse(T_world_link.matrix())
-
-    def T_link_node(inner: Node) -> Floats:
-        return T_link_world @ inner.world
-
-    shapes = geometry.read(node, T_link_node, lambda inner: False)
+    shapes = geometry.read(node, lambda inner: T_link_world @ inner.world, lambda inner: False)
     if not shapes:
         return None
     body = BodyBuilder(is_robot=False, source=source, name=name)

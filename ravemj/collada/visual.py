@@ -58,7 +58,7 @@ class Node:
         return node
 
     def _below(self, name: str) -> "Node | None":
-        queue = deque([self])
+        queue: deque[Node] = deque([self])
         while queue:
             node = queue.popleft()
             if name in node.names or (node.parent and any(item.get("sid") == name for item in _transforms(node))):

@@ -84,7 +84,7 @@ class OrientedBox(Shown):
 
     def pose(self) -> Floats:
         """Return the pose of the centre, quaternion first, shape (7,)."""
-        return np.array([*self._pose.wxyz, *self._pose.position])
+        return self._pose.numbers()
 
     def toDict(self) -> dict[str, Floats]:
         """Return the box as ``transform``, a pose of 7 numbers, and ``extents``."""
@@ -110,7 +110,7 @@ def OrientedBoxFromAABB(aabb: AABB, transform: ArrayLike) -> OrientedBox:
     """
     x, y, z = aabb.pos().tolist()
     moved = arguments.pose(transform, "transform") @ Pose((x, y, z))
-    return OrientedBox([*moved.wxyz, *moved.position], aabb.extents())
+    return OrientedBox(moved.numbers(), aabb.extents())
 
 
 def AABBFromOrientedBox(obb: OrientedBox) -> AABB:

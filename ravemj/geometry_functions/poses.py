@@ -54,7 +54,7 @@ def poseFromMatrices(transforms: ArrayLike) -> Floats:
 
 def InvertPose(pose: ArrayLike) -> Floats:
     """Return the inverse of a pose, shape (7,)."""
-    return _numbers(_pose(pose).inverse())
+    return _pose(pose).inverse().numbers()
 
 
 def InvertPoses(poses: ArrayLike) -> Floats:
@@ -72,7 +72,7 @@ def MultiplyPose(pose1: ArrayLike, pose2: ArrayLike) -> Floats:
         ArgumentError: the product's quaternion is far from unit length.
     """
     product = _pose(pose1) @ _pose(pose2)
-    return _numbers(Pose(product.position, arguments.unit_wxyz(product.wxyz, "pose1 * pose2")))
+    return Pose(product.position, arguments.unit_wxyz(product.wxyz, "pose1 * pose2")).numbers()
 
 
 poseMult = MultiplyPose
@@ -178,7 +178,7 @@ def ComputePoseArrayDistSqr(pose0: ArrayLike, posearray: ArrayLike, quatweight: 
 
 def poseSerialization(pose: ArrayLike) -> str:
     """Return a transform, a pose of 7 numbers or a matrix of 4x4, as the text of its 7 numbers."""
-    return _text(_numbers(arguments.pose(pose, "pose")))
+    return _text(arguments.pose(pose, "pose").numbers())
 
 
 def matrixSerialization(transform: ArrayLike) -> str:
@@ -196,7 +196,3 @@ def _position(pose: ArrayLike) -> Vec3:
 
 def _pose(pose: ArrayLike) -> Pose:
     return Pose(_position(pose), arguments.wxyz(pose, "pose"))
-
-
-def _numbers(pose: Pose) -> Floats:
-    return np.array([*pose.wxyz, *pose.position])

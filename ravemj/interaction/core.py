@@ -15,7 +15,7 @@ from ravemj.interaction import layout
 from ravemj.interaction.events import Button, Event, Key, Leave, Move, Press, Release, Resize, Wheel
 from ravemj.interaction.layout import Panel, Tool
 from ravemj.interaction.picking import Hit, pick
-from ravemj.interaction.selecting import OnSelect, Selector, point_line
+from ravemj.interaction.selecting import OnSelect, Selection, Selector, point_line
 from ravemj.interaction.view import View
 from ravemj.rendering import Camera, bounding_sphere
 from ravemj.simulation import Simulation
@@ -60,8 +60,6 @@ class Interaction:
     Attributes:
         view: The camera.
         mode: What the left button does.
-        selector: What is selected.
-        version: Grows with everything that changes the view or the overlay; what moves bodies changes these as well.
     """
 
     def __init__(
@@ -78,8 +76,8 @@ class Interaction:
         self._simulation = simulation
         self.view = View(camera, 0.0, size)
         self.mode = Mode.CAMERA
-        self.selector = Selector(simulation, on_select)
-        self.version = 0
+        self._selector = Selector(simulation, on_select)
+        self._changes = 0
         self._pointer: tuple[float, float] | None = None
         self._hovered = False
         self._buttons: set[Button] = set()
@@ -87,17 +85,30 @@ class Interaction:
         self._press: Press | None = None
         self._follow: _Follow | None = None
 
+    def another_view(self) -> "Interaction":
+        """Return the mouse and the keys of another view on the same simulation; they share what is selected."""
+        other = Interaction(self._simulation, self.view.camera, self.view.size)
+        other.view = self.view
+        other._selector = self._selector
+        return other
+
+    @property
+    def version(self) -> int:
+        """A number that grows with what changes the view and the overlay; what moves bodies changes these as well."""
+        return self._changes + self._selector.changes
+
     def look_from(self, camera: Camera, distance: float = 0.0) -> None:
-        """Take another camera; what the mouse did with the old one ends.
+        """Take another camera; what the mouse does with the old one ends.
 
         Args:
             camera: The camera.
             distance: How far its focus is [m]; 0: as far as before.
         """
-        if self.mode is Mode.CAMERA:
-            self._follow = None
-        self.view = replace(self.view, camera=camera, distance=distance or self.view.distance)
-        self.version += 1
+        with self._simulation.lock:
+            if self.mode is Mode.CAMERA:
+                self._follow = None
+            self.view = replace(self.view, camera=camera, distance=distance or self.view.distance)
+            self._changes += 1
 
     def handle(self, event: Event) -> None:
         """Do what an event asks for. The simulation is locked meanwhile."""
@@ -106,13 +117,22 @@ class Interaction:
             self._do(event)
             hovers = self.hover is not None
             if not isinstance(event, Move) or self._buttons or hovers or self._hovered:
-                self.version += 1
+                self._changes += 1
             self._hovered = hovers
+
+    @property
+    def selection(self) -> Selection | None:
+        """What is selected, or None."""
+        with self._simulation.lock:
+            self._forget_what_is_gone()
+            return self._selector.selection
 
     @property
     def hover(self) -> Hit | None:
         """What is under the pointer now; None while a button is held."""
         if self._pointer is None or self._buttons:
+            return None
+        if not all(0 <= place < length for place, length in zip(self._pointer, self.view.size, strict=True)):
             return None
         with self._simulation.lock:
             return pick(self._simulation, self.view.ray(*self._pointer))
@@ -123,12 +143,14 @@ class Interaction:
             self._forget_what_is_gone()
             chosen = Tool.CAMERA if self.mode is Mode.CAMERA else Tool.INTERACT
             hit = self.hover
-            at = self.selector.point_line() if hit is None else point_line(hit.body, hit.link, hit.position, hit.normal)
-            lines = (*([at] if at else []), *self.selector.lines())
-            return Overlay(self.selector.shapes(), lines, layout.panels(self.view.size, chosen))
+            at = (
+                self._selector.point_line() if hit is None else point_line(hit.body, hit.link, hit.position, hit.normal)
+            )
+            lines = (*([at] if at else []), *self._selector.lines())
+            return Overlay(self._selector.shapes(), lines, layout.panels(self.view.size, chosen))
 
     def _forget_what_is_gone(self) -> None:
-        if self.selector.forget_what_is_gone():
+        if self._selector.forget_what_is_gone():
             self._press = self._follow = None
 
     # --- events
@@ -177,7 +199,7 @@ class Interaction:
         self._buttons.discard(release.button)
         press, self._press, self._follow = self._press, None, None
         if press is not None and press.button is release.button:
-            self.selector.click(self.view, press)
+            self._selector.click(self.view, press)
 
     def _on_wheel(self, steps: float) -> None:
         if self.mode is Mode.CAMERA:
@@ -252,5 +274,5 @@ class Interaction:
 
     def _hold(self, press: Press) -> _Follow | None:
         """Take hold of the cube or the cylinder where the button went down."""
-        follow = self.selector.hold(self.view, press)
+        follow = self._selector.hold(self.view, press)
         return None if follow is None else lambda x, y: follow(self.view.ray(x, y))

@@ -7,7 +7,7 @@ _MARGIN = 8
 _BUTTON = 36
 _WHEEL_LENGTH, _WHEEL_WIDTH = 120, 18
 _RIDGES = 9
-_LABEL = 18
+_LABEL_WIDTH, _LABEL_HEIGHT = 44, 20
 
 _Rgba = tuple[float, float, float, float]
 _BACK: _Rgba = (0.15, 0.15, 0.17, 0.75)
@@ -98,8 +98,8 @@ def panels(size: tuple[int, int], chosen: Tool) -> tuple[Panel, ...]:
 
 def _arrow(rect: Rect) -> list[Panel]:
     """Return a red arrow that points up and to the left, as a mouse pointer does."""
-    head = [Panel(Rect(rect.x + 9, rect.y + 7 + row, 1 + 0.7 * row, 1), _RED) for row in range(16)]
-    tail = [Panel(Rect(rect.x + 13 + 0.5 * row, rect.y + 22 + row, 4, 1), _RED) for row in range(8)]
+    head = [Panel(Rect(rect.x + 9, rect.y + 5 + row, 2 + 0.8 * row, 1), _RED) for row in range(18)]
+    tail = [Panel(Rect(rect.x + 14 + 0.5 * row, rect.y + 22 + row, 5, 1), _RED) for row in range(9)]
     return head + tail
 
 
@@ -120,6 +120,6 @@ def _ridges(rect: Rect) -> list[Panel]:
 
 def _label(tool: Tool, rect: Rect) -> Rect:
     if tool is Tool.ROT_Y:
-        return Rect(rect.x + rect.width + 2, rect.y, 2.5 * _LABEL, rect.height)
-    x = rect.x if tool is Tool.ROT_X else rect.x + rect.width - 2.5 * _LABEL
-    return Rect(x, rect.y - _LABEL - 2, 2.5 * _LABEL, _LABEL)
+        return Rect(rect.x + rect.width + 2, rect.y + rect.height - _LABEL_HEIGHT, _LABEL_WIDTH, _LABEL_HEIGHT)
+    x = rect.x if tool is Tool.ROT_X else rect.x + rect.width - _LABEL_WIDTH
+    return Rect(x, rect.y - _LABEL_HEIGHT - 2, _LABEL_WIDTH, _LABEL_HEIGHT)

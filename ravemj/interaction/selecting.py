@@ -46,6 +46,7 @@ class Selector:
 
     Attributes:
         selection: What is selected, or None.
+        changes: How often this may have changed.
     """
 
     def __init__(self, simulation: Simulation, on_select: OnSelect | None) -> None:
@@ -53,17 +54,20 @@ class Selector:
         self._on_select = on_select
         self._notice = ""
         self.selection: Selection | None = None
+        self.changes = 0
 
     def forget_what_is_gone(self) -> bool:
         """Select nothing if the body is no more in the world; return whether that was so."""
         is_gone = self.selection is not None and not self._simulation.holds(self.selection.body)
         if is_gone:
             self.selection = None
+            self.changes += 1
         return is_gone
 
     def click(self, view: View, press: Press) -> None:
         """Select what is under the pointer, or nothing; Ctrl selects the joint above it."""
         self._notice = ""
+        self.changes += 1
         ray = view.ray(press.x, press.y)
         hit = pick(self._simulation, ray)
         if press.ctrl:

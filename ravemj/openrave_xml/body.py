@@ -12,6 +12,7 @@ from ravemj.builder import BodyBuilder
 from ravemj.errors import SourceError
 from ravemj.following import Equations
 from ravemj.manipulators import ManipulatorBuilder
+from ravemj.openrave_xml.collada_body import add_collada, is_collada
 from ravemj.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
 from ravemj.openrave_xml.geometry import GeometryScope
 from ravemj.openrave_xml.joint import read_joint
@@ -64,6 +65,7 @@ class _Scope:
         self.geometry_scope = GeometryScope(None, scale)
         self.joint_values: list[float] | None = None
         self.own_manipulators: list[ManipulatorBuilder] = []
+        self.own_sensors: list[int] = []
         self.transparency: float | None = None
 
     def read(self, element: Element) -> None:
@@ -81,8 +83,7 @@ class _Scope:
         if self.transparency is not None:
             for link in self.body.links:
                 link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
-        if marks.manipulators:
-            self._own_manipulators_first()
+        self._own_first(marks)
         if self.placement.moves:
             T_outer_scope = self.placement.pose
             for link in self.body.links[first_link:]:
@@ -95,6 +96,13 @@ class _Scope:
             path = self.context.find(name, element.source)
             if path is not None:
                 add_mesh(self.body, path, self.scale, element.source, self.context)
+            return
+        if is_collada(name):
+            marks = _Marks.of(self.body)
+            path = self.context.find(name, element.source)
+            if path is not None:
+                add_collada(self.body, path, element.source, self.context, skip_geometry=self.skip_geometry)
+                self._prefix(element.attributes.get("prefix", ""), marks, whole=True)
             return
         root = self.context.include(element)
         if root is None:
@@ -129,11 +137,15 @@ class _Scope:
         for index, sensor in enumerate(self.body.sensors[marks.sensors :], marks.sensors):
             self.body.sensors[index] = replace(sensor, name=prefix + sensor.name)
 
-    def _own_manipulators_first(self) -> None:
-        """Move the manipulators of this very element to the front, the youngest first."""
-        own = self.own_manipulators
-        others = [built for built in self.body.manipulators if all(built is not mine for mine in own)]
-        self.body.manipulators = [*reversed(own), *others]
+    def _own_first(self, marks: _Marks) -> None:
+        """Move manipulators and sensors of this very element before those that were there, the youngest first."""
+        if marks.manipulators:
+            mine = self.own_manipulators
+            others = [built for built in self.body.manipulators if all(built is not own for own in mine)]
+            self.body.manipulators = [*reversed(mine), *others]
+        if marks.sensors:
+            order = [index for index in range(len(self.body.sensors)) if index not in self.own_sensors]
+            self.body.sensors = [self.body.sensors[index] for index in (*reversed(self.own_sensors), *order)]
 
     def nest(self, element: Element) -> None:
         """Read a nested ``<Robot>`` or ``<KinBody>`` into the same body."""
@@ -204,6 +216,7 @@ class _Scope:
     def read_sensor(self, element: Element) -> None:
         """Read an ``<AttachedSensor>``."""
         read_attached_sensor(self.body, element, self.context)
+        self.own_sensors.append(len(self.body.sensors) - 1)
 
 
 _PLACEMENT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {

@@ -5,6 +5,7 @@ import os
 from collections.abc import Callable, Collection, Mapping, Set
 from typing import TypeVar
 
+from ravemj.collada import SUFFIXES as COLLADA_SUFFIXES
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.meshes import MeshPart
 from ravemj.openrave_xml.tree import Element, parse_file
@@ -15,7 +16,6 @@ Target = TypeVar("Target")
 IGNORED = "OpenRAVE reads it and makes nothing of it"
 MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
-COLLADA_SUFFIXES = (".dae", ".zae")
 _LONGEST_NAME = 80
 """No known name is anywhere near as long."""
 NO_EFFECT_HERE = "it has no effect on the model"
@@ -112,7 +112,7 @@ class Context:
         if path is None:
             return None
         if path.lower().endswith(COLLADA_SUFFIXES):
-            message = f"{name} is left out: this version of ravemj does not read COLLADA yet"
+            message = f"{name} is left out: COLLADA files stand for a Robot or a KinBody only"
             self.diagnostics.error("unsupported-file", message, element.source)
             return None
         chain: Source | None = element.source

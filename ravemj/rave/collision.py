@@ -14,7 +14,7 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import Ray
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
-from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.interface import Annotations, Interface, checked_environment, checked_kind
 from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact, Part
 from ravemj.showing import Shown
@@ -111,6 +111,8 @@ class CollisionChecker(Interface):
         if len(arguments) > 1 and (arguments[-1] is None or isinstance(arguments[-1], CollisionReport)):
             report = report or arguments[-1]
             arguments = arguments[:-1]
+        if report is not None:
+            checked_kind(report, CollisionReport, "CheckCollision: report")
         with self._simulation.lock:
             world = world_of(self._simulation)
             if arguments and isinstance(arguments[0], Ray):
@@ -124,6 +126,8 @@ class CollisionChecker(Interface):
             linkbody: The body, or one link that is tested against the others.
             report: Filled with what is found.
         """
+        if report is not None:
+            checked_kind(report, CollisionReport, "CheckSelfCollision: report")
         with self._simulation.lock:
             world = world_of(self._simulation)
             if isinstance(linkbody, Link):
@@ -159,10 +163,16 @@ class CollisionChecker(Interface):
     def _pairs_without(
         self, world: CollisionWorld, thing: object, bodies: frozenset[BodyState], links: frozenset[LinkOf]
     ) -> Pairs:
+        if isinstance(thing, BodyPart | Link):
+            self._check_ours(thing if isinstance(thing, BodyPart) else thing.GetParent())
         if isinstance(thing, BodyPart):
             state = thing.simulation_state
             return questions.body_and_others(world, state, self._active_links(state), bodies, links)
         return questions.link_and_others(world, _key(thing), bodies, links)
+
+    def _check_ours(self, body: BodyPart) -> None:
+        if body.simulation_state.simulation is not self._simulation:
+            raise ArgumentError(f"CheckCollision: '{body.GetName()}' was made for another environment")
 
     def _check_added(self, *bodies: BodyPart) -> None:
         for body in bodies:
@@ -306,7 +316,8 @@ class CollisionOptionsStateSaver(Shown):
         Raises:
             openrave_exception: it does not.
         """
-        self._checker, self._old = p, p.GetCollisionOptions()
+        self._checker = checked_kind(p, CollisionChecker, "CollisionOptionsStateSaver: p")
+        self._old = p.GetCollisionOptions()
         if not p.SetCollisionOptions(newoptions) and required:
             raise ArgumentError(f"CollisionOptionsStateSaver: newoptions are {newoptions}, which are not all known")
 
@@ -332,6 +343,7 @@ def RaveCreateCollisionChecker(env: "Environment", name: str) -> CollisionChecke
     Returns:
         The checker; None for an unknown name.
     """
+    checked_environment(env, "RaveCreateCollisionChecker")
     kind = name.lower()
     if kind in _OTHERS and kind not in _told:
         _told.add(kind)

@@ -58,6 +58,4 @@ class Configured(Placement):
             ArgumentError: there are more or fewer values.
         """
         joint_values, pose = split_configuration(checked_numbers(values, "values"), self.GetDOF())
-        with self._simulation.lock:
-            self.SetDOFValues(joint_values, checklimits=checklimits)
-            self.SetTransform(pose.matrix())
+        self.SetTransformWithDOFValues(pose.matrix(), joint_values, checklimits)

@@ -2,6 +2,7 @@
 
 from ravemj.errors import Source
 from ravemj.rave.environment import Environment
+from ravemj.rave.interface import checked_environment
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.scene import KinBody as SceneBody
@@ -44,5 +45,6 @@ def RaveCreateRobot(env: Environment, name: str = "") -> Robot | None:
 
 
 def _empty(env: Environment, *, is_robot: bool) -> KinBody:
+    checked_environment(env, "RaveCreateRobot" if is_robot else "RaveCreateKinBody")
     scene = SceneBody(name="", is_robot=is_robot, links=(), joints=(), passive_joints=(), source=_NOWHERE)
     return env.wrap(env.simulation.create(scene))

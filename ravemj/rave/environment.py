@@ -16,6 +16,7 @@ from ravemj.rave.env.meshing import Meshing
 from ravemj.rave.env.modules import Modules
 from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
+from ravemj.rave.interface import checked_environment
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
 from ravemj.simulation import Simulation
 
@@ -135,7 +136,7 @@ def RaveGetEnvironmentId(env: Environment) -> int:
     Args:
         env: The environment.
     """
-    return env.GetId()
+    return checked_environment(env, "RaveGetEnvironmentId").GetId()
 
 
 def RaveGetEnvironments() -> list[Environment]:

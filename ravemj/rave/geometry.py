@@ -11,14 +11,13 @@ from ravemj.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.bounds import geometry_bounds
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import AABB
-from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.geometry import TYPES, GeometryInfo
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 from ravemj.tessellation import triangulated
-from ravemj.transforms import Floats
+from ravemj.transforms import Floats, pose_of
 
 
 class Geometry(Shown):
@@ -77,7 +76,7 @@ class Geometry(Shown):
 
     def GetTransformPose(self) -> Floats:
         """Return the pose in the link as [w, x, y, z, tx, ty, tz], shape (7,)."""
-        return pose_from_matrix(self.GetTransform())
+        return pose_of(self.GetTransform()).numbers()
 
     def GetBoxExtents(self) -> Floats:
         """Return half the edge lengths of a box [m], shape (3,)."""

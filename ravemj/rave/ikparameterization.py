@@ -302,9 +302,10 @@ class IkParameterization(Shown):
 def _numbers(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: ANN401 - as the type asks for
     """Return the numbers of a goal that a user gave as a matrix, a ray or a vector."""
     if kind == _Type.Transform6D:
-        pose = pose_of(checked_transform(value, "value"))
-        return np.array([*pose.wxyz, *pose.position])
+        return pose_of(checked_transform(value, "value")).numbers()
     if kind in _RAYS:
+        if not isinstance(value, Ray):
+            raise ArgumentError(f"value: is a {type(value).__name__}, and should be a Ray")
         direction = value.dir()
         return np.concatenate([direction / (np.linalg.norm(direction) or 1.0), value.pos()])
     return checked_vector(value, IkParameterization.GetNumberOfValuesFromType(kind), "value")
@@ -314,8 +315,7 @@ def _moved(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
     """Return the numbers of a goal that is moved by a pose."""
     matrix = pose.matrix()
     if kind == _Type.Transform6D:
-        moved = pose @ _pose(values)
-        return np.array([*moved.wxyz, *moved.position])
+        return (pose @ _pose(values)).numbers()
     if kind == _Type.Rotation3D:
         return np.array(multiply(pose.wxyz, _wxyz(values)))
     if kind == _Type.Direction3D:

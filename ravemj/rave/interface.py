@@ -1,13 +1,36 @@
 """What all objects of an environment have in common."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from ravemj.errors import ErrorCode, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 from ravemj.showing import Shown
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
+
+
+Kind = TypeVar("Kind")
+
+
+def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name: str, wanted: str = "") -> Kind:
+    """Return an argument that a user gave.
+
+    Args:
+        thing: The argument.
+        kind: The class that it should have, or several, of which it should have one.
+        name: What to call it in errors.
+        wanted: What to call what it should be; empty: by the class.
+
+    Raises:
+        ArgumentError: it is something else.
+    """
+    if not isinstance(thing, kind):
+        given = "None" if thing is None else f"a {type(thing).__name__}"
+        if isinstance(kind, type):
+            wanted = wanted or f"a {kind.__name__}"
+        raise ArgumentError(f"{name}: is {given}, and should be {wanted}")
+    return thing
 
 
 class Annotations:
@@ -114,5 +137,17 @@ class Interface(UserData):
             openrave_exception: the command is not known (``CommandNotSupported``); none is, here.
         """
         del releasegil, lockenv
+        checked_kind(cmd, str, "SendCommand: cmd", "a text")
         name = cmd.split(maxsplit=1)[0] if cmd.strip() else ""
         raise RavemjError(f"{type(self).__name__} knows no command '{name}'", ErrorCode.CommandNotSupported)
+
+
+def checked_environment(env: "Environment", caller: str) -> "Environment":
+    """Return the environment that a user gave.
+
+    Raises:
+        ArgumentError: it is something else.
+    """
+    if isinstance(env, Interface) or not isinstance(env, UserData):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise ArgumentError(f"{caller}: env is {env!r}, and should be an Environment")
+    return env

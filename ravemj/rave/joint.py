@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_vector
+from ravemj.arrays import checked_indices, checked_vector
 from ravemj.joints import directions_at, measured_values, relative_pose, reported_anchor
+from ravemj.rave.body.limits import wrapped_angle
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
 from ravemj.rave.joints.following import JointFollowing
@@ -113,7 +114,7 @@ class Joint(JointLimits, JointFollowing):
             ``value0 - value1``; for a circular joint the shorter way round, from -pi to pi.
         """
         difference = float(value0) - float(value1)
-        return (difference + np.pi) % (2 * np.pi) - np.pi if self._scene.axes[axis].circular else difference
+        return float(wrapped_angle(difference)) if self._scene.axes[axis].circular else difference
 
     def SubtractValues(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
         """Return the differences of the values of all axes, as ``SubtractValue``.
@@ -188,6 +189,7 @@ class Joint(JointLimits, JointFollowing):
 
         The second axis of a ``Hinge2`` turns with the first.
         """
+        checked_indices([axis], len(self._scene.axes), "axis")
         values = self._shown_values() if axis else [0.0]
         return self._T_world_parent()[:, :3] @ directions_at(self._scene, values)[axis]
 

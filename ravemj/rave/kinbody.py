@@ -16,6 +16,7 @@ from ravemj.rave.configured import Configured
 from ravemj.rave.enums import CheckLimitsAction, InterfaceType, JointType, SaveParameters
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, JointInfo, KinBodyInfo, LinkInfo
+from ravemj.rave.interface import checked_kind
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 from ravemj.rave.tables import body_table
@@ -85,8 +86,9 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
             openrave_exception: this body is in an environment.
         """
         del cloningoptions
-        with both_locks(self._simulation, reference.simulation_state.simulation):
-            self._state.copy(reference.simulation_state)
+        original = checked_kind(reference, KinBody, "Clone: reference").simulation_state
+        with both_locks(self._simulation, original.simulation):
+            self._state.copy(original)
 
     GetEnvironmentId = GetEnvironmentBodyIndex
 

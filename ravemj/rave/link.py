@@ -6,7 +6,6 @@ from numpy.typing import ArrayLike
 
 from ravemj import chains
 from ravemj.arrays import checked_transform, checked_vector
-from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, LinkInfo
@@ -15,7 +14,7 @@ from ravemj.rave.links.loads import LinkLoads
 from ravemj.rave.links.mass import LinkMass
 from ravemj.rave.links.parameters import LinkParameters
 from ravemj.rave.links.shapes import LinkShapes
-from ravemj.transforms import Floats
+from ravemj.transforms import Floats, pose_of
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -80,7 +79,7 @@ class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters, LinkLoads):
 
     def GetTransformPose(self) -> Floats:
         """Return the link's pose as [w, x, y, z, tx, ty, tz]: unit quaternion and position [m], shape (7,)."""
-        return pose_from_matrix(self.GetTransform())
+        return pose_of(self.GetTransform()).numbers()
 
     def SetTransform(self, transform: ArrayLike) -> None:
         """Move this link only; the joints at it get the values that the poses of the links show.

@@ -12,7 +12,6 @@ from ravemj.errors import ArgumentError, RavemjError
 from ravemj.manipulators import joint_dofs
 from ravemj.rave.arm_collision import ArmCollision
 from ravemj.rave.arm_goals import ArmGoals
-from ravemj.rave.body.placement import pose_from_matrix
 from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
@@ -109,7 +108,7 @@ class Manipulator(ArmGoals, ArmCollision):
 
     def GetTransformPose(self) -> Floats:
         """Return the pose of the tool in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""
-        return pose_from_matrix(self.GetTransform())
+        return pose_of(self.GetTransform()).numbers()
 
     def GetLocalToolTransform(self) -> Floats:
         """Return the pose of the tool in the effector.

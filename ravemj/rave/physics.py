@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from ravemj.arrays import checked_numbers, checked_vector
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import InterfaceType, PhysicsEngineOptions
-from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.simulation import BodyState
 from ravemj.transforms import ZERO, Floats, Vec3
 
@@ -283,5 +283,6 @@ def RaveCreatePhysicsEngine(env: "Environment", name: str) -> PhysicsEngine | No
         >>> env.SetPhysicsEngine(engine)
         True
     """
+    checked_environment(env, "RaveCreatePhysicsEngine")
     kind = _KINDS.get(name.lower())
     return None if kind is None else kind(env, name)

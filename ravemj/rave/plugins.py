@@ -8,6 +8,7 @@ from ravemj.errors import UnsupportedError
 from ravemj.rave.arm_goals import INVERSE_KINEMATICS
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
+from ravemj.rave.interface import checked_environment, checked_kind
 from ravemj.rave.planning import PLANNING, Planner
 from ravemj.rave.sensors import SENSING, Sensor
 from ravemj.viewers import VIEWERS, Viewer
@@ -168,7 +169,8 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
 
 def _refuse(env: Environment, kind: InterfaceType, name: str) -> None:
     """Return None with a warning, or say what is missing."""
-    del env
+    checked_environment(env, f"RaveCreate, {kind.name}")
+    checked_kind(name, str, f"RaveCreate, {kind.name}: name", "a text")
     words = name.split() or [""]
     capability = MISSING[kind].get(words[0].lower())
     if capability is not None:

@@ -37,7 +37,7 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
     RobotStateSaver = StateSaver
 
     _interface_type = InterfaceType.robot
-    _internal = ("active_choice", "affine_kinds", "take_choices")
+    _internal = ("active_choice", "affine_kinds", "powered_sensors", "take_choices")
     default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator
 
     def __init__(self, env: "Environment", state: BodyState) -> None:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, cast
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_indices
-from ravemj.errors import ErrorCode, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.controllers import Controller, IdealController
+from ravemj.rave.interface import checked_kind
 
 if TYPE_CHECKING:
     from ravemj.rave.robot import Robot
@@ -64,6 +65,8 @@ class RobotControl(BodyPart):
         dofs = None if dofindices is ... or isinstance(dofindices, str) else dofindices
         if controller is None and dofs is not None:
             raise RavemjError("SetController: controller is None, and can have no DOFs")
+        if controller and checked_kind(controller, Controller, "SetController: controller").GetEnv() is not self._env:
+            raise ArgumentError("SetController: controller was made for another environment")
         indices = None if dofs is None else checked_indices(dofs, self.GetDOF())
         with self._simulation.lock:
             if isinstance(self._controller, Controller):

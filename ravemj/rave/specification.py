@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.rave.configuration_data import ConfigurationData, checked_order
+from ravemj.rave.interface import checked_kind
 from ravemj.trajectories import layout
 from ravemj.trajectories.bodies import body_groups
 from ravemj.trajectories.groups import DELTATIME, Group
@@ -40,7 +41,8 @@ class ConfigurationSpecification(ConfigurationData):
         elif isinstance(spec, Group):
             self._groups = layout.packed([spec])
         else:
-            self._groups = [] if spec is None else spec.GetGroups()
+            checked = spec and checked_kind(spec, ConfigurationSpecification, "spec")
+            self._groups = checked.GetGroups() if checked else []
 
     @classmethod
     def of(cls, groups: Sequence[Group]) -> Self:
@@ -132,6 +134,7 @@ class ConfigurationSpecification(ConfigurationData):
             >>> spec.AddGroup("joint_values arm 0 1", 2, "linear")
             0
         """
+        checked_kind(name, (Group, str), "AddGroup: name", "a Group or its name")
         new = name if isinstance(name, Group) else Group(name, 0, dof, interpolation)
         self._groups = layout.with_group(self._groups, new)
         return next(group.offset for group in self._groups if group.name == new.name)

@@ -13,7 +13,7 @@ from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.output import AnyPath, new_file
 from ravemj.rave.enums import InterfaceType
-from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.serialization import AS_TEXT, Stored, read, to_bytes, to_text
@@ -63,6 +63,8 @@ class Trajectory(Interface):
             >>> trajectory = ravemj.RaveCreateTrajectory(env, "")
             >>> trajectory.Init(robot.GetActiveConfigurationSpecification())
         """
+        if spec is None:  # pyright: ignore[reportUnnecessaryComparison] - users give it
+            raise ArgumentError("Init: spec is None, and should be a ConfigurationSpecification")
         self._waypoints = Waypoints(_groups(spec))
 
     def _known(self) -> Waypoints:
@@ -355,6 +357,8 @@ class Trajectory(Interface):
         return True
 
     def __repr__(self) -> str:
+        from ravemj.trajectories.serialization import AS_TEXT  # noqa: PLC0415 - rarely wanted
+
         made = f"RaveCreateTrajectory({self._env!r}, {self._xmlid!r})"
         return made if self._waypoints is None else f"{made}.deserialize({self.serialize(AS_TEXT)!r})"
 
@@ -386,5 +390,6 @@ def RaveCreateTrajectory(env: "Environment", name: str = "") -> Trajectory | Non
         >>> trajectory = RaveCreateTrajectory(env, "")
         >>> trajectory.Init(robot.GetConfigurationSpecification("linear"))
     """
+    checked_environment(env, "RaveCreateTrajectory")
     xmlid = next(iter(name.split()), KIND)
     return Trajectory(env, xmlid) if xmlid.lower() == KIND.lower() else None

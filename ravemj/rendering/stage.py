@@ -6,6 +6,7 @@ calling thread; making it current is the caller's business, which is why a windo
 
 import contextlib
 import logging
+import threading
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
@@ -34,6 +35,9 @@ _SMALLEST = 1e-3
 
 _WIDEST = 1e-6
 """Nearest depth, as a part of the farthest one: with less, MuJoCo loses the background."""
+
+_painting = threading.Lock()
+"""Held while the texture of a model has a background's colour."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -167,10 +171,11 @@ class Stage:
         channels = int(model.tex_nchannel[texture])
         start = int(model.tex_adr[texture])
         stop = start + int(model.tex_width[texture]) * int(model.tex_height[texture]) * channels
-        original = model.tex_data[start:stop].copy()
-        model.tex_data[start:stop].reshape(-1, channels)[:, :3] = background
-        mujoco.mjr_uploadTexture(model, self.context, texture)
-        model.tex_data[start:stop] = original
+        with _painting:
+            original = model.tex_data[start:stop].copy()
+            model.tex_data[start:stop].reshape(-1, channels)[:, :3] = background
+            mujoco.mjr_uploadTexture(model, self.context, texture)
+            model.tex_data[start:stop] = original
         self._background = background.tobytes()
 
 

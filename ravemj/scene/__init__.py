@@ -8,6 +8,7 @@ from ravemj.scene.body import AttachedSensor, Intrinsics, KinBody, Manipulator
 from ravemj.scene.mechanism import NO_PARAMETERS, UNLIMITED, Axis, Inertial, Joint, JointKind, Link, Mimic, Parameters
 from ravemj.scene.shapes import (
     Box,
+    CalibrationBoard,
     Capsule,
     Container,
     Cylinder,
@@ -30,6 +31,7 @@ __all__ = [
     "AttachedSensor",
     "Axis",
     "Box",
+    "CalibrationBoard",
     "Capsule",
     "Container",
     "Cylinder",

@@ -120,6 +120,7 @@ class Mimic:
         expression: The equation over ``joint0``, ``joint1``, … (active joints, then passive ones); None where joints
             follow each other in a circle, and none of them moves.
         dofs: Indices of the DOFs that it depends on, directly or through other followers.
+        static: True where none of these DOFs can move, and the limits of the joint itself leave no room.
     """
 
     position: str
@@ -127,6 +128,7 @@ class Mimic:
     acceleration: str
     expression: "Expression | None"
     dofs: tuple[int, ...]
+    static: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -162,5 +164,7 @@ class Joint:
 
     @property
     def static(self) -> bool:
-        """True for a weld: a joint whose limits leave no room."""
-        return self.mimic is None and all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
+        """True for a weld: a joint whose limits leave no room, and that follows nothing that moves."""
+        if self.mimic is not None:
+            return self.mimic.static
+        return all(axis.lower == axis.upper and not axis.circular for axis in self.axes)

@@ -69,6 +69,11 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True)
+class CalibrationBoard(Box):
+    """A box with a pattern that cameras are calibrated by; the pattern is not kept."""
+
+
+@dataclass(frozen=True, slots=True)
 class Sphere:
     """A sphere."""
 

@@ -85,6 +85,8 @@ def read(data: bytes | str) -> Stored:
     Raises:
         ArgumentError: they are no trajectory.
     """
+    if not isinstance(data, str | bytes):  # pyright: ignore[reportUnnecessaryIsInstance] - users give it
+        raise ArgumentError(f"data: is a {type(data).__name__}, and should be bytes or a text")
     if isinstance(data, str) and data.startswith(_MAGIC.decode("latin-1")):
         data = data.encode("latin-1", errors="replace")
     if isinstance(data, bytes) and data.startswith(_MAGIC):

@@ -14,7 +14,7 @@ from ravemj.viewers.viewer import Viewer
 
 __all__ = ["VIEWERS", "Viewer", "has_display", "open_viewer"]
 
-VIEWERS = ("window", "qtcoin", "qtosg", "qtogre", "offscreen")
+VIEWERS = ("window", "web", "qtcoin", "qtosg", "qtogre", "offscreen")
 """Names of viewers: ours, and those that OpenRAVE's scripts ask for."""
 
 _LOG = logging.getLogger("ravemj")
@@ -33,21 +33,38 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
     Args:
         simulation: What it shows.
         studio: What draws pictures of it.
-        name: One of ``VIEWERS``: ``offscreen``, or another for a window.
+        name: One of ``VIEWERS``: ``offscreen``, ``web`` for a page in a browser, or another for a window.
         show: False for a viewer without a window.
 
     Returns:
-        A window where there is a display; else a viewer that draws when it is asked for pictures. None, and an error in
-        the log, for an unknown name.
+        A window where there is a display; else a viewer that draws when it is asked for pictures; the log says which.
+        None, and an error in the log, for an unknown name.
     """
     if name not in VIEWERS:
         _LOG.error("there is no viewer '%s'; the viewers are: %s", name, ", ".join(VIEWERS))
         return None
-    if show and name != "offscreen" and has_display():
-        from ravemj.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
+    if show and name == "web":
+        return _open_page(simulation, studio)
+    if show and name != "offscreen":
+        if has_display():
+            from ravemj.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
 
-        try:
-            return WindowViewer(simulation, studio, name)
-        except RenderingError as error:
-            _LOG.warning("%s; pictures are drawn without a window", error)
+            try:
+                viewer = WindowViewer(simulation, studio, name)
+            except RenderingError as error:
+                _LOG.warning("%s; pictures are drawn without a window", error)
+            else:
+                _LOG.info("viewer '%s' is a window", name)
+                return viewer
+        elif name == "window":
+            _LOG.warning("no window can be opened: there is no display; pictures are drawn without a window")
+    _LOG.info("viewer '%s' has no window", name)
     return Viewer(simulation, studio, name)
+
+
+def _open_page(simulation: Simulation, studio: Studio) -> Viewer:
+    from ravemj.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
+
+    viewer = WebViewer(simulation, studio, "web")
+    _LOG.warning("the viewer is at %s", viewer.url)
+    return viewer

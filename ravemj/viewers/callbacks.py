@@ -31,13 +31,15 @@ class Callbacks:
         self._functions[key] = function
         return Handle(self._functions.pop, key, None)
 
-    def call(self, *arguments: object) -> None:
-        """Call all functions; what they raise is logged."""
+    def call(self, *arguments: object) -> list[object]:
+        """Call all functions and return what they return; what they raise is logged."""
+        answers: list[object] = []
         for function in self._functions.copy().values():
             try:
-                function(*arguments)
+                answers.append(function(*arguments))
             except Exception:
                 _LOG.exception("a viewer's callback failed")
+        return answers
 
     def __bool__(self) -> bool:
         return bool(self._functions)

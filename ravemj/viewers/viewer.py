@@ -1,26 +1,24 @@
 """What every viewer can do, and the viewer without a window."""
 
-import weakref
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_vector
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.handles import Handle
+from ravemj.interaction import Resize
 from ravemj.rendering import Camera, CameraIntrinsics, Pinhole
-from ravemj.showing import Shown
 from ravemj.simulation import Simulation
 from ravemj.studio import Format, Frame, Studio, checked_colour
 from ravemj.transforms import Floats
 from ravemj.viewers.callbacks import Callback, Callbacks
+from ravemj.viewers.selecting import Selecting
 
 _SIZE = 640, 480
 _FIGURES = "SetFiguresInCamera"
 
 
-class Viewer(Shown):
+class Viewer(Selecting):
     """A point of view on an environment; ``env.SetViewer`` makes it and ``env.GetViewer()`` returns it.
 
     This one has no window: it draws when it is asked for a picture. The camera is OpenRAVE's: a 4x4 matrix
@@ -34,29 +32,20 @@ class Viewer(Shown):
 
     Attributes:
         environment: What it was made for; OpenRAVE's scripts ask ``GetEnv``.
+        interaction: Takes events of mouse and keys; windows hand in theirs.
     """
-
-    _internal = ("environment",)
-
-    environment: "weakref.ref[Any] | None" = None
 
     def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
         self._simulation = simulation
         self._studio = studio
         self._name = name
-        self._camera = studio.file_camera() or studio.camera_from_above()
+        super().__init__(simulation, studio.file_camera() or studio.camera_from_above(), _SIZE)
         self._background = simulation.view.background
         self._title = name
         self._size = _SIZE
-        self._focal_distance = 0.0
         self._figures_in_camera = False
-        self._selection_callbacks = Callbacks()
         self._thread_callbacks = Callbacks()
         self._image_callbacks = Callbacks()
-
-    def GetEnv(self) -> Any:  # noqa: ANN401 - the API stands above viewers
-        """Return the environment that the viewer was made for."""
-        return None if self.environment is None else self.environment()
 
     def GetXMLId(self) -> str:
         """Return the name that ``SetViewer`` was given."""
@@ -95,6 +84,7 @@ class Viewer(Shown):
         if w < 1 or h < 1:
             raise ArgumentError(f"SetSize: is {w} x {h}, and should be at least 1 x 1 pixels")
         self._size = int(w), int(h)
+        self.interaction.handle(Resize(*self._size))
 
     def Move(self, x: int, y: int) -> None:
         """Move the window; nothing happens without one.
@@ -128,20 +118,6 @@ class Viewer(Shown):
 
     def EnvironmentSync(self) -> None:
         """Wait until the window shows the environment as it is now. Pictures always do."""
-
-    def RegisterItemSelectionCallback(self, callback: Callback) -> Handle:
-        """Have a function called when the user clicks on a link. It is kept, and not called yet: windows pick no links.
-
-        Args:
-            callback: The function; its arguments will be the link, a position and a direction.
-
-        Returns:
-            A handle; the function is forgotten when it is closed or dropped.
-
-        Raises:
-            ArgumentError: this cannot be called.
-        """
-        return self._selection_callbacks.add(callback)
 
     def RegisterViewerThreadCallback(self, callback: Callback) -> Handle:
         """Have a function called in the thread of the window, once for each turn of its loop.
@@ -217,9 +193,7 @@ class Viewer(Shown):
         Example:
             >>> viewer.SetCamera(saved)  # what viewer.GetCameraTransform() printed
         """
-        self._camera = Camera.from_matrix(transform)
-        if focalDistance > 0:
-            self._focal_distance = float(focalDistance)
+        self.interaction.look_from(Camera.from_matrix(transform), max(float(focalDistance), 0.0))
 
     def GetCameraTransform(self) -> Floats:
         """Return the camera's pose.
@@ -227,15 +201,15 @@ class Viewer(Shown):
         Returns:
             ``T_world_camera``, shape (4, 4): columns image right, image down, viewing direction, eye; a copy.
         """
-        return self._camera.T_world_camera.copy()
+        return self.camera.T_world_camera.copy()
 
     def GetCameraDistanceToFocus(self) -> float:
-        """Return the ``focalDistance`` of ``SetCamera`` [m]; 0 before one was set."""
-        return self._focal_distance
+        """Return how far the point is that the mouse turns the camera about [m]; 0 before one was set."""
+        return self.interaction.view.distance
 
     def GetCameraIntrinsics(self) -> CameraIntrinsics:
         """Return the camera matrix for the viewer's size: ``GetCameraIntrinsics().K``, (3, 3) [pixels]."""
-        fx, fy, cx, cy = self._camera.pinhole(*self._size)
+        fx, fy, cx, cy = self.camera.pinhole(*self._size)
         return CameraIntrinsics(np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]))
 
     def GetCameraImage(self, width: int, height: int, transform: ArrayLike, K: ArrayLike) -> Frame:
@@ -281,7 +255,7 @@ class Viewer(Shown):
     @property
     def camera(self) -> Camera:
         """The camera: pose and vertical field of view."""
-        return self._camera
+        return self.interaction.view.camera
 
     @property
     def background(self) -> tuple[float, float, float]:
@@ -289,7 +263,7 @@ class Viewer(Shown):
         return self._background
 
     def render(self, width: int | None = None, height: int | None = None) -> Frame:
-        """Draw what the viewer sees.
+        """Draw what the viewer sees, the cube or cylinder of what is selected included.
 
         Args:
             width: Columns [pixels]; None: as ``SetSize`` says, at first 640.
@@ -302,7 +276,8 @@ class Viewer(Shown):
             RenderingError: nothing can draw here.
         """
         form = Format(width or self._size[0], height or self._size[1])
-        picture = self._studio.picture(self._camera, self._background, form)
+        gizmos = self.interaction.overlay().shapes
+        picture = self._studio.picture(self.camera, self._background, form, gizmos=gizmos)
         self._image_callbacks.call(picture)
         return picture
 

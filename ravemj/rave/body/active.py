@@ -66,6 +66,8 @@ class ActiveDofs(Placement, Limits, Motion, AffineSettings):
         if rotationaxis is not None:
             x, y, z = checked_vector(rotationaxis, 3, "SetActiveDOFs: rotationaxis").tolist()
             axis = (x, y, z)
+            if affine & DOFAffine.RotationAxis and not any(axis):
+                raise ArgumentError("SetActiveDOFs: rotationaxis is zero, and should point somewhere")
         self.active_choice = ActiveChoice(tuple(dofs), DOFAffine(int(affine)), axis)
 
     def GetActiveDOF(self) -> int:

@@ -27,7 +27,7 @@ class BodyCollision(BodyPart):
     """Collision of the body with itself, what takes part in it, and how much room the body needs."""
 
     AdjacentOptions = AdjacentOptions
-    _internal = ("active_links",)
+    _internal = ("active_dofs", "moves_as_a_whole")
 
     _self_checker: "CollisionChecker | None" = None
 

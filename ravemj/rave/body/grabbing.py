@@ -14,6 +14,7 @@ from ravemj.collision.world import world_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.infos.content import Info
+from ravemj.rave.interface import checked_kind
 from ravemj.rave.link import Link
 from ravemj.simulation import BodyState
 from ravemj.simulation.body import GrabbedBody
@@ -70,6 +71,8 @@ class Grabbing(BodyPart):
         """
         with self._simulation.lock:
             self._check_holdable(body)
+            if checked_kind(grablink, Link, "Grab: grablink").GetParent() != self:
+                raise ArgumentError(f"Grab: grablink is {grablink!r}, and should be a link of '{self.GetName()}'")
             held = body.simulation_state
             link = grablink.GetIndex()
             touched = touching_links(world_of(self._simulation), self._state, held)
@@ -79,7 +82,7 @@ class Grabbing(BodyPart):
             return True
 
     def _check_holdable(self, body: "KinBody") -> None:
-        held = body.simulation_state
+        held = checked_kind(body, BodyPart, "Grab: body", "a KinBody").simulation_state
         for state in (self._state, held):
             if not self._simulation.holds(state):
                 message = f"Grab: '{state.scene.name}' is not in this environment; add it first"
@@ -103,8 +106,9 @@ class Grabbing(BodyPart):
 
     def Release(self, body: "KinBody") -> None:
         """Let go of a body; it stays where it is. Nothing happens if it is not held."""
+        held = checked_kind(body, BodyPart, "Release: body", "a KinBody").simulation_state
         with self._simulation.lock:
-            self._state.release(body.simulation_state)
+            self._state.release(held)
 
     def ReleaseAllGrabbed(self) -> None:
         """Let go of all held bodies."""
@@ -126,7 +130,8 @@ class Grabbing(BodyPart):
 
     def IsGrabbing(self, body: "KinBody") -> Link | None:
         """Return the link that holds a body, or None."""
-        grab = next((one for one in self._state.grabs if one.body is body.simulation_state), None)
+        held = checked_kind(body, BodyPart, "IsGrabbing: body", "a KinBody").simulation_state
+        grab = next((one for one in self._state.grabs if one.body is held), None)
         return None if grab is None else Link(self._env.wrap(self._state), self._state, grab.link)
 
     def GetGrabbedInfo(self, grabbedname: str | None = None) -> "list[GrabbedInfo] | GrabbedInfo | None":
@@ -156,7 +161,8 @@ class Grabbing(BodyPart):
             openrave_exception: a body or link is not there. Nothing has changed then.
         """
         with self._simulation.lock:
-            self._state.grabs = [self._grab_of(info) for info in grabbedinfos]
+            infos = [checked_kind(info, GrabbedInfo, "ResetGrabbed: grabbedinfos") for info in grabbedinfos]
+            self._state.grabs = [self._grab_of(info) for info in infos]
             self._state.moved()
 
     def _grab_of(self, info: GrabbedInfo) -> GrabbedBody:
@@ -173,7 +179,7 @@ class Grabbing(BodyPart):
 
     def IsAttached(self, body: "KinBody") -> bool:
         """Return whether a body is among ``GetAttached()``."""
-        return body.simulation_state in _attached(self._state)
+        return checked_kind(body, BodyPart, "IsAttached: body", "a KinBody").simulation_state in _attached(self._state)
 
 
 def _attached(start: BodyState) -> list[BodyState]:

@@ -185,6 +185,6 @@ class Limits(BodyPart):
         return np.where(circular, wrapped_angle(difference), difference)
 
 
-def wrapped_angle(angle: Floats) -> Floats:
+def wrapped_angle(angle: ArrayLike) -> Floats:
     """Return angles with full turns added so that they lie in (-pi, pi]."""
-    return np.pi - (np.pi - angle) % (2 * np.pi)
+    return np.pi - (np.pi - np.asarray(angle, dtype=np.float64)) % (2 * np.pi)

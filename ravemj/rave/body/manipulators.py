@@ -7,6 +7,7 @@ from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.manipulators import freeze_manipulator
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.infos import ManipulatorInfo
+from ravemj.rave.interface import checked_kind
 from ravemj.rave.manipulator import Manipulator
 
 if TYPE_CHECKING:
@@ -72,6 +73,7 @@ class Manipulators(BodyPart):
         """
         body = self._state.scene
         diagnostics = Diagnostics()
+        checked_kind(manipinfo, ManipulatorInfo, "AddManipulator: manipinfo")
         made = freeze_manipulator(manipinfo.manipulator(), body, diagnostics)
         arms, names = list(body.manipulators), [arm.name for arm in body.manipulators]
         index = names.index(made.name) if made.name in names else len(names)
@@ -121,7 +123,8 @@ class Manipulators(BodyPart):
         name = manip.GetName() if isinstance(manip, Manipulator) else manip
         if isinstance(name, int):
             name = names[name] if 0 <= name < len(names) else None if name == -1 else f"number {name}"
-        if name and name not in names:
+        foreign = isinstance(manip, Manipulator) and manip.GetRobot() != self
+        if foreign or (name and name not in names):
             known = ", ".join(names) or "none"
             raise ArgumentError(f"SetActiveManipulator: '{self.GetName()}' has no manipulator {name}; it has {known}")
         self._active_manipulator = name or ""

@@ -31,7 +31,7 @@ class Mechanism(BodyPart):
             ['Base', 'Arm0', 'Arm1']
         """
         links = [Link(self._body, self._state, index) for index in range(len(self._state.scene.links))]
-        return links if indices is None else [links[index] for index in indices]
+        return [links[index] for index in checked_indices(... if indices is None else indices, len(links), "indices")]
 
     def GetLink(self, name: str) -> Link | None:
         """Return the link of that name, or None.
@@ -50,7 +50,7 @@ class Mechanism(BodyPart):
             indices: Which joints; None: all.
         """
         joints = [Joint(self._body, self._state, index) for index in range(len(self._state.scene.joints))]
-        return joints if indices is None else [joints[index] for index in indices]
+        return [joints[index] for index in checked_indices(... if indices is None else indices, len(joints), "indices")]
 
     def GetPassiveJoints(self) -> list[Joint]:
         """Return the joints that have no DOF."""

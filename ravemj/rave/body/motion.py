@@ -10,6 +10,7 @@ from ravemj.arrays import checked_vector
 from ravemj.errors import ArgumentError
 from ravemj.rave.body.many import Many
 from ravemj.rave.body.velocities import Velocities
+from ravemj.rave.interface import checked_kind
 from ravemj.transforms import Floats
 
 
@@ -139,6 +140,7 @@ class Motion(Velocities, Many):
 
     def _checked_link(self, link: int) -> int:
         count = len(self._state.scene.links)
+        checked_kind(link, (int, np.integer), "linkindex", "a number")
         if not 0 <= link < count:
             raise ArgumentError(f"linkindex is {link}, and should be from 0 to {count - 1}")
         return link
@@ -227,6 +229,7 @@ class Motion(Velocities, Many):
         return np.zeros(dof) if accelerations is None else checked_vector(accelerations, dof, name)
 
     def _checked_pushes(self, pushes: "Mapping[int, ArrayLike] | None", name: str) -> dict[int, Floats]:
+        checked_kind(pushes or {}, Mapping, name, "a dictionary")
         return {self._checked_link(link): checked_vector(push, 6, name) for link, push in (pushes or {}).items()}
 
 

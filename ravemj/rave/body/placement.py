@@ -6,11 +6,11 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers, checked_transform
+from ravemj.arrays import checked_transform, checked_vector
 from ravemj.errors import RavemjError
 from ravemj.rave.body.values import JointValues
 from ravemj.rave.enums import CheckLimitsAction
-from ravemj.transforms import Floats, wxyz_from_rows
+from ravemj.transforms import Floats, pose_of
 
 
 class Placement(JointValues):
@@ -31,7 +31,7 @@ class Placement(JointValues):
 
     def GetTransformPose(self) -> Floats:
         """Return the body's pose as [w, x, y, z, tx, ty, tz]: unit quaternion and position [m], shape (7,)."""
-        return pose_from_matrix(self.GetTransform())
+        return pose_of(self.GetTransform()).numbers()
 
     def SetTransform(self, transform: ArrayLike) -> None:
         """Move the whole body rigidly; joint values stay as they are.
@@ -108,7 +108,7 @@ class Placement(JointValues):
         checked = np.array([checked_transform(one, "SetLinkTransformations: transforms") for one in transforms])
         last = np.zeros(self.GetDOF())
         if doflastsetvalues is not None and np.size(doflastsetvalues):
-            last = checked_numbers(doflastsetvalues, "doflastsetvalues")
+            last = checked_vector(doflastsetvalues, self.GetDOF(), "SetLinkTransformations: doflastsetvalues")
         with self._simulation.lock:
             self._state.place_links(checked.reshape(-1, 4, 4), last)
 
@@ -124,8 +124,3 @@ class Placement(JointValues):
     def GetUpdateStamp(self) -> int:
         """Return a number that grows with every change of pose."""
         return self._state.stamp
-
-
-def pose_from_matrix(transform: Floats) -> Floats:
-    """Return [w, x, y, z, tx, ty, tz] of a 4x4 matrix, shape (7,)."""
-    return np.array([*wxyz_from_rows(transform[:3, :3].tolist()), *transform[:3, 3]])

@@ -5,8 +5,11 @@ from dataclasses import replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Self, cast
 
+from ravemj.errors import ArgumentError
+from ravemj.rave.body.base import BodyPart
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import SaveParameters
+from ravemj.rave.interface import checked_kind
 from ravemj.showing import Shown
 from ravemj.simulation import BodyState
 from ravemj.simulation.body import GrabbedBody
@@ -100,6 +103,7 @@ class StateSaver(Shown):
     """Keeps a state of a body; ``body.CreateKinBodyStateSaver()`` and ``robot.CreateRobotStateSaver()`` make it."""
 
     def __init__(self, body: "KinBody", options: int | None = None) -> None:
+        checked_kind(body, BodyPart, "StateSaver: body", "a KinBody")
         self._body = body
         wanted = body.default_saved if options is None else SaveParameters(options)
         with body.GetEnv().simulation.lock:
@@ -115,7 +119,10 @@ class StateSaver(Shown):
         Args:
             body: Another body of the same structure that should get the state; None: the body itself.
         """
-        target = body or self._body
+        target = self._body if body is None else body
+        checked_kind(target, BodyPart, "Restore: body", "a KinBody")
+        if _structure(target) != _structure(self._body):
+            raise ArgumentError(f"Restore: body is {target!r}, and should have the structure of {self._body!r}")
         with target.GetEnv().simulation.lock:
             for restore in self._restorers:
                 restore(target)
@@ -146,6 +153,10 @@ def _hold(state: BodyState, grabs: Sequence[GrabbedBody]) -> None:
         for grab, body in zip(grabs, bodies, strict=True)
         if body is not None and world.holds(state) and world.holds(body) and not body.carries(state)
     ]
+
+
+def _structure(body: "KinBody") -> tuple[int, int]:
+    return len(body.GetLinks()), body.GetDOF()
 
 
 def _set_axes(body: "KinBody", kept: list[dict[str, float]]) -> None:

@@ -1,5 +1,6 @@
 """Torques at the joints of a body."""
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_numbers
@@ -27,8 +28,8 @@ class Torques(BodyPart):
             >>> env.StepSimulation(0.01)
         """
         checked, dof = checked_numbers(torques, "SetDOFTorques: torques"), self.GetDOF()
-        if checked.shape != (dof,):
-            message = f"SetDOFTorques: torques has shape {checked.shape}, and should have shape ({dof},)"
+        if checked.shape != (dof,) or not np.isfinite(checked).all():
+            message = f"SetDOFTorques: torques has shape {checked.shape}, and should be finite, of shape ({dof},)"
             raise ArgumentError(message, ErrorCode.Assert)
         with self._simulation.lock:
             loads = self._env.GetPhysicsEngine().loads(self._state)

@@ -6,6 +6,7 @@ from ravemj.rave.controllers.base import Controller
 from ravemj.rave.controllers.ideal import IdealController
 from ravemj.rave.controllers.multi import MultiController
 from ravemj.rave.controllers.velocity import VelocityController
+from ravemj.rave.interface import checked_environment
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -43,6 +44,7 @@ def RaveCreateController(env: "Environment", name: str) -> Controller | None:
         >>> robot.SetController(controller, [0, 1], 0)
         True
     """
+    checked_environment(env, "RaveCreateController")
     word = name.split(maxsplit=1)[0] if name.strip() else ""
     kind = _KINDS.get(word.lower())
     return None if kind is None else kind(env, word)
@@ -58,5 +60,6 @@ def RaveCreateMultiController(env: "Environment", name: str = "") -> MultiContro
     Returns:
         The controller, or None where the name is not known.
     """
+    checked_environment(env, "RaveCreateMultiController")
     word = name.strip() or "GenericMultiController"
     return MultiController(env, word) if _KINDS.get(word.lower()) is MultiController else None

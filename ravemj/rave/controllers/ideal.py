@@ -7,6 +7,7 @@ import numpy as np
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.rave.controllers.base import Controller
 from ravemj.rave.enums import CheckLimitsAction
+from ravemj.rave.interface import checked_kind
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.groups import joint_indices
 from ravemj.transforms import Floats, Ints
@@ -84,7 +85,7 @@ class IdealController(Controller):
         """
         if traj is None:
             raise RavemjError("SetPath: traj is None; Reset() stops a path")
-        if not traj.GetNumWaypoints():
+        if not checked_kind(traj, Trajectory, "SetPath: traj").GetNumWaypoints():
             raise ArgumentError("SetPath: traj has no points")
         with self._robot.simulation_state.simulation.lock:
             path = self._prepared(traj)

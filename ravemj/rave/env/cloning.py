@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from ravemj.rave.body.base import both_locks
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.contents import Contents
+from ravemj.rave.interface import checked_environment
 from ravemj.rave.robot import Robot
 from ravemj.simulation import BodyState
 from ravemj.simulation.body import GrabbedBody
@@ -38,13 +39,16 @@ class Cloning(Contents):
         """Replace the bodies of this environment by copies of those of another.
 
         Args:
-            reference: The environment to copy.
+            reference: The environment to copy; nothing happens where it is this one.
             options: As in ``CloneSelf``.
             name: OpenRAVE's; ignored.
         """
         del options, name
-        self._check_alive()
+        for env in (self, checked_environment(reference, "Clone: reference")):
+            env._check_alive()
         source = reference.simulation
+        if source is self._simulation:
+            return
         with both_locks(source, self._simulation):
             self._simulation.clear()
             self._simulation.view = source.view

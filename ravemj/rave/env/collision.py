@@ -10,6 +10,7 @@ from ravemj.collision.world import world_of
 from ravemj.errors import ArgumentError
 from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
 from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.report import CollisionReport
 from ravemj.showing import Shown
@@ -60,7 +61,14 @@ class Collision(EnvironmentPart):
         Returns:
             True.
         """
-        self._checker = collisionchecker or NoCollisionChecker(self._environment)
+        self._check_alive()
+        checker = collisionchecker or NoCollisionChecker(self._environment)
+        if (
+            checked_kind(checker, CollisionChecker, "SetCollisionChecker: collisionchecker").GetEnv()
+            is not self._environment
+        ):
+            raise ArgumentError("SetCollisionChecker: collisionchecker was made for another environment")
+        self._checker = checker
         return True
 
     def CheckCollision(self, *arguments: object, report: CollisionReport | None = None, **named: object) -> bool:
@@ -96,6 +104,7 @@ class Collision(EnvironmentPart):
             >>> report.contacts[0].pos
             array([0.  , 0.  , 0.03])
         """
+        self._check_alive()
         checker = self._checker or self.GetCollisionChecker()
         return checker.CheckCollision(*arguments, report=report, **named)
 

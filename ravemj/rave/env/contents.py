@@ -5,7 +5,7 @@ from typing import Any
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import InterfaceAddMode
 from ravemj.rave.env.base import EnvironmentPart
-from ravemj.rave.interface import Interface
+from ravemj.rave.interface import Interface, checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor
@@ -94,6 +94,7 @@ class Contents(EnvironmentPart):
         return False
 
     def _check_ours(self, body: KinBody, caller: str) -> None:
+        checked_kind(body, KinBody, f"{caller}: body")
         if body.simulation_state.simulation is not self._simulation:
             raise ArgumentError(f"{caller}: '{body.GetName()}' was made for {body.GetEnv()!r}, not for {self!r}")
 

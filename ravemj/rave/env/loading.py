@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ravemj.errors import ArgumentError, Diagnostic, send_warnings
 from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 
@@ -45,6 +46,7 @@ class Loading(EnvironmentPart):
             True
         """
         del atts
+        checked_kind(filename, (str, os.PathLike), "Load: filename", "a path")
         return self._take(_read_file(filename))
 
     LoadURI = Load
@@ -67,6 +69,7 @@ class Loading(EnvironmentPart):
             True
         """
         del atts
+        checked_kind(data, (str, bytes), "LoadData: data", "a text")
         return self._take(_read_data(data))
 
     def _take(self, reading: "Reading") -> bool:

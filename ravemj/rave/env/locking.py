@@ -3,6 +3,7 @@
 from types import TracebackType
 from typing import Self
 
+from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.env.base import EnvironmentPart
 
 
@@ -28,8 +29,15 @@ class Locking(EnvironmentPart):
         return self._simulation.lock.acquire(blocking=False)
 
     def Unlock(self) -> None:
-        """Give the lock back."""
-        self._simulation.lock.release()
+        """Give the lock back.
+
+        Raises:
+            openrave_exception: this thread does not hold it (``EnvironmentNotLocked``).
+        """
+        try:
+            self._simulation.lock.release()
+        except RuntimeError:
+            raise RavemjError("Unlock: this thread does not hold the lock", ErrorCode.EnvironmentNotLocked) from None
 
     def __enter__(self) -> Self:
         """Hold the environment's lock: no other thread reads or changes it meanwhile."""

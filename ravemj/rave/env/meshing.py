@@ -6,6 +6,7 @@ from enum import IntEnum
 
 from ravemj.errors import Source, SourceError
 from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.trimesh import TriMesh, trimesh_of
 from ravemj.scene import KinBody as Description
@@ -40,6 +41,7 @@ class Meshing(EnvironmentPart):
         Args:
             body: The body; what it holds is left out.
         """
+        checked_kind(body, KinBody, "Triangulate: body")
         with self._simulation.lock:
             return trimesh_of(_triangles(body.simulation_state))
 

@@ -5,6 +5,7 @@ import math
 from ravemj.clock import Clock
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.robot import Robot
@@ -34,6 +35,7 @@ class Running(EnvironmentPart):
             timestep: Length of the steps [s].
             realtime: Whether a second of simulation takes a second; else as fast as it can be computed.
         """
+        self._check_alive()
         self._clock.start(_checked_step(timestep, "StartSimulation", least=1e-6), realtime=realtime)
 
     def StopSimulation(self, shutdownthread: int = 1) -> None:
@@ -56,6 +58,7 @@ class Running(EnvironmentPart):
             >>> while not robot.GetController().IsDone():
             ...     env.StepSimulation(0.01)
         """
+        self._check_alive()
         self._clock.step(_checked_step(timestep, "StepSimulation"))
 
     def IsSimulationRunning(self) -> bool:
@@ -82,7 +85,9 @@ class Running(EnvironmentPart):
             >>> env.SetPhysicsEngine("mujoco")
             True
         """
+        self._check_alive()
         engine = self._new_engine(physics) if isinstance(physics, str | None) else physics
+        checked_kind(engine, PhysicsEngine, "SetPhysicsEngine: physics")
         if engine.GetEnv() is not self._environment:
             raise ArgumentError("SetPhysicsEngine: physics was made for another environment")
         with self._simulation.lock:

@@ -26,8 +26,10 @@ class Viewing(EnvironmentPart):
         moves it.
 
         Args:
-            viewername: ``'window'`` or one of OpenRAVE's names, such as ``'qtcoin'``: a window if there is a display.
-                ``'offscreen'``: never a window. ``''`` removes the viewer.
+            viewername: ``'window'``: a window; a warning says so where there is no display for it. ``'web'``: a page
+                for a browser on this machine, at ``GetViewer().url``. ``'offscreen'``: neither. One of OpenRAVE's
+                names, such as ``'qtcoin'``: a window if there is a display, else neither; the log says which.
+                ``''`` removes the viewer.
             showviewer: False: never a window.
 
         Returns:
@@ -40,6 +42,8 @@ class Viewing(EnvironmentPart):
             >>> viewer = env.GetViewer()
             >>> viewer.SetBkgndColor([0.8, 0.85, 0.9])
         """
+        if viewername:
+            self._check_alive()
         if self._viewer is not None:
             self._viewer.close()
             self._viewer = None
@@ -51,7 +55,7 @@ class Viewing(EnvironmentPart):
         return bool(viewername)
 
     def SetDefaultViewer(self, showviewer: bool = True) -> bool:
-        """Attach the viewer that the environment variable ``OPENRAVE_DEFAULT_VIEWER`` names, else a window.
+        """Attach the viewer that the variable ``OPENRAVE_DEFAULT_VIEWER`` names, else the best that works here.
 
         Args:
             showviewer: False: never a window.
@@ -59,7 +63,7 @@ class Viewing(EnvironmentPart):
         Returns:
             What ``SetViewer`` returns.
         """
-        return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "window", showviewer)
+        return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "qtcoin", showviewer)
 
     def GetViewer(self, name: str | None = None) -> Viewer | None:
         """Return the viewer, or None where there is none.
@@ -111,6 +115,7 @@ class Viewing(EnvironmentPart):
             >>> import imageio.v3
             >>> imageio.v3.imwrite("pendulum.png", env.render(640, 480))
         """
+        self._check_alive()
         view = self.default_camera(width / height) if camera is None else Camera.from_matrix(camera)
         colour = self.background if background is None else checked_colour(background)
         return self._studio.picture(view, colour, Format(width, height, shadows=True))

@@ -24,6 +24,7 @@ from ravemj.transforms import Floats
 
 TYPES: dict[type[scene.Shape], GeometryType] = {
     scene.Box: GeometryType.Box,
+    scene.CalibrationBoard: GeometryType.CalibrationBoard,
     scene.Sphere: GeometryType.Sphere,
     scene.Cylinder: GeometryType.Cylinder,
     scene.Capsule: GeometryType.Capsule,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from ravemj.meshes.collada.document import Element, child, children, local_name, words
+from ravemj.meshes.collada.document import Element, children, local_name, words
 
 _BETWEEN = {
     "plus": "+", "minus": "-", "times": "*", "divide": "/", "eq": "=", "neq": "!=", "lt": "<", "leq": "<=",
@@ -87,15 +87,3 @@ def _apply(operator: Element, operands: list[Element], name_of: Callable[[str], 
     if kind in _CALLS:
         return f"{_CALLS[kind]}({','.join(texts)})"
     raise FormulaError(f"<{kind}> is not understood")
-
-
-def content_of(formula: Element, kind: str) -> list[Element]:
-    """Return the equations of a type in OpenRAVE's technique of a ``<formula>``."""
-    techniques = (item for item in children(formula, "technique") if item.get("profile") == "OpenRAVE")
-    return [item for technique in techniques for item in children(technique, "equation") if item.get("type") == kind]
-
-
-def position_math(formula: Element) -> Element | None:
-    """Return the ``<math>`` for the position: OpenRAVE's own, else the common one."""
-    own = content_of(formula, "position")
-    return child(own[0], "math") if own else child(formula, "technique_common", "math")
