@@ -353,3 +353,56 @@ TestWorld = World.TestCase
 @pytest.mark.stress
 class TestWorldForLonger(World.TestCase):
     settings = settings(max_examples=1000, stateful_step_count=60, deadline=None)
+
+
+def test_a_hundred_added_bodies_are_compiled_once():
+    """What asks for poses and bounds between needs no model; the first question for joint values makes one."""
+    env = ravemj.Environment()
+    env.LoadData(ARM.replace("NAME", "arm"))
+    arm = env.GetRobot("arm")
+    arm.SetDOFValues([0.3, -0.4])
+    arm.SetDOFVelocities([0.1, 0.2])
+    before, version, poses = arm.GetLinkVelocities(), env.simulation.version, arm.link_transforms()
+    for number in range(100):
+        body = ravemj.RaveCreateKinBody(env, "")
+        body.InitFromBoxes([[0, 0, 0, 0.1, 0.1, 0.1]])
+        body.SetName(f"box{number}")
+        env.Add(body)
+        body.SetTransform(transform(number, 1, 0, 0.1))
+        assert body.GetTransform()[0, 3] == number
+        body.Enable(False)
+        np.testing.assert_allclose(body.ComputeAABB().pos(), [number, 1, 0], atol=1e-9)
+    assert env.simulation.version == version
+    np.testing.assert_array_equal(arm.GetDOFValues(), [0.3, -0.4])
+    assert env.simulation.version == version + 1
+    np.testing.assert_array_equal(arm.GetLinkVelocities(), before)
+    np.testing.assert_array_equal(arm.link_transforms(), poses)
+    assert not any(body.IsEnabled() for body in env.GetBodies()[1:])
+    env.Destroy()
+
+
+def test_a_saver_in_a_copy_holds_the_copy():
+    env = ravemj.Environment()
+    env.LoadData(f"<Environment>{ARM.replace('NAME', 'arm')}{BOX.replace('NAME', 'box')}</Environment>")
+    arm, box = env.GetRobot("arm"), env.GetKinBody("box")
+    arm.Grab(box, arm.GetLinks()[2])
+    saver = arm.CreateRobotStateSaver(arm.SaveParameters.GrabbedBodies)
+    copy = env.CloneSelf(1)
+    copy.GetRobot("arm").ReleaseAllGrabbed()
+    saver.Restore(copy.GetRobot("arm"))
+    assert copy.GetRobot("arm").GetGrabbed() == [copy.GetKinBody("box")]
+    for one in (copy, env):
+        one.Destroy()
+
+
+def test_bodies_cannot_hold_one_another_by_infos_either():
+    env = ravemj.Environment()
+    env.LoadData(f"<Environment>{ARM.replace('NAME', 'arm')}{BOX.replace('NAME', 'box')}</Environment>")
+    arm, box = env.GetRobot("arm"), env.GetKinBody("box")
+    box.Grab(arm, box.GetLinks()[0])
+    info = ravemj.GrabbedInfo()
+    info._grabbedname, info._robotlinkname = "box", "l0"
+    with pytest.raises(ravemj.openrave_exception, match="by which it is held"):
+        arm.ResetGrabbed([info])
+    assert arm.GetGrabbed() == []
+    env.Destroy()

@@ -135,6 +135,34 @@ input()
     assert finish(terminal)[1] == 0
 
 
+def test_a_window_closes_with_its_forgotten_environment(display, folder):
+    (folder / "forgets.py").write_text("""
+import gc, openravepy
+
+def show():
+    env = openravepy.Environment()
+    env.Load('env.xml')
+    env.SetViewer('qtcoin')
+    env.GetRobots()[0].GetController().SetDesired([0.1, 0.1])
+    input()
+
+show()
+while input() == 'gc':
+    gc.collect()
+""")
+    terminal = on_terminal(folder, "-m", "ravemj", "run", "forgets.py", DISPLAY=display.name)
+    await_that(lambda: len(display.windows()) == 1, "there is no window")
+    terminal.sendline("")
+
+    def is_gone():
+        terminal.sendline("gc")
+        return not display.windows()
+
+    await_that(is_gone, "the window stays")
+    terminal.sendline("end")
+    assert finish(terminal)[1] == 0
+
+
 def test_a_script_that_fails_or_exits_shows_its_own_end(display, folder):
     start = "import openravepy, sys\nenv = openravepy.Environment()\nenv.Load('env.xml')\nenv.SetViewer('qtcoin')\n"
     for end, code, message in (("sys.exit(3)", 3, ""), ("raise ValueError('mine')", 1, "ValueError: mine\n")):

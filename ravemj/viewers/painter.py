@@ -24,18 +24,25 @@ def appearance(simulation: Simulation) -> object:
 class Painter:
     """Draws into a window, whenever something has changed."""
 
-    def __init__(self, simulation: Simulation, interaction: Interaction) -> None:
-        self._simulation = simulation
-        self._interaction = interaction
+    def __init__(self) -> None:
         self._stage: Stage | None = None
         self._stage_key: object = None
         self._seen: object = None
         self._overlay: Overlay | None = None
 
-    def look(self, background: ArrayLike, pixels: tuple[int, int], ratio: float) -> bool:
+    def look(
+        self,
+        simulation: Simulation,
+        interaction: Interaction,
+        background: ArrayLike,
+        pixels: tuple[int, int],
+        ratio: float,
+    ) -> bool:
         """Take over how everything is now; the caller has locked the simulation.
 
         Args:
+            simulation: What is drawn; it is not kept.
+            interaction: The view, and what is drawn over it.
             background: Colour where nothing is, in 0..1.
             pixels: Width and height of the window.
             ratio: How many pixels a point has.
@@ -43,20 +50,18 @@ class Painter:
         Returns:
             Whether anything looks different from last time.
         """
-        simulation = self._simulation
         compiled = simulation.compile()
-        seen = (appearance(simulation), self._interaction.version, background, pixels, ratio)
+        seen = (appearance(simulation), interaction.version, background, pixels, ratio)
         if seen == self._seen:
             return False
         self._seen = seen
-        self._overlay = self._interaction.overlay()
-        stage = self._prepared_stage(compiled.model, ratio)
+        self._overlay = interaction.overlay()
+        stage = self._prepared_stage(compiled.model, (simulation.version, ratio), ratio)
         shapes = merge([simulation.drawings.shapes(), self._overlay.shapes])
-        stage.fill(compiled.data, self._interaction.view.camera, *pixels, shapes)
+        stage.fill(compiled.data, interaction.view.camera, *pixels, shapes)
         return True
 
-    def _prepared_stage(self, model: mujoco.MjModel, ratio: float) -> Stage:
-        key = self._simulation.version, ratio
+    def _prepared_stage(self, model: mujoco.MjModel, key: object, ratio: float) -> Stage:
         if self._stage is None or self._stage_key != key:
             self.close()
             self._stage, self._stage_key = Stage(model, Quality(1, 1)), key

@@ -1,8 +1,8 @@
 """A viewer with a window, drawn by a thread of its own while the script goes on."""
 
-import atexit
 import logging
 import threading
+import weakref
 from collections.abc import Callable
 from queue import SimpleQueue
 
@@ -24,7 +24,9 @@ _Request = Callable[[GlfwWindow], object]
 
 
 class WindowViewer(Viewer):
-    """A viewer in a window; it shows every change at once and stays until it is closed."""
+    """A viewer in a window; it shows every change at once and stays until it is closed or forgotten."""
+
+    _internal = ("open_window", "turn")
 
     def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
         super().__init__(simulation, studio, name)
@@ -35,13 +37,13 @@ class WindowViewer(Viewer):
         self._closing = threading.Event()
         self._opened = threading.Event()
         self._failure = ""
-        self._thread = threading.Thread(target=self._run, name="ravemj window", daemon=True)
+        self._thread = threading.Thread(target=_run, args=(weakref.ref(self),), name="ravemj window", daemon=True)
         self._thread.start()
         self._opened.wait()
         if self._failure:
             self._thread.join()
             raise RenderingError(self._failure)
-        atexit.register(self.close)
+        self._end = weakref.finalize(self, _end, self._closing, self._thread)
 
     @property
     def is_open(self) -> bool:
@@ -117,30 +119,23 @@ class WindowViewer(Viewer):
 
     def close(self) -> None:
         """Close the window."""
-        self._closing.set()
-        if threading.current_thread() is not self._thread:
-            self._thread.join()
-        atexit.unregister(self.close)
+        self._end()
         super().close()
 
-    def _run(self) -> None:
+    def open_window(self) -> GlfwWindow | None:
+        """Open the window, in the thread that it belongs to; None where that fails."""
         try:
-            window = GlfwWindow("ravemj", *self._size)
+            return GlfwWindow("ravemj", *self._size)
         except RenderingError as error:
             self._failure = error.message
-            self._opened.set()
-            return
-        painter = Painter(self._simulation, self.interaction)
-        self._opened.set()
-        try:
-            while not (self._closing.is_set() or window.is_closed):
-                self._turn(window, painter)
+            return None
         finally:
-            painter.close()
-            window.close()
+            self._opened.set()
 
-    def _turn(self, window: GlfwWindow, painter: Painter) -> None:
-        """Do what was asked for, draw if anything has changed, and wait for at most a frame's time."""
+    def turn(self, window: GlfwWindow, painter: Painter) -> bool:
+        """Do what was asked for, and draw if anything has changed; return False once the window should close."""
+        if self._closing.is_set() or window.is_closed:
+            return False
         for _ in range(self._requests.qsize()):
             self._requests.get()(window)
         waiting = [self._awaited.get() for _ in range(self._awaited.qsize())]
@@ -158,7 +153,7 @@ class WindowViewer(Viewer):
         else:
             for drawn in waiting:
                 self._awaited.put(drawn)
-        window.wait(_PERIOD)
+        return True
 
     def _take_in(self, window: GlfwWindow, painter: Painter) -> bool:
         """Do what people did, and return whether the window has to be drawn."""
@@ -171,7 +166,8 @@ class WindowViewer(Viewer):
             width, height = window.pixels
             if not (width and height):
                 return False
-            return painter.look(self._background, (width, height), window.pixel_ratio) or window.is_lost
+            view = self._background, (width, height), window.pixel_ratio
+            return painter.look(self._simulation, self.interaction, *view) or window.is_lost
         except RavemjError as error:
             if error.message != self._complaint:
                 _LOG.error("the window cannot show the environment: %s", error)
@@ -185,3 +181,27 @@ class WindowViewer(Viewer):
             self._image_callbacks.call(painter.read(pixels))
         painter.draw_overlay(pixels, ratio)
         window.swap()
+
+
+def _run(reference: "weakref.ref[WindowViewer]") -> None:
+    """Open a viewer's window and draw it until it is closed, or the viewer is gone, which waiting does not keep."""
+    viewer = reference()
+    window = None if viewer is None else viewer.open_window()
+    if window is None:
+        return
+    painter = Painter()
+    try:
+        while viewer is not None and viewer.turn(window, painter):
+            viewer = None
+            window.wait(_PERIOD)
+            viewer = reference()
+    finally:
+        painter.close()
+        window.close()
+
+
+def _end(closing: threading.Event, thread: threading.Thread) -> None:
+    """Close a window and wait for the end of its thread."""
+    closing.set()
+    if threading.current_thread() is not thread:
+        thread.join()

@@ -1,10 +1,10 @@
 """The viewer whose window is a page in a browser."""
 
-import atexit
 import http
 import logging
 import secrets
 import threading
+import weakref
 from pathlib import Path
 
 from numpy.typing import ArrayLike
@@ -35,20 +35,33 @@ class WebViewer(Viewer):
         url: The page.
     """
 
+    _internal = ("answer", "serve_page")
+
     def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
         super().__init__(simulation, studio, name)
         self._token = secrets.token_urlsafe(16)
         self._clients: set[ServerConnection] = set()
         self._cameras_set = 0
         self._closed = threading.Event()
+        reference = weakref.ref(self)
+
+        def serve_page(connection: ServerConnection) -> None:
+            viewer = reference()
+            if viewer is not None:
+                viewer.serve_page(connection)
+
+        def answer(connection: ServerConnection, request: Request) -> Response | None:
+            viewer = reference()
+            return _response(http.HTTPStatus.GONE, "text/plain", b"") if viewer is None else viewer.answer(request)
+
         silent = logging.getLogger("ravemj.web")
         silent.setLevel(logging.CRITICAL)  # what strangers send is no news
         try:
             self._server: Server = serve(
-                self._serve_page,
+                serve_page,
                 _HOST,
                 0,
-                process_request=self._answer,
+                process_request=answer,
                 max_size=LONGEST,
                 compression=None,
                 logger=silent,
@@ -59,7 +72,7 @@ class WebViewer(Viewer):
         self.url = f"http://{_HOST}:{self._port}/{self._token}/"
         self._thread = threading.Thread(target=self._server.serve_forever, name="ravemj web", daemon=True)
         self._thread.start()
-        atexit.register(self.close)
+        self._end = weakref.finalize(self, _end, self._closed, self._server, self._thread)
 
     @property
     def is_open(self) -> bool:
@@ -91,15 +104,11 @@ class WebViewer(Viewer):
 
     def close(self) -> None:
         """Close the viewer and its pages."""
-        self._closed.set()
-        atexit.unregister(self.close)
-        self._server.shutdown()
-        self._thread.join()
+        self._end()
         super().close()
 
-    def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
+    def answer(self, request: Request) -> Response | None:
         """Answer a request: with the page, with a refusal, or None where a page may open its connection."""
-        del connection
         hosts = {f"{_HOST}:{self._port}", f"localhost:{self._port}"}
         path = request.path.partition("?")[0]
         wanted = {f"/{self._token}/": _page, f"/{self._token}/socket": None}
@@ -115,7 +124,8 @@ class WebViewer(Viewer):
             return _response(http.HTTPStatus.SERVICE_UNAVAILABLE, "text/plain", b"There are too many pages.\n")
         return None
 
-    def _serve_page(self, connection: ServerConnection) -> None:
+    def serve_page(self, connection: ServerConnection) -> None:
+        """Exchange messages with a page until it leaves or the viewer is closed."""
         client = Client(self._simulation, self._studio, self.interaction.another_view())
         cameras_set = self._cameras_set
         self._clients.add(connection)
@@ -143,6 +153,14 @@ class WebViewer(Viewer):
             if view.camera is not before.camera:
                 self.interaction.look_from(view.camera, view.distance)
         client.show(connection, self._background)
+
+
+def _end(closed: threading.Event, server: Server, thread: threading.Thread) -> None:
+    """Close all pages and wait for the end of the thread that serves them."""
+    closed.set()
+    server.shutdown()
+    if threading.current_thread() is not thread:
+        thread.join()
 
 
 def _page() -> Response:
