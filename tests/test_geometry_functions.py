@@ -175,7 +175,7 @@ def test_lookat(target, camera, up):
     forward = target - camera
     if np.linalg.norm(forward) > 1e-3:
         np.testing.assert_allclose(T[:3, 2], forward / np.linalg.norm(forward), atol=1e-9)
-        assert T[:3, 1] @ up >= -1e-9
+        assert T[:3, 1] @ up >= -1e-4 * np.linalg.norm(up)  # an up nearly along the view says little
 
 
 @given(poses, poses)
