@@ -352,7 +352,7 @@ TestWorld = World.TestCase
 
 @pytest.mark.stress
 class TestWorldForLonger(World.TestCase):
-    settings = settings(max_examples=1000, stateful_step_count=60, deadline=None)
+    settings = settings(max_examples=500, stateful_step_count=60, deadline=None)
 
 
 def test_a_hundred_added_bodies_are_compiled_once():

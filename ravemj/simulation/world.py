@@ -171,8 +171,11 @@ class Simulation:
         Raises:
             CompileError: MuJoCo refuses the model.
         """
+        known = self._compiled
+        if known is not None:
+            return known
         with self.lock:
-            if self._compiled is not None:
+            if self._compiled is not None:  # another thread was faster
                 return self._compiled
             self.diagnostics = Diagnostics()
             scene = Scene(tuple(body.scene for body in self.bodies), self.view)
