@@ -54,7 +54,7 @@ class TestEnvironment:
         with pytest.raises(ravemj.SourceError, match="folder"):
             ravemj.load(tmp_path)
         (tmp_path / "robot.zae").touch()
-        with pytest.raises(ravemj.SourceError, match="zip|archive|empty"):
+        with pytest.raises(ravemj.SourceError, match=r"zip|archive|empty"):
             ravemj.load(tmp_path / "robot.zae")
 
     def test_what_was_read_before_a_failure_stays(self, tmp_path):
