@@ -6,7 +6,7 @@ EXCERPT = 20
 
 
 class ExpressionError(ArgumentError):
-    """An equation that cannot be read; one line that names the place. Also a ``ValueError``.
+    """An equation that cannot be read; one line that names the place.
 
     Attributes:
         position: Index of the character in the text, from 0; where the text ends too early, its length.
