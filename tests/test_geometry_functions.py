@@ -175,7 +175,13 @@ def test_lookat(target, camera, up):
     forward = target - camera
     if np.linalg.norm(forward) > 1e-3:
         np.testing.assert_allclose(T[:3, 2], forward / np.linalg.norm(forward), atol=1e-9)
-        assert T[:3, 1] @ up >= -1e-4 * np.linalg.norm(up)  # an up nearly along the view says little
+        if np.linalg.norm(np.cross(up, T[:3, 2])) > 1.01e-4:  # else another y axis is taken
+            assert T[:3, 1] @ up >= -1e-9
+
+
+def test_lookat_takes_another_axis_for_an_up_that_is_too_short():
+    T = rave.transformLookat([0, 0, 0], [0, 10, 10], [0, 0, 1e-5])
+    np.testing.assert_allclose(T[:3, 1], np.array([0, 1, -1]) / np.sqrt(2), atol=1e-12)
 
 
 @given(poses, poses)
