@@ -1,9 +1,15 @@
 """A GLFW window: what it is asked to be, and what people do in it."""
 
+import functools
+import threading
 from typing import Any
 
 from ravemj.errors import RenderingError
 from ravemj.interaction import Button, Event, Key, Leave, Move, Press, Release, Wheel
+from ravemj.viewers.x_connection import XConnection
+
+_dispatching = threading.Lock()
+"""Held while GLFW hands out events: all windows share one queue, and each has a thread of its own."""
 
 
 class GlfwWindow:
@@ -24,10 +30,12 @@ class GlfwWindow:
         self.events: list[Event] = []
         self.is_lost = True
         self._pointer = 0.0, 0.0
-        if not glfw.init():
-            raise RenderingError("no window can be opened: GLFW finds no display")
+        self._x = _x_connection(glfw)
+        if self.is_broken:
+            raise RenderingError("no window can be opened: the connection to the display broke; a new process may do")
         glfw.window_hint(glfw.SAMPLES, 4)
-        self._window: Any = glfw.create_window(width, height, title, None, None)
+        with _dispatching:
+            self._window: Any = glfw.create_window(width, height, title, None, None)
         if not self._window:
             raise RenderingError("no window can be opened: the display offers no OpenGL")
         glfw.make_context_current(self._window)
@@ -90,6 +98,8 @@ class GlfwWindow:
         del window, mods
         glfw = self._glfw
         name = "escape" if key == glfw.KEY_ESCAPE else glfw.get_key_name(key, scancode)
+        if name and not name.isascii() and key < 128:  # Greek, say: what the key is on an English keyboard
+            name = chr(key)
         if name and action != glfw.REPEAT:
             self.events.append(Key(name, action == glfw.PRESS))
 
@@ -99,6 +109,11 @@ class GlfwWindow:
             self.events.append(Leave())
 
     # --- what it is
+
+    @property
+    def is_broken(self) -> bool:
+        """Whether the display is gone; nothing should be asked of the window any more."""
+        return self._x is not None and self._x.is_broken
 
     @property
     def is_closed(self) -> bool:
@@ -151,7 +166,13 @@ class GlfwWindow:
 
     def wait(self, seconds: float) -> None:
         """Wait until people do something, but not longer than some time."""
-        self._glfw.wait_events_timeout(seconds)
+        if self._x is None:
+            self._glfw.wait_events_timeout(seconds)
+            return
+        self._x.wait(seconds)
+        if not self.is_broken:
+            with _dispatching:
+                self._glfw.poll_events()
 
     def swap(self) -> None:
         """Show what was drawn."""
@@ -159,9 +180,27 @@ class GlfwWindow:
         self._glfw.swap_buffers(self._window)
 
     def close(self) -> None:
-        """Close the window."""
-        self._glfw.destroy_window(self._window)
-        self._glfw.poll_events()
+        """Close the window, or leave it where the display is gone."""
+        if self._x is not None and self._x.is_broken:
+            self._x.abandon()
+            return
+        with _dispatching:
+            self._glfw.destroy_window(self._window)
+            self._glfw.poll_events()
+
+
+@functools.cache
+def _x_connection(glfw: Any) -> XConnection | None:  # noqa: ANN401 - glfw has no types
+    """Return GLFW's connection to its X server, which all windows share; None on other systems.
+
+    Raises:
+        RenderingError: there is no display.
+    """
+    if not glfw.init():
+        raise RenderingError("no window can be opened: GLFW finds no display")
+    if not hasattr(glfw, "get_platform") or glfw.get_platform() != glfw.PLATFORM_X11:
+        return None
+    return XConnection(glfw.get_x11_display())
 
 
 def _import_glfw() -> Any:  # noqa: ANN401 - glfw has no types

@@ -61,6 +61,8 @@ class Contents(EnvironmentPart):
             if int(addMode) & InterfaceAddMode.AllowRenaming:
                 self._simulation.rename(state, self._simulation.free_name(state.scene.name))
             self._simulation.insert(state)
+        if self._viewer is not None:
+            self._viewer.take_over()
 
     AddRobot = AddKinBody
 
