@@ -17,6 +17,8 @@ class GlfwWindow:
 
     Attributes:
         events: What people did since the list was last emptied.
+        size: Width and height, in units of the screen.
+        pixels: Width and height of what is drawn [pixels]; 0 while it is minimised.
         is_lost: Whether what was drawn in it is lost.
     """
 
@@ -44,6 +46,10 @@ class GlfwWindow:
 
     def _listen(self) -> None:
         glfw, window = self._glfw, self._window
+        self.size: tuple[int, int] = glfw.get_window_size(window)  # asking the display each time would be slow
+        self.pixels: tuple[int, int] = glfw.get_framebuffer_size(window)
+        glfw.set_window_size_callback(window, self._on_size)
+        glfw.set_framebuffer_size_callback(window, self._on_pixels)
         glfw.set_window_refresh_callback(window, self._on_refresh)
         glfw.set_cursor_pos_callback(window, self._on_pointer)
         glfw.set_cursor_enter_callback(window, self._on_enter)
@@ -58,6 +64,14 @@ class GlfwWindow:
         }
 
     # --- what people do
+
+    def _on_size(self, window: object, width: int, height: int) -> None:
+        del window
+        self.size = max(width, 1), max(height, 1)
+
+    def _on_pixels(self, window: object, width: int, height: int) -> None:
+        del window
+        self.pixels = width, height
 
     def _on_refresh(self, window: object) -> None:
         del window
@@ -119,18 +133,6 @@ class GlfwWindow:
     def is_closed(self) -> bool:
         """Whether the user closed it."""
         return bool(self._glfw.window_should_close(self._window))
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height, in units of the screen."""
-        width, height = self._glfw.get_window_size(self._window)
-        return max(width, 1), max(height, 1)
-
-    @property
-    def pixels(self) -> tuple[int, int]:
-        """Width and height of what is drawn [pixels]; 0 while it is minimised."""
-        width, height = self._glfw.get_framebuffer_size(self._window)
-        return width, height
 
     @property
     def pixel_ratio(self) -> float:

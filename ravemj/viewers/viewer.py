@@ -47,15 +47,14 @@ class Viewer(Selecting):
         self._simulation = simulation
         self._studio = studio
         self._name = name
-        first = studio.file_camera() or studio.camera_from_above()
-        super().__init__(simulation, first, _SIZE)
-        self._camera_of_nothing = None if simulation.bodies else first
+        super().__init__(simulation, studio.file_camera() or studio.camera_from_above(), _SIZE)
         self._background = simulation.view.background
         self._title = name
         self._size = _SIZE
         self._figures_in_camera = False
         self._thread_callbacks = Callbacks()
         self._image_callbacks = Callbacks()
+        self._camera_of_nothing = None if simulation.bodies else self.camera
 
     def GetXMLId(self) -> str:
         """Return the name that ``SetViewer`` was given."""

@@ -2,6 +2,7 @@
 
 import logging
 import threading
+import time
 import weakref
 from collections.abc import Callable
 from queue import SimpleQueue
@@ -20,6 +21,9 @@ from ravemj.viewers.viewer import Viewer
 _LOG = logging.getLogger("ravemj")
 _WIDTH, _HEIGHT = 960, 720
 _PERIOD = 1 / 60
+_SLOW = 1.5 * _PERIOD
+"""From this long on drawing takes the processor and not only the wait for the screen; then the script has its turn."""
+
 _LONGEST_SYNC = 1.0
 _FARTHEST = 32767
 """Largest coordinate on an X screen."""
@@ -204,9 +208,12 @@ def _run(reference: "weakref.ref[WindowViewer]") -> None:
         return
     painter = Painter()
     try:
+        begin = time.monotonic()
         while viewer is not None and viewer.turn(window, painter):
             viewer = None
-            window.wait(_PERIOD)
+            taken = time.monotonic() - begin
+            window.wait(max(_PERIOD - taken, 0.0) if taken < _SLOW else _PERIOD)
+            begin = time.monotonic()
             viewer = reference()
     except Exception as error:  # of OpenGL, say; the script goes on without the window
         _LOG.error("the window closes: %s", error, exc_info=_LOG.isEnabledFor(logging.DEBUG))
