@@ -255,3 +255,40 @@ class TestEndings:
         assert viewer.GetSelectedJoint() is None
         viewer.interaction.handle(Press(x, y))
         assert viewer.render(64, 48).std() == 0
+
+
+class TestSeveral:
+    def test_each_has_a_camera_and_all_show_the_same_world(self, env, robot, viewer):
+        other = ravemj.RaveCreateViewer(env, "offscreen")
+        assert env.GetViewer() is viewer is not other
+        env.Add(other)  # it is there already
+        viewer.SetCamera(FROM_FRONT)
+        other.SetCamera([[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 2]])
+        pictures = [one.render(64, 48) for one in (viewer, other)]
+        assert not np.array_equal(*pictures)
+        robot.SetDOFValues([1, 1])
+        for one, before in zip((viewer, other), pictures, strict=True):
+            assert not np.array_equal(one.render(64, 48), before)
+        viewer.interaction.handle(Key("escape"))
+        ((x, y),), _ = viewer.camera.project([(0, 0, 0.02)], 640, 480)
+        for event in (Press(x, y), Release(x, y)):
+            viewer.interaction.handle(event)
+        assert viewer.GetSelectedBody() is robot
+        assert other.GetSelectedBody() is None
+
+    def test_they_come_by_name_and_go_one_by_one_or_together(self, env, opened, viewer):
+        page, second = (ravemj.RaveCreateViewer(env, name) for name in ("web", "offscreen"))
+        assert [env.GetViewer(name) for name in ("", "web", "offscreen", "qtcoin")] == [viewer, page, viewer, None]
+        assert env.Remove(viewer) is True
+        assert env.Remove(viewer) is False
+        assert env.GetViewer() is page
+        with pytest.raises(ravemj.ArgumentError):
+            env.Add(viewer)
+        env.SetViewer("qtcoin")
+        assert env.GetViewer("web") is env.GetViewer("offscreen") is None
+        assert second.render(8, 8).shape == (8, 8, 3)
+        assert ravemj.RaveCreateViewer(env, "qtcoins") is None
+        env.Destroy()
+        assert env.GetViewer() is None
+        with pytest.raises(ravemj.openrave_exception):
+            ravemj.RaveCreateViewer(env, "web")

@@ -36,6 +36,7 @@ class GlfwWindow:
         if self.is_broken:
             raise RenderingError("no window can be opened: the connection to the display broke; a new process may do")
         glfw.window_hint(glfw.SAMPLES, 4)
+        glfw.window_hint(glfw.SCALE_TO_MONITOR, True)  # more of its pixels where they are small
         with _dispatching:
             self._window: Any = glfw.create_window(width, height, title, None, None)
         if not self._window:

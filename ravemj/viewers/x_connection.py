@@ -25,8 +25,7 @@ class XConnection:
         """
         self.is_broken = False
         self._xlib, self._display = xlib, address = ctypes.CDLL("libX11.so.6"), ctypes.c_void_p(display)
-        self._poll = select.poll()
-        self._poll.register(xlib.XConnectionNumber(address), select.POLLIN)
+        self._number: int = xlib.XConnectionNumber(address)
         self._callbacks = _OnError(_ignore), _OnExit(self._on_exit)  # Xlib has nothing but their addresses
         if hasattr(xlib, "XSetIOErrorExitHandler"):
             xlib.XSetIOErrorHandler(self._callbacks[0])
@@ -38,7 +37,9 @@ class XConnection:
 
     def wait(self, seconds: float) -> None:
         """Wait until the server sends something or is gone, but not longer than some time."""
-        for _, events in self._poll.poll(1e3 * seconds):
+        poll = select.poll()  # each thread needs its own
+        poll.register(self._number, select.POLLIN)
+        for _, events in poll.poll(1e3 * seconds):
             self.is_broken |= bool(events & (select.POLLHUP | select.POLLERR | select.POLLNVAL))
 
     def abandon(self) -> None:

@@ -14,10 +14,10 @@ from ravemj.viewers import Viewer, open_viewer
 class Viewing(EnvironmentPart):
     """Shows the environment."""
 
-    _internal = ("studio",)
+    _internal = ("open_viewer", "studio")
 
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
-        """Attach a viewer, in place of the one before.
+        """Attach a viewer, in place of those before; ``RaveCreateViewer`` attaches further ones.
 
         With a display a window opens and shows every change from then on, while the script goes on. Without one, as
         on a server, the viewer draws when it is asked for pictures, so that scripts run there just the same.
@@ -44,15 +44,22 @@ class Viewing(EnvironmentPart):
         """
         if viewername:
             self._check_alive()
-        if self._viewer is not None:
-            self._viewer.close()
-            self._viewer = None
+        if self._viewers:
             self._simulation.drawings.clear()
+        while self._viewers:
+            self._viewers.pop().close()
         if viewername:
-            self._viewer = open_viewer(self._simulation, self._studio, viewername, showviewer)
-        if self._viewer is not None:
-            self._viewer.environment = weakref.ref(self)
+            self.open_viewer(viewername, showviewer)
         return bool(viewername)
+
+    def open_viewer(self, name: str, show: bool) -> Viewer | None:
+        """Attach a viewer beside those that there are; None for a name that is no viewer's."""
+        self._check_alive()
+        viewer = open_viewer(self._simulation, self._studio, name, show)
+        if viewer is not None:
+            viewer.environment = weakref.ref(self)
+            self._viewers.append(viewer)
+        return viewer
 
     def SetDefaultViewer(self, showviewer: bool = True) -> bool:
         """Attach the viewer that the variable ``OPENRAVE_DEFAULT_VIEWER`` names, else the best that works here.
@@ -66,18 +73,18 @@ class Viewing(EnvironmentPart):
         return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "qtcoin", showviewer)
 
     def GetViewer(self, name: str | None = None) -> Viewer | None:
-        """Return the viewer, or None where there is none.
+        """Return a viewer, or None where there is none.
 
         Args:
-            name: None or empty, or the name that ``SetViewer`` was given: None is returned for any other.
+            name: None or empty: the first one. Else the first of those that ``SetViewer`` or ``RaveCreateViewer`` was
+                given this name for.
 
         Example:
             >>> viewer = env.GetViewer()
             >>> if viewer is not None:
             ...     viewer.SetBkgndColor([0.8, 0.85, 0.9])
         """
-        viewer = self._viewer
-        return viewer if viewer is None or not name or name == viewer.GetXMLId() else None
+        return next((viewer for viewer in self._viewers if not name or name == viewer.GetXMLId()), None)
 
     def UpdatePublishedBodies(self, timeout: float = 0.0) -> None:
         """Do nothing: viewers show every change at once. OpenRAVE's publish the state of the bodies here.
