@@ -8,10 +8,10 @@ from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.simulation import BodyState, Simulation
 from ravemj.studio import Studio
-from ravemj.viewers import Viewer
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
+    from ravemj.viewers import Viewer
 
 
 class EnvironmentPart(UserData):
@@ -38,7 +38,7 @@ class EnvironmentPart(UserData):
             raise RavemjError(f"{self!r} is destroyed; make a new Environment", ErrorCode.InvalidState)
 
     @property
-    def _viewer(self) -> Viewer | None:
+    def _viewer(self) -> "Viewer | None":
         """The first viewer, which ``GetViewer`` returns, or None."""
         return self._viewers[0] if self._viewers else None
 

@@ -2,13 +2,16 @@
 
 import os
 import weakref
+from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rendering import Camera
 from ravemj.studio import Format, Frame, Studio, checked_colour
-from ravemj.viewers import Viewer, open_viewer
+
+if TYPE_CHECKING:
+    from ravemj.viewers import Viewer
 
 
 class Viewing(EnvironmentPart):
@@ -52,8 +55,10 @@ class Viewing(EnvironmentPart):
             self.open_viewer(viewername, showviewer)
         return bool(viewername)
 
-    def open_viewer(self, name: str, show: bool) -> Viewer | None:
+    def open_viewer(self, name: str, show: bool) -> "Viewer | None":
         """Attach a viewer beside those that there are; None for a name that is no viewer's."""
+        from ravemj.viewers import open_viewer  # noqa: PLC0415 - slow to import
+
         self._check_alive()
         viewer = open_viewer(self._simulation, self._studio, name, show)
         if viewer is not None:
@@ -72,7 +77,7 @@ class Viewing(EnvironmentPart):
         """
         return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "qtcoin", showviewer)
 
-    def GetViewer(self, name: str | None = None) -> Viewer | None:
+    def GetViewer(self, name: str | None = None) -> "Viewer | None":
         """Return a viewer, or None where there is none.
 
         Args:
