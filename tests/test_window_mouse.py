@@ -141,7 +141,7 @@ def test_s_and_left_click_centre_and_later_turns_are_about_the_point(desk):
     np.testing.assert_allclose(
         T_world_camera[:3, 2] @ (target - T_world_camera[:3, 3]), desk.core.view.distance, atol=0.02
     )
-    assert desk.colour(desk.core.view.focus) == "blue"
+    desk.await_colour(desk.core.view.focus, "blue")
     for stop in ((420, 300), (250, 330)):
         desk.drag((320, 100), stop)
         desk.await_camera()
