@@ -5,7 +5,7 @@ A new area is a module with such a function, and a line in ``AREAS``.
 
 from collections.abc import Callable
 
-from benchmarks import collision, imports, kinematics, loading, memory, reading, video
+from benchmarks import collision, imports, kinematics, loading, memory, reading, video, window
 from benchmarks.measure import Row
 
 AREAS: dict[str, Callable[[], list[Row]]] = {
@@ -16,4 +16,5 @@ AREAS: dict[str, Callable[[], list[Row]]] = {
     "imports": imports.rows,
     "video": video.rows,
     "memory": memory.rows,
+    "window": window.rows,
 }
