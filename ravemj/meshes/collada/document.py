@@ -46,10 +46,17 @@ class ColladaDocument:
             if name is not None:
                 self._by_id.setdefault((local_name(element), name), element)
         self._of_any_kind: dict[str, list[Element]] = {}
+        self._places: dict[Element, int] = {}
 
     def source(self, element: Element) -> Source:
         """Return the place of an element, for messages."""
         return Source(self.path, element.sourceline or 0)
+
+    def place(self, geometry: Element) -> int:
+        """Return which ``<geometry>`` of the file an element is, counted from 0."""
+        if not self._places:
+            self._places = {element: number for number, element in enumerate(self.root.iter("{*}geometry"))}
+        return self._places[geometry]
 
     def find(self, kind: str, url: str | None) -> Element | None:
         """Return the element of a kind that a URL such as ``#id`` names.

@@ -88,11 +88,12 @@ def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float)
 
     def read() -> tuple[MeshPart, ...]:
         corners = [group.corners * metres for group in primitive_groups(document, geometry, False, _OF_ROBOTS)]
-        check_finite(np.concatenate([np.zeros((0, 3, 3)), *corners]), document.source(geometry))
+        for item in corners:
+            check_finite(item, document.source(geometry))
         return tuple(MeshPart(weld(item)) for item in corners)
 
-    place = geometry.getroottree().getpath(geometry)
-    parts = remembered(f"{document.digest} {place} {metres!r}".encode(), "geometry", read)
+    key = f"{document.digest} {document.place(geometry)} {metres!r}"
+    parts = remembered(key.encode(), "geometry", read)
     symbols = [element.get("material", "") for element in children(_mesh(geometry), *_OF_ROBOTS)]
     return [(symbol, part.mesh) for symbol, part in zip(symbols, parts, strict=True) if len(part.mesh.triangles)]
 
