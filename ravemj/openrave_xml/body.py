@@ -231,7 +231,10 @@ ROBOT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     "attachedsensor": _Scope.read_sensor,
     "controller": _Scope.read_controller,
 }
-ROBOT_IGNORED = reasons(NO_EFFECT_HERE, "sendcommand")
+ROBOT_IGNORED = {
+    **reasons(NO_EFFECT_HERE, "sendcommand"),
+    "conveyorjoint": "a plugin of OpenRAVE's makes links of it that ride along a trajectory; MuJoCo has no such joint",
+}
 KINBODY_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     **_PLACEMENT_TAGS,
     "kinbody": _Scope.nest,
