@@ -1,12 +1,15 @@
 """COLLADA robots of several files, by all the ways to name them, and what the commands make of them."""
 
 import json
+import runpy
+import sys
 import zipfile
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
+from command_line import run
 from PIL import Image
 
 import ravemj
@@ -168,6 +171,33 @@ class TestFunctions:
         )
         messages = [finding.message for finding in read_file(tmp_path / "functions.dae").diagnostics]
         assert any("too long" in message for message in messages)
+
+
+PEAK = """
+import hashlib, sys
+from ravemj import readers
+
+def peak():
+    with open("/proc/self/status") as status:
+        return next(int(line.split()[1]) for line in status if line.startswith("VmHWM")) * 1024
+
+readers.read_file(sys.argv[1])  # imports
+before = peak()
+readers.read_file(sys.argv[2])
+print(peak() - before)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how much memory a process ever held")
+def test_memory_is_bounded_by_the_size_of_the_file(tmp_path):
+    script = runpy.run_path(str(MODELS.parent / "scripts" / "models" / "scara.py"))
+    script["outline"].__globals__["CORNERS"] = 2000
+    large = tmp_path / "large.dae"
+    script["main"](large)
+    size = large.stat().st_size
+    assert size > 2e6
+    taken = int(run(tmp_path, "-c", PEAK, MODELS / "scara.dae", large, variables={"RAVEMJ_CACHE": "off"}).stdout)
+    assert size < taken < 20 * size
 
 
 @pytest.fixture
