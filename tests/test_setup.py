@@ -23,7 +23,8 @@ WANTED = {
     "test": [*PROJECT["project"]["dependencies"], *GROUPS["build"], *GROUPS["test"], *EXTRAS["all"]],
     "check": [*PROJECT["project"]["dependencies"], *GROUPS["build"], *GROUPS["test"], *EXTRAS["all"], *GROUPS["check"]],
 }
-COMMANDS = ["scripts/play", "scripts/test", "scripts/check", "scripts/lock"]
+WANTED["docs"] = [*WANTED["run"], *GROUPS["docs"]]
+COMMANDS = ["scripts/play", "scripts/test", "scripts/check", "scripts/lock", "scripts/docs"]
 PYTHONS = ["3.11", "3.12", "3.13", "3.14"]
 
 
@@ -66,6 +67,9 @@ def test_lock_satisfies_the_project_file(name: str, python: str):
 def test_one_environment_can_hold_every_lock(python: str):
     largest = versions("check", python)
     assert versions("run", python).items() <= versions("test", python).items() <= largest.items()
+    pages = versions("docs", python)
+    assert versions("run", python).items() <= pages.items()
+    assert {name: pages[name] for name in pages.keys() & largest.keys()}.items() <= largest.items()
 
 
 def test_node_of_the_type_checker_comes_with_the_lock():
