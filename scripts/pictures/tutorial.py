@@ -1,7 +1,7 @@
 """The tutorial as a notebook, and its pictures: ``python scripts/pictures/tutorial.py docs``.
 
 Blocks of ``docs/tutorial.md`` are cells: ``python`` and ``ipython`` code, ``sh`` commands; one with a file name beside
-the language is saved as that file. ``text`` after one of them is what it prints. All other text is Markdown.
+its language is saved as that file. ``text`` after one of them is what it prints. All other text is Markdown.
 """
 
 import json
