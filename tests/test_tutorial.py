@@ -15,34 +15,28 @@ PAGE = (DOCS / "tutorial.md").read_text()
 NOTEBOOK = DOCS / "notebooks" / "tutorial.ipynb"
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory) -> tuple[Path, list[tuple[str, str]]]:
-    """The folder of a run, and what each block printed beside what the page says."""
-    folder = tmp_path_factory.mktemp("tutorial")
-    program = folder / "bin" / "ravemj"
+@pytest.fixture
+def folder(tmp_path, monkeypatch) -> Path:
+    """An empty folder; ``ravemj`` is on the path there, and there is no display."""
+    program = tmp_path / "bin" / "ravemj"
     program.parent.mkdir()
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m ravemj "$@"\n')
     program.chmod(0o755)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PYTHONPATH", str(DOCS.parent))
-        patch.setenv("PATH", str(program.parent), prepend=":")
-        patch.setenv("IPYTHONDIR", str(folder / "ipython"))
-        patch.setenv("COLUMNS", "100")
-        for name in ("DISPLAY", "WAYLAND_DISPLAY"):
-            patch.delenv(name, raising=False)
-        return folder, tutorial.outputs(tutorial.notebook(PAGE), folder)
+    monkeypatch.setenv("PYTHONPATH", str(DOCS.parent))
+    monkeypatch.setenv("PATH", str(program.parent), prepend=":")
+    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
+    monkeypatch.setenv("COLUMNS", "100")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    return tmp_path
 
 
-@pytest.mark.filterwarnings("ignore")  # of Jupyter's own
-def test_every_block_prints_what_the_page_says(run):
-    _, blocks = run
+@pytest.mark.filterwarnings("ignore")  # Jupyter's own
+def test_every_block_prints_what_the_page_says_and_draws_its_pictures(folder):
+    blocks = tutorial.outputs(tutorial.notebook(PAGE), folder)
     assert len(blocks) > 20
     for printed, said in blocks:
         assert printed == said
-
-
-def test_the_pictures_are_those_of_the_page(run):
-    folder, _ = run
     shown = re.findall(r"!\[.+\]\(pictures/(tutorial-.+)\)", PAGE)
     assert sorted(shown) == sorted(path.name for path in folder.glob("tutorial-*"))
     for name in shown:
