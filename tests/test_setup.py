@@ -18,12 +18,14 @@ LOCKS = ROOT / "scripts" / "locks"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 GROUPS = PROJECT["dependency-groups"]
 EXTRAS = PROJECT["project"]["optional-dependencies"]
+RUN = [*PROJECT["project"]["dependencies"], *GROUPS["build"]]
+TEST = [*RUN, *GROUPS["test"], *GROUPS["notebook"], *EXTRAS["all"]]
 WANTED = {
-    "run": [*PROJECT["project"]["dependencies"], *GROUPS["build"]],
-    "test": [*PROJECT["project"]["dependencies"], *GROUPS["build"], *GROUPS["test"], *EXTRAS["all"]],
-    "check": [*PROJECT["project"]["dependencies"], *GROUPS["build"], *GROUPS["test"], *EXTRAS["all"], *GROUPS["check"]],
+    "run": RUN,
+    "test": TEST,
+    "check": [*TEST, *GROUPS["check"]],
+    "docs": [*RUN, *GROUPS["notebook"], *GROUPS["docs"]],
 }
-WANTED["docs"] = [*WANTED["run"], *GROUPS["docs"]]
 COMMANDS = ["scripts/play", "scripts/test", "scripts/check", "scripts/lock", "scripts/docs"]
 PYTHONS = ["3.11", "3.12", "3.13", "3.14"]
 
