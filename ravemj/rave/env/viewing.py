@@ -2,13 +2,16 @@
 
 import os
 import weakref
+from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rendering import Camera
 from ravemj.studio import Format, Frame, Studio, checked_colour
-from ravemj.viewers import Viewer, open_viewer
+
+if TYPE_CHECKING:
+    from ravemj.viewers import Viewer
 
 
 class Viewing(EnvironmentPart):
@@ -49,6 +52,8 @@ class Viewing(EnvironmentPart):
             self._viewer = None
             self._simulation.drawings.clear()
         if viewername:
+            from ravemj.viewers import open_viewer  # noqa: PLC0415 - slow to import
+
             self._viewer = open_viewer(self._simulation, self._studio, viewername, showviewer)
         if self._viewer is not None:
             self._viewer.environment = weakref.ref(self)
@@ -65,7 +70,7 @@ class Viewing(EnvironmentPart):
         """
         return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "qtcoin", showviewer)
 
-    def GetViewer(self, name: str | None = None) -> Viewer | None:
+    def GetViewer(self, name: str | None = None) -> "Viewer | None":
         """Return the viewer, or None where there is none.
 
         Args:
