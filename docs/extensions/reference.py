@@ -13,17 +13,15 @@ import ast
 import enum
 import functools
 import inspect
+import pkgutil
 import textwrap
 from collections.abc import Iterator
-from operator import attrgetter
 from typing import ClassVar
 
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
-
-import ravemj
 
 _BASES = {"object", "Shown"}
 
@@ -41,7 +39,7 @@ class Reference(SphinxDirective):
         """Return what autodoc makes of them."""
         lines: list[str] = []
         for name in " ".join(self.content).split():
-            thing = attrgetter(name)(ravemj)
+            thing = pkgutil.resolve_name(f"ravemj.{name}")
             lines.append(f".. {_directive(thing)}:: ravemj.{name}\n")
             if inspect.isclass(thing) and issubclass(thing, enum.Enum):
                 lines += _values(thing)
