@@ -20,7 +20,9 @@ from typing import ClassVar
 
 from docutils import nodes
 from docutils.parsers.rst import directives
+from sphinx.addnodes import pending_xref
 from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
 _BASES = {"object", "Shown"}
@@ -131,9 +133,21 @@ def untyped_answers(app: Sphinx, what: str, name: str, member: object, options: 
             lines[number + 1] = text[: len(text) - len(text.lstrip())] + f": {text.lstrip()}"
 
 
+def named_by_last_word(app: Sphinx, env: BuildEnvironment, node: pending_xref, text: nodes.Element) -> object:
+    """Return the link to what has a longer name: the source says ``WebViewer`` for ``ravemj.viewers.web.WebViewer``."""
+    if node.get("refdomain") != "py":
+        return None
+    domain = env.domains.python_domain
+    names = [name for name in domain.objects if name.endswith(f".{node['reftarget']}")]
+    if len(names) != 1:
+        return None
+    return domain.resolve_xref(env, node["refdoc"], app.builder, node["reftype"], names[0], node, text)
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Make the directive known, and have signatures and answers prepared before napoleon sees them."""
+    """Make the directive known, prepare signatures and answers for napoleon, and find short names."""
     app.add_directive("reference", Reference)
     app.connect("autodoc-process-signature", written_signature)
     app.connect("autodoc-process-docstring", untyped_answers, priority=400)
+    app.connect("missing-reference", named_by_last_word)
     return {"parallel_read_safe": True}
