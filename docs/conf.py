@@ -31,5 +31,6 @@ napoleon_use_ivar = True
 
 nitpick_ignore_regex = [  # pages of others, which a build without network knows nothing of
     ("py:class", r"(collections|mujoco|np|numpy|optparse|os|weakref)\..*|EllipsisType|NDArray|Path"),
-    ("py:class", r"Parameters|Result|_\w+"),  # type variables, and what only the source names
+    ("py:class", r"Parameters|Result"),  # type variables
+    ("py:class", r"Simulation|Studio|_\w+"),  # below the API
 ]
