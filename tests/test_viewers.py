@@ -11,7 +11,7 @@ import pytest
 import ravemj
 from ravemj.errors import RenderingError
 from ravemj.interaction import Key, Move, Press, Release
-from ravemj.viewers import Viewer
+from ravemj.viewers import Viewer, notebook
 
 FROM_FRONT = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 BOX = '<KinBody name="{}"><Body><Geom type="box"><extents>1 2 3</extents></Geom></Body></KinBody>'
@@ -36,7 +36,7 @@ def opened(monkeypatch):
 
     def pretend(kind):
         class Pretended(Bare):
-            def __init__(self, simulation, studio, name):
+            def __init__(self, simulation, studio, name, *, any_name=False):
                 kinds.append(kind)
                 super().__init__(simulation, studio, name)
 
@@ -51,8 +51,9 @@ def opened(monkeypatch):
 
 
 def in_notebook(monkeypatch):
-    shell = types.SimpleNamespace(kernel=None)
+    shell = types.SimpleNamespace(kernel=object())
     monkeypatch.setitem(sys.modules, "IPython", types.SimpleNamespace(get_ipython=lambda: shell))
+    monkeypatch.setattr(notebook, "show", lambda viewer: None)
 
 
 class TestChoice:
@@ -77,8 +78,9 @@ class TestChoice:
         assert kind() == without
         monkeypatch.setenv("WAYLAND_DISPLAY", "wayland-0")
         assert kind() == with_display
-        monkeypatch.delenv("WAYLAND_DISPLAY")
         in_notebook(monkeypatch)
+        assert kind() == ("window" if name == "window" else in_a_notebook)
+        monkeypatch.delenv("WAYLAND_DISPLAY")
         assert kind() == in_a_notebook
 
     def test_a_terminal_of_ipython_is_no_notebook(self, env, opened, monkeypatch):
@@ -112,13 +114,11 @@ class TestChoice:
 
         assert said("qtcoin") == ["viewer 'qtcoin' has no window"]
         assert said("window")[0].startswith("no window can be opened: there is no display")
-        in_notebook(monkeypatch)
-        assert said("qtosg") == [
-            "viewer 'qtosg' is a page in a browser: this is a notebook, and there is no display",
-            "the viewer is at http://nowhere/",
-        ]
+        assert said("web") == ["the viewer is at http://nowhere/"]
         monkeypatch.setenv("DISPLAY", ":0")
         assert said("qtcoin") == ["viewer 'qtcoin' is a window"]
+        in_notebook(monkeypatch)
+        assert said("qtosg") == ["viewer 'qtosg' is a page in a browser: this is a notebook"]
 
     def test_a_display_that_fails_is_said_and_pictures_go_on(self, env, opened, monkeypatch, caplog):
         def fail(*arguments):

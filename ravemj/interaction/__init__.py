@@ -10,7 +10,19 @@
 """
 
 from ravemj.interaction.core import Interaction, Mode, Overlay
-from ravemj.interaction.events import Button, Event, Key, Leave, Move, Press, Release, Resize, Wheel
+from ravemj.interaction.events import (
+    Button,
+    Event,
+    Fingers,
+    Key,
+    Leave,
+    Move,
+    Press,
+    Release,
+    Resize,
+    Use,
+    Wheel,
+)
 from ravemj.interaction.layout import Panel, Rect, Tool, tools
 from ravemj.interaction.picking import Hit, pick
 from ravemj.interaction.selecting import Selection
@@ -19,6 +31,7 @@ from ravemj.interaction.view import Ray, View
 __all__ = [
     "Button",
     "Event",
+    "Fingers",
     "Hit",
     "Interaction",
     "Key",
@@ -34,6 +47,7 @@ __all__ = [
     "Resize",
     "Selection",
     "Tool",
+    "Use",
     "View",
     "Wheel",
     "pick",

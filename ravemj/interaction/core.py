@@ -12,7 +12,19 @@ from typing import NamedTuple
 
 from ravemj.drawing import Shapes
 from ravemj.interaction import layout
-from ravemj.interaction.events import Button, Event, Key, Leave, Move, Press, Release, Resize, Wheel
+from ravemj.interaction.events import (
+    Button,
+    Event,
+    Fingers,
+    Key,
+    Leave,
+    Move,
+    Press,
+    Release,
+    Resize,
+    Use,
+    Wheel,
+)
 from ravemj.interaction.layout import Panel, Tool
 from ravemj.interaction.picking import Hit, pick
 from ravemj.interaction.selecting import OnSelect, Selection, Selector, point_line
@@ -25,9 +37,6 @@ _CLICK = 4.0
 
 _STEP = 0.9
 """How much nearer a step of the wheel brings the focus."""
-
-_ZOOM = 4.0
-"""Powers of e by which the distance changes over the height of the view."""
 
 
 class Mode(Enum):
@@ -77,6 +86,7 @@ class Interaction:
         self.view = View(camera, 0.0, size)
         self.mode = Mode.CAMERA
         self._selector = Selector(simulation, on_select)
+        self._has_tools = True
         self._changes = 0
         self._pointer: tuple[float, float] | None = None
         self._hovered = False
@@ -85,11 +95,16 @@ class Interaction:
         self._press: Press | None = None
         self._follow: _Follow | None = None
 
-    def another_view(self) -> "Interaction":
-        """Return the mouse and the keys of another view on the same simulation; they share what is selected."""
+    def another_view(self, *, has_tools: bool = True) -> "Interaction":
+        """Return the mouse and the keys of another view on the same simulation; they share what is selected.
+
+        Args:
+            has_tools: False where the shell has buttons and wheels of its own, which ``Use`` them.
+        """
         other = Interaction(self._simulation, self.view.camera, self.view.size)
-        other.view = self.view
+        other.view, other.mode = self.view, self.mode
         other._selector = self._selector
+        other._has_tools = has_tools
         return other
 
     @property
@@ -147,7 +162,8 @@ class Interaction:
                 self._selector.point_line() if hit is None else point_line(hit.body, hit.link, hit.position, hit.normal)
             )
             lines = (*([at] if at else []), *self._selector.lines())
-            return Overlay(self._selector.shapes(), lines, layout.panels(self.view.size, chosen))
+            panels = layout.panels(self.view.size, chosen) if self._has_tools else ()
+            return Overlay(self._selector.shapes(), lines, panels)
 
     def _forget_what_is_gone(self) -> None:
         if self._selector.forget_what_is_gone():
@@ -163,22 +179,33 @@ class Interaction:
                 self._on_move(x, y)
             case Release():
                 self._on_release(event)
+            case Leave():
+                self._on_leave()
+            case _:
+                self._do_without_pointer(event)
+
+    def _do_without_pointer(self, event: Wheel | Fingers | Use | Key | Resize) -> None:
+        match event:
             case Wheel(steps):
                 self._on_wheel(steps)
+            case Fingers():
+                self.view = self._focused().pinched(event)
+            case Use(tool, amount):
+                self._use(tool, amount)
             case Key(name, pressed):
                 self._on_key(name.lower(), pressed)
             case Resize(width, height):
                 self.view = replace(self.view, size=(max(width, 1), max(height, 1)))
-            case Leave():
-                self._on_leave()
 
     def _on_press(self, press: Press) -> None:
         self._buttons.add(press.button)
         self._press = self._follow = None
         self._pointer = press.x, press.y
-        tool = layout.tool_at(self.view.size, press.x, press.y)
+        tool = layout.tool_at(self.view.size, press.x, press.y) if self._has_tools else None
         if tool is not None:
-            self._use(tool, press)
+            self._press_tool(tool, press)
+        elif press.touch:
+            self._press = press
         elif press.button is Button.LEFT and "s" in self._keys:
             self._centre(press)
         elif self.mode is Mode.CAMERA:
@@ -200,6 +227,8 @@ class Interaction:
         press, self._press, self._follow = self._press, None, None
         if press is not None and press.button is release.button:
             self._selector.click(self.view, press)
+            if press.touch and self._selector.selection is not None:
+                self._set_mode(Mode.INTERACTION)  # what has appeared can be dragged
 
     def _on_wheel(self, steps: float) -> None:
         if self.mode is Mode.CAMERA:
@@ -222,22 +251,24 @@ class Interaction:
         self.mode = mode
         self._press = self._follow = None
 
-    def _use(self, tool: Tool, press: Press) -> None:
+    def _press_tool(self, tool: Tool, press: Press) -> None:
         """Press a button, or hold one of the wheels."""
         if press.button is not Button.LEFT:
             return
-        view = self._focused()
-        match tool:
-            case Tool.INTERACT:
-                self._set_mode(Mode.INTERACTION)
-            case Tool.CAMERA:
-                self._set_mode(Mode.CAMERA)
-            case Tool.ROT_X:
-                self._follow = self._steered(press, lambda _, down: view.turned(0.0, down))
-            case Tool.ROT_Y:
-                self._follow = self._steered(press, lambda right, _: view.turned(right, 0.0))
-            case Tool.DOLLY:
-                self._follow = self._steered(press, lambda _, down: view.zoomed(-_ZOOM * down / view.size[1]))
+        if tool in (Tool.INTERACT, Tool.CAMERA):
+            self._use(tool)
+        else:
+            view = self._focused()
+            aside = tool is Tool.ROT_Y
+            self._follow = self._steered(press, lambda right, down: view.rolled(tool, right if aside else down))
+
+    def _use(self, tool: Tool, amount: float = 0.0) -> None:
+        if tool is Tool.INTERACT:
+            self._set_mode(Mode.INTERACTION)
+        elif tool is Tool.CAMERA:
+            self._set_mode(Mode.CAMERA)
+        else:
+            self.view = self._focused().rolled(tool, amount)
 
     # --- the camera
 
@@ -261,7 +292,7 @@ class Interaction:
     def _move_camera(self, press: Press) -> None:
         view = self._focused()
         if {Button.LEFT, Button.MIDDLE} <= self._buttons:
-            self._follow = self._steered(press, lambda _, down: view.zoomed(-_ZOOM * down / view.size[1]))
+            self._follow = self._steered(press, lambda _, down: view.rolled(Tool.DOLLY, down))
         elif press.button is Button.MIDDLE or (press.button is Button.LEFT and press.shift):
             self._follow = self._steered(press, view.shifted)
         elif press.button is Button.LEFT:
@@ -273,6 +304,8 @@ class Interaction:
             self.view = self.view.centred(hit.position)
 
     def _hold(self, press: Press) -> _Follow | None:
-        """Take hold of the cube or the cylinder where the button went down."""
-        follow = self._selector.hold(self.view, press)
-        return None if follow is None else lambda x, y: follow(self.view.ray(x, y))
+        """Take hold of the cube or the cylinder where the button went down; fingers turn the view elsewhere."""
+        follow = self._selector.hold(self.view, press) if self.mode is Mode.INTERACTION else None
+        if follow is not None:
+            return lambda x, y: follow(self.view.ray(x, y))
+        return self._steered(press, self._focused().turned) if press.touch else None

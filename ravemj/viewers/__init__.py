@@ -10,6 +10,7 @@ import sys
 from ravemj.errors import RenderingError
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
+from ravemj.viewers import notebook
 from ravemj.viewers.viewer import Viewer
 
 __all__ = ["VIEWERS", "Viewer", "has_display", "open_viewer"]
@@ -45,9 +46,7 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
         return None
     kind, reason = _choice(name) if show else ("offscreen", "")
     if kind == "web":
-        if reason:
-            _LOG.info("viewer '%s' is a page in a browser: %s", name, reason)
-        return _open_page(simulation, studio, name)
+        return _open_page(simulation, studio, name, reason)
     if kind == "window":
         from ravemj.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
 
@@ -68,24 +67,23 @@ def _choice(name: str) -> tuple[str, str]:
     """Return the kind of viewer that a name means here, and why it is not the kind that its name says."""
     if name in ("web", "offscreen"):
         return name, ""
+    if name != "window" and notebook.in_notebook():
+        return "web", "this is a notebook"
     if has_display():
         return "window", ""
     if sys.platform == "darwin":
         return "web", "windows would need the main thread on macOS"
-    if name != "window" and _is_notebook():
-        return "web", "this is a notebook, and there is no display"
     return "offscreen", "there is no display"
 
 
-def _is_notebook() -> bool:
-    """Return whether this process is the kernel of a notebook."""
-    ipython = sys.modules.get("IPython")
-    return ipython is not None and hasattr(ipython.get_ipython(), "kernel")
-
-
-def _open_page(simulation: Simulation, studio: Studio, name: str) -> Viewer:
+def _open_page(simulation: Simulation, studio: Studio, name: str, reason: str) -> Viewer:
     from ravemj.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
 
-    viewer = WebViewer(simulation, studio, name)
-    _LOG.warning("the viewer is at %s", viewer.url)
+    if reason:
+        _LOG.info("viewer '%s' is a page in a browser: %s", name, reason)
+    viewer = WebViewer(simulation, studio, name, any_name=notebook.is_proxied())
+    if notebook.in_notebook():
+        notebook.show(viewer)
+    else:
+        _LOG.warning("the viewer is at %s", viewer.url)
     return viewer

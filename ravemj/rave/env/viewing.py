@@ -12,6 +12,7 @@ from ravemj.studio import Format, Frame, Studio, checked_colour
 
 if TYPE_CHECKING:
     from ravemj.viewers import Viewer
+    from ravemj.viewers.web import WebViewer
 
 
 class Viewing(EnvironmentPart):
@@ -22,8 +23,9 @@ class Viewing(EnvironmentPart):
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
         """Attach a viewer, in place of those before; ``RaveCreateViewer`` attaches further ones.
 
-        With a display a window opens and shows every change from then on, while the script goes on. Without one, as
-        on a server, the viewer draws when it is asked for pictures, so that scripts run there just the same.
+        With a display a window opens and shows every change from then on, while the script goes on; in a notebook, a
+        page in the cell does. Without either, as on a server, the viewer draws when it is asked for pictures, so that
+        scripts run there just the same.
 
         The camera starts with the view that the loaded file asks for, else from above; ``GetViewer().SetCamera``
         moves it.
@@ -31,7 +33,7 @@ class Viewing(EnvironmentPart):
         Args:
             viewername: ``'window'``: a window; a warning says so where there is no display for it. ``'web'``: a page
                 for a browser on this machine, at ``GetViewer().url``. ``'offscreen'``: neither. One of OpenRAVE's
-                names, such as ``'qtcoin'``: a window if there is a display, else a page in a notebook, else neither;
+                names, such as ``'qtcoin'``: the page in a notebook, else a window if there is a display, else neither;
                 the log says which. On macOS the page stands for windows. ``''`` removes the viewer.
             showviewer: False: never a window.
 
@@ -47,10 +49,7 @@ class Viewing(EnvironmentPart):
         """
         if viewername:
             self._check_alive()
-        if self._viewers:
-            self._simulation.drawings.clear()
-        while self._viewers:
-            self._viewers.pop().close()
+        self._close_viewers()
         if viewername:
             self.open_viewer(viewername, showviewer)
         return bool(viewername)
@@ -62,9 +61,43 @@ class Viewing(EnvironmentPart):
         self._check_alive()
         viewer = open_viewer(self._simulation, self._studio, name, show)
         if viewer is not None:
-            viewer.environment = weakref.ref(self)
-            self._viewers.append(viewer)
+            self._attach(viewer)
         return viewer
+
+    def serve_viewer(self, host: str = "127.0.0.1", port: int = 0) -> "WebViewer":
+        """Attach a viewer for browsers, as ``SetViewer('web')`` does, at a port of your choice.
+
+        Args:
+            host: Name or address of the interface that browsers come to. Others than the default let those of other
+                machines in: whoever knows the address of the page sees and moves everything, and nothing is encrypted.
+            port: Number of the port; 0: any that is free.
+
+        Returns:
+            The viewer; ``url`` is the address of its page.
+
+        Raises:
+            RenderingError: this port cannot be had; the viewers before stay.
+
+        Example:
+            >>> print(env.serve_viewer(port=8080).url)
+        """
+        from ravemj.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
+
+        self._check_alive()
+        viewer = WebViewer(self._simulation, self._studio, "web", host, port)
+        self._close_viewers()
+        self._attach(viewer)
+        return viewer
+
+    def _attach(self, viewer: "Viewer") -> None:
+        viewer.environment = weakref.ref(self)
+        self._viewers.append(viewer)
+
+    def _close_viewers(self) -> None:
+        if self._viewers:
+            self._simulation.drawings.clear()
+        while self._viewers:
+            self._viewers.pop().close()
 
     def SetDefaultViewer(self, showviewer: bool = True) -> bool:
         """Attach the viewer that the variable ``OPENRAVE_DEFAULT_VIEWER`` names, else the best that works here.
