@@ -9,15 +9,22 @@
     interaction.overlay().lines
 """
 
+from ravemj.interaction.board import Board
+from ravemj.interaction.controls import Control, Controls, Wish
 from ravemj.interaction.core import Interaction, Mode, Overlay
-from ravemj.interaction.events import Button, Event, Key, Leave, Move, Press, Release, Resize, Wheel
+from ravemj.interaction.events import Button, Event, Key, Leave, Move, Operate, Press, Release, Resize, Wheel
 from ravemj.interaction.layout import Panel, Rect, Tool, tools
+from ravemj.interaction.notices import Notices
 from ravemj.interaction.picking import Hit, pick
+from ravemj.interaction.playback import Playback
 from ravemj.interaction.selecting import Selection
 from ravemj.interaction.view import Ray, View
 
 __all__ = [
+    "Board",
     "Button",
+    "Control",
+    "Controls",
     "Event",
     "Hit",
     "Interaction",
@@ -25,8 +32,11 @@ __all__ = [
     "Leave",
     "Mode",
     "Move",
+    "Notices",
+    "Operate",
     "Overlay",
     "Panel",
+    "Playback",
     "Press",
     "Ray",
     "Rect",
@@ -36,6 +46,7 @@ __all__ = [
     "Tool",
     "View",
     "Wheel",
+    "Wish",
     "pick",
     "tools",
 ]

@@ -12,9 +12,13 @@ from typing import NamedTuple
 
 from ravemj.drawing import Shapes
 from ravemj.interaction import layout
-from ravemj.interaction.events import Button, Event, Key, Leave, Move, Press, Release, Resize, Wheel
+from ravemj.interaction.console import Console
+from ravemj.interaction.controls import Control, Controls
+from ravemj.interaction.events import Button, Event, Key, Leave, Move, Operate, Press, Release, Resize, Wheel
 from ravemj.interaction.layout import Panel, Tool
+from ravemj.interaction.notices import Notices
 from ravemj.interaction.picking import Hit, pick
+from ravemj.interaction.playback import Playback
 from ravemj.interaction.selecting import OnSelect, Selection, Selector, point_line
 from ravemj.interaction.view import View
 from ravemj.rendering import Camera, bounding_sphere
@@ -43,12 +47,14 @@ class Overlay(NamedTuple):
     Attributes:
         shapes: Figures in the world.
         lines: Text for the top left corner.
-        panels: Buttons and wheels.
+        panels: Buttons, wheels and sliders, for a shell that has none of its own.
+        controls: What the buttons and sliders beside the tutorial's are, as plain data.
     """
 
     shapes: Shapes
     lines: tuple[str, ...]
     panels: tuple[Panel, ...]
+    controls: tuple[Control, ...] = ()
 
 
 _Follow = Callable[[float, float], None]
@@ -60,6 +66,7 @@ class Interaction:
     Attributes:
         view: The camera.
         mode: What the left button does.
+        controls: The buttons and sliders beside the tutorial's.
     """
 
     def __init__(
@@ -77,6 +84,8 @@ class Interaction:
         self.view = View(camera, 0.0, size)
         self.mode = Mode.CAMERA
         self._selector = Selector(simulation, on_select)
+        self.controls = Controls(simulation, self._selector, Playback(simulation), Notices())
+        self._console = Console(self.controls)
         self._changes = 0
         self._pointer: tuple[float, float] | None = None
         self._hovered = False
@@ -90,12 +99,14 @@ class Interaction:
         other = Interaction(self._simulation, self.view.camera, self.view.size)
         other.view = self.view
         other._selector = self._selector
+        other.controls = self.controls.another()
+        other._console = Console(other.controls)
         return other
 
     @property
     def version(self) -> int:
         """A number that grows with what changes the view and the overlay; what moves bodies changes these as well."""
-        return self._changes + self._selector.changes
+        return self._changes + self._selector.changes + self.controls.changes
 
     def look_from(self, camera: Camera, distance: float = 0.0) -> None:
         """Take another camera; what the mouse does with the old one ends.
@@ -115,7 +126,7 @@ class Interaction:
         with self._simulation.lock:
             self._forget_what_is_gone()
             self._do(event)
-            hovers = self.hover is not None
+            hovers = self.hover is not None or self._console.covers(self._pointer, self.view.size)
             if not isinstance(event, Move) or self._buttons or hovers or self._hovered:
                 self._changes += 1
             self._hovered = hovers
@@ -135,19 +146,32 @@ class Interaction:
         if not all(0 <= place < length for place, length in zip(self._pointer, self.view.size, strict=True)):
             return None
         with self._simulation.lock:
+            if self._console.covers(self._pointer, self.view.size):
+                return None
             return pick(self._simulation, self.view.ray(*self._pointer))
+
+    def pass_time(self, now: float) -> None:
+        """Let a motion that plays go on; who draws calls this before each picture, with the simulation locked.
+
+        Args:
+            now: What ``time.monotonic`` says.
+        """
+        self.controls.pass_time(now)
 
     def overlay(self) -> Overlay:
         """Return what is to be drawn over the bodies as they are now. The simulation is locked meanwhile."""
         with self._simulation.lock:
             self._forget_what_is_gone()
             chosen = Tool.CAMERA if self.mode is Mode.CAMERA else Tool.INTERACT
-            hit = self.hover
-            at = (
-                self._selector.point_line() if hit is None else point_line(hit.body, hit.link, hit.position, hit.normal)
-            )
-            lines = (*([at] if at else []), *self._selector.lines())
-            return Overlay(self._selector.shapes(), lines, layout.panels(self.view.size, chosen))
+            at, size = self._selector.point_line(), self.view.size
+            hit, control = self.hover, self._console.control_at(self._pointer, size)
+            if hit is not None:
+                at = point_line(hit.body, hit.link, hit.position, hit.normal)
+            elif control is not None:
+                at = control.label
+            lines = (*([at] if at else []), *self._selector.lines(), *self.controls.notices.lines)
+            panels = *layout.panels(size, chosen), *self._console.panels(size)
+            return Overlay(self._selector.shapes(), lines, panels, self.controls.all())
 
     def _forget_what_is_gone(self) -> None:
         if self._selector.forget_what_is_gone():
@@ -155,7 +179,7 @@ class Interaction:
 
     # --- events
 
-    def _do(self, event: Event) -> None:
+    def _do(self, event: Event) -> None:  # noqa: C901 - a case for each event
         match event:
             case Press():
                 self._on_press(event)
@@ -167,6 +191,8 @@ class Interaction:
                 self._on_wheel(steps)
             case Key(name, pressed):
                 self._on_key(name.lower(), pressed)
+            case Operate(name, value):
+                self.controls.operate(name, value)
             case Resize(width, height):
                 self.view = replace(self.view, size=(max(width, 1), max(height, 1)))
             case Leave():
@@ -177,7 +203,9 @@ class Interaction:
         self._press = self._follow = None
         self._pointer = press.x, press.y
         tool = layout.tool_at(self.view.size, press.x, press.y)
-        if tool is not None:
+        if self._console.covers(self._pointer, self.view.size):
+            self._follow = self._console.press(press, self.view.size)
+        elif tool is not None:
             self._use(tool, press)
         elif press.button is Button.LEFT and "s" in self._keys:
             self._centre(press)
@@ -202,7 +230,9 @@ class Interaction:
             self._selector.click(self.view, press)
 
     def _on_wheel(self, steps: float) -> None:
-        if self.mode is Mode.CAMERA:
+        if self._console.covers(self._pointer, self.view.size):
+            self._console.scroll(self.view.size, steps)
+        elif self.mode is Mode.CAMERA:
             self.view = self._focused().zoomed(math.log(_STEP) * steps)
 
     def _on_key(self, name: str, pressed: bool) -> None:
@@ -211,6 +241,8 @@ class Interaction:
             return
         if name == "escape" and name not in self._keys:
             self._set_mode(Mode.INTERACTION if self.mode is Mode.CAMERA else Mode.CAMERA)
+        elif name not in self._keys:
+            self._console.key(name)
         self._keys.add(name)
 
     def _on_leave(self) -> None:
@@ -274,5 +306,7 @@ class Interaction:
 
     def _hold(self, press: Press) -> _Follow | None:
         """Take hold of the cube or the cylinder where the button went down."""
-        follow = self._selector.hold(self.view, press)
+        follow, selection = self._selector.hold(self.view, press), self._selector.selection
+        if follow is not None and selection is not None:
+            self.controls.take(selection.body)
         return None if follow is None else lambda x, y: follow(self.view.ray(x, y))

@@ -2,16 +2,18 @@
 
 import logging
 import threading
+import time
 import weakref
 from collections.abc import Callable
 from queue import SimpleQueue
 
 from ravemj.errors import RavemjError, RenderingError
-from ravemj.interaction import Resize
+from ravemj.interaction import Resize, Wish
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
 from ravemj.viewers.glfw_window import GlfwWindow
 from ravemj.viewers.painter import Painter
+from ravemj.viewers.playing import camera_line
 from ravemj.viewers.viewer import Viewer
 
 _LOG = logging.getLogger("ravemj")
@@ -148,6 +150,8 @@ class WindowViewer(Viewer):
                 self._simulation.lock.release()
             if is_changed:
                 self._draw(window, painter)
+            for wish in self.interaction.controls.take_wishes():
+                self._grant(wish, window, painter)
             for drawn in waiting:
                 drawn.set()
         else:
@@ -160,6 +164,7 @@ class WindowViewer(Viewer):
         try:
             if self.interaction.view.size != window.points:
                 self.interaction.handle(Resize(*window.points))
+            self.interaction.pass_time(time.monotonic())
             events, window.events = window.events, []
             for event in events:
                 self.interaction.handle(event)
@@ -181,6 +186,19 @@ class WindowViewer(Viewer):
             self._image_callbacks.call(painter.read(pixels))
         painter.draw_overlay(pixels, ratio)
         window.swap()
+
+    def _grant(self, wish: Wish, window: GlfwWindow, painter: Painter) -> None:
+        """Do what a button asked for that needs the window."""
+        if wish is Wish.PICTURE:
+            painter.draw(self._background, window.pixels)
+            self._saving.save_picture(painter.read(window.pixels))
+        elif wish is Wish.VIDEO:
+            self._saving.record(self.interaction, self._studio, self._background)
+        else:
+            line = camera_line(self.camera)
+            window.copy_text(line)
+            self.interaction.controls.notices.say("Copied viewer.SetCamera([...])")
+            _LOG.info("%s", line)
 
 
 def _run(reference: "weakref.ref[WindowViewer]") -> None:
