@@ -1,23 +1,32 @@
 """The viewer in a browser, as its page talks to it: pictures, gestures, and what strangers and broken pages send."""
 
+import gc
 import io
 import json
 import math
+import socket
+import subprocess
+import sys
 import time
 import urllib.error
 import urllib.request
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from command_line import environment
 from conftest import MODELS
 from PIL import Image
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 import ravemj
-from ravemj.interaction import Button, Key, Leave, Move, Press, Release, Resize, Wheel
+from ravemj.errors import RenderingError
+from ravemj.interaction import Button, Fingers, Key, Leave, Move, Press, Release, Resize, Tool, Use, Wheel
 from ravemj.interaction.joint_handle import JointHandle
 from ravemj.rendering import Camera
+from ravemj.viewers.web import WebViewer
+from ravemj.viewers.web.link import Link
 from ravemj.viewers.web.messages import Ready, Shape, parse
 
 FROM_FRONT = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
@@ -41,13 +50,15 @@ def viewer(env):
 class Page:
     """What the page in a browser does."""
 
-    def __init__(self, viewer, **more):
+    def __init__(self, viewer, tab="", is_there=True, **more):
         origin = viewer.url.rsplit("/", 2)[0]
-        url = viewer.url.replace("http", "ws", 1) + "socket"
+        url = viewer.url.replace("http", "ws", 1) + "socket" + (f"?tab={tab}" if tab else "")
         self._connection = connect(url, **{"origin": origin, "compression": None, **more})
         self.socket = self._connection.__enter__()
         self.overlay = None
         self.send(type="shape", width=SIZE[0], height=SIZE[1], ratio=1)
+        if is_there:
+            self.send(type="ready")
 
     def __enter__(self):
         return self
@@ -58,28 +69,36 @@ class Page:
     def send(self, **message):
         self.socket.send(json.dumps(message))
 
-    def picture(self, timeout=10) -> np.ndarray:
-        """Ask for a picture and wait for it."""
-        self.send(type="ready")
+    def receive(self, timeout=10) -> Image.Image:
+        """Wait for a picture."""
         self.overlay = json.loads(self.socket.recv(timeout))
-        return np.asarray(Image.open(io.BytesIO(self.socket.recv(timeout))))
+        return Image.open(io.BytesIO(self.socket.recv(timeout)))
+
+    def picture(self) -> np.ndarray:
+        """Wait for a picture and say that it is shown."""
+        picture = np.asarray(self.receive())
+        self.send(type="ready")
+        return picture
+
+    def settled(self) -> np.ndarray:
+        """Show pictures until one is crisp."""
+        self.overlay = {"crisp": False}
+        while not self.overlay["crisp"]:
+            picture = self.picture()
+        return picture
 
     def read_to_the_end(self):
         while True:
             self.socket.recv(10)
 
-    def crisp_picture(self) -> np.ndarray:
-        self.picture()
-        return self.picture()
-
     def mouse(self, type, at, **more):
         self.send(type=type, x=at[0], y=at[1], **more)
 
     def drag(self, *stops, ctrl=False):
-        self.mouse("press", stops[0], button="left", ctrl=ctrl, shift=False)
+        self.mouse("press", stops[0], button="left", ctrl=ctrl, shift=False, touch=False)
         for stop in stops[1:]:
             self.mouse("move", stop)
-        self.mouse("release", stops[-1], button="left", ctrl=ctrl, shift=False)
+        self.mouse("release", stops[-1], button="left")
 
     def escape(self):
         self.send(type="key", name="Escape", pressed=True)
@@ -125,29 +144,111 @@ def test_strangers_are_sent_away(viewer):
     assert viewer.url.startswith("http://127.0.0.1:")
 
 
-def test_pictures_come_when_something_changes_and_the_page_is_ready(env, viewer):
+def test_pictures_come_when_something_changes_and_the_page_shows_them(env, viewer):
     robot = env.GetRobots()[0]
-    with Page(viewer) as page:
-        first = page.crisp_picture()
-        assert first.shape == (*SIZE[::-1], 3)
+    with Page(viewer, is_there=False) as page:
+        with pytest.raises(TimeoutError):
+            page.socket.recv(0.3)
+        page.send(type="ready")
+        assert page.receive().format == "JPEG"
+        page.send(type="ready")
+        crisp = page.receive()
+        assert crisp.format == "PNG"
         expected = viewer.render(*SIZE)
-        assert np.abs(first.astype(int) - expected).mean() < 2
+        assert np.array_equal(np.asarray(crisp), expected)
         page.send(type="ready")
         with pytest.raises(TimeoutError):
             page.socket.recv(0.7)
         robot.SetDOFValues([math.pi / 2, 0])
-        page.overlay = json.loads(page.socket.recv(10))
-        level = np.asarray(Image.open(io.BytesIO(page.socket.recv(10))))
-        assert np.abs(level.astype(int) - viewer.render(*SIZE)).mean() < 3
+        level = page.receive()
+        assert level.format == "JPEG"
+        assert np.abs(np.asarray(level).astype(int) - viewer.render(*SIZE)).mean() < 3
         robot.SetDOFValues([0, 0])
+        page.receive()  # two may be under way, but no more
+        robot.SetDOFValues([1, 0])
         with pytest.raises(TimeoutError):
-            page.socket.recv(0.5)  # it has not said that it has shown the last one
-        assert np.abs(page.picture().astype(int) - expected).mean() < 3
+            page.socket.recv(0.5)
+        for _ in range(3):
+            page.send(type="ready")
+        assert np.abs(page.settled().astype(int) - viewer.render(*SIZE)).mean() < 0.5
+
+
+def test_pictures_have_the_pixels_of_the_screen(viewer):
+    with Page(viewer) as page:
         page.send(type="shape", width=300, height=200, ratio=2)
         await_that(lambda: page.picture().shape == (400, 600, 3))
         page.send(type="shape", width=8000, height=8000, ratio=3)
         await_that(lambda: page.picture().shape[0] > 600)
         assert page.picture().size <= 3 * 1920 * 1440
+
+
+class TestLink:
+    """Times are those of a clock that the tests turn."""
+
+    @pytest.fixture
+    def clock(self):
+        return [0.0]
+
+    @pytest.fixture
+    def link(self, clock):
+        link = Link(lambda: clock[0])
+        link.shown()
+        return link
+
+    def show(self, link, clock, delay, is_moving=True):
+        link.sent(is_moving=is_moving)
+        clock[0] += delay
+        link.shown()
+
+    def test_two_pictures_are_under_way(self, link):
+        assert not Link().is_free
+        for _ in range(2):
+            assert link.is_free
+            link.sent(is_moving=True)
+        assert not link.is_free
+        link.shown()
+        assert link.is_free
+
+    def test_a_way_that_is_long_but_not_narrow_takes_the_best(self, link, clock):
+        for _ in range(20):
+            self.show(link, clock, 0.4)
+        assert (link.quality, link.is_good, link.is_halved) == (85, True, False)
+
+    def test_quality_falls_on_narrow_ways_and_comes_back(self, link, clock):
+        self.show(link, clock, 0.02)
+        for _ in range(6):
+            self.show(link, clock, 0.5)
+        assert link.quality < 40
+        assert link.is_halved
+        assert not link.is_good
+        for _ in range(40):
+            self.show(link, clock, 0.02)
+        assert (link.quality, link.is_good, link.is_halved) == (85, True, False)
+
+    def test_crisp_pictures_may_take_their_time(self, link, clock):
+        self.show(link, clock, 0.02)
+        self.show(link, clock, 5, is_moving=False)
+        assert link.is_good
+
+
+def test_pages_that_are_slow_are_sent_less(env, viewer):
+    robot = env.GetRobots()[0]
+    with Page(viewer) as page:
+        page.settled()
+        robot.SetDOFValues([0.1, 0])
+        quick = page.picture()
+        for step in range(2, 8):
+            robot.SetDOFValues([0.1 * step, 0])
+            picture = page.receive()
+            time.sleep(0.25)
+            page.send(type="ready")
+        assert quick.shape == (*SIZE[::-1], 3)
+        assert picture.size == (SIZE[0] // 2, SIZE[1] // 2)
+        while not page.overlay["crisp"]:
+            picture = page.receive()
+            page.send(type="ready")
+        assert (picture.format, picture.size) == ("JPEG", SIZE)  # crisp, but as few bytes as can be
+        assert np.abs(np.asarray(picture).astype(int) - viewer.render(*SIZE)).mean() < 1
 
 
 def test_gestures_move_what_the_script_reads(env, viewer):
@@ -156,8 +257,9 @@ def test_gestures_move_what_the_script_reads(env, viewer):
         page.escape()
         page.drag(at([0.01, 0, -0.3]), at([0.01, 0, -0.3]), ctrl=True)
         await_that(lambda: viewer.GetSelectedJoint() == robot.GetJoints()[1])
-        page.picture()
+        page.settled()
         assert page.overlay["lines"][1:] == ["Robot Pendulum", "Joint Joint1, DOF 1: 0.000 rad, 0.0 deg"]
+        assert page.overlay["mode"] == "interaction"
         handle = JointHandle.at(robot._state, 1)
         top = handle.center[0] + handle.height / 2
         stops = [[top, 0.02 * math.cos(angle), handle.center[2] + 0.02 * math.sin(angle)] for angle in (0, 0.4, 0.8)]
@@ -167,45 +269,203 @@ def test_gestures_move_what_the_script_reads(env, viewer):
 
 def test_pages_have_cameras_of_their_own_and_share_what_is_selected(env, viewer):
     with Page(viewer) as one, Page(viewer) as other:
-        one.crisp_picture()
-        still = other.crisp_picture()
+        one.settled()
+        still = other.settled()
         one.send(type="wheel", steps=3)
         await_that(lambda: viewer.GetCameraTransform()[0, 3] < 0.9)
-        other.send(type="ready")
         with pytest.raises(TimeoutError):
             other.socket.recv(0.5)
         one.escape()
         one.drag((200, 160), (200, 160))
         await_that(lambda: viewer.GetSelectedBody() is not None)
-        other.overlay = json.loads(other.socket.recv(10))
+        seen = other.settled()
         assert other.overlay["lines"][-1] == "Robot Pendulum"
-        assert np.abs(np.asarray(Image.open(io.BytesIO(other.socket.recv(10)))).astype(int) - still).max() > 50
+        assert np.abs(seen.astype(int) - still).max() > 50
+        one.settled()
         viewer.SetCamera([[0, 0, -1, 3], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
-        time.sleep(0.2)
         for page in (one, other):
-            await_that(lambda page=page: np.abs(page.picture().astype(int) - viewer.render(*SIZE)).mean() < 3)
+            assert np.abs(page.settled().astype(int) - viewer.render(*SIZE)).mean() < 0.1
+
+
+def test_a_page_that_comes_back_has_the_view_that_it_had(viewer):
+    with Page(viewer, "one") as page:
+        page.escape()
+        page.send(type="use", tool="Dolly", amount=50)
+        await_that(lambda: viewer.GetCameraTransform()[0, 3] < 0.9)
+        seen = page.settled()
+        page.send(type="key", name="s", pressed=True)
+        page.socket.socket.close()  # the connection is lost while a key is held
+    viewer.interaction.look_from(Camera(FROM_FRONT))
+    with Page(viewer, "one") as page, Page(viewer, "one") as duplicate, Page(viewer, "other") as other:
+        assert np.array_equal(page.settled(), seen)
+        assert page.overlay["mode"] == "interaction"
+        assert np.array_equal(duplicate.settled(), seen)
+        assert not np.array_equal(other.settled(), seen)
+        assert other.overlay["mode"] == "camera"
+        duplicate.send(type="use", tool="Dolly", amount=-50)
+        assert not np.array_equal(duplicate.settled(), seen)
+        with pytest.raises(TimeoutError):
+            page.socket.recv(0.5)
+
+
+def test_the_title_is_the_viewers(viewer):
+    with Page(viewer) as page:
+        page.settled()
+        assert page.overlay["title"] == "web"
+        viewer.SetTitle("My robot")
+        page.settled()
+        assert page.overlay["title"] == "My robot"
+
+
+def test_pictures_of_pages_are_handed_to_callbacks(env, viewer):
+    pictures = []
+    handle = viewer.RegisterViewerImageCallback(pictures.append)
+    with Page(viewer) as page:
+        assert np.array_equal(page.settled(), pictures[-1])
+    handle.Close()
 
 
 def test_broken_pages_harm_nobody(viewer, caplog):
     with Page(viewer) as page, Page(viewer) as other:
-        for nonsense in ("", "{", "[]", "7", '{"type": "dance"}', '{"type": "move", "x": NaN, "y": 0}', b"\xff\xfe"):
+        page.settled()
+        for nonsense in ("", "{", "[]", "7", '{"type": "dance"}', '{"type": []}', b"\xff\xfe", "[" * 1000) * 20:
             page.socket.send(nonsense)
-        page.socket.send("[" * 1000)
-        assert page.picture().shape == (*SIZE[::-1], 3)
-        assert 0 < caplog.text.count("is ignored") <= 5
+        for text in ('{"type": "move", "x": NaN, "y": 0}', '{"type": "use", "tool": [], "amount": 0}'):
+            page.socket.send(text)
+        page.send(type="key", name="Escape", pressed=True)
+        page.settled()
+        assert page.overlay["mode"] == "interaction"
+        assert caplog.text.count("no message of a viewer's page") == 1
+        assert caplog.text.count("further cases") == 3
         page.socket.send("x" * 2000)
         with pytest.raises(ConnectionClosed):
             page.read_to_the_end()
-        assert other.picture().shape == (*SIZE[::-1], 3)
+        assert other.settled().shape == (*SIZE[::-1], 3)
+        await_that(lambda: "a message is too long" in caplog.text)
     with Page(viewer) as page:
         page.socket.socket.close()  # the browser is gone in the middle of it
     with Page(viewer) as page:
-        assert page.picture().shape == (*SIZE[::-1], 3)
+        assert page.settled().shape == (*SIZE[::-1], 3)
+
+
+def test_a_page_may_say_much_while_the_script_holds_the_environment(env, viewer):
+    with Page(viewer) as page:
+        page.settled()
+        with env:
+            for _ in range(1000):
+                page.send(type="wheel", steps=0.01)
+        await_that(lambda: viewer.GetCameraDistanceToFocus() == pytest.approx(1.2 * 0.9**10, rel=0.2))
+        page.settled()
+
+
+def test_a_body_is_removed_while_it_is_selected(env, viewer):
+    with Page(viewer) as page:
+        page.escape()
+        page.drag((200, 160), (200, 160))
+        await_that(lambda: viewer.GetSelectedBody() is not None)
+        page.settled()
+        env.Remove(env.GetRobots()[0])
+        empty = page.settled()
+        assert (empty == 255).all()
+        assert page.overlay["lines"] == []
+        assert viewer.GetSelectedBody() is None
+
+
+def test_a_second_viewer_takes_the_place_of_the_first(env, viewer):
+    with Page(viewer) as page:
+        page.settled()
+        env.SetViewer("web")
+        with pytest.raises(ConnectionClosed) as caught:
+            page.socket.recv(10)
+        assert caught.value.rcvd.code == 1001
+        with Page(env.GetViewer()) as other:
+            other.settled()
+    assert not viewer.is_open
+
+
+def test_strangers_that_say_nothing_do_not_keep_a_viewer_open(env, viewer):
+    with socket.create_connection(("127.0.0.1", viewer.server.port)), Page(viewer) as page:
+        page.settled()
+        start = time.monotonic()
+        env.Destroy()
+        assert time.monotonic() - start < 3
+
+
+def test_a_page_that_stands_still_does_not_keep_a_viewer_open(env, viewer):
+    """It takes nothing more from its socket, and does not answer when it is told that the viewer closes."""
+    connection = socket.create_connection(("127.0.0.1", viewer.server.port))
+    token = viewer.url.split("/")[3]
+    lines = (
+        f"GET /{token}/socket HTTP/1.1",
+        f"Host: 127.0.0.1:{viewer.server.port}",
+        f"Origin: http://127.0.0.1:{viewer.server.port}",
+        "Upgrade: websocket",
+        "Connection: Upgrade",
+        "Sec-WebSocket-Version: 13",
+        "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==",
+    )
+    connection.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
+    assert b"101 Switching" in connection.recv(1000)
+    start = time.monotonic()
+    env.Destroy()
+    assert time.monotonic() - start < 3
+    connection.close()
+
+
+@pytest.mark.parametrize(
+    ("port", "reason"),
+    [("taken", "address already in use"), ("name", "name or service not known|not known|resolution")],
+)
+def test_a_port_that_cannot_be_had_is_an_error(env, viewer, port, reason):
+    where = {"port": viewer.server.port} if port == "taken" else {"host": "no.such.host.invalid"}
+    with pytest.raises(RenderingError, match=f"no page can be served at port .*({reason})"):
+        WebViewer(env.simulation, env.studio, "web", **where)
+
+
+def test_a_script_ends_although_a_page_is_open(tmp_path):
+    code = f"""
+import ravemj
+env = ravemj.load({str(MODELS / "env.xml")!r})
+env.SetViewer("web")
+print(env.GetViewer().url, flush=True)
+input()
+"""
+    variables = environment(tmp_path)
+    script = subprocess.Popen([sys.executable, "-c", code], env=variables, stdin=-1, stdout=-1, stderr=-1, text=True)
+    with script, Page(SimpleNamespace(url=script.stdout.readline().strip())) as page:
+        page.settled()
+        script.stdin.write("\n")
+        script.stdin.flush()
+        assert script.wait(10) == 0
+        with pytest.raises(ConnectionClosed):
+            page.read_to_the_end()
+        assert "Traceback" not in script.stderr.read()
+
+
+def test_a_page_leaves_with_a_forgotten_environment():
+    def show():
+        env = ravemj.load(MODELS / "env.xml")
+        env.SetViewer("web")
+        page = Page(env.GetViewer())
+        page.settled()
+        return page
+
+    def is_gone(page):
+        gc.collect()
+        try:
+            page.socket.recv(0.1)
+        except ConnectionClosed:
+            return True
+        except TimeoutError:
+            return False
+
+    with show() as page:
+        await_that(lambda: is_gone(page))
 
 
 def test_closing_ends_all_pages_and_main(env, viewer):
     with Page(viewer) as page:
-        page.picture()
+        page.settled()
         assert viewer.is_open
         with env:  # nobody waits for who holds the environment
             env.SetViewer("")
@@ -221,12 +481,14 @@ def test_closing_ends_all_pages_and_main(env, viewer):
     ("text", "message"),
     [
         (
-            '{"type":"press","x":1,"y":2.5,"button":"middle","ctrl":true,"shift":false}',
-            Press(1, 2.5, Button.MIDDLE, True),
+            '{"type":"press","x":1,"y":2.5,"button":"middle","ctrl":true,"shift":false,"touch":true}',
+            Press(1, 2.5, Button.MIDDLE, True, touch=True),
         ),
         ('{"type":"release","x":1,"y":2,"button":"left"}', Release(1, 2)),
         ('{"type":"move","x":1,"y":2}', Move(1, 2)),
         ('{"type":"wheel","steps":-1}', Wheel(-1)),
+        ('{"type":"fingers","right":1,"down":-2,"spread":1.5}', Fingers(1, -2, 1.5)),
+        ('{"type":"use","tool":"RotX","amount":-3}', Use(Tool.ROT_X, -3)),
         ('{"type":"key","name":"s","pressed":true}', Key("s")),
         ('{"type":"leave"}', Leave()),
         ('{"type":"ready"}', Ready()),
@@ -238,7 +500,7 @@ def test_messages(text, message):
     fields = json.loads(text)
     for name in fields:
         for wrong in (None, [], "?", True, 1e9, float("inf"), {}):
-            if name in ("name", "pressed", "ctrl", "shift") and wrong in ("?", True):
+            if name in ("name", "pressed", "ctrl", "shift", "touch") and wrong in ("?", True):
                 continue
             with pytest.raises(ValueError):  # noqa: PT011 - whatever it says
                 parse(json.dumps({**fields, name: wrong}))
@@ -254,7 +516,7 @@ def test_a_script_a_hand_and_an_onlooker_share_one_environment(env, viewer):
         page.drag(at([0.01, 0, -0.3]), at([0.01, 0, -0.3]), ctrl=True)
         await_that(lambda: viewer.GetSelectedJoint() is not None)
         centre = at(JointHandle.at(robot._state, 1).center)
-        page.mouse("press", (centre[0] + 5, centre[1]), button="left", ctrl=False, shift=False)
+        page.mouse("press", (centre[0] + 5, centre[1]), button="left", ctrl=False, shift=False, touch=False)
         start = time.monotonic()
         for step in range(100):
             robot.SetDOFValues([0.001 * step], [0])

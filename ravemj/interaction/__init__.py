@@ -12,7 +12,20 @@
 from ravemj.interaction.board import Board
 from ravemj.interaction.controls import Control, Controls, Wish
 from ravemj.interaction.core import Interaction, Mode, Overlay
-from ravemj.interaction.events import Button, Event, Key, Leave, Move, Operate, Press, Release, Resize, Wheel
+from ravemj.interaction.events import (
+    Button,
+    Event,
+    Fingers,
+    Key,
+    Leave,
+    Move,
+    Operate,
+    Press,
+    Release,
+    Resize,
+    Use,
+    Wheel,
+)
 from ravemj.interaction.layout import Panel, Rect, Tool, tools
 from ravemj.interaction.notices import Notices
 from ravemj.interaction.picking import Hit, pick
@@ -26,6 +39,7 @@ __all__ = [
     "Control",
     "Controls",
     "Event",
+    "Fingers",
     "Hit",
     "Interaction",
     "Key",
@@ -44,6 +58,7 @@ __all__ = [
     "Resize",
     "Selection",
     "Tool",
+    "Use",
     "View",
     "Wheel",
     "Wish",

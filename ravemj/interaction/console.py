@@ -19,12 +19,19 @@ class Console:
         controls: What there is to press and to slide.
     """
 
-    def __init__(self, controls: Controls) -> None:
+    def __init__(self, controls: Controls, *, is_drawn: bool = True) -> None:
+        """Begin with the first joints.
+
+        Args:
+            controls: What there is to press and to slide.
+            is_drawn: False where the shell has buttons and sliders of its own: nothing is on the view then.
+        """
         self.controls = controls
+        self._is_drawn = is_drawn
         self._first_joint = 0.0
 
     def _board(self, size: _Size) -> Board:
-        return Board.of(self.controls.all(), size, round(self._first_joint))
+        return Board.of(self.controls.all() if self._is_drawn else (), size, round(self._first_joint))
 
     def covers(self, at: tuple[float, float] | None, size: _Size) -> bool:
         """Return whether a point [points] is on the controls of a view, be it between them."""

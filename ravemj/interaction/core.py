@@ -14,7 +14,20 @@ from ravemj.drawing import Shapes
 from ravemj.interaction import layout
 from ravemj.interaction.console import Console
 from ravemj.interaction.controls import Control, Controls
-from ravemj.interaction.events import Button, Event, Key, Leave, Move, Operate, Press, Release, Resize, Wheel
+from ravemj.interaction.events import (
+    Button,
+    Event,
+    Fingers,
+    Key,
+    Leave,
+    Move,
+    Operate,
+    Press,
+    Release,
+    Resize,
+    Use,
+    Wheel,
+)
 from ravemj.interaction.layout import Panel, Tool
 from ravemj.interaction.notices import Notices
 from ravemj.interaction.picking import Hit, pick
@@ -29,9 +42,6 @@ _CLICK = 4.0
 
 _STEP = 0.9
 """How much nearer a step of the wheel brings the focus."""
-
-_ZOOM = 4.0
-"""Powers of e by which the distance changes over the height of the view."""
 
 
 class Mode(Enum):
@@ -86,6 +96,7 @@ class Interaction:
         self._selector = Selector(simulation, on_select)
         self.controls = Controls(simulation, self._selector, Playback(simulation), Notices())
         self._console = Console(self.controls)
+        self._has_tools = True
         self._changes = 0
         self._pointer: tuple[float, float] | None = None
         self._hovered = False
@@ -94,13 +105,18 @@ class Interaction:
         self._press: Press | None = None
         self._follow: _Follow | None = None
 
-    def another_view(self) -> "Interaction":
-        """Return the mouse and the keys of another view on the same simulation; they share what is selected."""
+    def another_view(self, *, has_tools: bool = True) -> "Interaction":
+        """Return the mouse and the keys of another view on the same simulation; they share what is selected.
+
+        Args:
+            has_tools: False where the shell has buttons and wheels of its own, which ``Use`` them.
+        """
         other = Interaction(self._simulation, self.view.camera, self.view.size)
-        other.view = self.view
+        other.view, other.mode = self.view, self.mode
         other._selector = self._selector
         other.controls = self.controls.another()
-        other._console = Console(other.controls)
+        other._console = Console(other.controls, is_drawn=has_tools)
+        other._has_tools = has_tools
         return other
 
     @property
@@ -170,7 +186,8 @@ class Interaction:
             elif control is not None:
                 at = control.label
             lines = (*([at] if at else []), *self._selector.lines(), *self.controls.notices.lines)
-            panels = *layout.panels(size, chosen), *self._console.panels(size)
+            tools = layout.panels(size, chosen) if self._has_tools else ()
+            panels = *tools, *self._console.panels(size)
             return Overlay(self._selector.shapes(), lines, panels, self.controls.all())
 
     def _forget_what_is_gone(self) -> None:
@@ -179,7 +196,7 @@ class Interaction:
 
     # --- events
 
-    def _do(self, event: Event) -> None:  # noqa: C901 - a case for each event
+    def _do(self, event: Event) -> None:
         match event:
             case Press():
                 self._on_press(event)
@@ -187,26 +204,37 @@ class Interaction:
                 self._on_move(x, y)
             case Release():
                 self._on_release(event)
+            case Leave():
+                self._on_leave()
+            case _:
+                self._do_without_pointer(event)
+
+    def _do_without_pointer(self, event: Wheel | Fingers | Use | Key | Operate | Resize) -> None:
+        match event:
             case Wheel(steps):
                 self._on_wheel(steps)
+            case Fingers(right, down, spread):
+                self.view = self._focused().shifted(right, down).zoomed(-math.log(spread))
+            case Use(tool, amount):
+                self._use(tool, amount)
             case Key(name, pressed):
                 self._on_key(name.lower(), pressed)
             case Operate(name, value):
                 self.controls.operate(name, value)
             case Resize(width, height):
                 self.view = replace(self.view, size=(max(width, 1), max(height, 1)))
-            case Leave():
-                self._on_leave()
 
     def _on_press(self, press: Press) -> None:
         self._buttons.add(press.button)
         self._press = self._follow = None
         self._pointer = press.x, press.y
-        tool = layout.tool_at(self.view.size, press.x, press.y)
+        tool = layout.tool_at(self.view.size, press.x, press.y) if self._has_tools else None
         if self._console.covers(self._pointer, self.view.size):
             self._follow = self._console.press(press, self.view.size)
         elif tool is not None:
-            self._use(tool, press)
+            self._press_tool(tool, press)
+        elif press.touch:
+            self._press = press
         elif press.button is Button.LEFT and "s" in self._keys:
             self._centre(press)
         elif self.mode is Mode.CAMERA:
@@ -228,6 +256,8 @@ class Interaction:
         press, self._press, self._follow = self._press, None, None
         if press is not None and press.button is release.button:
             self._selector.click(self.view, press)
+            if press.touch and self._selector.selection is not None:
+                self._set_mode(Mode.INTERACTION)  # what has appeared can be dragged
 
     def _on_wheel(self, steps: float) -> None:
         if self._console.covers(self._pointer, self.view.size):
@@ -254,22 +284,24 @@ class Interaction:
         self.mode = mode
         self._press = self._follow = None
 
-    def _use(self, tool: Tool, press: Press) -> None:
+    def _press_tool(self, tool: Tool, press: Press) -> None:
         """Press a button, or hold one of the wheels."""
         if press.button is not Button.LEFT:
             return
-        view = self._focused()
-        match tool:
-            case Tool.INTERACT:
-                self._set_mode(Mode.INTERACTION)
-            case Tool.CAMERA:
-                self._set_mode(Mode.CAMERA)
-            case Tool.ROT_X:
-                self._follow = self._steered(press, lambda _, down: view.turned(0.0, down))
-            case Tool.ROT_Y:
-                self._follow = self._steered(press, lambda right, _: view.turned(right, 0.0))
-            case Tool.DOLLY:
-                self._follow = self._steered(press, lambda _, down: view.zoomed(-_ZOOM * down / view.size[1]))
+        if tool in (Tool.INTERACT, Tool.CAMERA):
+            self._use(tool)
+        else:
+            view = self._focused()
+            aside = tool is Tool.ROT_Y
+            self._follow = self._steered(press, lambda right, down: view.rolled(tool, right if aside else down))
+
+    def _use(self, tool: Tool, amount: float = 0.0) -> None:
+        if tool is Tool.INTERACT:
+            self._set_mode(Mode.INTERACTION)
+        elif tool is Tool.CAMERA:
+            self._set_mode(Mode.CAMERA)
+        else:
+            self.view = self._focused().rolled(tool, amount)
 
     # --- the camera
 
@@ -293,7 +325,7 @@ class Interaction:
     def _move_camera(self, press: Press) -> None:
         view = self._focused()
         if {Button.LEFT, Button.MIDDLE} <= self._buttons:
-            self._follow = self._steered(press, lambda _, down: view.zoomed(-_ZOOM * down / view.size[1]))
+            self._follow = self._steered(press, lambda _, down: view.rolled(Tool.DOLLY, down))
         elif press.button is Button.MIDDLE or (press.button is Button.LEFT and press.shift):
             self._follow = self._steered(press, view.shifted)
         elif press.button is Button.LEFT:
@@ -305,8 +337,10 @@ class Interaction:
             self.view = self.view.centred(hit.position)
 
     def _hold(self, press: Press) -> _Follow | None:
-        """Take hold of the cube or the cylinder where the button went down."""
-        follow, selection = self._selector.hold(self.view, press), self._selector.selection
+        """Take hold of the cube or the cylinder where the button went down; fingers turn the view elsewhere."""
+        follow = self._selector.hold(self.view, press) if self.mode is Mode.INTERACTION else None
+        selection = self._selector.selection
         if follow is not None and selection is not None:
             self.controls.take(selection.body)
-        return None if follow is None else lambda x, y: follow(self.view.ray(x, y))
+            return lambda x, y: follow(self.view.ray(x, y))
+        return self._steered(press, self._focused().turned) if press.touch else None

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from ravemj.interaction.layout import Tool
+
 
 class Button(Enum):
     """A button of the mouse."""
@@ -22,6 +24,7 @@ class Press:
         button: Which button.
         ctrl: Whether Ctrl is held.
         shift: Whether Shift is held.
+        touch: Whether this is a finger: it turns the view beside what can be dragged, and a tap selects in both modes.
     """
 
     x: float
@@ -29,6 +32,7 @@ class Press:
     button: Button = Button.LEFT
     ctrl: bool = False
     shift: bool = False
+    touch: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +57,34 @@ class Wheel:
     """The wheel turns; positive steps are away from the hand."""
 
     steps: float
+
+
+@dataclass(frozen=True, slots=True)
+class Fingers:
+    """Two fingers move.
+
+    Attributes:
+        right: How far their middle went to the right [points].
+        down: How far it went down [points].
+        spread: By which factor their distance grew; above 0.
+    """
+
+    right: float
+    down: float
+    spread: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """A button or a wheel on the view is used otherwise than by pressing it there.
+
+    Attributes:
+        tool: Which one.
+        amount: How far a wheel is moved, to the right or down [points].
+    """
+
+    tool: Tool
+    amount: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,4 +121,4 @@ class Leave:
     """The view is left: keys and buttons that are held do not count any more."""
 
 
-Event = Press | Move | Release | Wheel | Key | Operate | Resize | Leave
+Event = Press | Move | Release | Wheel | Fingers | Use | Key | Operate | Resize | Leave

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ravemj.interaction.layout import Tool
 from ravemj.rendering import Camera
 from ravemj.transforms import Floats, rows_from_wxyz, wxyz_from_axis_angle
 
@@ -14,6 +15,9 @@ _NEAREST, _FARTHEST = 1e-3, 1e6
 
 _STRONGEST = 10.0
 """Largest power of e by which one step of zooming changes the distance."""
+
+_ZOOM = 4.0
+"""Powers of e by which the distance changes over the height of the view."""
 
 
 class Ray(NamedTuple):
@@ -76,6 +80,14 @@ class View:
         factor = math.exp(min(max(power, -_STRONGEST), _STRONGEST))
         distance = min(max(self.distance * factor, _NEAREST), _FARTHEST)
         return self._placed(self.camera.rotation, self.focus, distance)
+
+    def rolled(self, wheel: Tool, amount: float) -> "View":
+        """Return the view after one of its wheels was moved to the right or down [points]."""
+        if wheel is Tool.ROT_X:
+            return self.turned(0.0, amount)
+        if wheel is Tool.ROT_Y:
+            return self.turned(amount, 0.0)
+        return self.zoomed(-_ZOOM * amount / self.size[1])
 
     def centred(self, point: Floats) -> "View":
         """Look at a point from half the distance; it becomes the focus. The camera does not roll."""

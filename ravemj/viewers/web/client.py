@@ -1,29 +1,30 @@
 """One page in a browser: its events in, pictures of its view out."""
 
-import contextlib
-import io
 import json
 import logging
 import time
-from typing import Protocol
+from collections import deque
+from collections.abc import Iterable
+from typing import NamedTuple, Protocol
 
 from ravemj.errors import RavemjError
-from ravemj.interaction import Interaction, Overlay
+from ravemj.interaction import Interaction, Leave, Move, Overlay
 from ravemj.simulation import Simulation
 from ravemj.studio import Format, Frame, Studio
 from ravemj.viewers.painter import appearance
-from ravemj.viewers.web.messages import Ready, Shape, parse
+from ravemj.viewers.web import encoding
+from ravemj.viewers.web.complaints import Complaints
+from ravemj.viewers.web.link import Link
+from ravemj.viewers.web.messages import Message, Ready, Shape, parse
 
 _LOG = logging.getLogger("ravemj")
 _PERIOD = 1 / 60
 _REST = 0.3
 """After so long without a change [s], the picture is sent once more, crisp."""
 
-_MOVING_QUALITY, _RESTING_QUALITY = 75, 95
 _MOST_PIXELS = 1920 * 1440
-_PATIENCE_WITH_NONSENSE = 5
 _MOST_AT_ONCE = 100
-"""Messages that are taken in before the next picture."""
+"""Messages that are taken in before the next picture: moves come faster than pictures can be drawn."""
 
 
 class Connection(Protocol):
@@ -38,70 +39,99 @@ class Connection(Protocol):
         ...
 
 
+class Look(NamedTuple):
+    """How all pages of a viewer look.
+
+    Attributes:
+        background: Colour where nothing is, in 0..1.
+        title: What the page is called.
+    """
+
+    background: tuple[float, float, float]
+    title: str
+
+
+def receive(connection: Connection) -> list[str | bytes]:
+    """Return the messages of a page; where there are none, wait for at most a frame's time."""
+    messages: list[str | bytes] = []
+    try:
+        messages.append(connection.recv(timeout=_PERIOD))
+        while len(messages) < _MOST_AT_ONCE:
+            messages.append(connection.recv(timeout=0))
+    except TimeoutError:
+        pass
+    return messages
+
+
 class Client:
-    """Serves one page, in a thread of its own."""
+    """Serves one page, in a thread of its own.
+
+    Attributes:
+        interaction: The mouse and the keys of the page, and its view.
+    """
 
     def __init__(self, simulation: Simulation, studio: Studio, interaction: Interaction) -> None:
         self.interaction = interaction
         self._simulation = simulation
         self._studio = studio
+        self._link = Link()
         self._ratio = 1.0
-        self._is_ready = False
+        self._waiting: deque[Message] = deque([Leave()])  # of what an earlier connection of the page has left
         self._seen: object = None
+        self._complaint = ""
         self._changed_at = 0.0
         self._is_crisp = True
-        self._nonsense = 0
 
-    def take_in(self, connection: Connection) -> None:
-        """Wait for messages for at most a frame's time, and do what they say.
+    @property
+    def is_behind(self) -> bool:
+        """Whether there is enough to do before more messages are received."""
+        return len(self._waiting) > _MOST_AT_ONCE
 
-        Raises:
-            TimeoutError: none came.
+    def take_in(self, messages: Iterable[str | bytes], complain: Complaints) -> None:
+        """Read messages, which ``attend`` acts upon; nonsense is left out."""
+        for text in messages:
+            try:
+                message = parse(text)
+            except ValueError as error:
+                complain(str(error), text)
+                continue
+            if isinstance(message, Ready):
+                self._link.shown()
+                continue
+            if isinstance(message, Move) and self._waiting and isinstance(self._waiting[-1], Move):
+                self._waiting.pop()  # only where the pointer is now counts
+            self._waiting.append(message)
+
+    def attend(self, connection: Connection, look: Look) -> Frame | None:
+        """Do what the page said, and send it a picture if it takes one and anything has changed or come to rest.
+
+        Returns:
+            The picture; None if there was none to be sent.
         """
-        self._do(connection.recv(timeout=_PERIOD))
-        with contextlib.suppress(TimeoutError):  # moves come faster than pictures can be drawn
-            for _ in range(_MOST_AT_ONCE):
-                self._do(connection.recv(timeout=0))
-
-    def _do(self, text: str | bytes) -> None:
         try:
-            message = parse(text)
-        except ValueError as error:
-            self._nonsense += 1
-            if self._nonsense <= _PATIENCE_WITH_NONSENSE:
-                _LOG.warning("a message of a viewer's page is ignored: %s", error)
-            return
-        if isinstance(message, Ready):
-            self._is_ready = True
-        elif isinstance(message, Shape):
-            self._ratio = message.ratio
-            self.interaction.handle(message.resize)
-        else:
-            self.interaction.handle(message)
-
-    def show(self, connection: Connection, background: tuple[float, float, float]) -> None:
-        """Send a picture if the page takes one, and anything has changed or come to rest."""
-        if not self._is_ready:
-            return
-        try:
-            overlay = self._look(background)
-            picture = None if overlay is None else self._picture(overlay, background)
+            overlay = self._overlay_if_due(look)
+            picture = None if overlay is None else self._picture(overlay, look)
         except RavemjError as error:
-            if self._seen is not None:
+            if error.message != self._complaint:
                 _LOG.error("a page cannot show the environment: %s", error)
+                self._complaint = error.message
             self._seen = None
-            return
-        if overlay is not None and picture is not None:
-            self._is_ready = False
-            connection.send(_text(overlay))
-            connection.send(jpeg(picture, _RESTING_QUALITY if self._is_crisp else _MOVING_QUALITY))
+            return None
+        if overlay is None or picture is None:
+            return None
+        self._send(connection, overlay, picture, look)
+        return picture
 
-    def _look(self, background: tuple[float, float, float]) -> Overlay | None:
-        """Return what is to be drawn over the bodies if a picture is due, else None."""
+    def _overlay_if_due(self, look: Look) -> Overlay | None:
+        """Do what the page said; return what is to be drawn over the bodies if a picture is due, else None."""
         if not self._simulation.lock.acquire(timeout=_PERIOD):  # who holds it may wait for this thread to end
             return None
         try:
-            seen = appearance(self._simulation), self.interaction.version, background, self._ratio
+            while self._waiting:
+                self._do(self._waiting.popleft())
+            if not self._link.is_free:
+                return None
+            seen = appearance(self._simulation), self.interaction.version, look, self._ratio
             now = time.monotonic()
             if seen != self._seen:
                 self._seen, self._changed_at, self._is_crisp = seen, now, False
@@ -113,22 +143,26 @@ class Client:
         finally:
             self._simulation.lock.release()
 
-    def _picture(self, overlay: Overlay, background: tuple[float, float, float]) -> Frame:
+    def _do(self, message: Message) -> None:
+        if isinstance(message, Shape):
+            self._ratio = message.ratio
+            self.interaction.handle(message.resize)
+        elif not isinstance(message, Ready):
+            self.interaction.handle(message)
+
+    def _picture(self, overlay: Overlay, look: Look) -> Frame:
         width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
         shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, 1.0)
         form = Format(max(int(width * shrink), 1), max(int(height * shrink), 1))
-        return self._studio.picture(self.interaction.view.camera, background, form, gizmos=overlay.shapes)
+        return self._studio.picture(self.interaction.view.camera, look.background, form, gizmos=overlay.shapes)
 
-
-def _text(overlay: Overlay) -> str:
-    panels = [[*panel.rect, *panel.rgba, panel.text] for panel in overlay.panels]
-    return json.dumps({"lines": overlay.lines, "panels": panels})
-
-
-def jpeg(picture: Frame, quality: int) -> bytes:
-    """Return a picture as the bytes of a JPEG file."""
-    from PIL import Image  # noqa: PLC0415 - slow to import
-
-    file = io.BytesIO()
-    Image.fromarray(picture).save(file, "JPEG", quality=quality)
-    return file.getvalue()
+    def _send(self, connection: Connection, overlay: Overlay, picture: Frame, look: Look) -> None:
+        link = self._link
+        link.sent(is_moving=not self._is_crisp)
+        mode = self.interaction.mode.value
+        text = {"lines": overlay.lines, "mode": mode, "title": look.title, "crisp": self._is_crisp}
+        connection.send(json.dumps(text))
+        if self._is_crisp:
+            connection.send(encoding.resting(picture, is_exact=link.is_good))
+        else:
+            connection.send(encoding.moving(picture, link.quality, is_halved=link.is_halved))

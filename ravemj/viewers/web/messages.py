@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from ravemj.interaction import Button, Event, Key, Leave, Move, Press, Release, Resize, Wheel
+from ravemj.interaction import Button, Event, Fingers, Key, Leave, Move, Press, Release, Resize, Tool, Use, Wheel
 
 LONGEST = 1024
 """Longest message of a page [bytes]."""
@@ -38,18 +38,22 @@ def parse(text: str | bytes) -> Message:
     """Return what a message says.
 
     Raises:
-        ValueError: it says nothing that is known, or numbers that make no sense.
+        ValueError: it says nothing that is known, or numbers that make no sense; the text is one of a few.
     """
     try:
         fields = json.loads(text)
-        return _PARSERS[fields["type"]](fields)
-    except (KeyError, TypeError, AttributeError, RecursionError, json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise ValueError(f"no message of a viewer's page: {type(error).__name__}") from None
+        parser = _PARSERS[fields["type"]]
+    except (KeyError, TypeError, RecursionError, ValueError):
+        raise ValueError("this is no message of a viewer's page") from None
+    try:
+        return parser(fields)
+    except (KeyError, TypeError):
+        raise ValueError("a field is missing, or of another kind") from None
 
 
 def _number(value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ValueError("a number is missing")
+        raise ValueError("a field is no number")
     if abs(value) > _FARTHEST:
         raise ValueError("a number is too large")
     return float(value)
@@ -57,24 +61,44 @@ def _number(value: object) -> float:
 
 def _flag(value: object) -> bool:
     if not isinstance(value, bool):
-        raise TypeError("a flag is missing")
+        raise ValueError("a field is neither true nor false")
     return value
+
+
+def _button(name: object) -> Button:
+    if name not in _BUTTONS:
+        raise ValueError("there is no such button of a mouse")
+    return _BUTTONS[name]
 
 
 def _press(fields: dict[str, Any]) -> Press:
     at = _number(fields["x"]), _number(fields["y"])
-    return Press(*at, Button(fields["button"]), _flag(fields["ctrl"]), _flag(fields["shift"]))
+    return Press(*at, _button(fields["button"]), *(_flag(fields[name]) for name in ("ctrl", "shift", "touch")))
 
 
 def _release(fields: dict[str, Any]) -> Release:
-    return Release(_number(fields["x"]), _number(fields["y"]), Button(fields["button"]))
+    return Release(_number(fields["x"]), _number(fields["y"]), _button(fields["button"]))
 
 
 def _key(fields: dict[str, Any]) -> Key:
     name = fields["name"]
     if not isinstance(name, str) or len(name) > _LONGEST_KEY:
-        raise ValueError("the name of a key is missing")
+        raise ValueError("there is no such key")
     return Key(name, _flag(fields["pressed"]))
+
+
+def _fingers(fields: dict[str, Any]) -> Fingers:
+    spread = _number(fields["spread"])
+    if spread <= 0:
+        raise ValueError("fingers are never so near")
+    return Fingers(_number(fields["right"]), _number(fields["down"]), spread)
+
+
+def _use(fields: dict[str, Any]) -> Use:
+    name = fields["tool"]
+    if name not in _TOOLS:
+        raise ValueError("there is no such tool")
+    return Use(_TOOLS[name], _number(fields["amount"]))
 
 
 def _shape(fields: dict[str, Any]) -> Shape:
@@ -84,11 +108,15 @@ def _shape(fields: dict[str, Any]) -> Shape:
     return Shape(Resize(round(width), round(height)), ratio)
 
 
+_BUTTONS: dict[object, Button] = {button.value: button for button in Button}
+_TOOLS: dict[object, Tool] = {tool.value: tool for tool in Tool}
 _PARSERS: dict[str, Callable[[dict[str, Any]], Message]] = {
     "press": _press,
     "release": _release,
     "move": lambda fields: Move(_number(fields["x"]), _number(fields["y"])),
     "wheel": lambda fields: Wheel(_number(fields["steps"])),
+    "fingers": _fingers,
+    "use": _use,
     "key": _key,
     "leave": lambda fields: Leave(),
     "shape": _shape,

@@ -1,29 +1,26 @@
 """The viewer whose window is a page in a browser."""
 
-import http
 import logging
-import secrets
+import re
 import threading
 import weakref
-from pathlib import Path
+from collections.abc import Iterable
 
 from numpy.typing import ArrayLike
-from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
-from websockets.http11 import Request, Response
-from websockets.sync.server import Server, ServerConnection, serve
+from websockets.frames import CloseCode
+from websockets.sync.server import ServerConnection
 
-from ravemj.errors import RenderingError
+from ravemj.interaction import Interaction
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
 from ravemj.viewers.viewer import Viewer
-from ravemj.viewers.web.client import Client
-from ravemj.viewers.web.messages import LONGEST
+from ravemj.viewers.web.client import Client, Look, receive
+from ravemj.viewers.web.server import LOOPBACK, PageServer, is_local
 
 _LOG = logging.getLogger("ravemj")
-_HOST = "127.0.0.1"
-_PAGE = Path(__file__).with_name("page.html")
-_MOST_CLIENTS = 16
+_MOST_TABS = 64
+"""So many tabs find their own view again after their connection was lost."""
 
 
 class WebViewer(Viewer):
@@ -33,56 +30,57 @@ class WebViewer(Viewer):
 
     Attributes:
         url: The page.
+        server: Listens for pages.
     """
 
-    _internal = ("answer", "serve_page")
+    _internal = ("attend", "dismiss", "server", "welcome")
 
-    def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        studio: Studio,
+        name: str,
+        host: str = LOOPBACK,
+        port: int = 0,
+        *,
+        any_name: bool = False,
+    ) -> None:
+        """Serve the page.
+
+        Args:
+            simulation: What it shows.
+            studio: What draws the pictures.
+            name: Name of the viewer.
+            host: Interface that browsers come to; another than the default lets those of other machines in.
+            port: Number of the port; 0: any that is free.
+            any_name: Whether browsers may know this machine by any name, as they do behind a proxy.
+
+        Raises:
+            RenderingError: this port cannot be had.
+        """
         super().__init__(simulation, studio, name)
-        self._token = secrets.token_urlsafe(16)
-        self._clients: set[ServerConnection] = set()
-        self._cameras_set = 0
-        self._closed = threading.Event()
-        reference = weakref.ref(self)
-
-        def serve_page(connection: ServerConnection) -> None:
-            viewer = reference()
-            if viewer is not None:
-                viewer.serve_page(connection)
-
-        def answer(connection: ServerConnection, request: Request) -> Response | None:
-            viewer = reference()
-            return _response(http.HTTPStatus.GONE, "text/plain", b"") if viewer is None else viewer.answer(request)
-
-        silent = logging.getLogger("ravemj.web")
-        silent.setLevel(logging.CRITICAL)  # what strangers send is no news
-        try:
-            self._server: Server = serve(
-                serve_page,
-                _HOST,
-                0,
-                process_request=answer,
-                max_size=LONGEST,
-                compression=None,
-                logger=silent,
-            )
-        except OSError as error:
-            raise RenderingError(f"no page can be served: {error}") from None
-        self._port = int(self._server.socket.getsockname()[1])
-        self.url = f"http://{_HOST}:{self._port}/{self._token}/"
-        self._thread = threading.Thread(target=self._server.serve_forever, name="ravemj web", daemon=True)
-        self._thread.start()
-        self._end = weakref.finalize(self, _end, self._closed, self._server, self._thread)
+        self._clients: dict[ServerConnection, Client] = {}
+        self._views: dict[str, Interaction] = {}
+        self._lock = threading.Lock()
+        reference: weakref.ref[WebViewer] = weakref.ref(self)
+        self.server = PageServer(
+            host, port, lambda connection: _serve(reference, connection), any_name=any_name or not is_local(host)
+        )
+        self.url = self.server.url(host)
+        self._end = weakref.finalize(self, self.server.close)
 
     @property
     def is_open(self) -> bool:
         """False once it is closed."""
-        return not self._closed.is_set()
+        return not self.server.closed.is_set()
 
     def SetCamera(self, transform: ArrayLike, focalDistance: float = 0.0) -> None:
         """Set the camera of all pages; see ``Viewer.SetCamera``."""
         super().SetCamera(transform, focalDistance)
-        self._cameras_set += 1
+        with self._lock:
+            views = list(self._views.values())
+        for interaction in views:
+            interaction.look_from(self.camera, self.GetCameraDistanceToFocus())
 
     def main(self, bShow: bool = True) -> int:
         """Wait until ``quitmainloop`` is called or the viewer is closed.
@@ -94,85 +92,81 @@ class WebViewer(Viewer):
             0.
         """
         del bShow
-        while not self._closed.wait(0.1):  # in slices, so that Ctrl-C gets through
+        while not self.server.closed.wait(0.1):  # in slices, so that Ctrl-C gets through
             pass
         return 0
 
     def quitmainloop(self) -> None:
         """End ``main``; pages are told that the viewer has closed."""
-        self._closed.set()
+        self.server.closed.set()
 
     def close(self) -> None:
         """Close the viewer and its pages."""
         self._end()
         super().close()
 
-    def answer(self, request: Request) -> Response | None:
-        """Answer a request: with the page, with a refusal, or None where a page may open its connection."""
-        hosts = {f"{_HOST}:{self._port}", f"localhost:{self._port}"}
-        path = request.path.partition("?")[0]
-        wanted = {f"/{self._token}/": _page, f"/{self._token}/socket": None}
-        known = next((key for key in wanted if secrets.compare_digest(key.encode(), path.encode())), None)
-        if known is None or request.headers.get("Host") not in hosts:
-            return _response(http.HTTPStatus.NOT_FOUND, "text/plain", b"There is nothing here.\n")
-        page = wanted[known]
-        if page is not None:
-            return page()
-        if request.headers.get("Origin") not in {f"http://{host}" for host in hosts}:
-            return _response(http.HTTPStatus.FORBIDDEN, "text/plain", b"Other sites may not connect.\n")
-        if len(self._clients) >= _MOST_CLIENTS:
-            return _response(http.HTTPStatus.SERVICE_UNAVAILABLE, "text/plain", b"There are too many pages.\n")
-        return None
+    def welcome(self, connection: ServerConnection) -> None:
+        """Take a page up; one that was here before has the view that it had."""
+        tab = _tab(connection)
+        with self._lock:
+            view = self._views.pop(tab, None) or self.interaction.another_view(has_tools=False)
+            if any(client.interaction is view for client in self._clients.values()):
+                view = view.another_view(has_tools=False)  # the tab was duplicated
+            self._views[tab] = view
+            for oldest in list(self._views)[:-_MOST_TABS]:
+                del self._views[oldest]
+            self._clients[connection] = Client(self._simulation, self._studio, view)
 
-    def serve_page(self, connection: ServerConnection) -> None:
-        """Exchange messages with a page until it leaves or the viewer is closed."""
-        client = Client(self._simulation, self._studio, self.interaction.another_view())
-        cameras_set = self._cameras_set
-        self._clients.add(connection)
-        try:
-            while not self._closed.is_set():
-                if cameras_set != self._cameras_set:
-                    cameras_set = self._cameras_set
-                    client.interaction.look_from(self.camera, self.GetCameraDistanceToFocus())
-                self._exchange(client, connection)
-        except ConnectionClosed:
-            _LOG.debug("a page has left")
-        finally:
-            self._clients.discard(connection)
-            self._studio.close()
+    def attend(self, connection: ServerConnection, messages: Iterable[str | bytes]) -> bool:
+        """Do what a page says and send it a picture if one is due; return whether it may say more.
 
-    def _exchange(self, client: Client, connection: ServerConnection) -> None:
-        """Take a page's messages in, and send what has changed; the viewer's camera is that of the page used last."""
+        The viewer's camera becomes that of the page where it was moved last.
+        """
+        client = self._clients[connection]
         before = client.interaction.view
-        try:
-            client.take_in(connection)
-        except TimeoutError:
-            pass
-        else:
-            view = client.interaction.view
-            if view.camera is not before.camera:
-                self.interaction.look_from(view.camera, view.distance)
-        client.show(connection, self._background)
+        client.take_in(messages, self.server.complain)
+        picture = client.attend(connection, Look(self._background, self._title))
+        view = client.interaction.view
+        if messages and view.camera is not before.camera:
+            self.interaction.look_from(view.camera, view.distance)
+        if picture is not None:
+            self._image_callbacks.call(picture)
+        return not client.is_behind
+
+    def dismiss(self, connection: ServerConnection) -> None:
+        """Forget a page that has left, in the thread that drew for it."""
+        self._clients.pop(connection, None)
+        self._studio.close()
 
 
-def _end(closed: threading.Event, server: Server, thread: threading.Thread) -> None:
-    """Close all pages and wait for the end of the thread that serves them."""
-    closed.set()
-    server.shutdown()
-    if threading.current_thread() is not thread:
-        thread.join()
+def _serve(reference: "weakref.ref[WebViewer]", connection: ServerConnection) -> None:
+    """Exchange messages with a page until it leaves, or the viewer is closed or gone, which waiting does not keep."""
+    viewer = reference()
+    if viewer is None:
+        return
+    viewer.welcome(connection)
+    messages: list[str | bytes] = []
+    try:
+        while viewer is not None and viewer.is_open:
+            is_listened_to = viewer.attend(connection, messages)
+            viewer = None
+            messages = receive(connection) if is_listened_to else []
+            viewer = reference()
+        connection.close(CloseCode.GOING_AWAY)
+    except ConnectionClosed as error:
+        viewer = reference()
+        if viewer is not None and error.sent is not None and error.sent.code == CloseCode.MESSAGE_TOO_BIG:
+            viewer.server.complain("a message is too long")
+    except Exception:
+        _LOG.exception("a viewer's page has failed")
+    finally:
+        viewer = reference()
+        if viewer is not None:
+            viewer.dismiss(connection)
 
 
-def _page() -> Response:
-    return _response(http.HTTPStatus.OK, "text/html; charset=utf-8", _PAGE.read_bytes())
-
-
-def _response(status: http.HTTPStatus, kind: str, body: bytes) -> Response:
-    headers = Headers()
-    headers["Content-Type"] = kind
-    headers["Content-Length"] = str(len(body))
-    headers["Cache-Control"] = "no-store"
-    headers["Referrer-Policy"] = "no-referrer"
-    headers["X-Content-Type-Options"] = "nosniff"
-    headers["Connection"] = "close"
-    return Response(status.value, status.phrase, headers, body)
+def _tab(connection: ServerConnection) -> str:
+    """Return the name that a page gives itself, or an own one for those that do not."""
+    request = connection.request
+    found = None if request is None else re.search(r"\?tab=([A-Za-z0-9-]{1,40})$", request.path)
+    return found[1] if found else f"#{id(connection)}"

@@ -1,0 +1,277 @@
+"use strict";
+const view = document.getElementById("view"), text = document.getElementById("text");
+const notice = document.getElementById("notice"), paint = view.getContext("2d");
+const buttons = ["left", "middle", "right"];
+const FIRST_WAIT = 300, LONGEST_WAIT = 4000, LONG_PRESS = 550, FAR = 4, GOING_AWAY = 1001;
+
+// --- the connection
+
+let socket = null, overlay = null, wait = FIRST_WAIT, retry = 0, owed = 0;
+
+const tab = sessionStorage.ravemj ||= crypto.getRandomValues(new Uint32Array(4)).join("-");
+
+function send(message) {
+  if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+}
+
+function connect() {
+  clearTimeout(retry);
+  const opened = socket = new WebSocket(new URL("socket?tab=" + tab, location.href.replace(/^http/, "ws")));
+  opened.binaryType = "arraybuffer";
+  opened.onopen = () => {
+    wait = FIRST_WAIT;
+    tell("");
+    shape();
+    ready();
+  };
+  opened.onmessage = (event) => {
+    if (typeof event.data === "string") overlay = JSON.parse(event.data);
+    else show(event.data, overlay, opened);
+  };
+  opened.onclose = (event) => {
+    if (event.code === GOING_AWAY) {
+      tell("The viewer has been closed.");
+      return;
+    }
+    tell("Connection lost, reconnecting …");
+    retry = setTimeout(connect, wait);
+    wait = Math.min(1.7 * wait, LONGEST_WAIT);
+  };
+}
+
+function tell(words) {
+  notice.textContent = words;
+  document.body.classList.toggle("is-lost", words !== "");
+}
+
+function ready() {  // pages that nobody sees take no pictures
+  if (document.hidden) owed += 1;
+  else send({ type: "ready" });
+}
+
+document.addEventListener("visibilitychange", () => {
+  for (; owed > 0 && !document.hidden; owed -= 1) send({ type: "ready" });
+});
+
+window.addEventListener("online", () => {
+  if (socket.readyState === WebSocket.CLOSED) connect();
+});
+
+// --- pictures and text
+
+async function show(data, over, from) {
+  try {
+    const picture = await createImageBitmap(new Blob([data]));
+    if (from === socket) {
+      paint.drawImage(picture, 0, 0, view.width, view.height);
+      write(over);
+    }
+    picture.close();
+  } finally {
+    if (from === socket) ready();
+  }
+}
+
+function write(over) {
+  const lines = over.lines.join("\n");
+  if (text.innerText !== lines) text.innerText = lines;
+  text.hidden = lines === "";
+  document.title = over.title;
+  Object.assign(document.body.dataset, { mode: over.mode, crisp: over.crisp });
+  for (const button of document.querySelectorAll("#modes button")) {
+    button.setAttribute("aria-pressed", button.dataset.mode === over.mode);
+  }
+}
+
+function shape() {
+  const ratio = Math.min(Math.max(window.devicePixelRatio || 1, 0.1), 10);
+  const width = Math.max(1, view.clientWidth), height = Math.max(1, view.clientHeight);
+  const columns = Math.round(width * ratio), rows = Math.round(height * ratio);
+  if (view.width !== columns || view.height !== rows) {
+    const kept = document.createElement("canvas");  // what is seen until the next picture comes
+    [kept.width, kept.height] = [view.width, view.height];
+    kept.getContext("2d").drawImage(view, 0, 0);
+    [view.width, view.height] = [columns, rows];
+    paint.drawImage(kept, 0, 0, columns, rows);
+  }
+  send({ type: "shape", width, height, ratio });
+}
+
+let resizing = 0;
+window.addEventListener("resize", () => {
+  clearTimeout(resizing);
+  resizing = setTimeout(shape, 100);  // each size costs the other side new buffers
+});
+
+// --- mouse and keys
+
+function mouse(type, event) {
+  const button = buttons[event.button];
+  if (!button) return;
+  const held = { ctrl: event.ctrlKey || event.metaKey, shift: event.shiftKey, touch: false };
+  send({ type, x: event.clientX, y: event.clientY, button, ...held });
+}
+
+let pressed = false;
+view.addEventListener("mousedown", (event) => {
+  view.focus({ focusVisible: false });
+  pressed = true;
+  mouse("press", event);
+  event.preventDefault();
+});
+window.addEventListener("mouseup", (event) => {
+  if (!pressed) return;
+  pressed = event.buttons !== 0;
+  mouse("release", event);
+});
+window.addEventListener("mousemove", (event) => {
+  const inside = pressed || event.target === view;
+  send(inside ? { type: "move", x: event.clientX, y: event.clientY } : { type: "move", x: -1, y: -1 });
+});
+document.documentElement.addEventListener("mouseleave", () => {
+  if (!pressed) send({ type: "move", x: -1, y: -1 });
+});
+window.addEventListener("contextmenu", (event) => event.preventDefault());
+view.addEventListener("auxclick", (event) => event.preventDefault());
+view.addEventListener("wheel", (event) => {
+  const steps = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? event.deltaY / 100 : event.deltaY / 3;
+  send({ type: "wheel", steps: Math.max(-10, Math.min(10, -steps)) });
+  event.preventDefault();
+}, { passive: false });
+
+const known = /^(Escape|s)$/i;
+window.addEventListener("keydown", (event) => {
+  if (known.test(event.key) && !event.repeat) send({ type: "key", name: event.key, pressed: true });
+});
+window.addEventListener("keyup", (event) => {
+  if (known.test(event.key)) send({ type: "key", name: event.key, pressed: false });
+});
+window.addEventListener("blur", () => {
+  pressed = false;
+  send({ type: "leave" });
+});
+
+// --- fingers: one turns or drags, two shift and zoom, a tap selects, a long press is a click with Ctrl
+
+const fingers = new Map();
+let holding = 0, touched = null, several = false;
+
+function touch(type, event, ctrl = false) {
+  send({ type, x: event.clientX, y: event.clientY, button: "left", ctrl, shift: false, touch: true });
+}
+
+function span() {
+  const [one, other] = [...fingers.values()];
+  const x = (one.x + other.x) / 2, y = (one.y + other.y) / 2;
+  return { x, y, apart: Math.max(1, Math.hypot(one.x - other.x, one.y - other.y)) };
+}
+
+function pressLong() {
+  const event = touched;
+  touched = null;
+  if (navigator.vibrate) navigator.vibrate(15);
+  send({ type: "leave" });
+  touch("press", event, true);
+  touch("release", event, true);
+  send({ type: "leave" });
+}
+
+view.addEventListener("pointerdown", (event) => {
+  if (event.pointerType !== "touch") return;
+  event.preventDefault();  // no events of a mouse in its wake
+  view.setPointerCapture(event.pointerId);
+  fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+  clearTimeout(holding);
+  if (fingers.size === 1) {
+    touched = event;
+    several = false;
+    touch("press", event);
+    holding = setTimeout(pressLong, LONG_PRESS);
+  } else {
+    touched = null;
+    several = true;
+    send({ type: "leave" });
+  }
+});
+
+view.addEventListener("pointermove", (event) => {
+  const finger = fingers.get(event.pointerId);
+  if (!finger) return;
+  const before = fingers.size === 2 ? span() : null;
+  [finger.x, finger.y] = [event.clientX, event.clientY];
+  if (before) {
+    const now = span();
+    send({ type: "fingers", right: now.x - before.x, down: now.y - before.y, spread: now.apart / before.apart });
+  } else if (touched && !several) {
+    if (Math.hypot(event.clientX - touched.clientX, event.clientY - touched.clientY) > FAR) clearTimeout(holding);
+    send({ type: "move", x: event.clientX, y: event.clientY });
+  }
+});
+
+function lift(event) {
+  if (!fingers.delete(event.pointerId)) return;
+  clearTimeout(holding);
+  if (touched && !several && event.type === "pointerup") touch("release", event);
+  touched = null;
+  send({ type: "leave" });  // a finger that is gone points at nothing
+}
+view.addEventListener("pointerup", lift);
+view.addEventListener("pointercancel", lift);
+
+// --- buttons and wheels
+
+for (const button of document.querySelectorAll("#modes button")) {
+  button.addEventListener("click", () => send({ type: "use", tool: button.dataset.tool, amount: 0 }));
+}
+
+class Wheel {
+  constructor(element) {
+    this.element = element;
+    this.upright = element.getAttribute("aria-orientation") === "vertical";
+    this.turned = 0;  // to the right or down
+    this.at = null;
+    element.addEventListener("pointerdown", (event) => {
+      element.setPointerCapture(event.pointerId);
+      this.at = this.place(event);
+    });
+    element.addEventListener("pointermove", (event) => {
+      if (this.at === null) return;
+      this.turn(this.place(event) - this.at);
+      this.at = this.place(event);
+    });
+    for (const end of ["pointerup", "pointercancel"]) element.addEventListener(end, () => { this.at = null; });
+    element.addEventListener("keydown", (event) => this.press(event));
+  }
+
+  place(event) {
+    return this.upright ? event.clientY : event.clientX;
+  }
+
+  press(event) {
+    const more = this.upright ? -1 : 1;  // up and right are more
+    const steps = { ArrowUp: 10, ArrowRight: 10, ArrowDown: -10, ArrowLeft: -10, PageUp: 60, PageDown: -60 };
+    if (!(event.key in steps) || event.ctrlKey || event.altKey || event.metaKey) return;
+    this.turn(more * steps[event.key]);
+    event.preventDefault();
+  }
+
+  turn(amount) {
+    if (amount === 0) return;
+    this.turned += amount;
+    send({ type: "use", tool: this.element.dataset.tool, amount });
+    this.element.style.setProperty("--turn", this.turned + "px");
+    const value = this.upright ? -this.turned : this.turned;
+    if (this.element.dataset.tool === "Dolly") {
+      this.element.setAttribute("aria-valuenow", Math.round(Math.max(-1000, Math.min(1000, value))));
+      this.element.setAttribute("aria-valuetext", `${Math.abs(Math.round(value))} ${value < 0 ? "nearer" : "farther"}`);
+    } else {
+      const degrees = Math.round(180 * value / Math.max(1, view.clientHeight));
+      const wrapped = ((degrees + 180) % 360 + 360) % 360 - 180;
+      this.element.setAttribute("aria-valuenow", wrapped);
+      this.element.setAttribute("aria-valuetext", `${wrapped} degrees`);
+    }
+  }
+}
+
+for (const element of document.querySelectorAll("[role=slider]")) new Wheel(element);
+connect();
