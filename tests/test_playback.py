@@ -399,12 +399,12 @@ def test_the_sliders_are_those_of_the_selected_body_else_of_one_that_plays_else_
     panel, viewer = Panel(env), env.GetViewer()
     panel.gui = viewer.interaction
     viewer.SetCamera([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
-    assert panel.control("joints").label == "Joints of Pendulum"
+    assert panel.control("joints").label == "DOFs of Pendulum: a slider for each"
     viewer.play(ravemj.Motion.line([0] * 4, [1] * 4), robot=env.GetRobot("longer"))
-    assert panel.control("joints").label == "Joints of longer"
+    assert panel.control("joints").label == "DOFs of longer: a slider for each"
     panel.in_interaction().click(panel.at([0.01, 0, -0.3]))
     assert viewer.GetSelectedBody() is not None
-    assert panel.control("joints").label == "Joints of Pendulum"
+    assert panel.control("joints").label == "DOFs of Pendulum: a slider for each"
 
 
 def test_a_hand_on_what_plays_pauses_it(panel, viewer):

@@ -105,7 +105,7 @@ class Controls:
             Control(Wish.CAMERA.value, "Copy the camera as a line of Python", "Copy"),
         ]
         if body is not None:
-            label = f"Joints of {body.scene.name}"
+            label = f"DOFs of {body.scene.name}: a slider for each"
             controls.append(Control("joints", label, "DOFs", is_on=self.shows_joints))
             if self.shows_joints:
                 sliders = (_joint(body, dof) for dof in range(body.kinematics.dof))
