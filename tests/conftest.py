@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
+from browsers import browser  # noqa: F401 - a fixture
 from screens import display, folder  # noqa: F401 - fixtures
 
 import ravemj

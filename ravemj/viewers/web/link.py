@@ -12,17 +12,13 @@ _SLOW, _FAST = 0.15, 0.05
 
 _DROP, _RISE = 0.7, 0.05
 _WORST, _BEST = 25, 85
-_HALF = 0.4
+_GOOD, _HALF = 0.5, 0.4
 _FORGETTING = 1.02
 """By how much the quickest time grows with each picture: the way to the browser may have become longer."""
 
 
 class Link:
-    """The way to one page, as the times tell that its pictures take until they are shown.
-
-    Attributes:
-        is_good: Whether it takes all that it is given.
-    """
+    """The way to one page, as the times tell that its pictures take until they are shown."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -38,8 +34,8 @@ class Link:
 
     @property
     def is_good(self) -> bool:
-        """Whether pictures need not be smaller than they could be."""
-        return self._level == 1.0
+        """Whether what comes to rest may have as many bytes as it likes."""
+        return self._level >= _GOOD
 
     @property
     def quality(self) -> int:

@@ -8,7 +8,7 @@ const FIRST_WAIT = 300, LONGEST_WAIT = 4000, LONG_PRESS = 550, FAR = 4, GOING_AW
 
 let socket = null, overlay = null, wait = FIRST_WAIT, retry = 0, owed = 0;
 
-const tab = sessionStorage.ravemj ||= crypto.getRandomValues(new Uint32Array(4)).join("-");
+const tab = sessionStorage.ravemj ||= crypto.getRandomValues(new Uint32Array(3)).join("-");
 
 function send(message) {
   if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));

@@ -1,0 +1,253 @@
+"""A browser without a window, pages of viewers in it, and hands on them."""
+
+import importlib.util
+import io
+import shutil
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import ravemj
+from ravemj.interaction import Button, Fingers, Interaction, Key, Leave, Move, Press, Release, Use, Wheel
+from ravemj.rendering import Camera
+from ravemj.studio import Format
+
+CHROMIUM = shutil.which("chromium")
+FLAGS = [
+    f"--{flag}"
+    for flag in (
+        "no-sandbox",
+        "disable-gpu",
+        "disable-webgl",
+        "disable-quic",
+        "no-first-run",
+        "disable-background-networking",
+        "disable-component-update",
+        "disable-sync",
+    )
+]
+NEEDS_A_BROWSER = [
+    pytest.mark.gui,
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: apt-get install chromium"),
+    pytest.mark.skipif(importlib.util.find_spec("playwright") is None, reason="there is no Playwright"),
+]
+SIZE = 640, 480
+ASLANT = np.array(
+    [[-0.643, 0.324, -0.694, 0.943], [0.766, 0.272, -0.583, 0.792], [0, -0.906, -0.423, 0.474], [0, 0, 0, 1]]
+)
+CLEAR = slice(90, 390), slice(60, 560)
+"""Rows and columns where neither text nor buttons are."""
+
+
+@pytest.fixture(scope="module")
+def browser():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+def await_that(condition: Callable[[], object], otherwise: str, seconds: float = 10) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, otherwise
+        time.sleep(0.02)
+
+
+def await_equal(picture: Callable[[], np.ndarray], expected: Callable[[], np.ndarray]) -> None:
+    """Wait until a picture is as expected, but for what JPEG does to it where the machine is busy."""
+    end = time.monotonic() + 10
+    while (away := np.abs(picture() - expected())).max() > 40 or away.mean() > 0.5:
+        wrong = np.argwhere(away.max(axis=2) > 40)
+        assert time.monotonic() < end, f"{wrong[0]} to {wrong[-1]} is wrong, by up to {away.max()} of 255"
+
+
+class Desk:
+    """A page that is driven by real events, and the core on its own that is driven by the same ones."""
+
+    def __init__(self, browser, load: Callable[[], ravemj.Environment], **context) -> None:
+        self.env, self.other_env = load(), load()
+        self.env.SetViewer("web")
+        self.viewer = self.env.GetViewer()
+        self.viewer.SetCamera(ASLANT, 0.8)
+        self.robot, self.other_robot = self.env.GetRobots()[0], self.other_env.GetRobots()[0]
+        self._start = self.robot.GetTransform()
+        self.core = self.fresh_core()
+        self.context = browser.new_context(viewport={"width": SIZE[0], "height": SIZE[1]}, has_touch=True, **context)
+        self.troubles: list[str] = []
+        self.page = self.open_page()
+
+    def open_page(self):
+        page = self.context.new_page()
+        page.on("pageerror", lambda error: self.troubles.append(str(error)))
+        page.on("console", lambda message: self.troubles.append(message.text))
+        page.goto(self.viewer.url)
+        page.wait_for_selector("[data-crisp]")
+        return page
+
+    def fresh_core(self) -> Interaction:
+        """Return the core as the page's was at first."""
+        core = Interaction(self.other_env._simulation, Camera(ASLANT), SIZE)
+        core.look_from(Camera(ASLANT), 0.8)
+        return core
+
+    def reset(self) -> None:
+        """Bring everything back to how it was at first."""
+        for page in self.context.pages[1:]:
+            page.close()
+        self.page.set_viewport_size({"width": SIZE[0], "height": SIZE[1]})
+        if self.viewer.GetSelectedBody() is not None:
+            self.page.get_by_role("button", name="Interaction mode").click()
+            self.page.mouse.click(SIZE[0] - 80, 10)
+        self.page.get_by_role("button", name="Camera mode").click()
+        self.page.mouse.move(SIZE[0] / 2, 60)
+        for robot in (self.robot, self.other_robot):
+            robot.SetTransform(self._start)
+            robot.SetDOFValues(np.zeros(robot.GetDOF()))
+        self.viewer.SetBkgndColor([1, 1, 1])
+        self.viewer.SetCamera(ASLANT, 0.8)
+        self.core = self.fresh_core()
+        await_that(
+            lambda: (
+                self.viewer.GetSelectedBody() is None
+                and np.array_equal(self.viewer.GetCameraTransform(), ASLANT)
+                and self.page.get_attribute("body", "data-mode") == "camera"
+            ),
+            "something stays",
+        )
+
+    def close(self) -> None:
+        self.context.close()
+        self.env.Destroy()
+        self.other_env.Destroy()
+
+    # --- what is seen
+
+    def picture(self, page=None) -> np.ndarray:
+        """Return the pixels of the page, (height, width, 3)."""
+        return np.asarray(Image.open(io.BytesIO((page or self.page).screenshot())).convert("RGB")).astype(int)
+
+    def at(self, point) -> tuple[int, int]:
+        """Where a point of the world is on the page."""
+        ((x, y),), _ = self.core.view.camera.project([point], *SIZE)
+        return round(x), round(y)
+
+    def point(self, link: int, *local) -> np.ndarray:
+        return (self.robot.GetLinks()[link].GetTransform() @ [*local, 1])[:3]
+
+    @property
+    def lines(self) -> list[str]:
+        return self.page.inner_text("#text").split("\n")
+
+    def await_picture(self, page=None) -> None:
+        """Wait until the page shows what the core's camera would see of the environment, pixel by pixel."""
+        await_equal(lambda: self.picture(page)[CLEAR], lambda: self._expected()[CLEAR])
+
+    def _expected(self) -> np.ndarray:
+        gizmos = self.viewer.interaction.overlay().shapes
+        form = Format(*SIZE)
+        return self.viewer._studio.picture(self.core.view.camera, self.viewer.background, form, gizmos=gizmos)
+
+    def await_camera(self) -> None:
+        """Wait until the page's camera is the core's, in numbers and in pixels."""
+        expected = self.core.view.camera.T_world_camera
+        await_that(
+            lambda: np.allclose(self.viewer.GetCameraTransform(), expected, atol=1e-9),
+            f"the camera does not come to {expected}",
+        )
+        self.await_picture()
+
+    def await_robot(self) -> None:
+        """Wait until the robot is where the core's is, in numbers and in pixels."""
+        other = self.other_robot
+        await_that(
+            lambda: (
+                np.allclose(self.robot.GetDOFValues(), other.GetDOFValues(), atol=1e-9)
+                and np.allclose(self.robot.GetTransform(), other.GetTransform(), atol=1e-9)
+            ),
+            f"the robot does not come to {other.GetDOFValues()}, {other.GetTransform()}",
+        )
+        self.await_picture()
+
+    # --- hands
+
+    def move(self, x, y):
+        self.page.mouse.move(x, y)
+        self.core.handle(Move(x, y))
+
+    def press(self, at, button=Button.LEFT, keys=()):
+        self.move(*at)
+        for key in keys:
+            self.page.keyboard.down(key)
+            self.core.handle(Key(key))
+        self.page.mouse.down(button=button.value)
+        self.core.handle(Press(*at, button, "Control" in keys, "Shift" in keys))
+
+    def release(self, at, button=Button.LEFT, keys=()):
+        self.page.mouse.up(button=button.value)
+        self.core.handle(Release(*at, button))
+        for key in keys:
+            self.page.keyboard.up(key)
+            self.core.handle(Key(key, False))
+
+    def drag(self, *stops, button=Button.LEFT, keys=()):
+        self.press(stops[0], button, keys)
+        for stop in stops[1:]:
+            self.move(*stop)
+        self.release(stops[-1], button, keys)
+
+    def click(self, at, keys=()):
+        self.drag(at, at, keys=keys)
+
+    def wheel(self, steps):
+        self.page.mouse.wheel(0, -100 * steps)
+        self.core.handle(Wheel(steps))
+
+    def escape(self):
+        self.page.keyboard.press("Escape")
+        self.core.handle(Key("escape"))
+        self.core.handle(Key("escape", False))
+
+    def roll(self, tool, amount):
+        """Drag one of the wheels on the page."""
+        box = self.page.locator(f"[role=slider][data-tool={tool.value}]").bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        aside = box["width"] > box["height"]
+        self.page.mouse.move(x, y)
+        self.page.mouse.down()
+        for part in (0.4, 1):
+            self.page.mouse.move(x + part * amount * aside, y + part * amount * (not aside))
+        self.page.mouse.up()
+        self.core.handle(Leave())
+        self.core.handle(Use(tool, amount))
+
+    def touch(self, *moments):
+        """Put fingers on the page, one list of points for each moment; the last fingers leave."""
+        session = self.context.new_cdp_session(self.page)
+        before: list[tuple[float, float]] = []
+        for points in (*moments, []):
+            kind = "touchStart" if len(points) > len(before) else "touchMove" if points else "touchEnd"
+            fingers = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)]
+            session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": fingers})
+            before = points
+        session.detach()
+
+    def touched(self, *events: Press | Move | Release | Fingers):
+        """Have the core do what fingers should do."""
+        for event in (*events, Leave()):
+            self.core.handle(event)
+
+    def pinched(self, *moments):
+        """Have the core do what two fingers should do, one after the other in each moment."""
+        fingers = [np.array(point, dtype=float) for point in moments[0]]
+        for points in moments[1:]:
+            for number, point in enumerate(points):
+                before = sum(fingers) / 2, np.linalg.norm(fingers[0] - fingers[1])
+                fingers[number] = np.array(point, dtype=float)
+                right, down = sum(fingers) / 2 - before[0]
+                self.core.handle(Fingers(right, down, np.linalg.norm(fingers[0] - fingers[1]) / before[1]))
