@@ -9,7 +9,6 @@ import time
 import weakref
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 from ravemj.errors import RavemjError
 from ravemj.interaction import Interaction, Notices, Playback
@@ -22,6 +21,38 @@ _LONGEST_END = 5.0
 _LOG = logging.getLogger("ravemj")
 
 _Colour = tuple[float, float, float]
+
+
+class Look:
+    """What is seen in a view. Views do not live longer for it."""
+
+    def __init__(self, interaction: Interaction, studio: Studio, background: _Colour, ratio: float = 1.0) -> None:
+        """Look at a view.
+
+        Args:
+            interaction: The view.
+            studio: What draws it.
+            background: Colour where nothing is, in 0..1.
+            ratio: How many pixels a point has.
+        """
+        self._interaction, self._studio = weakref.ref(interaction), weakref.ref(studio)
+        self._background = background
+        width, height = (max(round(ratio * length), 1) for length in interaction.view.size)
+        self._form = Format(width, height)
+
+    def frame(self) -> Frame | None:
+        """Return what the view shows now, always of one size; None once there is none."""
+        interaction, studio = self._interaction(), self._studio()
+        if interaction is None or studio is None:
+            return None
+        gizmos = interaction.overlay().shapes
+        return studio.picture(interaction.view.camera, self._background, self._form, gizmos=gizmos)
+
+    def close(self) -> None:
+        """Free what this thread has drawn with."""
+        studio = self._studio()
+        if studio is not None:
+            studio.close()
 
 
 class Saving:
@@ -38,31 +69,24 @@ class Saving:
         self._stop = threading.Event()
         self._recorder: threading.Thread | None = None
 
-    def save_picture(self, picture: Frame) -> None:
-        """Write a picture, shape (height, width, 3)."""
-        from ravemj.video import write_picture  # noqa: PLC0415 - slow to import
+    def save_picture(self, look: Look) -> None:
+        """Save a picture."""
+        self._start(free_path(".png"), lambda path: _write_picture(path, look))
 
-        path = free_path(".png")
-        self._start(path, lambda: write_picture(path, picture))
-
-    def record(self, interaction: Interaction, studio: Studio, background: _Colour) -> None:
-        """Begin a video of a view, or end the one that is under way.
+    def record(self, look: Look, playback: Playback) -> None:
+        """Begin a video, or end the one that is under way.
 
         Args:
-            interaction: The view; its end is the video's.
-            studio: What draws it.
-            background: Colour where nothing is, in 0..1.
+            look: What is seen in it.
+            playback: The motion that it is of, if there is one.
         """
         if self._recorder is not None and self._recorder.is_alive():
             self._stop.set()
             return
         self._stop.clear()
-        playback, form = interaction.controls.playback, Format(*interaction.view.size)
         times = self._frames_of_clock() if playback.course is None else _frames_of_motion(playback)
-        look = _Look(weakref.ref(interaction), weakref.ref(studio), form, background)
-        path = free_path(".mp4")
         self._notices.recording = True
-        self._recorder = self._start(path, lambda: self._write(path, self._frames(times, look)))
+        self._recorder = self._start(free_path(".mp4"), lambda path: self._write_video(path, times, look))
 
     def end(self) -> None:
         """End a video, and wait until it is written; not for long, since a script may hold what is drawn."""
@@ -70,41 +94,40 @@ class Saving:
         if self._recorder is not None and self._recorder is not threading.current_thread():
             self._recorder.join(_LONGEST_END)
 
-    def _start(self, path: Path, write: Callable[[], object]) -> threading.Thread:
+    def _start(self, path: Path, write: Callable[[Path], object]) -> threading.Thread:
         def run() -> None:
             try:
-                write()
+                write(path)
             except RavemjError as error:
                 _LOG.error("%s", error.message)
                 self._notices.say(error.message)
             else:
-                _LOG.info("saved %s", os.path.abspath(path))
-                self._notices.say(f"Saved {path} in {os.path.abspath(path.parent)}")
+                folder = os.path.abspath(path.parent)
+                _LOG.info("saved %s in %s", path, folder)
+                self._notices.say(f"Saved {path} in {folder}")
 
         thread = threading.Thread(target=run, name="ravemj saving", daemon=True)
         thread.start()
         return thread
 
-    def _write(self, path: Path, frames: Iterator[Frame]) -> None:
+    def _write_video(self, path: Path, times: Iterator[bool], look: Look) -> None:
         from ravemj.video import write_frames  # noqa: PLC0415 - slow to import
 
         try:
-            write_frames(path, frames, _FPS)
+            write_frames(path, self._frames(times, look), _FPS)
         finally:
             self._notices.recording = False
-
-    def _frames(self, times: Iterator[bool], look: "_Look") -> Iterator[Frame]:
-        frame = None
-        try:
-            for is_new in times:
-                frame = look.frame() if is_new or frame is None else frame
-                if frame is None:
-                    return
-                yield frame
-                if self._stop.is_set():
-                    return
-        finally:
             look.close()
+
+    def _frames(self, times: Iterator[bool], look: Look) -> Iterator[Frame]:
+        frame = None
+        for is_new in times:
+            frame = look.frame() if is_new or frame is None else frame
+            if frame is None:
+                return
+            yield frame
+            if self._stop.is_set():
+                return
 
     def _frames_of_clock(self) -> Iterator[bool]:
         """Yield for each frame that is due whether there is time to draw it; those that are late show the last one."""
@@ -115,27 +138,13 @@ class Saving:
             yield late < 1 / _FPS
 
 
-class _Look(NamedTuple):
-    """What draws the frames of a video; views do not live longer for it."""
+def _write_picture(path: Path, look: Look) -> None:
+    from ravemj.video import write_picture  # noqa: PLC0415 - slow to import
 
-    interaction: "weakref.ref[Interaction]"
-    studio: "weakref.ref[Studio]"
-    form: Format
-    background: _Colour
-
-    def frame(self) -> Frame | None:
-        """Return what the view shows now; None once there is none."""
-        interaction, studio = self.interaction(), self.studio()
-        if interaction is None or studio is None:
-            return None
-        gizmos = interaction.overlay().shapes
-        return studio.picture(interaction.view.camera, self.background, self.form, gizmos=gizmos)
-
-    def close(self) -> None:
-        """Free what the thread has drawn with."""
-        studio = self.studio()
-        if studio is not None:
-            studio.close()
+    frame = look.frame()
+    look.close()
+    if frame is not None:
+        write_picture(path, frame)
 
 
 def _frames_of_motion(playback: Playback) -> Iterator[bool]:

@@ -14,6 +14,7 @@ from ravemj.studio import Studio
 from ravemj.viewers.glfw_window import GlfwWindow
 from ravemj.viewers.painter import Painter
 from ravemj.viewers.playing import camera_line
+from ravemj.viewers.saving import Look
 from ravemj.viewers.viewer import Viewer
 
 _LOG = logging.getLogger("ravemj")
@@ -151,7 +152,7 @@ class WindowViewer(Viewer):
             if is_changed:
                 self._draw(window, painter)
             for wish in self.interaction.controls.take_wishes():
-                self._grant(wish, window, painter)
+                self._grant(wish, window)
             for drawn in waiting:
                 drawn.set()
         else:
@@ -187,13 +188,13 @@ class WindowViewer(Viewer):
         painter.draw_overlay(pixels, ratio)
         window.swap()
 
-    def _grant(self, wish: Wish, window: GlfwWindow, painter: Painter) -> None:
+    def _grant(self, wish: Wish, window: GlfwWindow) -> None:
         """Do what a button asked for that needs the window."""
+        look = Look(self.interaction, self._studio, self._background, window.pixel_ratio)
         if wish is Wish.PICTURE:
-            painter.draw(self._background, window.pixels)
-            self._saving.save_picture(painter.read(window.pixels))
+            self._saving.save_picture(look)
         elif wish is Wish.VIDEO:
-            self._saving.record(self.interaction, self._studio, self._background)
+            self._saving.record(look, self.playback)
         else:
             line = camera_line(self.camera)
             window.copy_text(line)

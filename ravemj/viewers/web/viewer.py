@@ -14,6 +14,7 @@ from websockets.sync.server import ServerConnection
 from ravemj.interaction import Interaction, Wish
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
+from ravemj.viewers import saving
 from ravemj.viewers.playing import camera_line
 from ravemj.viewers.viewer import Viewer
 from ravemj.viewers.web.client import Client, Look, receive
@@ -142,7 +143,7 @@ class WebViewer(Viewer):
         if wish is Wish.PICTURE:
             client.send_file(connection, look)
         elif wish is Wish.VIDEO:
-            self._saving.record(client.interaction, self._studio, self._background)
+            self._saving.record(saving.Look(client.interaction, self._studio, self._background), self.playback)
         else:
             line = camera_line(client.interaction.view.camera)
             client.send_text(connection, line)
