@@ -4,7 +4,7 @@ import argparse
 import math
 from typing import NoReturn, TypeAlias
 
-from ravemj.cli import check, convert, info, pictures, sessions
+from ravemj.cli import check, convert, info, pictures, sessions, view
 
 
 class _Parser(argparse.ArgumentParser):
@@ -25,6 +25,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"ravemj {__version__}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    _add_view(commands)
     _add_play(commands)
     _add_render(commands)
     _add_convert(commands)
@@ -68,6 +69,29 @@ def _add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> Non
         metavar="R,G,B",
         help="background, each from 0 to 1; default: the model's, or white",
     )
+
+
+def _add_view(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "view",
+        "show a model in a window, or as a page in a browser, and move it with the mouse",
+        "ravemj view models/env.xml",
+        "ravemj view --web models/env.xml      # prints the address of the page",
+        "ravemj view --web --port 8080 robot.xml",
+    )
+    _add_model(parser)
+    parser.add_argument("--web", action="store_true", help="a page, also where there is a display for a window")
+    parser.add_argument(
+        "--host",
+        default="127.0.0.1",
+        metavar="H",
+        help="interface that serves the page (127.0.0.1, which only browsers of this machine reach)",
+    )
+    parser.add_argument(
+        "--port", type=_port, default=0, metavar="P", help="port of the page; default: one that is free"
+    )
+    parser.set_defaults(run=view.view)
 
 
 def _add_play(commands: Commands) -> None:
@@ -264,6 +288,12 @@ def _positive(text: str) -> float:
     if number <= 0:
         raise argparse.ArgumentTypeError(f"{text} is not above 0")
     return number
+
+
+def _port(text: str) -> int:
+    if not (text.isascii() and text.isdecimal() and int(text) <= 65535):
+        raise argparse.ArgumentTypeError(f"'{text}' is no port from 0 to 65535")
+    return int(text)
 
 
 def _size(text: str) -> tuple[int, int]:

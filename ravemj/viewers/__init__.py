@@ -10,6 +10,7 @@ import sys
 from ravemj.errors import RenderingError
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
+from ravemj.viewers import notebook
 from ravemj.viewers.viewer import Viewer
 
 __all__ = ["VIEWERS", "Viewer", "has_display", "open_viewer"]
@@ -33,18 +34,18 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
     Args:
         simulation: What it shows.
         studio: What draws pictures of it.
-        name: One of ``VIEWERS``: ``offscreen``, ``web`` for a page in a browser, or another for a window.
+        name: One of ``VIEWERS``: ``offscreen``, ``web`` for a page in a browser, ``window``, or another for what fits.
         show: False for a viewer without a window.
 
     Returns:
-        A window where there is a display; else a viewer that draws when it is asked for pictures; the log says which.
-        None, and an error in the log, for an unknown name.
+        What fits is a page in the cell of a notebook, a window where there is a display, else a viewer that draws when
+        it is asked for pictures; the log says which. None, and an error in the log, for an unknown name.
     """
     if name not in VIEWERS:
         _LOG.error("there is no viewer '%s'; the viewers are: %s", name, ", ".join(VIEWERS))
         return None
-    if show and name == "web":
-        return _open_page(simulation, studio)
+    if show and (name == "web" or (name not in ("window", "offscreen") and notebook.in_notebook())):
+        return _open_page(simulation, studio, name)
     if show and name != "offscreen":
         if has_display():
             from ravemj.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
@@ -62,9 +63,13 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
     return Viewer(simulation, studio, name)
 
 
-def _open_page(simulation: Simulation, studio: Studio) -> Viewer:
+def _open_page(simulation: Simulation, studio: Studio, name: str) -> Viewer:
     from ravemj.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
 
-    viewer = WebViewer(simulation, studio, "web")
-    _LOG.warning("the viewer is at %s", viewer.url)
+    viewer = WebViewer(simulation, studio, name, any_name=notebook.is_proxied())
+    if notebook.in_notebook():
+        _LOG.info("viewer '%s' is a page in the notebook", name)
+        notebook.show(viewer)
+    else:
+        _LOG.warning("the viewer is at %s", viewer.url)
     return viewer

@@ -41,12 +41,12 @@ class WindowViewer(Viewer):
         self._opened = threading.Event()
         self._failure = ""
         self._thread = threading.Thread(target=_run, args=(weakref.ref(self),), name="ravemj window", daemon=True)
+        self._end = weakref.finalize(self, _end, self._closing, self._thread)  # before Ctrl-C can end this here
         self._thread.start()
         self._opened.wait()
         if self._failure:
             self._thread.join()
             raise RenderingError(self._failure)
-        self._end = weakref.finalize(self, _end, self._closing, self._thread)
 
     @property
     def is_open(self) -> bool:

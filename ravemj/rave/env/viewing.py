@@ -2,6 +2,7 @@
 
 import os
 import weakref
+from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
@@ -9,6 +10,9 @@ from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rendering import Camera
 from ravemj.studio import Format, Frame, Studio, checked_colour
 from ravemj.viewers import Viewer, open_viewer
+
+if TYPE_CHECKING:
+    from ravemj.viewers.web import WebViewer
 
 
 class Viewing(EnvironmentPart):
@@ -19,8 +23,9 @@ class Viewing(EnvironmentPart):
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
         """Attach a viewer, in place of the one before.
 
-        With a display a window opens and shows every change from then on, while the script goes on. Without one, as
-        on a server, the viewer draws when it is asked for pictures, so that scripts run there just the same.
+        With a display a window opens and shows every change from then on, while the script goes on; in a notebook, a
+        page in the cell does. Without either, as on a server, the viewer draws when it is asked for pictures, so that
+        scripts run there just the same.
 
         The camera starts with the view that the loaded file asks for, else from above; ``GetViewer().SetCamera``
         moves it.
@@ -28,7 +33,8 @@ class Viewing(EnvironmentPart):
         Args:
             viewername: ``'window'``: a window; a warning says so where there is no display for it. ``'web'``: a page
                 for a browser on this machine, at ``GetViewer().url``. ``'offscreen'``: neither. One of OpenRAVE's
-                names, such as ``'qtcoin'``: a window if there is a display, else neither; the log says which.
+                names, such as ``'qtcoin'``: the page in a notebook, else a window if there is a display, else neither;
+                the log says which.
                 ``''`` removes the viewer.
             showviewer: False: never a window.
 
@@ -44,15 +50,44 @@ class Viewing(EnvironmentPart):
         """
         if viewername:
             self._check_alive()
-        if self._viewer is not None:
-            self._viewer.close()
-            self._viewer = None
-            self._simulation.drawings.clear()
+        self._close_viewer()
         if viewername:
             self._viewer = open_viewer(self._simulation, self._studio, viewername, showviewer)
         if self._viewer is not None:
             self._viewer.environment = weakref.ref(self)
         return bool(viewername)
+
+    def serve_viewer(self, host: str = "127.0.0.1", port: int = 0) -> "WebViewer":
+        """Attach a viewer for browsers, as ``SetViewer('web')`` does, at a port of your choice.
+
+        Args:
+            host: Name or address of the interface that browsers come to. Others than the default let those of other
+                machines in: whoever knows the address of the page sees and moves everything, and nothing is encrypted.
+            port: Number of the port; 0: any that is free.
+
+        Returns:
+            The viewer; ``url`` is the address of its page.
+
+        Raises:
+            RenderingError: this port cannot be had; the viewer before stays.
+
+        Example:
+            >>> print(env.serve_viewer(port=8080).url)
+        """
+        from ravemj.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
+
+        self._check_alive()
+        viewer = WebViewer(self._simulation, self._studio, "web", host, port)
+        self._close_viewer()
+        self._viewer = viewer
+        viewer.environment = weakref.ref(self)
+        return viewer
+
+    def _close_viewer(self) -> None:
+        if self._viewer is not None:
+            self._viewer.close()
+            self._viewer = None
+            self._simulation.drawings.clear()
 
     def SetDefaultViewer(self, showviewer: bool = True) -> bool:
         """Attach the viewer that the variable ``OPENRAVE_DEFAULT_VIEWER`` names, else the best that works here.

@@ -15,6 +15,7 @@ from ravemj.interaction import Interaction, Wish
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
 from ravemj.viewers import saving
+from ravemj.viewers.notebook import frame
 from ravemj.viewers.playing import camera_line
 from ravemj.viewers.viewer import Viewer
 from ravemj.viewers.web.client import Client, Look, receive
@@ -106,6 +107,10 @@ class WebViewer(Viewer):
         """Close the viewer and its pages."""
         self._end()
         super().close()
+
+    def _repr_html_(self) -> str:
+        """Return what notebooks show for a viewer: its page."""
+        return frame(self.url, f"{self.server.port}/{self.server.token}/")
 
     def welcome(self, connection: ServerConnection) -> None:
         """Take a page up; one that was here before has the view that it had."""

@@ -1,0 +1,96 @@
+"""The command ``ravemj view``: a window where there is a display, else a page."""
+
+import json
+import signal
+import socket
+import subprocess
+import sys
+import urllib.request
+
+import pytest
+from command_line import environment, heed_interrupts, ravemj_command
+from screens import NEEDS_A_SCREEN, Started
+from websockets.sync.client import connect
+
+
+class Page:
+    """The command with a page, under way."""
+
+    def __init__(self, folder, *options):
+        heed_interrupts()
+        command = [sys.executable, "-m", "ravemj", "view", *options, "env.xml"]
+        variables = environment(folder)
+        self.process = subprocess.Popen(command, cwd=folder, env=variables, stdout=-1, stderr=-1, text=True)
+
+    def __enter__(self):
+        self.url = self.process.stdout.readline().strip()
+        return self
+
+    def __exit__(self, *reason):
+        self.process.kill()
+        self.process.communicate()
+
+    def interrupt(self):
+        """Press Ctrl-C; return the exit code and what else was printed."""
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(20), *self.process.communicate()
+
+
+@pytest.mark.parametrize("options", [["--web"], []], ids=["web", "without a display"])
+def test_one_address_is_printed_and_ctrl_c_ends_it(folder, options):
+    with Page(folder, *options) as page:
+        with urllib.request.urlopen(page.url, timeout=10) as answer:
+            assert b"<canvas" in answer.read()
+        address = page.url.replace("http", "ws", 1) + "socket"
+        with connect(address, origin=page.url.rsplit("/", 2)[0], compression=None) as connection:
+            connection.send('{"type": "ready"}')
+            assert json.loads(connection.recv(20))["mode"] == "camera"
+            assert page.interrupt() == (130, "", "ravemj: interrupted\n")
+
+
+def test_the_port_is_the_one_that_is_asked_for_or_an_error(folder):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        refused = ravemj_command(folder, "view", "--web", "--port", port, "env.xml")
+        assert (refused.returncode, refused.stdout) == (1, "")
+        assert refused.stderr.startswith(f"ravemj: error: no page can be served at port {port} of 127.0.0.1: address")
+        assert refused.stderr.count("\n") == 1
+    with Page(folder, "--web", "--port", port) as page:
+        assert page.url.startswith(f"http://127.0.0.1:{port}/")
+
+
+def test_another_host_is_served_with_a_warning(folder):
+    with Page(folder, "--web", "--host", "0.0.0.0") as page:
+        port = page.url.split(":")[2].split("/")[0]
+        token = page.url.split("/")[3]
+        request = urllib.request.Request(f"http://127.0.0.1:{port}/{token}/", headers={"Host": "robots.example"})
+        with urllib.request.urlopen(request, timeout=10) as answer:
+            assert b"<canvas" in answer.read()
+        code, _, warning = page.interrupt()
+        assert code == 130
+        assert "ravemj: warning: browsers of other machines can come here" in warning
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "message"),
+    [
+        (["--port", "70000", "env.xml"], 2, "'70000' is no port from 0 to 65535"),
+        (["--web", "--host", "no.such.host.invalid", "env.xml"], 1, "no page can be served at port 0 of no.such.host"),
+        (["missing.xml"], 1, "missing.xml"),
+    ],
+)
+def test_what_cannot_be_shown_is_one_line(folder, options, code, message):
+    done = ravemj_command(folder, "view", *options)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (code, "", 1)
+    assert message in done.stderr
+
+
+@pytest.mark.parametrize("how", [pytest.param(how, marks=NEEDS_A_SCREEN) for how in ("closed", "interrupted")])
+def test_a_window_where_there_is_a_display(display, folder, how):
+    with Started(display, folder, "-m", "ravemj", "view", "env.xml") as command:
+        window = display.await_window()
+        if how == "closed":
+            display.close(window)
+        else:
+            command.process.send_signal(signal.SIGINT)
+        assert command.end() == ((0, "", "") if how == "closed" else (130, "", "ravemj: interrupted\n"))
