@@ -10,7 +10,7 @@
 """
 
 import importlib
-from types import ModuleType
+from typing import TYPE_CHECKING
 
 import ravemj._mujoco  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco
 from ravemj import geometry_functions, rave
@@ -31,7 +31,9 @@ from ravemj.geometry_functions import *  # noqa: F403 - as its __all__ lists the
 from ravemj.motion import Motion, read_motion
 from ravemj.rave import *  # noqa: F403 - OpenRAVE's names, which ravemj/rave/__init__.py lists
 from ravemj.recording import record
-from ravemj.viewers import Viewer
+
+if TYPE_CHECKING:
+    from ravemj.viewers import Viewer
 
 __version__ = "0.1.0"
 
@@ -60,10 +62,12 @@ __all__ += rave.__all__
 __all__ += _MODULES  # noqa: PLE0605  # pyright: ignore[reportUnsupportedDunderAll] - __getattr__ imports them
 
 
-def __getattr__(name: str) -> ModuleType:
-    """Import a module of OpenRAVE's when it is asked for."""
+def __getattr__(name: str) -> object:
+    """Import a module of OpenRAVE's, or what most scripts do without, when it is asked for."""
     if name in _MODULES:
         return importlib.import_module(f"ravemj.{name}")
+    if name == "Viewer":
+        return importlib.import_module("ravemj.viewers").Viewer
     raise AttributeError(f"module 'ravemj' has no attribute '{name}'")
 
 

@@ -2,8 +2,6 @@
 
 from typing import Any
 
-from ravemj.alias import install_finder
-
 
 def load_ipython_extension(ipython: Any) -> None:  # noqa: ANN401 - IPython's shell; IPython is not imported here
     """Make ``import openravepy`` give ravemj, in this session; IPython calls it on ``%load_ext ravemj``.
@@ -11,5 +9,7 @@ def load_ipython_extension(ipython: Any) -> None:  # noqa: ANN401 - IPython's sh
     Args:
         ipython: The session.
     """
+    from ravemj.alias import install_finder  # noqa: PLC0415 - slow to import
+
     del ipython
     install_finder()

@@ -5,16 +5,18 @@ The index maps are made once for a compiled model. Nothing here recompiles it.
 
 import itertools
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import mujoco
 import numpy as np
 
 from ravemj.following import evaluation_order
 from ravemj.joints import measured_values, rotation_vector, wxyz_from_rotation_vector
-from ravemj.mjcf import BodyNames
 from ravemj.scene import Axis, Joint, KinBody
 from ravemj.transforms import Floats, Ints, Pose, Wxyz, conjugate, inverse, multiply, rows_from_wxyz, wxyz_from_rows
+
+if TYPE_CHECKING:
+    from ravemj.mjcf import BodyNames
 
 LARGEST = float(np.finfo(np.float64).max)
 WELDED = -1
@@ -98,7 +100,7 @@ class BodyKinematics:
         balls: The spherical joints.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, body: KinBody, names: BodyNames) -> None:
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, body: KinBody, names: "BodyNames") -> None:
         self.model, self.data = model, data
         self._qpos, self._xpos, self._xmat = data.qpos, data.xpos, data.xmat
         self.followers: list[Follower] = []
@@ -138,7 +140,7 @@ class BodyKinematics:
         self._joints = (*body.joints, *body.passive_joints)
         self.followers = [one._replace(axis=self._joints[one.joint].axes[0]) for one in self.followers]
 
-    def _find_balls(self, names: BodyNames) -> list[Ball]:
+    def _find_balls(self, names: "BodyNames") -> list[Ball]:
         balls: list[Ball] = []
         for joint, first, joint_names in zip(self.body.joints, self.first_dofs, names.joints, strict=False):
             if joint.kind == "spherical" and joint_names:
@@ -146,7 +148,7 @@ class BodyKinematics:
                 balls.append(Ball(joint, slice(first, first + 3), slice(address, address + 4)))
         return balls
 
-    def _find_qpos(self, names: BodyNames) -> Ints:
+    def _find_qpos(self, names: "BodyNames") -> Ints:
         indices: list[int] = []
         for joint, joint_names in zip(self.body.joints, names.joints, strict=False):
             if joint.kind == "spherical" or not joint_names:
@@ -155,7 +157,7 @@ class BodyKinematics:
                 indices += [_qpos_index(self.model, name) for name in joint_names]
         return np.array(indices, dtype=int)
 
-    def _find_followers(self, names: BodyNames) -> list[Follower]:
+    def _find_followers(self, names: "BodyNames") -> list[Follower]:
         """Return the mimic joints to evaluate; none without a DOF, as OpenRAVE then never sets a value."""
         if not self.body.joints:
             return []
@@ -171,7 +173,7 @@ class BodyKinematics:
                 followers.append(Follower(index, qpos, axis, expression.compiled(variables)))
         return followers
 
-    def _find_loose(self, names: BodyNames) -> list[tuple[int, Joint]]:
+    def _find_loose(self, names: "BodyNames") -> list[tuple[int, Joint]]:
         """Return the joints that close a loop, with their first DOF."""
         joints = zip(self.first_dofs, self.body.joints, names.joints, strict=False)
         return [(first, joint) for first, joint, found in joints if not found and not joint.static]
@@ -344,7 +346,7 @@ def _qpos_index(model: mujoco.MjModel, joint_name: str) -> int:
     return int(model.jnt_qposadr[mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, joint_name)])
 
 
-def _all_qpos(model: mujoco.MjModel, names: BodyNames) -> Ints:
+def _all_qpos(model: mujoco.MjModel, names: "BodyNames") -> Ints:
     """Return the places of all joints of a body in ``qpos``."""
     places: list[int] = []
     for name in (name for joint_names in names.joints for name in joint_names):

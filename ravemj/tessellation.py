@@ -5,7 +5,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ravemj.mjcf import solids
 from ravemj.scene import Mesh, Prism, Shape, TriMesh
 from ravemj.transforms import Floats, Ints, Pose
 
@@ -26,6 +25,8 @@ def triangulated(shape: Shape) -> Mesh:
         case Prism():
             return shape.walls()
         case _:
+            from ravemj.mjcf import solids  # noqa: PLC0415 - slow to import
+
             return merged(moved(_solid(kind, size), Pose(centre).matrix()) for kind, size, centre in solids(shape))
 
 

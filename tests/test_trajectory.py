@@ -13,7 +13,7 @@ from ravemj import ArgumentError, ConfigurationSpecification, OutputError, Ravem
 from ravemj.trajectories.groups import INTERPOLATIONS, JOINTS, Group
 from ravemj.trajectories.interpolation import DERIVATIVES
 
-ENV = ravemj.load("models/env.xml")
+ENV = ravemj.load("models/env.xml")  # which tests of RaveDestroy in the same process may empty
 ROBOT = ENV.GetRobots()[0].GetName()
 
 
@@ -24,8 +24,8 @@ def spec_of(*groups):
     return spec
 
 
-def trajectory_of(spec, rows=()):
-    trajectory = ravemj.RaveCreateTrajectory(ENV, "")
+def trajectory_of(spec, rows=(), env=ENV):
+    trajectory = ravemj.RaveCreateTrajectory(env, "")
     trajectory.Init(spec)
     trajectory.Insert(0, np.array(rows))
     return trajectory
@@ -178,8 +178,9 @@ def test_overwriting_is_that_of_lists(present, added, data):
 
 
 def test_insert_in_another_layout():
-    ENV.GetRobots()[0].SetDOFValues([0.25, 0.5])
-    trajectory = trajectory_of(TIMED, [[1, 2, 3]])
+    env = ravemj.load("models/env.xml")
+    env.GetRobots()[0].SetDOFValues([0.25, 0.5])
+    trajectory = trajectory_of(TIMED, [[1, 2, 3]], env)
     second = spec_of(("affine_transform x 1", 1), (f"joint_values {ROBOT} 1", 1))
     trajectory.Insert(0, [9, 7, 9, 8], second, True)
     assert trajectory.GetAllWaypoints2D().tolist() == [[1, 7, 3], [0.25, 8, 0]]
@@ -187,7 +188,7 @@ def test_insert_in_another_layout():
     assert trajectory.GetWaypoint(1).tolist() == [0, 0, 6]
     assert trajectory.GetWaypoint(0, second).tolist() == [0, 7]
     np.testing.assert_array_equal(trajectory.GetAllWaypoints2D(Group("deltatime", 0, 1)), [[3], [6], [0]])
-    full = ENV.GetRobots()[0].GetConfigurationSpecification()
+    full = env.GetRobots()[0].GetConfigurationSpecification()
     np.testing.assert_allclose(trajectory.GetWaypoint(-1, full)[:2], [0.25, 8])
 
 
@@ -254,8 +255,10 @@ def test_ranges_of_samples():
 
 
 def test_samples_in_another_layout():
-    ENV.GetRobots()[0].SetDOFValues([0.25, 0.5])
-    trajectory = trajectory_of(spec_of((f"joint_values {ROBOT} 1", 1, "linear"), ("deltatime", 1)), [[0, 0], [1, 2]])
+    env = ravemj.load("models/env.xml")
+    env.GetRobots()[0].SetDOFValues([0.25, 0.5])
+    one_joint = spec_of((f"joint_values {ROBOT} 1", 1, "linear"), ("deltatime", 1))
+    trajectory = trajectory_of(one_joint, [[0, 0], [1, 2]], env)
     assert trajectory.Sample(1, TIMED).tolist() == [0.25, 0.5, 2]
     assert trajectory.Sample(1).tolist() == [0.5, 1]
     assert trajectory.SampleFromPrevious([7, 8, 9], 1, TIMED).tolist() == [7, 0.5, 2]

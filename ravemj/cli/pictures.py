@@ -16,7 +16,7 @@ from ravemj.errors import ArgumentError
 from ravemj.motion import Motion, read_motion
 from ravemj.rave import Environment, KinBody
 from ravemj.recording import Shot, camera_for_motion, draw_frames, moving_body, within_limits
-from ravemj.rendering import read_camera
+from ravemj.rendering.camera_file import read_camera
 from ravemj.rendering.contexts import INSTALL, RAY, requested_backend
 from ravemj.rendering.doctor import probe_backends
 from ravemj.studio import Format

@@ -11,7 +11,7 @@ from ravemj.collision.shapes import TOUCHING, ShapeTests
 from ravemj.simulation import BodyState, Compiled, Simulation
 from ravemj.transforms import Floats, Ints
 
-MOST_PAIRS = 4_000_000
+MOST_PAIRS = 1_000_000
 """Pairs of geoms that are kept for all questions together."""
 
 _ONES = np.ones(3)  # summing rows by a product with it is the fastest way for few of them
@@ -27,16 +27,26 @@ class Pairs:
     """
 
     def __init__(self, first: Ints, second: Ints, radii: Floats) -> None:
-        self.first, self.second = first, second
+        count = len(first)
+        self._geoms = np.concatenate([first, second])
+        self.first, self.second = self._geoms[:count], self._geoms[count:]
         self._reach = radii[first] + radii[second]
         self._square = (self._reach * (1 + 1e-9) + 2 * TOUCHING) ** 2
+        # For what is computed each time: making new arrays takes longer than filling these.
+        self._centers = np.empty((2 * count, 3))
+        self._from, self._apart = self._centers[:count], self._centers[count:]
+        self._distance = np.empty(count)
 
     def near(self, positions: Floats) -> list[tuple[int, int]]:
-        """Return the pairs whose spheres touch, in order, for the present positions of all geoms."""
-        apart = positions.take(self.first, 0, mode="clip")  # all are there; the default mode is slower
-        apart -= positions.take(self.second, 0, mode="clip")
+        """Return the pairs whose spheres touch, in order, for the present positions of all geoms.
+
+        The caller holds the lock.
+        """
+        apart = self._apart
+        positions.take(self._geoms, 0, self._centers, "clip")  # all are there; the default mode is slower
+        apart -= self._from
         apart *= apart
-        found = (apart.dot(_ONES) < self._square).nonzero()[0]
+        found = (apart.dot(_ONES, self._distance) < self._square).nonzero()[0]
         if not len(found):
             return _NO_PAIRS
         return list(zip(self.first[found].tolist(), self.second[found].tolist(), strict=True))

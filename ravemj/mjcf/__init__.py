@@ -4,8 +4,8 @@ Pure text, written by hand: MuJoCo's own writer keeps six digits, turns inertias
 keep all their digits, every element has its own line, and names stay as they are.
 """
 
-from ravemj.mjcf.document import BodyNames, Mjcf, Options, write
+from ravemj.mjcf.document import ASSETS, BodyNames, Mjcf, Options, write
 from ravemj.mjcf.geometry import rgba, solids
 from ravemj.mjcf.inertia import legal_inertial
 
-__all__ = ["BodyNames", "Mjcf", "Options", "legal_inertial", "rgba", "solids", "write"]
+__all__ = ["ASSETS", "BodyNames", "Mjcf", "Options", "legal_inertial", "rgba", "solids", "write"]

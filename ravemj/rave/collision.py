@@ -113,11 +113,16 @@ class CollisionChecker(Interface):
             arguments = arguments[:-1]
         if report is not None:
             checked_kind(report, CollisionReport, "CheckCollision: report")
-        with self._simulation.lock:
-            world = world_of(self._simulation)
-            if arguments and isinstance(arguments[0], Ray):
+        simulation = self._simulation
+        with simulation.lock:
+            world = world_of(simulation)
+            if len(arguments) == 1 and isinstance(arguments[0], BodyPart):  # planners ask this most
+                pairs = self._pairs_without(world, arguments[0], _NO_BODIES, _NO_LINKS)
+            elif arguments and isinstance(arguments[0], Ray):
                 return self._check_ray(world, arguments[0], arguments[1:], report)
-            return self.answer(world, self._pairs(world, arguments), report)
+            else:
+                pairs = self._pairs(world, arguments)
+            return self.answer(world, pairs, report)
 
     def CheckSelfCollision(self, linkbody: "BodyPart | Link", report: CollisionReport | None = None) -> bool:
         """Return whether a body collides with itself; see ``body.CheckSelfCollision``.
@@ -163,16 +168,18 @@ class CollisionChecker(Interface):
     def _pairs_without(
         self, world: CollisionWorld, thing: object, bodies: frozenset[BodyState], links: frozenset[LinkOf]
     ) -> Pairs:
-        if isinstance(thing, BodyPart | Link):
-            self._check_ours(thing if isinstance(thing, BodyPart) else thing.GetParent())
         if isinstance(thing, BodyPart):
             state = thing.simulation_state
-            return questions.body_and_others(world, state, self._active_links(state), bodies, links)
-        return questions.link_and_others(world, _key(thing), bodies, links)
+            self._check_ours(state)
+            moved = self._active_links(state) if self._options else None
+            return questions.body_and_others(world, state, moved, bodies, links)
+        link = _key(thing)
+        self._check_ours(link[0])
+        return questions.link_and_others(world, link, bodies, links)
 
-    def _check_ours(self, body: BodyPart) -> None:
-        if body.simulation_state.simulation is not self._simulation:
-            raise ArgumentError(f"CheckCollision: '{body.GetName()}' was made for another environment")
+    def _check_ours(self, state: BodyState) -> None:
+        if state.simulation is not self._simulation:
+            raise ArgumentError(f"CheckCollision: '{state.scene.name}' was made for another environment")
 
     def _check_added(self, *bodies: BodyPart) -> None:
         for body in bodies:

@@ -14,7 +14,6 @@ from ravemj.rave.infos import JointInfo
 from ravemj.rave.joints.following import JointFollowing
 from ravemj.rave.joints.limits import JointLimits
 from ravemj.rave.link import Link
-from ravemj.rave.tables import joint_table
 from ravemj.transforms import Floats, Pose, pose_of
 
 if TYPE_CHECKING:
@@ -263,6 +262,8 @@ class Joint(JointLimits, JointFollowing):
 
     def _repr_html_(self) -> str:
         """Return the table that notebooks show for a joint."""
+        from ravemj.rave.tables import joint_table  # noqa: PLC0415 - html is slow to import
+
         return joint_table(self)
 
     def __str__(self) -> str:

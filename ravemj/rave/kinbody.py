@@ -19,7 +19,6 @@ from ravemj.rave.infos import GeometryInfo, JointInfo, KinBodyInfo, LinkInfo
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
-from ravemj.rave.tables import body_table
 from ravemj.simulation import BodyState
 
 if TYPE_CHECKING:
@@ -103,6 +102,8 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
 
     def _repr_html_(self) -> str:
         """Return the tables that notebooks show for a body."""
+        from ravemj.rave.tables import body_table  # noqa: PLC0415 - html is slow to import
+
         return body_table(self)
 
     def __str__(self) -> str:

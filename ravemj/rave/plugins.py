@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from ravemj.errors import UnsupportedError
 from ravemj.rave.arm_goals import INVERSE_KINEMATICS
@@ -11,7 +12,9 @@ from ravemj.rave.environment import Environment
 from ravemj.rave.interface import checked_environment, checked_kind
 from ravemj.rave.planning import PLANNING, Planner
 from ravemj.rave.sensors import SENSING, Sensor
-from ravemj.viewers import VIEWERS, Viewer
+
+if TYPE_CHECKING:
+    from ravemj.viewers import Viewer
 
 _GRASPING = "planning of grasps"
 _SAMPLING = "sampling of spaces"
@@ -141,12 +144,14 @@ def RaveCreateSpaceSampler(env: Environment, name: str) -> None:
     return _refuse(env, InterfaceType.spacesampler, name)
 
 
-def RaveCreateViewer(env: Environment, name: str) -> Viewer | None:
+def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
     """Attach a viewer to the environment, as ``env.SetViewer`` does.
 
     Returns:
         The viewer, or None for a name that is no viewer's.
     """
+    from ravemj.viewers import VIEWERS  # noqa: PLC0415 - slow to import
+
     if name.lower() not in VIEWERS:
         return None
     env.SetViewer(name.lower())
@@ -155,6 +160,8 @@ def RaveCreateViewer(env: Environment, name: str) -> Viewer | None:
 
 def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
     """Return the names that ``RaveCreate…`` of each kind makes something for."""
+    from ravemj.viewers import VIEWERS  # noqa: PLC0415 - slow to import
+
     made: dict[InterfaceType, list[str]] = {
         InterfaceType.collisionchecker: ["ode"],
         InterfaceType.controller: ["IdealController", "IdealVelocityController", "odevelocity"],

@@ -26,7 +26,6 @@ from ravemj.rendering.camera import (
     three_quarter_view,
     view_from_above,
 )
-from ravemj.rendering.camera_file import read_camera, write_camera
 from ravemj.rendering.frame import WHITE
 from ravemj.rendering.visibility import drawn_geoms
 
@@ -39,10 +38,8 @@ __all__ = [
     "drawn_geoms",
     "geom_corners",
     "open_renderer",
-    "read_camera",
     "three_quarter_view",
     "view_from_above",
-    "write_camera",
 ]
 
 _LOG = logging.getLogger("ravemj")

@@ -8,7 +8,6 @@ import numpy as np
 
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.kinematics import BodyKinematics, Configuration
-from ravemj.mjcf import rgba
 from ravemj.placement import place_links
 from ravemj.scene import Axis, Geometry, Inertial, KinBody, Link
 from ravemj.simulation.compiled import write_inertial
@@ -374,6 +373,8 @@ class BodyState:
         geometry = self.scene.links[link].geometries[index]
         if self._kinematics is None or geometry.display is not None:
             return
+        from ravemj.mjcf import rgba  # noqa: PLC0415 - slow to import
+
         model, counts = self._kinematics.model, self._kinematics.names.geoms[link]
         first = model.body_geomadr[self._kinematics.body_ids[link]] + sum(counts[:index])
         model.geom_rgba[first : first + counts[index]] = rgba(geometry.diffuse, geometry.transparency)

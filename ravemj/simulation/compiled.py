@@ -3,15 +3,17 @@
 import re
 import warnings
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 
-from ravemj import mjcf
 from ravemj.errors import CompileError, Diagnostics, Source
 from ravemj.inertia import principal_frame, principal_moments
-from ravemj.mjcf.document import ASSETS
 from ravemj.scene import Inertial, Scene
+
+if TYPE_CHECKING:
+    from ravemj import mjcf
 
 _DOF = re.compile(r"DOF (\d+)")
 _LINE = re.compile(r"line (?:number=)?(\d+)", re.IGNORECASE)
@@ -33,8 +35,8 @@ class Compiled:
         self,
         scene: Scene,
         diagnostics: Diagnostics,
-        options: mjcf.Options | None = None,
-        edit: Callable[[mujoco.MjSpec, mjcf.Mjcf], None] | None = None,
+        options: "mjcf.Options | None" = None,
+        edit: "Callable[[mujoco.MjSpec, mjcf.Mjcf], None] | None" = None,
     ) -> None:
         """Compile a scene.
 
@@ -47,11 +49,13 @@ class Compiled:
         Raises:
             CompileError: MuJoCo refuses the model.
         """
+        from ravemj import mjcf  # noqa: PLC0415 - slow to import
+
         self.mjcf = mjcf.write(scene, diagnostics, options)
         try:
             with mujoco.MjVfs() as files:
                 for name, content in self.mjcf.assets.items():
-                    files[f"{ASSETS}/{name}"] = content.encode()
+                    files[f"{mjcf.ASSETS}/{name}"] = content.encode()
                 self.spec = mujoco.MjSpec.from_string(self.mjcf.text, vfs=files)
                 if edit is not None:
                     edit(self.spec, self.mjcf)
@@ -101,7 +105,7 @@ def write_inertial(model: mujoco.MjModel, body_id: int, inertial: Inertial) -> N
         body_id = model.body_parentid[body_id]
 
 
-def _compile_error(message: str, text: mjcf.Mjcf) -> CompileError:
+def _compile_error(message: str, text: "mjcf.Mjcf") -> CompileError:
     """Return MuJoCo's complaint with the place in the user's file that it is about."""
     match = _LINE.search(message)
     line = int(match[1]) if match else 0

@@ -21,7 +21,8 @@ import numpy as np
 import ravemj
 from benchmarks.measure import CAMERA, MODEL, Row, run_python, take_turns
 from ravemj.recording import Shot, draw_frames
-from ravemj.rendering import Renderer, open_renderer, read_camera
+from ravemj.rendering import Renderer, open_renderer
+from ravemj.rendering.camera_file import read_camera
 from ravemj.rendering.contexts import RAY, OffscreenContext
 from ravemj.rendering.stage import Quality, Stage
 from ravemj.studio import Format, Frame

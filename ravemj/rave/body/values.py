@@ -79,12 +79,14 @@ class JointValues(BodyPart):
         given = checked_numbers(values, "SetDOFValues")
         dof = self._state.kinematics.dof
         if dofindices is None:
-            if given.shape != (dof,) and dof:
+            if given.shape == (dof,):
+                return given
+            if dof:
                 raise ArgumentError(
                     f"SetDOFValues: values has shape {given.shape}, and '{self.GetName()}' has {dof} DOFs: give {dof} "
                     f"numbers, or dofindices"
                 )
-            return given[:dof]
+            return np.zeros(0)
         indices = checked_indices(dofindices, dof)
         if given.ndim != 1 or len(given) < len(indices):
             raise ArgumentError(f"SetDOFValues: values has shape {given.shape} for {len(indices)} dofindices")

@@ -8,10 +8,10 @@ from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.simulation import BodyState, Simulation
 from ravemj.studio import Studio
-from ravemj.viewers import Viewer
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
+    from ravemj.viewers import Viewer
 
 
 class EnvironmentPart(UserData):

@@ -9,7 +9,9 @@ from numpy.typing import ArrayLike
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rendering import Camera
 from ravemj.studio import Format, Frame, Studio, checked_colour
-from ravemj.viewers import Viewer, open_viewer
+
+if TYPE_CHECKING:
+    from ravemj.viewers import Viewer
 
 if TYPE_CHECKING:
     from ravemj.viewers.web import WebViewer
@@ -52,6 +54,8 @@ class Viewing(EnvironmentPart):
             self._check_alive()
         self._close_viewer()
         if viewername:
+            from ravemj.viewers import open_viewer  # noqa: PLC0415 - slow to import
+
             self._viewer = open_viewer(self._simulation, self._studio, viewername, showviewer)
         if self._viewer is not None:
             self._viewer.environment = weakref.ref(self)
@@ -100,7 +104,7 @@ class Viewing(EnvironmentPart):
         """
         return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "qtcoin", showviewer)
 
-    def GetViewer(self, name: str | None = None) -> Viewer | None:
+    def GetViewer(self, name: str | None = None) -> "Viewer | None":
         """Return the viewer, or None where there is none.
 
         Args:

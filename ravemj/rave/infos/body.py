@@ -6,14 +6,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntFlag
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj import scene
 from ravemj.arrays import checked_transform
-from ravemj.builder import BodyBuilder
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.making import MADE
 from ravemj.rave.infos.content import Info
@@ -22,6 +21,9 @@ from ravemj.rave.infos.link import LinkInfo
 from ravemj.rave.infos.numbers import identity
 from ravemj.rave.infos.robot import AttachedSensorInfo, ManipulatorInfo
 from ravemj.transforms import Floats
+
+if TYPE_CHECKING:
+    from ravemj.builder import BodyBuilder
 
 T = TypeVar("T")
 
@@ -96,6 +98,8 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
     Raises:
         RavemjError: something is described by a thing of another kind, has no name, or cannot be.
     """
+    from ravemj.builder import BodyBuilder  # noqa: PLC0415 - slow to import
+
     builder = BodyBuilder(is_robot=like.is_robot, source=MADE, name=info._name or like.name)
     for one in _checked(info._vLinkInfos, LinkInfo):
         builder.links.append(one.link())
@@ -122,7 +126,7 @@ def _checked(infos: Sequence[T], kind: type[T]) -> Sequence[T]:
     return infos
 
 
-def _asked(builder: BodyBuilder, values: dict[tuple[str, int], float]) -> list[float] | None:
+def _asked(builder: "BodyBuilder", values: dict[tuple[str, int], float]) -> list[float] | None:
     """Return the value of each DOF; None where none is asked for."""
     active = [joint for joint in builder.joints if joint.active]
     if not values:

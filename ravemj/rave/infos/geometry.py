@@ -5,7 +5,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,13 +14,15 @@ from ravemj import scene
 from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceError
 from ravemj.making import MADE
-from ravemj.meshes import MeshPart
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, identity, pose, vector
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 from ravemj.tessellation import merged
 from ravemj.transforms import Floats
+
+if TYPE_CHECKING:
+    from ravemj.meshes import MeshPart
 
 TYPES: dict[type[scene.Shape], GeometryType] = {
     scene.Box: GeometryType.Box,
@@ -221,7 +223,7 @@ def _file(name: str | None, scale: ArrayLike) -> scene.MeshFile | None:
     return scene.MeshFile(str(name), vector(scale, "GeometryInfo: scale of a file")) if name else None
 
 
-def _parts(file: scene.MeshFile) -> tuple[MeshPart, ...]:
+def _parts(file: scene.MeshFile) -> "tuple[MeshPart, ...]":
     """Read a mesh file."""
     from ravemj.meshes import read_mesh  # noqa: PLC0415 - slow to import
     from ravemj.readers import find  # noqa: PLC0415

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj import scene
-from ravemj.builder import JointBuilder, LinkBuilder
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.following import Equations
 from ravemj.joints import about, directions_at, reported_anchor, wxyz_from_rotation_vector
@@ -24,6 +23,7 @@ from ravemj.rave.infos.parameters import ParameterFields
 from ravemj.transforms import Vec3, add, conjugate, dot, rotate, scale
 
 if TYPE_CHECKING:
+    from ravemj.builder import JointBuilder, LinkBuilder
     from ravemj.openrave_xml.actuator import Motor
 
 _KINDS: dict[JointType, scene.JointKind] = {
@@ -172,7 +172,7 @@ class JointInfo(ParameterFields):
         values = np.ravel(() if self._vcurrentvalues is None else self._vcurrentvalues)
         return [((self._name or "", axis), float(value)) for axis, value in enumerate(values)]
 
-    def joint(self, links: Sequence[LinkBuilder]) -> JointBuilder:
+    def joint(self, links: "Sequence[LinkBuilder]") -> "JointBuilder":
         """Return what the fields describe.
 
         Args:
@@ -200,6 +200,8 @@ class JointInfo(ParameterFields):
             )
         if kind == "slider":
             anchor = add(anchor, scale(axes[0].direction, values[0]))
+        from ravemj.builder import JointBuilder  # noqa: PLC0415 - slow to import
+
         return JointBuilder(
             name=self._name or "",
             kind=kind,

@@ -5,13 +5,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 from numpy.typing import ArrayLike
 
 from ravemj import scene
 from ravemj.arrays import checked_vector
-from ravemj.builder import LinkBuilder
 from ravemj.errors import ArgumentError
 from ravemj.inertia import inertial_about, principal_frame, principal_moments
 from ravemj.making import MADE
@@ -19,6 +18,9 @@ from ravemj.rave.infos.geometry import GeometryInfo
 from ravemj.rave.infos.numbers import filled, identity, pose
 from ravemj.rave.infos.parameters import ParameterFields
 from ravemj.transforms import Floats
+
+if TYPE_CHECKING:
+    from ravemj.builder import LinkBuilder
 
 
 @dataclass(eq=False, repr=False)
@@ -74,7 +76,7 @@ class LinkInfo(ParameterFields):
             _bVisible=any(geometry.visible for geometry in link.geometries) or not link.geometries,
         ).with_parameters(link.parameters)
 
-    def link(self) -> LinkBuilder:
+    def link(self) -> "LinkBuilder":
         """Return what the fields describe.
 
         Raises:
@@ -85,6 +87,8 @@ class LinkInfo(ParameterFields):
         (mass,) = checked_vector([self._mass], 1, "LinkInfo._mass").tolist()
         T_link_mass = pose(self._tMassFrame, "LinkInfo._tMassFrame")
         moments = checked_vector(self._vinertiamoments, 3, "LinkInfo._vinertiamoments")
+        from ravemj.builder import LinkBuilder  # noqa: PLC0415 - slow to import
+
         return LinkBuilder(
             name=self._name,
             source=MADE,

@@ -5,7 +5,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,9 +14,11 @@ from ravemj import scene
 from ravemj.arrays import checked_numbers
 from ravemj.errors import ArgumentError
 from ravemj.making import MADE
-from ravemj.manipulators import ManipulatorBuilder
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import identity, pose, vector
+
+if TYPE_CHECKING:
+    from ravemj.manipulators import ManipulatorBuilder
 
 
 def _ahead() -> ArrayLike:
@@ -72,7 +74,7 @@ class ManipulatorInfo(Info):
             _vGripperJointNames=[body.joints[joint].name for joint in arm.gripper_joints],
         )
 
-    def manipulator(self) -> ManipulatorBuilder:
+    def manipulator(self) -> "ManipulatorBuilder":
         """Return what the fields describe.
 
         Raises:
@@ -80,6 +82,8 @@ class ManipulatorInfo(Info):
         """
         if not self._name:
             raise ArgumentError("ManipulatorInfo._name: is empty, and should name the manipulator")
+        from ravemj.manipulators import ManipulatorBuilder  # noqa: PLC0415 - slow to import
+
         return ManipulatorBuilder(
             name=self._name,
             source=MADE,
