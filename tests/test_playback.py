@@ -42,7 +42,7 @@ class Panel(Hand):
 
     @property
     def board(self) -> Board:
-        return self.gui._console._board(self.view.size)
+        return self.gui._console.board(self.view.size)
 
     def control(self, name) -> Control:
         return next(control for control in self.gui.overlay().controls if control.name == name)
@@ -548,4 +548,12 @@ def test_many_joints_scroll():
     panel.gui.handle(Wheel(500))
     panel.press("dof 0")
     assert panel.view.camera is camera
+    tops = []
+    for steps in (500, -500):
+        panel.gui.handle(Wheel(steps))
+        (mark,) = (rect for rect, *_ in panel.board.panels() if rect.width == 4 and rect.height > 22)
+        tops.append(mark.y)
+        bottom = mark.y + mark.height
+    assert tops[0] == pytest.approx(104)
+    assert bottom == pytest.approx(104 + 22 * len(seen))  # the mark shows which part is seen
     assert all(len(text) <= 17 for *_, text in panel.board.panels())

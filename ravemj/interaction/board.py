@@ -32,6 +32,7 @@ _RECORDING: _Rgba = (0.75, 0.1, 0.1, 0.95)
 _GROOVE: _Rgba = (0.45, 0.45, 0.48, 1.0)
 _WHITE: _Rgba = (1.0, 1.0, 1.0, 1.0)
 _CLEAR: _Rgba = (0.0, 0.0, 0.0, 0.0)
+_Point = tuple[float, float]
 _PLAYING = ("back", "play", "forward", "seek", "speed")
 
 
@@ -78,13 +79,16 @@ class Board(NamedTuple):
             backs.append(table._replace(height=len(shown) * _JOINT_ROW))
         return cls(places, tuple(backs), first, last)
 
-    def at(self, x: float, y: float) -> Control | None:
+    def at(self, point: _Point | None) -> Control | None:
         """Return the control at a point of the view [points], or None."""
-        return next((control for control, rect in self.places.items() if rect.contains(x, y)), None)
+        found = (control for control, rect in self.places.items() if point is not None and rect.contains(*point))
+        return next(found, None)
 
-    def covers(self, x: float, y: float) -> bool:
+    def covers(self, point: _Point | None) -> bool:
         """Return whether a point of the view [points] is on the board, be it between the controls."""
-        return self.at(x, y) is not None or any(back.contains(x, y) for back in self.backs)
+        if point is None:
+            return False
+        return self.at(point) is not None or any(back.contains(*point) for back in self.backs)
 
     def value_at(self, slider: Control, x: float) -> float:
         """Return what a slider stands for when its knob is in some column of the view [points]."""
@@ -95,6 +99,8 @@ class Board(NamedTuple):
     def panels(self) -> tuple[Panel, ...]:
         """Return what to draw."""
         drawn = [Panel(back, _BACK) for back in self.backs]
+        if self.last_joint:
+            drawn.append(self._scroll_bar(self.backs[-1]))
         for control, rect in self.places.items():
             if control.is_slider:
                 drawn += _slider(control, rect)
@@ -104,6 +110,12 @@ class Board(NamedTuple):
                 colour = _BACK if not control.is_on else _RECORDING if control.name == "video" else _ON
                 drawn.append(Panel(rect, colour, control.text))
         return tuple(drawn)
+
+    def _scroll_bar(self, table: Rect) -> Panel:
+        """Return a mark that shows which part of the joints is seen."""
+        shown = sum(control.name.startswith("dof ") for control in self.places)
+        part = table.height / (shown + self.last_joint)
+        return Panel(Rect(table.x, table.y + self.first_joint * part, 4, shown * part), _GROOVE)
 
 
 def _bar(playing: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:

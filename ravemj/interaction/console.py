@@ -3,13 +3,10 @@
 from collections.abc import Callable
 
 from ravemj.interaction.board import Board
-from ravemj.interaction.controls import Control, Controls
+from ravemj.interaction.controls import Controls
 from ravemj.interaction.events import Button, Press
-from ravemj.interaction.layout import Panel
 
 _KEYS = {" ": "play", "arrowleft": "back", "arrowright": "forward"}
-
-_Size = tuple[int, int]
 
 
 class Console:
@@ -30,25 +27,13 @@ class Console:
         self._is_drawn = is_drawn
         self._first_joint = 0.0
 
-    def _board(self, size: _Size) -> Board:
+    def board(self, size: tuple[int, int]) -> Board:
+        """Return where everything is now on a view of some size [points]."""
         return Board.of(self.controls.all() if self._is_drawn else (), size, round(self._first_joint))
 
-    def covers(self, at: tuple[float, float] | None, size: _Size) -> bool:
-        """Return whether a point [points] is on the controls of a view, be it between them."""
-        return at is not None and self._board(size).covers(*at)
-
-    def control_at(self, at: tuple[float, float] | None, size: _Size) -> Control | None:
-        """Return the control at a point of a view [points], or None."""
-        return None if at is None else self._board(size).at(*at)
-
-    def panels(self, size: _Size) -> tuple[Panel, ...]:
-        """Return what to draw."""
-        return self._board(size).panels()
-
-    def press(self, press: Press, size: _Size) -> Callable[[float, float], None] | None:
+    def press(self, press: Press, board: Board) -> Callable[[float, float], None] | None:
         """Press a button, or take hold of a slider: what is returned lets it follow the pointer."""
-        board = self._board(size)
-        control = board.at(press.x, press.y)
+        control = board.at((press.x, press.y))
         if press.button is not Button.LEFT or control is None:
             return None
         if not control.is_slider:
@@ -62,10 +47,9 @@ class Console:
         slide(press.x, press.y)
         return slide
 
-    def scroll(self, size: _Size, steps: float) -> None:
+    def scroll(self, board: Board, steps: float) -> None:
         """Show others of the sliders that have no room all at once."""
-        last = self._board(size).last_joint
-        self._first_joint = min(max(self._first_joint - steps, 0.0), last)
+        self._first_joint = min(max(self._first_joint - steps, 0.0), board.last_joint)
 
     def key(self, name: str) -> None:
         """Do what a key is for while there is a motion."""

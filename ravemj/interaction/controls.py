@@ -108,7 +108,7 @@ class Controls:
             label = f"DOFs of {body.scene.name}: a slider for each"
             controls.append(Control("joints", label, "DOFs", is_on=self.shows_joints))
             if self.shows_joints:
-                sliders = (_joint(body, dof) for dof in range(body.kinematics.dof))
+                sliders = (_joint(body, dof, value) for dof, value in enumerate(body.kinematics.values().tolist()))
                 controls += [slider for slider in sliders if slider.is_slider]
         return tuple(controls)
 
@@ -172,12 +172,11 @@ class Controls:
             set_dof(body, dof, value)
 
 
-def _joint(body: BodyState, dof: int) -> Control:
+def _joint(body: BodyState, dof: int, value: float) -> Control:
     kinematics = body.kinematics
     joint, axis = joint_and_axis(body, dof)
     reach, unit = _WIDEST.get(joint.kind, _WIDEST["other"])
-    value, lower, upper = (float(numbers[dof]) for numbers in (kinematics.values(), kinematics.lower, kinematics.upper))
-    shown = value
+    shown, lower, upper = value, float(kinematics.lower[dof]), float(kinematics.upper[dof])
     if kinematics.circular[dof]:
         lower, upper, shown = -math.pi, math.pi, math.remainder(value, math.tau)
     elif not upper - lower <= _MUCH * 2 * reach:

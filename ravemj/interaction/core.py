@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from ravemj.drawing import Shapes
 from ravemj.interaction import layout
+from ravemj.interaction.board import Board
 from ravemj.interaction.console import Console
 from ravemj.interaction.controls import Control, Controls
 from ravemj.interaction.events import (
@@ -142,7 +143,8 @@ class Interaction:
         with self._simulation.lock:
             self._forget_what_is_gone()
             self._do(event)
-            hovers = self.hover is not None or self._console.covers(self._pointer, self.view.size)
+            board = self._console.board(self.view.size)
+            hovers = board.covers(self._pointer) or self._hit(board) is not None
             if not isinstance(event, Move) or self._buttons or hovers or self._hovered:
                 self._changes += 1
             self._hovered = hovers
@@ -157,14 +159,16 @@ class Interaction:
     @property
     def hover(self) -> Hit | None:
         """What is under the pointer now; None while a button is held."""
-        if self._pointer is None or self._buttons:
-            return None
-        if not all(0 <= place < length for place, length in zip(self._pointer, self.view.size, strict=True)):
-            return None
         with self._simulation.lock:
-            if self._console.covers(self._pointer, self.view.size):
-                return None
-            return pick(self._simulation, self.view.ray(*self._pointer))
+            return self._hit(self._console.board(self.view.size))
+
+    def _hit(self, board: Board) -> Hit | None:
+        at = self._pointer
+        if at is None or self._buttons or board.covers(at):
+            return None
+        if not all(0 <= place < length for place, length in zip(at, self.view.size, strict=True)):
+            return None
+        return pick(self._simulation, self.view.ray(*at))
 
     def pass_time(self, now: float) -> None:
         """Let a motion that plays go on; who draws calls this before each picture, with the simulation locked.
@@ -179,15 +183,15 @@ class Interaction:
         with self._simulation.lock:
             self._forget_what_is_gone()
             chosen = Tool.CAMERA if self.mode is Mode.CAMERA else Tool.INTERACT
-            at, size = self._selector.point_line(), self.view.size
-            hit, control = self.hover, self._console.control_at(self._pointer, size)
+            at, board = self._selector.point_line(), self._console.board(self.view.size)
+            hit, control = self._hit(board), board.at(self._pointer)
             if hit is not None:
                 at = point_line(hit.body, hit.link, hit.position, hit.normal)
             elif control is not None:
                 at = control.label
             lines = (*([at] if at else []), *self._selector.lines(), *self.controls.notices.lines)
-            tools = layout.panels(size, chosen) if self._has_tools else ()
-            panels = *tools, *self._console.panels(size)
+            tools = layout.panels(self.view.size, chosen) if self._has_tools else ()
+            panels = *tools, *board.panels()
             return Overlay(self._selector.shapes(), lines, panels, self.controls.all())
 
     def _forget_what_is_gone(self) -> None:
@@ -229,8 +233,9 @@ class Interaction:
         self._press = self._follow = None
         self._pointer = press.x, press.y
         tool = layout.tool_at(self.view.size, press.x, press.y) if self._has_tools else None
-        if self._console.covers(self._pointer, self.view.size):
-            self._follow = self._console.press(press, self.view.size)
+        board = self._console.board(self.view.size)
+        if board.covers(self._pointer):
+            self._follow = self._console.press(press, board)
         elif tool is not None:
             self._press_tool(tool, press)
         elif press.touch:
@@ -260,8 +265,9 @@ class Interaction:
                 self._set_mode(Mode.INTERACTION)  # what has appeared can be dragged
 
     def _on_wheel(self, steps: float) -> None:
-        if self._console.covers(self._pointer, self.view.size):
-            self._console.scroll(self.view.size, steps)
+        board = self._console.board(self.view.size)
+        if board.covers(self._pointer):
+            self._console.scroll(board, steps)
         elif self.mode is Mode.CAMERA:
             self.view = self._focused().zoomed(math.log(_STEP) * steps)
 
