@@ -249,5 +249,6 @@ class Desk:
             for number, point in enumerate(points):
                 before = sum(fingers) / 2, np.linalg.norm(fingers[0] - fingers[1])
                 fingers[number] = np.array(point, dtype=float)
-                right, down = sum(fingers) / 2 - before[0]
-                self.core.handle(Fingers(right, down, np.linalg.norm(fingers[0] - fingers[1]) / before[1]))
+                middle = sum(fingers) / 2
+                spread = np.linalg.norm(fingers[0] - fingers[1]) / before[1]
+                self.core.handle(Fingers(*middle, *(middle - before[0]), spread))

@@ -9,6 +9,7 @@ import ravemj
 from ravemj import drawing
 from ravemj.interaction import (
     Button,
+    Fingers,
     Interaction,
     Key,
     Leave,
@@ -18,6 +19,7 @@ from ravemj.interaction import (
     Release,
     Resize,
     Tool,
+    Use,
     View,
     Wheel,
     pick,
@@ -574,3 +576,66 @@ def test_each_click_takes_the_next_axis_of_a_joint_with_several():
         hand.click(hand.at([0.02, 0.25, 0]), ctrl=True)
         assert hand.lines()[-1] == f"Joint Wrist, axis {axis}, DOF {axis}: 0.000 rad, 0.0 deg"
         np.testing.assert_allclose(JointHandle.at(robot._state, axis).axis, robot.GetJoints()[0].GetAxis(axis))
+
+
+# --- fingers, and buttons of the shell's own
+
+
+def test_one_finger_turns_the_view_and_a_tap_selects(hand, robot):
+    hand.drag((400, 300), (450, 320), touch=True)
+    turned = hand.view
+    other = Hand(hand.env)
+    other.drag((400, 300), (450, 320))
+    np.testing.assert_allclose(turned.camera.T_world_camera, other.view.camera.T_world_camera)
+    hand.click((5, 5), touch=True)
+    assert (hand.selection, hand.gui.mode) == (None, Mode.CAMERA)
+    hand.click(hand.at([0, 0, -0.3]), touch=True)
+    assert hand.selection.body is robot._state
+    assert hand.gui.mode is Mode.INTERACTION
+    before = hand.view
+    cube = Cube.around(robot._state)
+    hand.drag(hand.at(cube.T_world_cube[:3, 3]), hand.at(cube.T_world_cube[:3, 3] + [0, 0.1, 0]), touch=True)
+    assert hand.view is before
+    assert np.linalg.norm(robot.GetTransform()[:3, 3]) > 0.05
+    hand.drag((5, 5), (60, 5), touch=True)
+    assert hand.view is not before
+    hand.press_key("escape")
+    placed = robot.GetTransform()
+    hand.drag(hand.at(placed[:3, 3]), (300, 200), touch=True)
+    assert np.array_equal(robot.GetTransform(), placed), "in camera mode nothing is dragged"
+
+
+def test_two_fingers_keep_what_is_under_them(hand):
+    """Two points as deep as the focus, under two fingers that go elsewhere without turning."""
+    hand.gui.look_from(hand.view.camera, 1.0)
+    held = np.array([[0, 0.05, 0.1], [0, 0.2, -0.1]])
+    before = np.array([hand.at(point) for point in held])
+    after = before.mean(axis=0) + [70, -40] + 1.5 * (before - before.mean(axis=0))
+    rotation = hand.view.camera.rotation
+    hand.gui.handle(Fingers(*after.mean(axis=0), 70, -40, 1.5))
+    np.testing.assert_allclose([hand.at(point) for point in held], after, atol=1e-6)
+    np.testing.assert_allclose(hand.view.camera.rotation, rotation, atol=1e-12)
+
+
+def test_shells_with_buttons_of_their_own_use_the_same_tools(hand):
+    other = hand.gui.another_view(has_tools=False)
+    assert hand.gui.overlay().panels
+    assert other.overlay().panels == ()
+    rect = tools(SIZE)[Tool.ROT_X]
+    at = rect.x + 5, rect.y + 5
+    other.handle(Use(Tool.INTERACT))
+    assert other.mode is Mode.INTERACTION
+    other.handle(Use(Tool.CAMERA))
+    assert other.mode is Mode.CAMERA
+    for tool in (Tool.ROT_X, Tool.ROT_Y, Tool.DOLLY):
+        rect = tools(SIZE)[tool]
+        at = rect.x + 5, rect.y + 5
+        hand.drag(at, (at[0] + 30, at[1] + 30))
+        other.handle(Use(tool, 30))
+        np.testing.assert_allclose(other.view.camera.T_world_camera, hand.view.camera.T_world_camera, atol=1e-12)
+    before = other.view
+    other.handle(Press(*at))
+    other.handle(Move(at[0], at[1] + 30))
+    assert not np.allclose(other.view.camera.rotation, before.camera.rotation), (
+        "where others have a wheel, the view turns"
+    )

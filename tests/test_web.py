@@ -487,7 +487,7 @@ def test_closing_ends_all_pages_and_main(env, viewer):
         ('{"type":"release","x":1,"y":2,"button":"left"}', Release(1, 2)),
         ('{"type":"move","x":1,"y":2}', Move(1, 2)),
         ('{"type":"wheel","steps":-1}', Wheel(-1)),
-        ('{"type":"fingers","right":1,"down":-2,"spread":1.5}', Fingers(1, -2, 1.5)),
+        ('{"type":"fingers","x":5,"y":6,"right":1,"down":-2,"spread":1.5}', Fingers(5, 6, 1, -2, 1.5)),
         ('{"type":"use","tool":"RotX","amount":-3}', Use(Tool.ROT_X, -3)),
         ('{"type":"key","name":"s","pressed":true}', Key("s")),
         ('{"type":"leave"}', Leave()),

@@ -217,8 +217,8 @@ class Interaction:
         match event:
             case Wheel(steps):
                 self._on_wheel(steps)
-            case Fingers(right, down, spread):
-                self.view = self._focused().shifted(right, down).zoomed(-math.log(spread))
+            case Fingers():
+                self.view = self._focused().pinched(event)
             case Use(tool, amount):
                 self._use(tool, amount)
             case Key(name, pressed):

@@ -64,11 +64,15 @@ class Fingers:
     """Two fingers move.
 
     Attributes:
-        right: How far their middle went to the right [points].
-        down: How far it went down [points].
+        x: Column of their middle [points].
+        y: Row of their middle [points].
+        right: How far it came from the left [points].
+        down: How far it came from above [points].
         spread: By which factor their distance grew; above 0.
     """
 
+    x: float
+    y: float
     right: float
     down: float
     spread: float = 1.0

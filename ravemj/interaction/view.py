@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ravemj.interaction.events import Fingers
 from ravemj.interaction.layout import Tool
 from ravemj.rendering import Camera
 from ravemj.transforms import Floats, rows_from_wxyz, wxyz_from_axis_angle
@@ -88,6 +89,14 @@ class View:
         if wheel is Tool.ROT_Y:
             return self.turned(amount, 0.0)
         return self.zoomed(-_ZOOM * amount / self.size[1])
+
+    def pinched(self, fingers: Fingers) -> "View":
+        """Shift and zoom, so that what is under two fingers stays there, as deep as the focus."""
+        _, _, cx, cy = self.camera.pinhole(*self.size)
+        x, y = fingers.x - cx, fingers.y - cy
+        right = x - fingers.spread * (x - fingers.right)
+        down = y - fingers.spread * (y - fingers.down)
+        return self.zoomed(-math.log(fingers.spread)).shifted(right, down)
 
     def centred(self, point: Floats) -> "View":
         """Look at a point from half the distance; it becomes the focus. The camera does not roll."""

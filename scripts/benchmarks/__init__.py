@@ -5,7 +5,7 @@ A new area is a module with such a function, and a line in ``AREAS``.
 
 from collections.abc import Callable
 
-from benchmarks import collision, imports, kinematics, loading, memory, reading, video
+from benchmarks import collision, imports, kinematics, loading, memory, reading, video, viewer
 from benchmarks.measure import Row
 
 AREAS: dict[str, Callable[[], list[Row]]] = {
@@ -15,5 +15,6 @@ AREAS: dict[str, Callable[[], list[Row]]] = {
     "reading": reading.rows,
     "imports": imports.rows,
     "video": video.rows,
+    "viewer": viewer.rows,
     "memory": memory.rows,
 }

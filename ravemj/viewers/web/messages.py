@@ -105,7 +105,8 @@ def _fingers(fields: dict[str, Any]) -> Fingers:
     spread = _number(fields["spread"])
     if spread <= 0:
         raise ValueError("fingers are never so near")
-    return Fingers(_number(fields["right"]), _number(fields["down"]), spread)
+    x, y, right, down = (_number(fields[name]) for name in ("x", "y", "right", "down"))
+    return Fingers(x, y, right, down, spread)
 
 
 def _use(fields: dict[str, Any]) -> Use:

@@ -204,7 +204,8 @@ view.addEventListener("pointermove", (event) => {
   [finger.x, finger.y] = [event.clientX, event.clientY];
   if (before) {
     const now = span();
-    send({ type: "fingers", right: now.x - before.x, down: now.y - before.y, spread: now.apart / before.apart });
+    const [right, down, spread] = [now.x - before.x, now.y - before.y, now.apart / before.apart];
+    send({ type: "fingers", x: now.x, y: now.y, right, down, spread });
   } else if (touched && !several) {
     if (Math.hypot(event.clientX - touched.clientX, event.clientY - touched.clientY) > FAR) clearTimeout(holding);
     send({ type: "move", x: event.clientX, y: event.clientY });

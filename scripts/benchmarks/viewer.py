@@ -1,0 +1,150 @@
+"""The viewer's page: how fast pictures come, to a connection that throws them away and to a browser."""
+
+import contextlib
+import importlib.util
+import json
+import shutil
+import statistics
+import time
+from collections.abc import Callable, Generator
+from itertools import count
+
+import mujoco
+import numpy as np
+from websockets.sync.client import ClientConnection, connect
+
+import ravemj
+from benchmarks.measure import CAMERA, MODEL, Row, take_turns
+from ravemj.rendering import Camera, read_camera
+from ravemj.rendering.contexts import RAY, OffscreenContext
+from ravemj.rendering.stage import Quality, Stage
+from ravemj.studio import Format
+
+_SIZE = 800, 600
+_FRAMES = 60
+_ROUNDS = 3
+_WHEELS = 40
+_IDLE = 3.0
+_FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-webgl"]
+_NOTE_FIRST_FRAME = """
+new MutationObserver(() => { window.firstFrame ??= performance.now(); })
+    .observe(document, { attributes: true, attributeFilter: ["data-crisp"], subtree: true });
+"""
+_TIME_WHEEL = """
+() => new Promise((done) => {
+  const draw = paint.drawImage, start = performance.now();
+  paint.drawImage = (...what) => {
+    draw.apply(paint, what);
+    paint.drawImage = draw;
+    done(performance.now() - start);
+  };
+  view.dispatchEvent(new WheelEvent("wheel", { deltaY: (Math.random() - 0.5) * 100, cancelable: true }));
+})
+"""
+
+
+def rows() -> list[Row]:
+    """Measure the page at 800x600."""
+    env = ravemj.load(MODEL)
+    viewer = env.serve_viewer()
+    viewer.SetCamera(read_camera(CAMERA).T_world_camera)
+    try:
+        return [*_connection_rows(env, viewer.url), *_browser_rows(viewer.url)]
+    finally:
+        env.Destroy()
+
+
+def _connection_rows(env: ravemj.Environment, url: str) -> list[Row]:
+    address, origin = url.replace("http", "ws", 1) + "socket", url.rsplit("/", 2)[0]
+    with connect(address, origin=origin, compression=None) as connection:
+        _send(connection, type="shape", width=_SIZE[0], height=_SIZE[1], ratio=1)
+        _send(connection, type="ready")
+        _receive(connection)
+        backend = env.studio.backend(Format(*_SIZE))
+        with _bare_drawing(env, backend) as bare:
+            drawing = [lambda: _rate(lambda: _turn(connection)), *([lambda: _rate(bare)] if bare else [])]
+            ours, *floor = take_turns(drawing, _ROUNDS)
+        time.sleep(1)  # until the last picture is crisp
+        begin = time.process_time()
+        time.sleep(_IDLE)
+        idle = 100 * (time.process_time() - begin) / _IDLE
+    what = f"page {_SIZE[0]}x{_SIZE[1]} to a connection : mjr_render and mjr_readPixels alone"
+    return [
+        Row(what, "fps", ours, next(iter(floor), None), 0.4, more_is_better=True, note=backend),
+        Row("processor while a page is open and nothing changes", "% of one", idle),
+    ]
+
+
+def _turn(connection: ClientConnection) -> None:
+    """Throw a picture away, and have the next one look different."""
+    _send(connection, type="use", tool="RotY", amount=1)
+    _receive(connection)
+
+
+def _receive(connection: ClientConnection) -> None:
+    connection.recv(60)
+    connection.recv(60)
+    _send(connection, type="ready")
+
+
+def _send(connection: ClientConnection, **message: object) -> None:
+    connection.send(json.dumps(message))
+
+
+def _rate(draw: Callable[[], object]) -> float:
+    begin = time.perf_counter()
+    for _ in range(_FRAMES):
+        draw()
+    return _FRAMES / (time.perf_counter() - begin)
+
+
+@contextlib.contextmanager
+def _bare_drawing(env: ravemj.Environment, backend: str) -> Generator[Callable[[], object] | None]:
+    """Yield what draws one picture with MuJoCo's own calls, from another side each time; None where rays draw."""
+    if backend == RAY:
+        yield None
+        return
+    context, camera, numbers = OffscreenContext(backend), read_camera(CAMERA), count()
+    viewport = mujoco.MjrRect(0, 0, *_SIZE)
+    picture = np.empty((_SIZE[1], _SIZE[0], 3), dtype=np.uint8)
+    with context.current():
+        stage = Stage(env.model, Quality(*_SIZE))
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, stage.context)
+
+    def draw() -> None:
+        with context.current():
+            turned = camera.T_world_camera @ ravemj.matrixFromAxisAngle([0, 0.01 * next(numbers), 0])
+            stage.fill(env.data, Camera(turned), *_SIZE)
+            mujoco.mjr_render(viewport, stage.scene, stage.context)
+            mujoco.mjr_readPixels(picture, None, viewport, stage.context)
+
+    try:
+        yield draw
+    finally:
+        with context.current():
+            stage.close()
+        context.close()
+
+
+def _browser_rows(url: str) -> list[Row]:
+    """Measure what a browser shows, where there is one."""
+    program = shutil.which("chromium")
+    if program is None or importlib.util.find_spec("playwright") is None:
+        return []
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - optional
+
+    with sync_playwright() as playwright, playwright.chromium.launch(executable_path=program, args=_FLAGS) as browser:
+        firsts: list[float] = []
+        for _ in range(_ROUNDS):
+            page = browser.new_page(viewport={"width": _SIZE[0], "height": _SIZE[1]})
+            page.add_init_script(_NOTE_FIRST_FRAME)
+            page.goto(url)
+            page.wait_for_selector("[data-crisp=true]")
+            firsts.append(page.evaluate("firstFrame"))
+        times = sorted(page.evaluate(_TIME_WHEEL) for _ in range(_WHEELS))
+    note = f"Chromium without a graphics card, {_SIZE[0]}x{_SIZE[1]}"
+    return [
+        Row("first picture in a browser after navigation", "ms", statistics.median(firsts), note=note),
+        Row("wheel of the mouse to new picture in a browser, median", "ms", statistics.median(times), note=note),
+        Row("the same, 95th percentile", "ms", times[round(0.95 * (_WHEELS - 1))], note=note),
+    ]

@@ -1,0 +1,57 @@
+"""Takes pictures of the viewer's page in Chromium: ``python scripts/pictures/pages.py docs/pictures``."""
+
+import shutil
+import sys
+from pathlib import Path
+
+from playwright.sync_api import Browser, Page, sync_playwright
+
+import ravemj
+from ravemj.viewers import Viewer
+
+DESK = {"viewport": {"width": 640, "height": 480}}
+PHONE = {"viewport": {"width": 360, "height": 600}, "device_scale_factor": 2, "is_mobile": True, "has_touch": True}
+
+
+def main(folder: Path) -> None:
+    """Select a joint on a desk and then the robot on a phone, with a picture of each."""
+    env = ravemj.load("models/env.xml")
+    viewer, robot = env.serve_viewer(), env.GetRobots()[0]
+    viewer.SetBkgndColor([0.8, 0.85, 0.9])
+    viewer.SetCamera([[-0.643, 0.324, -0.694, 0.755], [0.766, 0.272, -0.583, 0.634], [0, -0.906, -0.423, 0.285]])
+    robot.SetDOFValues([0.3, 0.7])
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        desk, at = opened(browser, viewer, DESK)
+        desk.keyboard.press("Escape")
+        desk.mouse.move(*at)
+        desk.keyboard.down("Control")
+        desk.mouse.click(*at)
+        desk.keyboard.up("Control")
+        take(desk, folder / "web-joint.png")
+        phone, at = opened(browser, viewer, PHONE)
+        phone.touchscreen.tap(*at)
+        take(phone, folder / "web-phone.png")
+        browser.close()
+    env.Destroy()
+
+
+def opened(browser: Browser, viewer: Viewer, device: dict) -> tuple[Page, tuple[float, float]]:
+    """Open the page; return it, and where the blue arm is on it."""
+    page = browser.new_context(**device).new_page()
+    page.goto(viewer.url)
+    page.wait_for_selector("[data-crisp=true]")
+    arm = (viewer.GetEnv().GetRobots()[0].GetLinks()[2].GetTransform() @ [0.15, 0, 0, 1])[:3]
+    ((x, y),), _ = viewer.camera.project([arm], device["viewport"]["width"], device["viewport"]["height"])
+    return page, (x, y)
+
+
+def take(page: Page, path: Path) -> None:
+    """Save a picture once something is selected and nothing moves any more."""
+    page.locator("#text", has_text="Robot").wait_for()
+    page.wait_for_selector("[data-mode=interaction][data-crisp=true]")
+    page.screenshot(path=path)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
