@@ -1,11 +1,15 @@
 """Viewers in notebooks: the page in the cell, also through the notebook's server."""
 
+import contextlib
 import re
 import socket
+import socketserver
 import sys
+import threading
 from types import SimpleNamespace
 
 import pytest
+from browsers import NEEDS_A_BROWSER
 from conftest import MODELS
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
@@ -108,3 +112,43 @@ def test_pages_of_the_notebooks_server_only_are_let_in(proxied, env, headers, or
     else:
         with pytest.raises(InvalidStatus, match="403"):
             come()
+
+
+class Proxy(socketserver.ThreadingTCPServer):
+    """Hands what comes for a prefix on to ports of this machine, as jupyter-server-proxy does."""
+
+    daemon_threads = True
+
+    class RequestHandlerClass(socketserver.StreamRequestHandler):
+        def handle(self):
+            method, path, *rest = self.rfile.readline().decode().split(" ")
+            port, inner = re.fullmatch(r"/user/maria/proxy/(\d+)(/.*)", path).groups()
+            with socket.create_connection(("127.0.0.1", int(port))) as upstream:
+                upstream.sendall(" ".join([method, inner, *rest]).encode())
+                threading.Thread(target=self.pump, args=(self.rfile.read1, upstream.sendall), daemon=True).start()
+                self.pump(upstream.recv, self.wfile.write)
+
+        def pump(self, receive, send):
+            with contextlib.suppress(OSError):
+                while data := receive(65536):
+                    send(data)
+
+    def __init__(self):
+        super().__init__(("127.0.0.1", 0), self.RequestHandlerClass)
+
+
+@NEEDS_A_BROWSER[0]
+@NEEDS_A_BROWSER[1]
+@NEEDS_A_BROWSER[2]
+def test_the_page_works_behind_the_notebooks_server(proxied, env, browser):
+    (data,) = shown(env, "web")
+    source = re.search(r'<iframe src="([^"]*)"', data["text/html"])[1]
+    with Proxy() as proxy:
+        threading.Thread(target=proxy.serve_forever, daemon=True).start()
+        page = browser.new_page()
+        page.goto(f"http://127.0.0.1:{proxy.server_address[1]}{source}")
+        page.wait_for_selector("[data-crisp=true]")
+        page.keyboard.press("Escape")
+        page.wait_for_selector("[data-mode=interaction]")
+        page.close()
+        proxy.shutdown()

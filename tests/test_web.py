@@ -308,6 +308,20 @@ def test_a_page_that_comes_back_has_the_view_that_it_had(viewer):
             page.socket.recv(0.5)
 
 
+def test_scripts_can_wait_until_pages_were_sent_everything(env, viewer):
+    start = time.monotonic()
+    viewer.EnvironmentSync()
+    assert time.monotonic() - start < 0.3, "there are no pages"
+    with Page(viewer) as page:
+        page.settled()
+        for angle in (0.5, 1.0, 1.5):
+            env.GetRobots()[0].SetDOFValues([angle, 0])
+            viewer.EnvironmentSync()
+            picture = np.asarray(page.receive(0.1)).astype(int)
+            assert np.abs(picture - viewer.render(*SIZE)).mean() < 3
+            page.send(type="ready")
+
+
 def test_the_title_is_the_viewers(viewer):
     with Page(viewer) as page:
         page.settled()

@@ -71,10 +71,12 @@ class Client:
 
     Attributes:
         interaction: The mouse and the keys of the page, and its view.
+        looks: How often it was found, or seen to, that the page was sent how everything is.
     """
 
     def __init__(self, simulation: Simulation, studio: Studio, interaction: Interaction) -> None:
         self.interaction = interaction
+        self.looks = 0
         self._simulation = simulation
         self._studio = studio
         self._link = Link()
@@ -123,6 +125,7 @@ class Client:
         if overlay is None or picture is None:
             return None
         self._send(connection, overlay, picture, look)
+        self.looks += 1
         return picture
 
     def _overlay_if_due(self, look: Look) -> Overlay | None:
@@ -140,6 +143,7 @@ class Client:
             if seen != self._seen:
                 self._seen, self._changed_at, self._is_crisp = seen, now, False
             elif self._is_crisp or now - self._changed_at < _REST:
+                self.looks += 1
                 return None
             else:
                 self._is_crisp = True

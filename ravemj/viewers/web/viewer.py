@@ -3,6 +3,7 @@
 import logging
 import re
 import threading
+import time
 import weakref
 from collections.abc import Iterable
 
@@ -22,6 +23,7 @@ from ravemj.viewers.web.client import Client, Look, receive
 from ravemj.viewers.web.server import LOOPBACK, PageServer, is_local
 
 _LOG = logging.getLogger("ravemj")
+_LONGEST_SYNC, _SYNC_STEP = 0.5, 0.005
 _MOST_TABS = 64
 """So many tabs find their own view again after their connection was lost."""
 
@@ -84,6 +86,15 @@ class WebViewer(Viewer):
             views = list(self._views.values())
         for interaction in views:
             interaction.look_from(self.camera, self.GetCameraDistanceToFocus())
+
+    def EnvironmentSync(self) -> None:
+        """Wait until all pages were sent the environment as it is now; half a second at most, where one is slow."""
+        with self._lock:
+            looks = {client: client.looks for client in self._clients.values()}
+        end = time.monotonic() + _LONGEST_SYNC
+        # the look that is under way may have begun before
+        while any(client.looks < before + 2 for client, before in looks.items()) and time.monotonic() < end:
+            time.sleep(_SYNC_STEP)
 
     def main(self, bShow: bool = True) -> int:
         """Wait until ``quitmainloop`` is called or the viewer is closed.
@@ -156,7 +167,8 @@ class WebViewer(Viewer):
 
     def dismiss(self, connection: ServerConnection) -> None:
         """Forget a page that has left, in the thread that drew for it."""
-        self._clients.pop(connection, None)
+        with self._lock:
+            self._clients.pop(connection, None)
         self._studio.close()
 
 
