@@ -133,12 +133,14 @@ def test_another_motion_ends_a_video(viewer, tmp_path):
     assert 3 <= len(imageio.v3.imread(file)) < 600
 
 
-def test_a_viewer_that_closes_ends_its_video(viewer, tmp_path):
+def test_a_viewer_that_closes_ends_its_video_and_leaves_whole_files(viewer, tmp_path):
     record(viewer)
     time.sleep(0.2)
+    viewer._saving.save_picture(look(viewer))
     viewer.close()
-    (file,) = tmp_path.iterdir()
-    assert len(imageio.v3.imread(file)) >= 1
+    assert sorted(file.suffix for file in tmp_path.iterdir()) == [".mp4", ".png"]
+    for file in tmp_path.iterdir():
+        assert imageio.v3.imread(file).size
     assert not any(thread.name == "ravemj saving" for thread in threading.enumerate())
 
 

@@ -68,6 +68,7 @@ class Saving:
         self._notices = notices
         self._stop = threading.Event()
         self._recorder: threading.Thread | None = None
+        self._threads: set[threading.Thread] = set()
 
     def save_picture(self, look: Look) -> None:
         """Save a picture."""
@@ -89,10 +90,11 @@ class Saving:
         self._recorder = self._start(free_path(".mp4"), lambda path: self._write_video(path, times, look))
 
     def end(self) -> None:
-        """End a video, and wait until it is written; not for long, since a script may hold what is drawn."""
+        """End a video, and wait until all is written; not for long, since a script may hold what is drawn."""
         self._stop.set()
-        if self._recorder is not None and self._recorder is not threading.current_thread():
-            self._recorder.join(_LONGEST_END)
+        end = time.monotonic() + _LONGEST_END
+        for thread in self._threads - {threading.current_thread()}:
+            thread.join(max(end - time.monotonic(), 0.0))
 
     def _start(self, path: Path, write: Callable[[Path], object]) -> threading.Thread:
         def run() -> None:
@@ -105,8 +107,11 @@ class Saving:
                 folder = os.path.abspath(path.parent)
                 _LOG.info("saved %s in %s", path, folder)
                 self._notices.say(f"Saved {path} in {folder}")
+            finally:
+                self._threads.discard(threading.current_thread())
 
         thread = threading.Thread(target=run, name="ravemj saving", daemon=True)
+        self._threads.add(thread)
         thread.start()
         return thread
 

@@ -12,6 +12,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 from websockets.sync.server import ServerConnection
 
+from ravemj.errors import RavemjError
 from ravemj.interaction import Interaction, Wish
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
@@ -157,7 +158,10 @@ class WebViewer(Viewer):
     def _grant(self, wish: Wish, client: Client, connection: ServerConnection, look: Look) -> None:
         """Do what a button asked for that needs the page, or writes here."""
         if wish is Wish.PICTURE:
-            client.send_file(connection, look)
+            try:
+                client.send_file(connection, look)
+            except RavemjError as error:
+                client.interaction.controls.notices.say(error.message)
         elif wish is Wish.VIDEO:
             self._saving.record(saving.Look(client.interaction, self._studio, self._background), self.playback)
         else:
