@@ -63,6 +63,12 @@ class GlfwWindow:
             glfw.MOUSE_BUTTON_MIDDLE: Button.MIDDLE,
             glfw.MOUSE_BUTTON_RIGHT: Button.RIGHT,
         }
+        self._keys = {
+            glfw.KEY_ESCAPE: "escape",
+            glfw.KEY_SPACE: " ",
+            glfw.KEY_LEFT: "arrowleft",
+            glfw.KEY_RIGHT: "arrowright",
+        }
 
     # --- what people do
 
@@ -112,7 +118,7 @@ class GlfwWindow:
     def _on_key(self, window: object, key: int, scancode: int, action: int, mods: int) -> None:
         del window, mods
         glfw = self._glfw
-        name = "escape" if key == glfw.KEY_ESCAPE else glfw.get_key_name(key, scancode)
+        name = self._keys.get(key) or glfw.get_key_name(key, scancode)
         if name and not name.isascii() and key < 128:  # Greek, say: what the key is on an English keyboard
             name = chr(key)
         if name and action != glfw.REPEAT:
@@ -166,6 +172,10 @@ class GlfwWindow:
     def show_or_hide(self, shown: bool) -> None:
         """Show the window, or hide it."""
         (self._glfw.show_window if shown else self._glfw.hide_window)(self._window)
+
+    def copy_text(self, text: str) -> None:
+        """Put a text on the clipboard."""
+        self._glfw.set_clipboard_string(self._window, text)
 
     def wait(self, seconds: float) -> None:
         """Wait until people do something, but not longer than some time."""
