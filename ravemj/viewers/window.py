@@ -7,7 +7,10 @@ import weakref
 from collections.abc import Callable
 from queue import SimpleQueue
 
-from ravemj.errors import RavemjError, RenderingError
+import numpy as np
+
+from ravemj.arrays import checked_vector
+from ravemj.errors import ArgumentError, RavemjError, RenderingError
 from ravemj.interaction import Resize, Wish
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
@@ -20,7 +23,12 @@ from ravemj.viewers.viewer import Viewer
 _LOG = logging.getLogger("ravemj")
 _WIDTH, _HEIGHT = 960, 720
 _PERIOD = 1 / 60
+_SLOW = 1.5 * _PERIOD
+"""From this long on drawing takes the processor and not only the wait for the screen; then the script has its turn."""
+
 _LONGEST_SYNC = 1.0
+_FARTHEST = 32767
+"""Largest coordinate on an X screen."""
 
 _Request = Callable[[GlfwWindow], object]
 """What other threads ask of a window: its methods belong to one thread."""
@@ -75,10 +83,11 @@ class WindowViewer(Viewer):
             h: Rows [pixels].
 
         Raises:
-            ArgumentError: a size is not positive.
+            ArgumentError: a size is no number from 1 to 16384.
         """
         super().SetSize(w, h)
-        self._requests.put(lambda window: window.resize(w, h))
+        size = self._size
+        self._requests.put(lambda window: window.resize(*size))
 
     def Move(self, x: int, y: int) -> None:
         """Move the window.
@@ -86,8 +95,15 @@ class WindowViewer(Viewer):
         Args:
             x: Where its left edge goes on the screen [pixels].
             y: Where its upper edge goes on the screen [pixels].
+
+        Raises:
+            ArgumentError: these are no numbers that a screen could have.
         """
-        self._requests.put(lambda window: window.move(x, y))
+        place = checked_vector([x, y], 2, "Move")
+        if np.abs(place).max() > _FARTHEST:
+            raise ArgumentError(f"Move: is {x}, {y}, and should be from {-_FARTHEST} to {_FARTHEST}")
+        left, top = place.astype(int).tolist()
+        self._requests.put(lambda window: window.move(left, top))
 
     def Show(self, showtype: int) -> None:
         """Hide the window, or show it.
@@ -137,7 +153,7 @@ class WindowViewer(Viewer):
 
     def turn(self, window: GlfwWindow, painter: Painter) -> bool:
         """Do what was asked for, and draw if anything has changed; return False once the window should close."""
-        if self._closing.is_set() or window.is_closed:
+        if self._closing.is_set() or window.is_broken or window.is_closed:
             return False
         for _ in range(self._requests.qsize()):
             self._requests.get()(window)
@@ -210,13 +226,20 @@ def _run(reference: "weakref.ref[WindowViewer]") -> None:
         return
     painter = Painter()
     try:
+        begin = time.monotonic()
         while viewer is not None and viewer.turn(window, painter):
             viewer = None
-            window.wait(_PERIOD)
+            taken = time.monotonic() - begin
+            window.wait(max(_PERIOD - taken, 0.0) if taken < _SLOW else _PERIOD)
+            begin = time.monotonic()
             viewer = reference()
-    finally:
+    except Exception as error:  # of OpenGL, say; the script goes on without the window
+        _LOG.error("the window closes: %s", error, exc_info=_LOG.isEnabledFor(logging.DEBUG))
+    if window.is_broken:
+        _LOG.error("the window is gone, as the connection to the display broke")
+    else:
         painter.close()
-        window.close()
+    window.close()
 
 
 def _end(closing: threading.Event, thread: threading.Thread) -> None:
