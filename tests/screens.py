@@ -1,5 +1,6 @@
 """A virtual screen, windows on it, and the mouse over them."""
 
+import contextlib
 import ctypes
 import ctypes.util
 import json
@@ -50,6 +51,10 @@ class Display:
         """Ask a window to close as window managers do."""
         _send_close(self.name, window)
 
+    def set_resource(self, text: str) -> None:
+        """Set what desktops tell programs about the screen."""
+        _set_resource(self.name, text)
+
     def await_window(self) -> int:
         await_that(self.windows, "no window came")
         return self.windows()[0]
@@ -80,6 +85,17 @@ class _ClientMessage(ctypes.Structure):
     )
 
 
+def _set_resource(display_name: str, text: str) -> None:
+    xlib = ctypes.CDLL(ctypes.util.find_library("X11") or "libX11.so.6")
+    xlib.XOpenDisplay.restype = ctypes.c_void_p
+    xlib.XDefaultRootWindow.restype = ctypes.c_ulong
+    display = ctypes.c_void_p(xlib.XOpenDisplay(display_name.encode()))
+    root = ctypes.c_ulong(xlib.XDefaultRootWindow(display))
+    resource_manager, string, replace = ctypes.c_ulong(23), ctypes.c_ulong(31), 0
+    xlib.XChangeProperty(display, root, resource_manager, string, 8, replace, text.encode(), len(text))
+    xlib.XCloseDisplay(display)
+
+
 def _send_close(display_name: str, window: int) -> None:
     xlib = ctypes.CDLL(ctypes.util.find_library("X11") or "libX11.so.6")
     xlib.XOpenDisplay.restype = ctypes.c_void_p
@@ -97,7 +113,14 @@ def _send_close(display_name: str, window: int) -> None:
 
 @pytest.fixture(scope="module")
 def display() -> Generator[Display]:
-    """A virtual screen of our own, on a number that nobody has; it does not restart whenever its last client leaves."""
+    """A virtual screen of our own."""
+    with virtual_screen() as (display, _):
+        yield display
+
+
+@contextlib.contextmanager
+def virtual_screen() -> Generator[tuple[Display, subprocess.Popen[bytes]]]:
+    """Start a screen on a number that nobody has; it does not restart whenever its last client leaves."""
     reading, writing = os.pipe()
     command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x1024x24", "-noreset"]
     server = subprocess.Popen(command, pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -107,7 +130,7 @@ def display() -> Generator[Display]:
         number = os.read(reading, 16).decode().strip() if ready else ""
         if not number:
             pytest.skip("Xvfb does not start here")
-        yield Display(f":{number}")
+        yield Display(f":{number}"), server
     finally:
         os.close(reading)
         server.terminate()

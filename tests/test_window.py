@@ -28,14 +28,21 @@ def test_play_opens_a_window_moves_and_stays_until_it_is_closed(display, folder)
         first = display.await_pose(window, "hanging")
         assert np.abs(np.median(first[:20, :20], axis=(0, 1)) - BACKGROUND).max() <= 1
         display.await_pose(window, "level")
-        last = display.await_pose(window, "upright")
-        assert 1.5 <= time.monotonic() - opened <= 10, "2.5 s of motion are played in real time"
-        time.sleep(1)
+        display.await_pose(window, "upright")
+        assert 1.5 <= time.monotonic() - opened <= 20, "2.5 s of motion are played in real time"
+        await_that(lambda: is_still(display, window), "it does not come to rest")
         assert command.runs
-        assert np.array_equal(display.picture(window), last)
+        display.await_pose(window, "upright")
         display.close(window)
         assert command.end() == (0, "", "")
     assert not list(folder.glob("*.mp4"))
+
+
+def is_still(display: Display, window: int) -> bool:
+    """Whether the picture is the same a second later; on a busy machine the last pictures of a motion may be late."""
+    picture = display.picture(window)
+    time.sleep(1)
+    return np.array_equal(display.picture(window), picture)
 
 
 def test_play_ends_by_ctrl_c_and_by_closing_while_it_moves(display, folder):

@@ -145,7 +145,11 @@ def RaveCreateSpaceSampler(env: Environment, name: str) -> None:
 
 
 def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
-    """Attach a viewer to the environment, as ``env.SetViewer`` does.
+    """Attach a viewer to the environment, beside those that it has; ``env.Remove`` closes it.
+
+    Args:
+        env: The environment.
+        name: As for ``env.SetViewer``.
 
     Returns:
         The viewer, or None for a name that is no viewer's.
@@ -154,8 +158,7 @@ def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
 
     if name.lower() not in VIEWERS:
         return None
-    env.SetViewer(name.lower())
-    return env.GetViewer()
+    return env.open_viewer(name.lower(), show=True)
 
 
 def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:

@@ -34,33 +34,48 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
     Args:
         simulation: What it shows.
         studio: What draws pictures of it.
-        name: One of ``VIEWERS``: ``offscreen``, ``web`` for a page in a browser, ``window``, or another for what fits.
+        name: One of ``VIEWERS``: ``window``, ``web`` for a page in a browser, ``offscreen``; another is the best of
+            these that works here.
         show: False for a viewer without a window.
 
     Returns:
-        What fits is a page in the cell of a notebook, a window where there is a display, else a viewer that draws when
-        it is asked for pictures; the log says which. None, and an error in the log, for an unknown name.
+        The viewer; the log says which it is. None, and an error in the log, for an unknown name.
     """
     if name not in VIEWERS:
         _LOG.error("there is no viewer '%s'; the viewers are: %s", name, ", ".join(VIEWERS))
         return None
-    if show and (name == "web" or (name not in ("window", "offscreen") and notebook.in_notebook())):
+    kind, reason = _choice(name) if show else ("offscreen", "")
+    if kind == "web":
+        if reason:
+            _LOG.info("viewer '%s' is a page in a browser: %s", name, reason)
         return _open_page(simulation, studio, name)
-    if show and name != "offscreen":
-        if has_display():
-            from ravemj.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
+    if kind == "window":
+        from ravemj.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
 
-            try:
-                viewer = WindowViewer(simulation, studio, name)
-            except RenderingError as error:
-                _LOG.warning("%s; pictures are drawn without a window", error)
-            else:
-                _LOG.info("viewer '%s' is a window", name)
-                return viewer
-        elif name == "window":
-            _LOG.warning("no window can be opened: there is no display; pictures are drawn without a window")
+        try:
+            viewer = WindowViewer(simulation, studio, name)
+        except RenderingError as error:
+            _LOG.warning("%s; pictures are drawn without a window", error)
+        else:
+            _LOG.info("viewer '%s' is a window", name)
+            return viewer
+    elif name == "window" and show:
+        _LOG.warning("no window can be opened: %s; pictures are drawn without a window", reason)
     _LOG.info("viewer '%s' has no window", name)
     return Viewer(simulation, studio, name)
+
+
+def _choice(name: str) -> tuple[str, str]:
+    """Return the kind of viewer that a name means here, and why it is not the kind that its name says."""
+    if name in ("web", "offscreen"):
+        return name, ""
+    if has_display():
+        return "window", ""
+    if sys.platform == "darwin":
+        return "web", "windows would need the main thread on macOS"
+    if name != "window" and notebook.in_notebook():
+        return "web", "this is a notebook, and there is no display"
+    return "offscreen", "there is no display"
 
 
 def _open_page(simulation: Simulation, studio: Studio, name: str) -> Viewer:
@@ -68,7 +83,6 @@ def _open_page(simulation: Simulation, studio: Studio, name: str) -> Viewer:
 
     viewer = WebViewer(simulation, studio, name, any_name=notebook.is_proxied())
     if notebook.in_notebook():
-        _LOG.info("viewer '%s' is a page in the notebook", name)
         notebook.show(viewer)
     else:
         _LOG.warning("the viewer is at %s", viewer.url)

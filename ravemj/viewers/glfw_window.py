@@ -1,9 +1,15 @@
 """A GLFW window: what it is asked to be, and what people do in it."""
 
+import functools
+import threading
 from typing import Any
 
 from ravemj.errors import RenderingError
 from ravemj.interaction import Button, Event, Key, Leave, Move, Press, Release, Wheel
+from ravemj.viewers.x_connection import XConnection
+
+_dispatching = threading.Lock()
+"""Held while GLFW hands out events: all windows share one queue, and each has a thread of its own."""
 
 
 class GlfwWindow:
@@ -11,6 +17,8 @@ class GlfwWindow:
 
     Attributes:
         events: What people did since the list was last emptied.
+        size: Width and height, in units of the screen.
+        pixels: Width and height of what is drawn [pixels]; 0 while it is minimised.
         is_lost: Whether what was drawn in it is lost.
     """
 
@@ -24,10 +32,13 @@ class GlfwWindow:
         self.events: list[Event] = []
         self.is_lost = True
         self._pointer = 0.0, 0.0
-        if not glfw.init():
-            raise RenderingError("no window can be opened: GLFW finds no display")
+        self._x = _x_connection(glfw)
+        if self.is_broken:
+            raise RenderingError("no window can be opened: the connection to the display broke; a new process may do")
         glfw.window_hint(glfw.SAMPLES, 4)
-        self._window: Any = glfw.create_window(width, height, title, None, None)
+        glfw.window_hint(glfw.SCALE_TO_MONITOR, True)  # more of its pixels where they are small
+        with _dispatching:
+            self._window: Any = glfw.create_window(width, height, title, None, None)
         if not self._window:
             raise RenderingError("no window can be opened: the display offers no OpenGL")
         glfw.make_context_current(self._window)
@@ -36,6 +47,10 @@ class GlfwWindow:
 
     def _listen(self) -> None:
         glfw, window = self._glfw, self._window
+        self.size: tuple[int, int] = glfw.get_window_size(window)  # asking the display each time would be slow
+        self.pixels: tuple[int, int] = glfw.get_framebuffer_size(window)
+        glfw.set_window_size_callback(window, self._on_size)
+        glfw.set_framebuffer_size_callback(window, self._on_pixels)
         glfw.set_window_refresh_callback(window, self._on_refresh)
         glfw.set_cursor_pos_callback(window, self._on_pointer)
         glfw.set_cursor_enter_callback(window, self._on_enter)
@@ -50,6 +65,14 @@ class GlfwWindow:
         }
 
     # --- what people do
+
+    def _on_size(self, window: object, width: int, height: int) -> None:
+        del window
+        self.size = max(width, 1), max(height, 1)
+
+    def _on_pixels(self, window: object, width: int, height: int) -> None:
+        del window
+        self.pixels = width, height
 
     def _on_refresh(self, window: object) -> None:
         del window
@@ -90,6 +113,8 @@ class GlfwWindow:
         del window, mods
         glfw = self._glfw
         name = "escape" if key == glfw.KEY_ESCAPE else glfw.get_key_name(key, scancode)
+        if name and not name.isascii() and key < 128:  # Greek, say: what the key is on an English keyboard
+            name = chr(key)
         if name and action != glfw.REPEAT:
             self.events.append(Key(name, action == glfw.PRESS))
 
@@ -101,21 +126,14 @@ class GlfwWindow:
     # --- what it is
 
     @property
+    def is_broken(self) -> bool:
+        """Whether the display is gone; nothing should be asked of the window any more."""
+        return self._x is not None and self._x.is_broken
+
+    @property
     def is_closed(self) -> bool:
         """Whether the user closed it."""
         return bool(self._glfw.window_should_close(self._window))
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height, in units of the screen."""
-        width, height = self._glfw.get_window_size(self._window)
-        return max(width, 1), max(height, 1)
-
-    @property
-    def pixels(self) -> tuple[int, int]:
-        """Width and height of what is drawn [pixels]; 0 while it is minimised."""
-        width, height = self._glfw.get_framebuffer_size(self._window)
-        return width, height
 
     @property
     def pixel_ratio(self) -> float:
@@ -151,7 +169,13 @@ class GlfwWindow:
 
     def wait(self, seconds: float) -> None:
         """Wait until people do something, but not longer than some time."""
-        self._glfw.wait_events_timeout(seconds)
+        if self._x is None:
+            self._glfw.wait_events_timeout(seconds)
+            return
+        self._x.wait(seconds)
+        if not self.is_broken:
+            with _dispatching:
+                self._glfw.poll_events()
 
     def swap(self) -> None:
         """Show what was drawn."""
@@ -159,9 +183,27 @@ class GlfwWindow:
         self._glfw.swap_buffers(self._window)
 
     def close(self) -> None:
-        """Close the window."""
-        self._glfw.destroy_window(self._window)
-        self._glfw.poll_events()
+        """Close the window, or leave it where the display is gone."""
+        if self._x is not None and self._x.is_broken:
+            self._x.abandon()
+            return
+        with _dispatching:
+            self._glfw.destroy_window(self._window)
+            self._glfw.poll_events()
+
+
+@functools.cache
+def _x_connection(glfw: Any) -> XConnection | None:  # noqa: ANN401 - glfw has no types
+    """Return GLFW's connection to its X server, which all windows share; None on other systems.
+
+    Raises:
+        RenderingError: there is no display.
+    """
+    if not glfw.init():
+        raise RenderingError("no window can be opened: GLFW finds no display")
+    if not hasattr(glfw, "get_platform") or glfw.get_platform() != glfw.PLATFORM_X11:
+        return None
+    return XConnection(glfw.get_x11_display())
 
 
 def _import_glfw() -> Any:  # noqa: ANN401 - glfw has no types

@@ -1,5 +1,7 @@
 """What every viewer can do, and the viewer without a window."""
 
+import contextlib
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -8,6 +10,7 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.handles import Handle
 from ravemj.interaction import Resize
 from ravemj.rendering import Camera, CameraIntrinsics, Pinhole
+from ravemj.scene import View
 from ravemj.simulation import Simulation
 from ravemj.studio import Format, Frame, Studio, checked_colour
 from ravemj.transforms import Floats
@@ -15,6 +18,9 @@ from ravemj.viewers.callbacks import Callback, Callbacks
 from ravemj.viewers.selecting import Selecting
 
 _SIZE = 640, 480
+_LARGEST = 16384
+"""Most pixels along a side: what graphics cards can draw."""
+
 _FIGURES = "SetFiguresInCamera"
 
 
@@ -35,6 +41,8 @@ class Viewer(Selecting):
         interaction: Takes events of mouse and keys; windows hand in theirs.
     """
 
+    _internal = ("environment", "take_over")
+
     def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
         self._simulation = simulation
         self._studio = studio
@@ -46,6 +54,7 @@ class Viewer(Selecting):
         self._figures_in_camera = False
         self._thread_callbacks = Callbacks()
         self._image_callbacks = Callbacks()
+        self._camera_of_nothing = None if simulation.bodies else self.camera
 
     def GetXMLId(self) -> str:
         """Return the name that ``SetViewer`` was given."""
@@ -79,11 +88,9 @@ class Viewer(Selecting):
             h: Rows [pixels].
 
         Raises:
-            ArgumentError: a size is not positive.
+            ArgumentError: a size is no number from 1 to 16384.
         """
-        if w < 1 or h < 1:
-            raise ArgumentError(f"SetSize: is {w} x {h}, and should be at least 1 x 1 pixels")
-        self._size = int(w), int(h)
+        self._size = _checked_size(w, h, "SetSize")
         self.interaction.handle(Resize(*self._size))
 
     def Move(self, x: int, y: int) -> None:
@@ -188,12 +195,13 @@ class Viewer(Selecting):
                 keeps the one before.
 
         Raises:
-            ArgumentError: this is no rigid transform.
+            ArgumentError: this is no rigid transform, or the distance no finite number.
 
         Example:
             >>> viewer.SetCamera(saved)  # what viewer.GetCameraTransform() printed
         """
-        self.interaction.look_from(Camera.from_matrix(transform), max(float(focalDistance), 0.0))
+        (distance,) = checked_vector([focalDistance], 1, "focalDistance").tolist()
+        self.interaction.look_from(Camera.from_matrix(transform), max(distance, 0.0))
 
     def GetCameraTransform(self) -> Floats:
         """Return the camera's pose.
@@ -227,7 +235,8 @@ class Viewer(Selecting):
             The picture, shape (height, width, 3), uint8, top row first.
 
         Raises:
-            ArgumentError: the transform is not rigid, or K is not four numbers with positive focal lengths.
+            ArgumentError: the transform is not rigid, K is not four numbers with positive focal lengths, or nothing has
+                such a size.
             RenderingError: nothing can draw here.
 
         Example:
@@ -238,7 +247,7 @@ class Viewer(Selecting):
         if fx <= 0 or fy <= 0:
             raise ArgumentError(f"K: the focal lengths are {fx:g} and {fy:g}, and should be positive")
         camera = Camera(Camera.from_matrix(transform).T_world_camera, calibration=Pinhole(fx, fy, cx, cy))
-        form = Format(width or self._size[0], height or self._size[1])
+        form = self._format(width, height, "GetCameraImage")
         return self._studio.picture(camera, self._background, form, self._figures_in_camera)
 
     def SetBkgndColor(self, color: ArrayLike) -> None:
@@ -251,6 +260,21 @@ class Viewer(Selecting):
             ArgumentError: this is no colour.
         """
         self._background = checked_colour(color)
+
+    def take_over(self, view: View | None = None) -> None:
+        """Take note that bodies were added.
+
+        Args:
+            view: What their file says about background and camera. Where it has no camera, the first bodies in an
+                empty environment are looked at from above, unless somebody has chosen another view before.
+        """
+        if view is not None:
+            self._background = view.background
+        if view is not None and view.T_world_camera is not None:
+            self.SetCamera(view.T_world_camera.matrix())
+        elif self.camera is self._camera_of_nothing and self._simulation.bodies:
+            with contextlib.suppress(RavemjError):  # bodies that MuJoCo refuses; whoever asks for them next is told
+                self.SetCamera(self._studio.camera_from_above().T_world_camera)
 
     @property
     def camera(self) -> Camera:
@@ -273,13 +297,18 @@ class Viewer(Selecting):
             The picture, shape (height, width, 3), uint8, top row first.
 
         Raises:
+            ArgumentError: no picture has such a size.
             RenderingError: nothing can draw here.
         """
-        form = Format(width or self._size[0], height or self._size[1])
+        form = self._format(width, height, "render")
         gizmos = self.interaction.overlay().shapes
         picture = self._studio.picture(self.camera, self._background, form, gizmos=gizmos)
         self._image_callbacks.call(picture)
         return picture
+
+    def _format(self, width: int | None, height: int | None, caller: str) -> Format:
+        """Return the size of a picture; for what is left open or 0, the viewer's."""
+        return Format(*_checked_size(width or self._size[0], height or self._size[1], caller))
 
     def close(self) -> None:
         """Close the viewer."""
@@ -287,3 +316,16 @@ class Viewer(Selecting):
 
     def __repr__(self) -> str:
         return f"<viewer:{self._name}>"
+
+
+def _checked_size(width: float, height: float, caller: str) -> tuple[int, int]:
+    """Return a size as whole pixels.
+
+    Raises:
+        ArgumentError: nothing has such a size.
+    """
+    size = checked_vector([width, height], 2, f"{caller}: size")
+    if size.min() < 1 or size.max() > _LARGEST:
+        limits = f"1 x 1 to {_LARGEST} x {_LARGEST}"
+        raise ArgumentError(f"{caller}: is {width} x {height}, and should be from {limits} pixels")
+    return int(size[0]), int(size[1])

@@ -1,12 +1,17 @@
 """A viewer with a window, drawn by a thread of its own while the script goes on."""
 
+import atexit
 import logging
 import threading
+import time
 import weakref
 from collections.abc import Callable
 from queue import SimpleQueue
 
-from ravemj.errors import RavemjError, RenderingError
+import numpy as np
+
+from ravemj.arrays import checked_vector
+from ravemj.errors import ArgumentError, RavemjError, RenderingError
 from ravemj.interaction import Resize
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
@@ -17,7 +22,15 @@ from ravemj.viewers.viewer import Viewer
 _LOG = logging.getLogger("ravemj")
 _WIDTH, _HEIGHT = 960, 720
 _PERIOD = 1 / 60
+_SLOW = 1.5 * _PERIOD
+"""From this long on drawing takes the processor and not only the wait for the screen; then the script has its turn."""
+
 _LONGEST_SYNC = 1.0
+_FARTHEST = 32767
+"""Largest coordinate on an X screen."""
+
+_running: dict[threading.Thread, tuple[threading.Event, threading.Event]] = {}
+"""The threads of windows; for each an event that closes it, and one that tells its end: Ctrl-C breaks ``join``."""
 
 _Request = Callable[[GlfwWindow], object]
 """What other threads ask of a window: its methods belong to one thread."""
@@ -37,23 +50,25 @@ class WindowViewer(Viewer):
         self._closing = threading.Event()
         self._opened = threading.Event()
         self._failure = ""
-        self._thread = threading.Thread(target=_run, args=(weakref.ref(self),), name="ravemj window", daemon=True)
-        self._end = weakref.finalize(self, _end, self._closing, self._thread)  # before Ctrl-C can end this here
-        self._thread.start()
+        self._ended = threading.Event()
+        thread = threading.Thread(target=_run, args=(weakref.ref(self),), name="ravemj window", daemon=True)
+        _running[thread] = self._closing, self._ended
+        self._end = weakref.finalize(self, _end, thread)  # before Ctrl-C can end this here
+        thread.start()
         self._opened.wait()
         if self._failure:
-            self._thread.join()
+            self._ended.wait()
             raise RenderingError(self._failure)
 
     @property
     def is_open(self) -> bool:
         """False once the window is closed, by the user or by ``close``."""
-        return self._thread.is_alive()
+        return not self._ended.is_set()
 
     def wait(self) -> None:
         """Wait until the user closes the window."""
-        while self.is_open:
-            self._thread.join(0.1)  # in slices, so that Ctrl-C gets through
+        while not self._ended.wait(0.1):  # in slices, so that Ctrl-C gets through
+            pass
 
     def SetName(self, title: str) -> None:
         """Set the title of the window.
@@ -72,10 +87,11 @@ class WindowViewer(Viewer):
             h: Rows [pixels].
 
         Raises:
-            ArgumentError: a size is not positive.
+            ArgumentError: a size is no number from 1 to 16384.
         """
         super().SetSize(w, h)
-        self._requests.put(lambda window: window.resize(w, h))
+        size = self._size
+        self._requests.put(lambda window: window.resize(*size))
 
     def Move(self, x: int, y: int) -> None:
         """Move the window.
@@ -83,8 +99,15 @@ class WindowViewer(Viewer):
         Args:
             x: Where its left edge goes on the screen [pixels].
             y: Where its upper edge goes on the screen [pixels].
+
+        Raises:
+            ArgumentError: these are no numbers that a screen could have.
         """
-        self._requests.put(lambda window: window.move(x, y))
+        place = checked_vector([x, y], 2, "Move")
+        if np.abs(place).max() > _FARTHEST:
+            raise ArgumentError(f"Move: is {x}, {y}, and should be from {-_FARTHEST} to {_FARTHEST}")
+        left, top = place.astype(int).tolist()
+        self._requests.put(lambda window: window.move(left, top))
 
     def Show(self, showtype: int) -> None:
         """Hide the window, or show it.
@@ -134,7 +157,7 @@ class WindowViewer(Viewer):
 
     def turn(self, window: GlfwWindow, painter: Painter) -> bool:
         """Do what was asked for, and draw if anything has changed; return False once the window should close."""
-        if self._closing.is_set() or window.is_closed:
+        if self._closing.is_set() or window.is_broken or window.is_closed:
             return False
         for _ in range(self._requests.qsize()):
             self._requests.get()(window)
@@ -184,6 +207,15 @@ class WindowViewer(Viewer):
 
 
 def _run(reference: "weakref.ref[WindowViewer]") -> None:
+    """Show a viewer's window, and tell that it has ended."""
+    try:
+        _show(reference)
+    finally:
+        _running[threading.current_thread()][1].set()
+        del _running[threading.current_thread()]
+
+
+def _show(reference: "weakref.ref[WindowViewer]") -> None:
     """Open a viewer's window and draw it until it is closed, or the viewer is gone, which waiting does not keep."""
     viewer = reference()
     window = None if viewer is None else viewer.open_window()
@@ -191,17 +223,33 @@ def _run(reference: "weakref.ref[WindowViewer]") -> None:
         return
     painter = Painter()
     try:
+        begin = time.monotonic()
         while viewer is not None and viewer.turn(window, painter):
             viewer = None
-            window.wait(_PERIOD)
+            taken = time.monotonic() - begin
+            window.wait(max(_PERIOD - taken, 0.0) if taken < _SLOW else _PERIOD)
+            begin = time.monotonic()
             viewer = reference()
-    finally:
+    except Exception as error:  # of OpenGL, say; the script goes on without the window
+        _LOG.error("the window closes: %s", error, exc_info=_LOG.isEnabledFor(logging.DEBUG))
+    if window.is_broken:
+        _LOG.error("the window is gone, as the connection to the display broke")
+    else:
         painter.close()
-        window.close()
+    window.close()
 
 
-def _end(closing: threading.Event, thread: threading.Thread) -> None:
+def _end(thread: threading.Thread) -> None:
     """Close a window and wait for the end of its thread."""
-    closing.set()
-    if threading.current_thread() is not thread:
-        thread.join()
+    closing, ended = _running.get(thread, (None, None))
+    if closing is not None and ended is not None and thread.ident is not None:
+        closing.set()
+        if threading.current_thread() is not thread:
+            ended.wait()
+
+
+@atexit.register
+def _end_all() -> None:
+    """Wait for windows whose viewers went in their own threads: Python must not end while OpenGL draws."""
+    for thread in list(_running):
+        _end(thread)

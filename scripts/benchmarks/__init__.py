@@ -5,7 +5,7 @@ A new area is a module with such a function, and a line in ``AREAS``.
 
 from collections.abc import Callable
 
-from benchmarks import collision, imports, kinematics, loading, memory, reading, video, viewer
+from benchmarks import collision, imports, kinematics, loading, memory, reading, video, viewer, window
 from benchmarks.measure import Row
 
 AREAS: dict[str, Callable[[], list[Row]]] = {
@@ -17,4 +17,5 @@ AREAS: dict[str, Callable[[], list[Row]]] = {
     "video": video.rows,
     "viewer": viewer.rows,
     "memory": memory.rows,
+    "window": window.rows,
 }

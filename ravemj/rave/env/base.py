@@ -22,7 +22,7 @@ class EnvironmentPart(UserData):
     def __init__(self) -> None:
         self._simulation = Simulation()
         self._studio = Studio(self._simulation)
-        self._viewer: Viewer | None = None
+        self._viewers: list[Viewer] = []
         self._found: dict[Diagnostic, None] = {}  # as ordered sets, which loading a file again does not let grow
         self._files: dict[str, None] = {}
         self._annotations = Annotations()
@@ -36,6 +36,11 @@ class EnvironmentPart(UserData):
         """
         if self._is_destroyed:
             raise RavemjError(f"{self!r} is destroyed; make a new Environment", ErrorCode.InvalidState)
+
+    @property
+    def _viewer(self) -> "Viewer | None":
+        """The first viewer, which ``GetViewer`` returns, or None."""
+        return self._viewers[0] if self._viewers else None
 
     @property
     def _environment(self) -> "Environment":

@@ -41,7 +41,9 @@ class Contents(EnvironmentPart):
             self.AddKinBody(interface, addMode)
 
     def _add_other(self, interface: object) -> None:
-        """Take what is no body; other kinds of objects override this for theirs."""
+        """Take what is no body: a viewer of ours, which is here already."""
+        if any(interface is viewer for viewer in self._viewers):
+            return
         kind = "None" if interface is None else type(interface).__name__
         raise ArgumentError(f"Add: takes a body or robot, not {kind}")
 
@@ -61,8 +63,11 @@ class Contents(EnvironmentPart):
             if int(addMode) & InterfaceAddMode.AllowRenaming:
                 self._simulation.rename(state, self._simulation.free_name(state.scene.name))
             self._simulation.insert(state)
+        for viewer in self._viewers:
+            viewer.take_over()
 
     AddRobot = AddKinBody
+    AddViewer = Add
 
     def Remove(self, obj: object) -> bool:
         """Take a body or robot out of the environment.
@@ -88,9 +93,14 @@ class Contents(EnvironmentPart):
     RemoveKinBody = Remove
 
     def _remove_other(self, interface: object) -> bool:
-        """Take out what is no body; other kinds of objects override this for theirs."""
+        """Take out what is no body: a viewer, which closes."""
         if interface is None:
             raise ArgumentError("Remove: takes a body or robot, not None")
+        for viewer in self._viewers:
+            if viewer is interface:
+                self._viewers.remove(viewer)
+                viewer.close()
+                return True
         return False
 
     def _check_ours(self, body: KinBody, caller: str) -> None:

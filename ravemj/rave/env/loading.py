@@ -88,6 +88,8 @@ class Loading(EnvironmentPart):
                 self._simulation.view = reading.scene.view
             if reading.scene.gravity is not None:
                 self._simulation.set_gravity(reading.scene.gravity)
+        for viewer in self._viewers:
+            viewer.take_over(reading.scene.view)
         send_warnings(reading.diagnostics)
 
     def _note(self, reading: "Reading") -> None:

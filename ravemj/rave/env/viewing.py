@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 class Viewing(EnvironmentPart):
     """Shows the environment."""
 
-    _internal = ("studio",)
+    _internal = ("open_viewer", "studio")
 
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
-        """Attach a viewer, in place of the one before.
+        """Attach a viewer, in place of those before; ``RaveCreateViewer`` attaches further ones.
 
-        With a display a window opens and shows every change from then on, while the script goes on; in a notebook, a
-        page in the cell does. Without either, as on a server, the viewer draws when it is asked for pictures, so that
-        scripts run there just the same.
+        With a display a window opens and shows every change from then on, while the script goes on; in a notebook
+        without one, a page in the cell does. Without either, as on a server, the viewer draws when it is asked for
+        pictures, so that scripts run there just the same.
 
         The camera starts with the view that the loaded file asks for, else from above; ``GetViewer().SetCamera``
         moves it.
@@ -35,9 +35,8 @@ class Viewing(EnvironmentPart):
         Args:
             viewername: ``'window'``: a window; a warning says so where there is no display for it. ``'web'``: a page
                 for a browser on this machine, at ``GetViewer().url``. ``'offscreen'``: neither. One of OpenRAVE's
-                names, such as ``'qtcoin'``: the page in a notebook, else a window if there is a display, else neither;
-                the log says which.
-                ``''`` removes the viewer.
+                names, such as ``'qtcoin'``: a window if there is a display, else a page in a notebook, else neither;
+                the log says which. On macOS the page stands for windows. ``''`` removes the viewer.
             showviewer: False: never a window.
 
         Returns:
@@ -52,13 +51,9 @@ class Viewing(EnvironmentPart):
         """
         if viewername:
             self._check_alive()
-        self._close_viewer()
+        self._close_viewers()
         if viewername:
-            from ravemj.viewers import open_viewer  # noqa: PLC0415 - slow to import
-
-            self._viewer = open_viewer(self._simulation, self._studio, viewername, showviewer)
-        if self._viewer is not None:
-            self._viewer.environment = weakref.ref(self)
+            self.open_viewer(viewername, showviewer)
         return bool(viewername)
 
     def serve_viewer(self, host: str = "127.0.0.1", port: int = 0) -> "WebViewer":
@@ -73,7 +68,7 @@ class Viewing(EnvironmentPart):
             The viewer; ``url`` is the address of its page.
 
         Raises:
-            RenderingError: this port cannot be had; the viewer before stays.
+            RenderingError: this port cannot be had; the viewers before stay.
 
         Example:
             >>> print(env.serve_viewer(port=8080).url)
@@ -82,16 +77,27 @@ class Viewing(EnvironmentPart):
 
         self._check_alive()
         viewer = WebViewer(self._simulation, self._studio, "web", host, port)
-        self._close_viewer()
-        self._viewer = viewer
+        self._close_viewers()
         viewer.environment = weakref.ref(self)
+        self._viewers.append(viewer)
         return viewer
 
-    def _close_viewer(self) -> None:
-        if self._viewer is not None:
-            self._viewer.close()
-            self._viewer = None
+    def open_viewer(self, name: str, show: bool) -> "Viewer | None":
+        """Attach a viewer beside those that there are; None for a name that is no viewer's."""
+        from ravemj.viewers import open_viewer  # noqa: PLC0415 - slow to import
+
+        self._check_alive()
+        viewer = open_viewer(self._simulation, self._studio, name, show)
+        if viewer is not None:
+            viewer.environment = weakref.ref(self)
+            self._viewers.append(viewer)
+        return viewer
+
+    def _close_viewers(self) -> None:
+        if self._viewers:
             self._simulation.drawings.clear()
+        while self._viewers:
+            self._viewers.pop().close()
 
     def SetDefaultViewer(self, showviewer: bool = True) -> bool:
         """Attach the viewer that the variable ``OPENRAVE_DEFAULT_VIEWER`` names, else the best that works here.
@@ -105,18 +111,18 @@ class Viewing(EnvironmentPart):
         return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "qtcoin", showviewer)
 
     def GetViewer(self, name: str | None = None) -> "Viewer | None":
-        """Return the viewer, or None where there is none.
+        """Return a viewer, or None where there is none.
 
         Args:
-            name: None or empty, or the name that ``SetViewer`` was given: None is returned for any other.
+            name: None or empty: the first one. Else the first of those that ``SetViewer`` or ``RaveCreateViewer`` was
+                given this name for.
 
         Example:
             >>> viewer = env.GetViewer()
             >>> if viewer is not None:
             ...     viewer.SetBkgndColor([0.8, 0.85, 0.9])
         """
-        viewer = self._viewer
-        return viewer if viewer is None or not name or name == viewer.GetXMLId() else None
+        return next((viewer for viewer in self._viewers if not name or name == viewer.GetXMLId()), None)
 
     def UpdatePublishedBodies(self, timeout: float = 0.0) -> None:
         """Do nothing: viewers show every change at once. OpenRAVE's publish the state of the bodies here.
