@@ -19,6 +19,7 @@ class GlfwWindow:
         events: What people did since the list was last emptied.
         size: Width and height, in units of the screen.
         pixels: Width and height of what is drawn [pixels]; 0 while it is minimised.
+        pixel_ratio: How many pixels a point has: 1, or more on screens with small pixels.
         is_lost: Whether what was drawn in it is lost.
     """
 
@@ -51,6 +52,8 @@ class GlfwWindow:
         self.pixels: tuple[int, int] = glfw.get_framebuffer_size(window)
         glfw.set_window_size_callback(window, self._on_size)
         glfw.set_framebuffer_size_callback(window, self._on_pixels)
+        self._on_scale(window, *glfw.get_window_content_scale(window))
+        glfw.set_window_content_scale_callback(window, self._on_scale)
         glfw.set_window_refresh_callback(window, self._on_refresh)
         glfw.set_cursor_pos_callback(window, self._on_pointer)
         glfw.set_cursor_enter_callback(window, self._on_enter)
@@ -79,6 +82,10 @@ class GlfwWindow:
     def _on_pixels(self, window: object, width: int, height: int) -> None:
         del window
         self.pixels = width, height
+
+    def _on_scale(self, window: object, x: float, y: float) -> None:
+        del window, y
+        self.pixel_ratio = max(float(x), 0.5)
 
     def _on_refresh(self, window: object) -> None:
         del window
@@ -140,11 +147,6 @@ class GlfwWindow:
     def is_closed(self) -> bool:
         """Whether the user closed it."""
         return bool(self._glfw.window_should_close(self._window))
-
-    @property
-    def pixel_ratio(self) -> float:
-        """How many pixels a point has: 1, or more on screens with small pixels."""
-        return max(float(self._glfw.get_window_content_scale(self._window)[0]), 0.5)
 
     @property
     def points(self) -> tuple[int, int]:
