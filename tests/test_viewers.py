@@ -36,7 +36,7 @@ def opened(monkeypatch):
 
     def pretend(kind):
         class Pretended(Bare):
-            def __init__(self, simulation, studio, name, *, any_name=False):
+            def __init__(self, simulation, studio, name, **more):
                 kinds.append(kind)
                 super().__init__(simulation, studio, name)
 
@@ -45,15 +45,15 @@ def opened(monkeypatch):
     monkeypatch.setitem(sys.modules, "ravemj.viewers.window", types.SimpleNamespace(WindowViewer=pretend("window")))
     monkeypatch.setitem(sys.modules, "ravemj.viewers.web", types.SimpleNamespace(WebViewer=pretend("web")))
     monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr(notebook, "show", lambda viewer: None)
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     return kinds
 
 
 def in_notebook(monkeypatch):
-    shell = types.SimpleNamespace(kernel=object())
+    shell = types.SimpleNamespace(kernel=None)
     monkeypatch.setitem(sys.modules, "IPython", types.SimpleNamespace(get_ipython=lambda: shell))
-    monkeypatch.setattr(notebook, "show", lambda viewer: None)
 
 
 class TestChoice:
@@ -78,9 +78,8 @@ class TestChoice:
         assert kind() == without
         monkeypatch.setenv("WAYLAND_DISPLAY", "wayland-0")
         assert kind() == with_display
-        in_notebook(monkeypatch)
-        assert kind() == ("window" if name == "window" else in_a_notebook)
         monkeypatch.delenv("WAYLAND_DISPLAY")
+        in_notebook(monkeypatch)
         assert kind() == in_a_notebook
 
     def test_a_terminal_of_ipython_is_no_notebook(self, env, opened, monkeypatch):
@@ -114,11 +113,13 @@ class TestChoice:
 
         assert said("qtcoin") == ["viewer 'qtcoin' has no window"]
         assert said("window")[0].startswith("no window can be opened: there is no display")
-        assert said("web") == ["the viewer is at http://nowhere/"]
+        in_notebook(monkeypatch)
+        assert said("qtosg") == [
+            "viewer 'qtosg' is a page in a browser: this is a notebook, and there is no display",
+        ]
+        assert said("web") == []
         monkeypatch.setenv("DISPLAY", ":0")
         assert said("qtcoin") == ["viewer 'qtcoin' is a window"]
-        in_notebook(monkeypatch)
-        assert said("qtosg") == ["viewer 'qtosg' is a page in a browser: this is a notebook"]
 
     def test_a_display_that_fails_is_said_and_pictures_go_on(self, env, opened, monkeypatch, caplog):
         def fail(*arguments):

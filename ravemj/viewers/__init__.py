@@ -46,7 +46,9 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
         return None
     kind, reason = _choice(name) if show else ("offscreen", "")
     if kind == "web":
-        return _open_page(simulation, studio, name, reason)
+        if reason:
+            _LOG.info("viewer '%s' is a page in a browser: %s", name, reason)
+        return _open_page(simulation, studio, name)
     if kind == "window":
         from ravemj.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
 
@@ -67,20 +69,18 @@ def _choice(name: str) -> tuple[str, str]:
     """Return the kind of viewer that a name means here, and why it is not the kind that its name says."""
     if name in ("web", "offscreen"):
         return name, ""
-    if name != "window" and notebook.in_notebook():
-        return "web", "this is a notebook"
     if has_display():
         return "window", ""
     if sys.platform == "darwin":
         return "web", "windows would need the main thread on macOS"
+    if name != "window" and notebook.in_notebook():
+        return "web", "this is a notebook, and there is no display"
     return "offscreen", "there is no display"
 
 
-def _open_page(simulation: Simulation, studio: Studio, name: str, reason: str) -> Viewer:
+def _open_page(simulation: Simulation, studio: Studio, name: str) -> Viewer:
     from ravemj.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
 
-    if reason:
-        _LOG.info("viewer '%s' is a page in a browser: %s", name, reason)
     viewer = WebViewer(simulation, studio, name, any_name=notebook.is_proxied())
     if notebook.in_notebook():
         notebook.show(viewer)

@@ -177,7 +177,8 @@ class GlfwWindow:
 
     def copy_text(self, text: str) -> None:
         """Put a text on the clipboard."""
-        self._glfw.set_clipboard_string(self._window, text)
+        with _dispatching:  # in whose course others ask for it
+            self._glfw.set_clipboard_string(self._window, text)
 
     def wait(self, seconds: float) -> None:
         """Wait until people do something, but not longer than some time."""

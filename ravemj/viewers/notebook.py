@@ -15,8 +15,7 @@ _PREFIX = "JUPYTERHUB_SERVICE_PREFIX"
 def in_notebook() -> bool:
     """Return whether Python runs for a notebook."""
     ipython: Any = sys.modules.get("IPython")
-    shell = None if ipython is None else ipython.get_ipython()
-    return getattr(shell, "kernel", None) is not None
+    return ipython is not None and hasattr(ipython.get_ipython(), "kernel")
 
 
 def is_proxied() -> bool:

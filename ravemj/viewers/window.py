@@ -1,5 +1,6 @@
 """A viewer with a window, drawn by a thread of its own while the script goes on."""
 
+import atexit
 import logging
 import threading
 import time
@@ -30,6 +31,9 @@ _LONGEST_SYNC = 1.0
 _FARTHEST = 32767
 """Largest coordinate on an X screen."""
 
+_running: dict[threading.Thread, tuple[threading.Event, threading.Event]] = {}
+"""The threads of windows; for each an event that closes it, and one that tells its end: Ctrl-C breaks ``join``."""
+
 _Request = Callable[[GlfwWindow], object]
 """What other threads ask of a window: its methods belong to one thread."""
 
@@ -48,23 +52,25 @@ class WindowViewer(Viewer):
         self._closing = threading.Event()
         self._opened = threading.Event()
         self._failure = ""
-        self._thread = threading.Thread(target=_run, args=(weakref.ref(self),), name="ravemj window", daemon=True)
-        self._end = weakref.finalize(self, _end, self._closing, self._thread)  # before Ctrl-C can end this here
-        self._thread.start()
+        self._ended = threading.Event()
+        thread = threading.Thread(target=_run, args=(weakref.ref(self),), name="ravemj window", daemon=True)
+        _running[thread] = self._closing, self._ended
+        self._end = weakref.finalize(self, _end, thread)  # before Ctrl-C can end this here
+        thread.start()
         self._opened.wait()
         if self._failure:
-            self._thread.join()
+            self._ended.wait()
             raise RenderingError(self._failure)
 
     @property
     def is_open(self) -> bool:
         """False once the window is closed, by the user or by ``close``."""
-        return self._thread.is_alive()
+        return not self._ended.is_set()
 
     def wait(self) -> None:
         """Wait until the user closes the window."""
-        while self.is_open:
-            self._thread.join(0.1)  # in slices, so that Ctrl-C gets through
+        while not self._ended.wait(0.1):  # in slices, so that Ctrl-C gets through
+            pass
 
     def SetName(self, title: str) -> None:
         """Set the title of the window.
@@ -219,6 +225,15 @@ class WindowViewer(Viewer):
 
 
 def _run(reference: "weakref.ref[WindowViewer]") -> None:
+    """Show a viewer's window, and tell that it has ended."""
+    try:
+        _show(reference)
+    finally:
+        _running[threading.current_thread()][1].set()
+        del _running[threading.current_thread()]
+
+
+def _show(reference: "weakref.ref[WindowViewer]") -> None:
     """Open a viewer's window and draw it until it is closed, or the viewer is gone, which waiting does not keep."""
     viewer = reference()
     window = None if viewer is None else viewer.open_window()
@@ -242,8 +257,17 @@ def _run(reference: "weakref.ref[WindowViewer]") -> None:
     window.close()
 
 
-def _end(closing: threading.Event, thread: threading.Thread) -> None:
+def _end(thread: threading.Thread) -> None:
     """Close a window and wait for the end of its thread."""
-    closing.set()
-    if threading.current_thread() is not thread:
-        thread.join()
+    closing, ended = _running.get(thread, (None, None))
+    if closing is not None and ended is not None and thread.ident is not None:
+        closing.set()
+        if threading.current_thread() is not thread:
+            ended.wait()
+
+
+@atexit.register
+def _end_all() -> None:
+    """Wait for windows whose viewers went in their own threads: Python must not end while OpenGL draws."""
+    for thread in list(_running):
+        _end(thread)

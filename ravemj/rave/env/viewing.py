@@ -33,7 +33,7 @@ class Viewing(EnvironmentPart):
         Args:
             viewername: ``'window'``: a window; a warning says so where there is no display for it. ``'web'``: a page
                 for a browser on this machine, at ``GetViewer().url``. ``'offscreen'``: neither. One of OpenRAVE's
-                names, such as ``'qtcoin'``: the page in a notebook, else a window if there is a display, else neither;
+                names, such as ``'qtcoin'``: a window if there is a display, else a page in a notebook, else neither;
                 the log says which. On macOS the page stands for windows. ``''`` removes the viewer.
             showviewer: False: never a window.
 

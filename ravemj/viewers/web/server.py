@@ -1,5 +1,6 @@
 """Serves the page's files and its connections, to those who know the secret in the address."""
 
+import atexit
 import contextlib
 import http
 import logging
@@ -7,6 +8,7 @@ import secrets
 import socket
 import threading
 import time
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 
@@ -43,6 +45,9 @@ _POLICY = (
 )
 
 
+_servers: "weakref.WeakSet[PageServer]" = weakref.WeakSet()
+
+
 class PageServer:
     """A port at which a page is served.
 
@@ -68,6 +73,7 @@ class PageServer:
         self.token = secrets.token_urlsafe(16)
         self.complain = Complaints()
         self.closed = threading.Event()
+        self._may_stop = threading.Lock()  # once, by whoever comes first
         self._any_name = any_name
         self._listening = _listen(host, port)
         self.port = int(self._listening.getsockname()[1])
@@ -86,6 +92,7 @@ class PageServer:
         )
         self._accepting = threading.Thread(target=self._accept, name="ravemj web", daemon=True)
         self._accepting.start()
+        _servers.add(self)
 
     def url(self, host: str, scheme: str = "http") -> str:
         """Return the address of the page for those who know this machine by a name."""
@@ -95,14 +102,18 @@ class PageServer:
     def close(self) -> None:
         """Listen no more, and wait a moment for the pages to leave. Threads that hang do not keep Python alive."""
         self.closed.set()
+        if self._may_stop.acquire(blocking=False):
+            self._stop_listening()
+        end = time.monotonic() + _FAREWELL
+        for thread in {self._accepting, *self._threads} - {threading.current_thread()}:
+            thread.join(max(end - time.monotonic(), 0.0))
+
+    def _stop_listening(self) -> None:
         with contextlib.suppress(OSError):  # it is not known on every system
             self._listening.shutdown(socket.SHUT_RDWR)  # wakes the thread that accepts
         self._listening.close()
         self._server.serve_forever()  # it ends at once, which ``shutdown`` waits for
         self._server.shutdown()
-        end = time.monotonic() + _FAREWELL
-        for thread in {self._accepting, *self._threads} - {threading.current_thread()}:
-            thread.join(max(end - time.monotonic(), 0.0))
 
     def _accept(self) -> None:
         """Start threads for connections; those of ``Server.serve_forever`` would be waited for without end."""
@@ -151,6 +162,13 @@ class PageServer:
             schemes.append("https")
         scheme, _, name = origin.partition("://")
         return scheme in schemes and name != "" and name in names
+
+
+@atexit.register
+def _close_all() -> None:
+    """Wait for pages whose viewers went in their own threads: Python must not end while OpenGL draws."""
+    for server in _servers.copy():
+        server.close()
 
 
 def is_local(host: str) -> bool:
