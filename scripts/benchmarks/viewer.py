@@ -15,7 +15,8 @@ from websockets.sync.client import ClientConnection, connect
 
 import ravemj
 from benchmarks.measure import CAMERA, MODEL, Row, take_turns
-from ravemj.rendering import Camera, read_camera
+from ravemj.rendering import Camera
+from ravemj.rendering.camera_file import read_camera
 from ravemj.rendering.contexts import RAY, OffscreenContext
 from ravemj.rendering.stage import Quality, Stage
 from ravemj.studio import Format
