@@ -17,19 +17,25 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
     """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
 
     Args:
-        path: An OpenRAVE XML file, a COLLADA file, or a mesh file, which becomes a static body.
+        path: An OpenRAVE XML file, a COLLADA file, or a mesh file, which becomes a static body. ``robot.dae#arm`` is
+            what has the id ``arm`` in a COLLADA file.
 
     Returns:
         What was read; its ``failure`` says what ended the reading.
     """
-    found = find(_without_scheme(os.fspath(path)))
+    place, wanted = _without_scheme(os.fspath(path)), ""
+    found = find(place)
+    if found is None:
+        place, wanted = collada.split_uri(place)
+        found = find(place)
     if found is None:
         failure = SourceError("there is no such file", Source(os.fspath(path)), "check the path, or set OPENRAVE_DATA")
     elif not os.path.isfile(found):
         kind = "folder" if os.path.isdir(found) else "device or pipe"
         failure = SourceError(f"this is a {kind}, not a model file", Source(found))
     elif found.lower().endswith(collada.SUFFIXES):
-        return _read_collada(found, lambda context: collada.read_file(found, context.diagnostics, context.files))
+        uri = f"{found}#{wanted}" if wanted else found
+        return _read_collada(found, lambda context: collada.read_file(uri, context.diagnostics, context.files))
     else:
         return read_mesh_file(found) if is_mesh(found) else read(found)
     return Reading(Scene(), Diagnostics(), failure)

@@ -175,6 +175,16 @@ class TestTraps:
         assert body.joints[0].axes[0].value == pytest.approx(30 * DEGREE)  # bound, though to no node
         assert findings(replacement) == {"broken-reference"}
 
+    def test_meshes_come_from_the_cache(self, tmp_path, monkeypatch):
+        monkeypatch.setenv("RAVEMJ_CACHE", str(tmp_path))
+        first = arm().links
+        (entry,) = (tmp_path / "meshes").iterdir()
+        written = entry.stat().st_mtime_ns
+        assert arm().links == first
+        scaled = arm(('meter="1"', 'meter="0.5"'))
+        assert (len(list((tmp_path / "meshes").iterdir())), entry.stat().st_mtime_ns) == (2, written)
+        assert scaled.links[1].geometries[0].shape.mesh.vertices.max() == pytest.approx(0.5)
+
     def test_a_mass_without_a_frame_lies_where_the_body_is(self):
         body = arm(("<mass_frame><translate>0.5 0 0.25</translate></mass_frame>", ""))
         np.testing.assert_allclose(body.links[1].inertial.com, [-0.5, 0, 0], atol=1e-15)

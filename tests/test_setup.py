@@ -18,12 +18,15 @@ LOCKS = ROOT / "scripts" / "locks"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 GROUPS = PROJECT["dependency-groups"]
 EXTRAS = PROJECT["project"]["optional-dependencies"]
+RUN = [*PROJECT["project"]["dependencies"], *GROUPS["build"]]
+TEST = [*RUN, *GROUPS["test"], *GROUPS["notebook"], *EXTRAS["all"]]
 WANTED = {
-    "run": [*PROJECT["project"]["dependencies"], *GROUPS["build"]],
-    "test": [*PROJECT["project"]["dependencies"], *GROUPS["build"], *GROUPS["test"], *EXTRAS["all"]],
-    "check": [*PROJECT["project"]["dependencies"], *GROUPS["build"], *GROUPS["test"], *EXTRAS["all"], *GROUPS["check"]],
+    "run": RUN,
+    "test": TEST,
+    "check": [*TEST, *GROUPS["check"]],
+    "docs": [*RUN, *GROUPS["notebook"], *GROUPS["docs"]],
 }
-COMMANDS = ["scripts/play", "scripts/test", "scripts/check", "scripts/lock"]
+COMMANDS = ["scripts/play", "scripts/test", "scripts/check", "scripts/lock", "scripts/docs"]
 PYTHONS = ["3.11", "3.12", "3.13", "3.14"]
 
 
@@ -66,6 +69,9 @@ def test_lock_satisfies_the_project_file(name: str, python: str):
 def test_one_environment_can_hold_every_lock(python: str):
     largest = versions("check", python)
     assert versions("run", python).items() <= versions("test", python).items() <= largest.items()
+    pages = versions("docs", python)
+    assert versions("run", python).items() <= pages.items()
+    assert {name: pages[name] for name in pages.keys() & largest.keys()}.items() <= largest.items()
 
 
 def test_node_of_the_type_checker_comes_with_the_lock():

@@ -141,12 +141,34 @@ def test_s_and_left_click_centre_and_later_turns_are_about_the_point(desk):
     np.testing.assert_allclose(
         T_world_camera[:3, 2] @ (target - T_world_camera[:3, 3]), desk.core.view.distance, atol=0.02
     )
-    assert desk.colour(desk.core.view.focus) == "blue"
+    desk.await_colour(desk.core.view.focus, "blue")
     for stop in ((420, 300), (250, 330)):
         desk.drag((320, 100), stop)
         desk.await_camera()
         assert np.hypot(*np.subtract(desk.at(desk.core.view.focus), (320, 240))) < 2
         await_that(lambda: colour_of(desk.picture()[238:243, 318:323]) == "blue", "the arm is not in the middle")
+
+
+def test_the_first_view_is_from_above(desk):
+    desk.ask("[env.SetViewer('window'), exec('viewer = env.GetViewer()'), viewer.SetSize(640, 480), viewer.Move(0, 0)]")
+    camera = desk.camera
+    np.testing.assert_array_equal(camera[:3, :3], np.diag([1, -1, -1]))
+    assert camera[2, 3] > 0.1
+    desk.window = str(desk.display.await_window())
+    await_that(lambda: desk.picture().shape == (480, 640, 3), "the window has another size")
+    seen = desk.settled_picture()[100:400, 100:500].astype(int)  # apart from buttons and wheels
+    rows, columns = np.nonzero(np.ptp(seen, axis=2) > 60)
+    assert np.hypot(rows.mean() - 140, columns.mean() - 220) < 10, "the pendulum, which hangs, is in the middle"
+
+
+def test_what_the_camera_was_gives_the_same_picture_in_another_session(desk):
+    desk.drag((320, 100), (350, 120), (400, 130))
+    desk.await_camera()
+    desk.move(5, 240)
+    saved, picture = desk.camera, desk.settled_picture()
+    desk.show(camera=saved)
+    np.testing.assert_array_equal(desk.camera, saved)
+    assert np.array_equal(desk.settled_picture(), picture)
 
 
 # --- modes
@@ -444,6 +466,16 @@ def test_nothing_is_drawn_while_nothing_changes_and_little_is_computed(desk):
     assert float(desk.ask("__import__('time').process_time()")) - used < 0.15
     desk.ask("robot.GetLinks()[2].GetGeometries()[0].SetDiffuseColor([0, 1, 0])")
     await_that(lambda: desk.ask("len(pictures)") != drawn, "a new colour is not drawn")
+
+
+def test_it_turns_and_draws_at_most_as_often_as_a_screen_shows(desk):
+    for name, statements in {
+        "turns": "turns = []; handle = viewer.RegisterViewerThreadCallback(lambda: turns.append(1)); time.sleep(2)",
+        "pictures": "pictures.clear(); [(robot.SetDOFValues([i / 500, 0]), time.sleep(0.002)) for i in range(700)]",
+    }.items():
+        desk.ask(f"exec({'import time; begin = time.monotonic(); ' + statements!r}, globals())")
+        rate = float(desk.ask(f"repr(len({name}) / (time.monotonic() - begin))").strip("'"))
+        assert 3 < rate < 66, name
 
 
 def test_the_user_s_size_is_the_view_s(desk):

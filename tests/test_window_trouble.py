@@ -116,6 +116,8 @@ def test_the_prompt_of_ipython_stays_free_and_sees_what_the_user_drags(display, 
     time.sleep(0.5)
     terminal.sendline("print('=', abs(robot.GetDOFValues()[1]) > 0.1, robot.GetDOFValues()[0] == pi / 2)")
     terminal.expect("= True True")
+    terminal.sendline("play_trajectory(robot, get_swing_trajectory(robot))")  # from where the user has left it
+    display.await_pose(window, "upright")
     terminal.sendline("exit()")
     assert finish(terminal)[1] == 0
 

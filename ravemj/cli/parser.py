@@ -52,7 +52,9 @@ def _command(commands: Commands, name: str, summary: str, *examples: str) -> arg
 
 
 def _add_model(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("model", metavar="MODEL", help="OpenRAVE XML file: an environment, a robot or a kinbody")
+    parser.add_argument(
+        "model", metavar="MODEL", help="OpenRAVE XML or COLLADA file: an environment, a robot or a kinbody"
+    )
     parser.add_argument("--strict", action="store_true", help="take warnings about the model for errors")
 
 
@@ -194,7 +196,7 @@ def _add_check(commands: Commands) -> None:
         "ravemj check --strict models/*.xml",
         "ravemj check --json robot.xml      # a list of file, line, code, severity, message, hint, included_from",
     )
-    parser.add_argument("models", nargs="+", metavar="FILE", help="OpenRAVE XML files")
+    parser.add_argument("models", nargs="+", metavar="FILE", help="OpenRAVE XML or COLLADA files")
     parser.add_argument("--strict", action="store_true", help="exit with 1 for warnings, too")
     parser.add_argument("--json", action="store_true", help="print the findings as JSON, each place by itself")
     parser.set_defaults(run=check.check_models)

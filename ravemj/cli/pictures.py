@@ -5,7 +5,6 @@ import math
 import os
 import platform
 import sys
-import time
 from pathlib import Path
 
 import mujoco
@@ -15,7 +14,7 @@ from ravemj.cli.console import console, progress, table
 from ravemj.cli.models import load_model
 from ravemj.errors import ArgumentError
 from ravemj.motion import Motion, read_motion
-from ravemj.rave import CheckLimitsAction, Environment, KinBody
+from ravemj.rave import Environment, KinBody
 from ravemj.recording import Shot, camera_for_motion, draw_frames, moving_body, within_limits
 from ravemj.rendering.camera_file import read_camera
 from ravemj.rendering.contexts import INSTALL, RAY, requested_backend
@@ -59,7 +58,7 @@ def _motion(options: argparse.Namespace, body: KinBody) -> Motion:
 
 
 def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot) -> bool:
-    """Play in real time and wait until the window is closed; False where no window can be opened."""
+    """Play, and wait until the window is closed; False where no window can be opened."""
     if not has_display():
         return False
     env.SetViewer("window")
@@ -68,11 +67,7 @@ def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot)
         return False
     viewer.SetCamera(shot.camera.T_world_camera)
     viewer.SetBkgndColor(shot.background)
-    start = time.monotonic()
-    while viewer.is_open and (elapsed := time.monotonic() - start) < motion.duration:
-        body.SetDOFValues(motion.sample(float(motion.times[0]) + elapsed), None, CheckLimitsAction.Nothing)
-        time.sleep(1 / 120)
-    body.SetDOFValues(motion.values[-1], None, CheckLimitsAction.Nothing)
+    viewer.play(motion, robot=body)
     viewer.wait()
     return True
 

@@ -2,7 +2,7 @@
 
 from ravemj.builder import BodyBuilder
 from ravemj.collada.library import Library
-from ravemj.collada.mathml import FormulaError, equation
+from ravemj.collada.mathml import FormulaError, Writer
 from ravemj.collada.references import References
 from ravemj.following import Equations
 from ravemj.meshes.collada.document import Element, child, children, local_name, words
@@ -36,6 +36,7 @@ class _FormulaReader:
         self._model = model
         self._joints = joints
         self._body = body
+        self._writer = Writer(self._joint_name, self._function)
 
     def read(self, formula: Element) -> None:
         """Read a formula; a joint whose formula says nothing that can be computed stays where it is."""
@@ -46,7 +47,7 @@ class _FormulaReader:
             return
         joint = self._body.joints[index]
         try:
-            position = equation(_position(formula), self._joint_name)
+            position = self._writer.equation(_position(formula))
         except FormulaError as error:
             message = f"joint '{joint.name}' cannot follow: {error}; it stays where it is"
             self._library.warn("bad-mimic", message, formula)
@@ -60,7 +61,7 @@ class _FormulaReader:
         for item in _own_equations(formula, kind):
             name = self._joint_name(item.get("target") or "")
             try:
-                text += f"|{name} {equation(child(item, 'math'), self._joint_name)} " if name else ""
+                text += f"|{name} {self._writer.equation(child(item, 'math'))} " if name else ""
             except FormulaError as error:
                 self._library.warn("bad-mimic", f"a derivative is left out: {error}", item)
         return text
@@ -72,6 +73,10 @@ class _FormulaReader:
     def _joint_name(self, path: str) -> str | None:
         index = self._joint(path)
         return None if index is None else self._body.joints[index].name
+
+    def _function(self, symbol: Element) -> Element | None:
+        is_named = bool(symbol.get("definitionURL"))
+        return self._library.follow(symbol, "formula", attribute="definitionURL") if is_named else None
 
 
 _PARTIALS = ("first_partial", "second_partial")

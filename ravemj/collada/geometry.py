@@ -9,16 +9,17 @@ from ravemj.collada.library import Library
 from ravemj.collada.placing import rigid, split
 from ravemj.collada.visual import Node, transform_of
 from ravemj.meshes.collada.document import Element, child, children, local_name, numbers, words
-from ravemj.meshes.collada.geometry import primitive_groups
+from ravemj.meshes.collada.geometry import triangle_meshes
 from ravemj.meshes.collada.materials import bindings, read_material
 from ravemj.meshes.obj import transparency
-from ravemj.meshes.parts import check_finite, check_size, weld
-from ravemj.scene import Box, CalibrationBoard, Container, Cylinder, Geometry, Rgb, Shape, Sphere, TriMesh
+from ravemj.meshes.parts import check_finite, check_size
+from ravemj.scene import Box, CalibrationBoard, Container, Cylinder, Geometry, Mesh, Rgb, Shape, Sphere, TriMesh
 from ravemj.transforms import ZERO, Floats, Pose, Vec3, wxyz_from_axis_angle
 
 _DIFFUSE: Rgb = (1.0, 0.5, 0.5)
 _AMBIENT: Rgb = (float(np.float32(0.1)), 0.0, 0.0)
 
+_NO_MESH = Mesh(np.zeros((0, 3)), np.zeros((0, 3), np.int_))
 _Z_TO_Y = Pose(wxyz=wxyz_from_axis_angle((1.0, 0.0, 0.0), -math.pi / 2))
 
 
@@ -27,7 +28,7 @@ class GeometryReader:
 
     def __init__(self, library: Library) -> None:
         self._library = library
-        self._corners: dict[Element, list[tuple[str, Floats]]] = {}
+        self._meshes: dict[Element, list[tuple[str, Mesh]]] = {}
         self._triangles = 0
 
     def read(
@@ -60,9 +61,9 @@ class GeometryReader:
             visible = words(child(info, "visible", "bool"))[:1] != ["false"]
         primitive = None if info is None else self._primitive(info)
         groups = self._groups(geometry)
-        for symbol, corners in [("", np.zeros((0, 3, 3)))] if primitive is not None and not groups else groups:
+        for symbol, mesh in [("", _NO_MESH)] if primitive is not None and not groups else groups:
             diffuse, ambient, opacity = self._colours(instance, symbol)
-            shape, T = primitive or (self._mesh(corners, scaling, T_link_frame, geometry), Pose())
+            shape, T = primitive or (self._mesh(mesh, scaling, T_link_frame, geometry), Pose())
             yield Geometry(
                 shape=shape,
                 T_link_geometry=T_link_frame @ T,
@@ -76,29 +77,26 @@ class GeometryReader:
             if primitive is not None:
                 return
 
-    def _mesh(self, corners: Floats, scaling: Floats | None, T_link_frame: Pose, geometry: Element) -> TriMesh:
+    def _mesh(self, mesh: Mesh, scaling: Floats | None, T_link_frame: Pose, geometry: Element) -> TriMesh:
         """Return triangles in the frame of their geometry; OpenRAVE takes the file's for those of the link."""
-        self._triangles += len(corners)
+        self._triangles += len(mesh.triangles)
         source = self._library.source(geometry)
         check_size(self._triangles, source)
-        if scaling is not None:
-            corners = corners @ scaling.T
         inverse = T_link_frame.inverse()
-        if inverse != Pose():
-            matrix = inverse.matrix()
-            corners = corners @ matrix[:3, :3].T + matrix[:3, 3]
-        check_finite(corners, source)
-        return TriMesh(weld(corners))
+        if scaling is None and inverse == Pose():
+            return TriMesh(mesh)
+        matrix = inverse.matrix()
+        linear = matrix[:3, :3] if scaling is None else matrix[:3, :3] @ scaling
+        vertices = mesh.vertices @ linear.T + matrix[:3, 3]
+        check_finite(vertices, source)
+        return TriMesh(Mesh(vertices, mesh.triangles))
 
-    def _groups(self, geometry: Element) -> list[tuple[str, Floats]]:
-        """Return for each primitive element its material's symbol and the corners of its triangles [m]."""
-        if geometry not in self._corners:
+    def _groups(self, geometry: Element) -> list[tuple[str, Mesh]]:
+        """Return for each primitive element its material's symbol and its triangles [m]."""
+        if geometry not in self._meshes:
             document = self._library.document_of(geometry)
-            found = primitive_groups(document, geometry, concave=False)
-            metres = self._library.metres(geometry)
-            read = [(group.symbol, group.corners * metres) for group in found if group.kind != "polygons"]
-            self._corners[geometry] = [(symbol, corners) for symbol, corners in read if len(corners)]
-        return self._corners[geometry]
+            self._meshes[geometry] = triangle_meshes(document, geometry, self._library.metres(geometry))
+        return self._meshes[geometry]
 
     def _colours(self, instance: Element, symbol: str) -> tuple[Rgb, Rgb, float]:
         """Return the diffuse and the ambient colour and the transparency of a group."""

@@ -24,15 +24,18 @@ class Library:
         files: Paths of the files that were read, in their order.
     """
 
-    def __init__(self, diagnostics: Diagnostics, files: list[str], included_from: Source | None) -> None:
+    def __init__(
+        self, diagnostics: Diagnostics, files: list[str], included_from: Source | None, scale: float = 1.0
+    ) -> None:
         self.diagnostics = diagnostics
+        self._scale = scale
         self._included_from = included_from
         self.files = files
         self._archives: dict[str, Archive] = {}
         self._documents: dict[str, ColladaDocument] = {}
         self._places: dict[str, tuple[Archive | None, str]] = {}
         self._of_root: dict[Element, ColladaDocument] = {}
-        self._metres: dict[Element, float] = {}
+        self._units: dict[Element, float] = {}
         self._reported: set[tuple[Element, str]] = set()
 
     def open_file(self, path: str) -> ColladaDocument:
@@ -101,6 +104,7 @@ class Library:
         """Return the document that a URI names in another one; a file that is missing or broken is reported."""
         archive, name = self._places[here.path]
         plain = unquote(uri.partition(":")[2].lstrip("/") if uri.startswith("openrave:") else uri.removeprefix("file:"))
+        plain = plain.removeprefix("./")  # so that a file has one name
         try:
             if archive is not None and not uri.startswith(("openrave:", "file:")):
                 member = archive.member(plain, posixpath.dirname(name))
@@ -135,14 +139,18 @@ class Library:
         return document
 
     def metres(self, element: Element) -> float:
-        """Return the length of the unit that holds for an element [m]: that of the nearest ``<asset>`` around it."""
-        found = self._metres.get(element)
+        """Return the length of the unit that holds for an element, scaled [m]."""
+        return self._scale * self._unit(element)
+
+    def _unit(self, element: Element) -> float:
+        """Return the length of the unit that the nearest ``<asset>`` around an element gives [m]."""
+        found = self._units.get(element)
         if found is None:
             asset = child(element, "asset", "unit")
             unit = child(element, "extra", "asset", "unit") if asset is None else asset
             parent = element.getparent()
-            outer = 1.0 if parent is None else self.metres(parent)
-            found = self._metres[element] = attribute_number(unit, "meter", outer) if unit is not None else outer
+            outer = 1.0 if parent is None else self._unit(parent)
+            found = self._units[element] = attribute_number(unit, "meter", outer) if unit is not None else outer
         return found
 
 

@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -50,6 +51,22 @@ class Scene:
     def axes(self) -> AxisReader:
         """A reader of axes."""
         return AxisReader(self.library, self.references)
+
+
+class _Names:
+    """Names that are taken, each with the number to try next behind it."""
+
+    def __init__(self, taken: Iterable[str]) -> None:
+        self._next = dict.fromkeys(taken, 1)
+
+    def give(self, name: str) -> str:
+        """Return a name, with a number behind it where it is taken, and take it."""
+        unused = name
+        while unused in self._next:
+            unused = f"{name}_{self._next[name]}"
+            self._next[name] += 1
+        self._next[unused] = 1
+        return unused
 
 
 class _FoundJoint(NamedTuple):
@@ -101,6 +118,8 @@ class ModelReader:
         self.joints: dict[Element, int] = {}
         self.values: dict[int, list[float]] = {}
         self._found: list[_FoundJoint] = []
+        self._link_names = _Names(link.name for link in body.links)
+        self._joint_names = _Names(joint.name for joint in body.joints)
 
     def read(self) -> None:
         """Read all links, each with those that its joints carry."""
@@ -146,7 +165,7 @@ class ModelReader:
                 self._library.warn("ignored-tag", message, attachment)
 
     def _link_name(self, name: str | None) -> str:
-        return _unused(valid_name(name) or f"link{len(self.body.links)}", {link.name for link in self.body.links})
+        return self._link_names.give(valid_name(name) or f"link{len(self.body.links)}")
 
     def _read_shapes(self, link: LinkBuilder, node: Node, T_world_link: Pose) -> None:
         T_link_world = T_world_link.inverse().matrix()
@@ -210,10 +229,9 @@ class ModelReader:
     ) -> JointBuilder:
         kind = self._kind(joint, axes)
         infos = [self._infos.get(axis, AxisInfo()) for axis in axes]
-        names = {other.name for other in self.body.joints} | {found.built.name for found in self._found}
-        name = valid_name(joint.get("name") or joint.get("id") or joint.get("sid")) or f"joint{len(names)}"
+        name = valid_name(joint.get("name") or joint.get("id") or joint.get("sid"))
         return JointBuilder(
-            name=_unused(name, names),
+            name=self._joint_names.give(name or f"joint{len(self.body.joints) + len(self._found)}"),
             kind=kind,
             links=links,
             T_first_second=T_parent_child,
@@ -249,16 +267,6 @@ class ModelReader:
         turn = wxyz_from_axis_angle(_direction(axis), self._axes.wrap(axis, info))
         turned = multiply(multiply(turn, T_frame_child.wxyz), conjugate(T_parent_frame.wxyz))
         return multiply(T_parent_frame.wxyz, turned)
-
-
-def _unused(name: str, taken: set[str]) -> str:
-    """Return a name, with a number behind it where it is taken."""
-    count = 1
-    unused = name
-    while unused in taken:
-        unused = f"{name}_{count}"
-        count += 1
-    return unused
 
 
 def _direction(element: Element) -> Vec3:

@@ -4,6 +4,8 @@ from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from lxml import etree
+
 from ravemj.collada.library import Library
 from ravemj.meshes.collada.document import Element, child, children, local_name, numbers, words
 
@@ -75,34 +77,34 @@ class References:
 
     def _scope(self, element: Element) -> dict[str, Found]:
         """Return the elements below one by their sids; of equal ones the nearest, and of these the first, counts."""
-        if element in self._scopes:
-            return self._scopes[element]
-        names: dict[str, Found] = {}
-        self._scopes[element] = names
+        names = self._scopes.get(element)
+        if names is not None:
+            return names
+        names = self._scopes[element] = {}
         queue: deque[Found] = deque([Found(element)])
         entered = {element}
-        for _ in range(_MOST_ELEMENTS):
-            if not queue:
-                break
-            found = queue.popleft()
-            for item in (*self._target(found.element), *children(found.element)):
-                hop = item.getparent() is not found.element
+        while queue and len(entered) < _MOST_ELEMENTS:
+            around, through = queue.popleft()
+            target = self._target(around)
+            if target is not None and target not in entered:
+                entered.add(target)
+                queue.append(Found(target, (*through, around)))
+            for item in around.iterchildren(etree.Element):
                 if item in entered:
                     continue
                 entered.add(item)
-                inner = Found(item, (*found.through, found.element) if hop else found.through)
                 name = item.get("sid") or (item.get("symbol") if local_name(item) == "bind" else None)
-                if name and not hop:
-                    names.setdefault(name, inner)
-                queue.append(inner)
+                if name:
+                    names.setdefault(name, Found(item, through))
+                if len(item) or item.get("url"):
+                    queue.append(Found(item, through))
         return names
 
-    def _target(self, element: Element) -> tuple[Element, ...]:
-        """Return what an instance is an instance of, in a tuple; nothing for other elements."""
-        if local_name(element) not in _MODELS or not element.get("url"):
-            return ()
-        target = self._library.follow(element)
-        return () if target is None else (target,)
+    def _target(self, element: Element) -> Element | None:
+        """Return what an instance is an instance of; None for other elements."""
+        if not element.get("url") or local_name(element) not in _MODELS:
+            return None
+        return self._library.follow(element)
 
     def parameter(self, name: str, *scopes: Element) -> Found | None:
         """Return the element that a parameter stands for.

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from ravemj.collada.library import Library
 from ravemj.collada.model import ModelReader, valid_name
@@ -149,8 +150,16 @@ class ExtraReader:
                 index = self.link(element, scope)
                 if index is not None:
                     self._body.links[index].enabled = self._references.truth(element, True)
+            elif kind == "link_visible_state":
+                self._show(element, scope)
             else:
                 self._library.warn("ignored-tag", "OpenRAVE leaves it out unless it is asked for", element)
+
+    def _show(self, element: Element, scope: Element) -> None:
+        index = self.link(element, scope)
+        if index is not None and not self._references.truth(element, True):
+            link = self._body.links[index]
+            link.geometries = [replace(part, visible=False) for part in link.geometries]
 
 
 def _camera(sensor: Element) -> Intrinsics | None:

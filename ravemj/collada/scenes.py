@@ -33,11 +33,16 @@ class Content(NamedTuple):
     gravity: Vec3 | None
 
 
-def read_document(library: Library, document: ColladaDocument) -> Content:
+def read_document(library: Library, document: ColladaDocument, wanted: str = "") -> Content:
     """Read all bodies of a document.
 
+    Args:
+        library: The documents.
+        document: The one to read.
+        wanted: The id of the articulated system or model of the only body that is wanted; empty for all bodies.
+
     Raises:
-        SourceError: Something in it is impossible.
+        SourceError: Something in it is impossible, or what is wanted is not there.
     """
     references = References(library)
     scene = child(document.root, "scene")
@@ -54,16 +59,20 @@ def read_document(library: Library, document: ColladaDocument) -> Content:
             bindings = read_bindings(library, references, kinematics, element, root)
             shared = Scene(library, references, bindings, physics, geometry)
             shown |= shared.moved
-            bodies += _bodies(shared, element)
+            bodies += _bodies(shared, element, wanted)
+    if wanted:
+        if not bodies:
+            raise library.error(f"there is no articulated system '{wanted}' in the scene", document.root)
+        return Content(bodies, [], physics.gravity)
     taken = {node for inner in shown for node in inner.around()}
     nodes = [] if root is None else [node for node in root.nodes if node not in taken]
     others = [body for node in nodes if (body := _node_body(library, geometry, node)) is not None]
     return Content(bodies, others, physics.gravity)
 
 
-def _bodies(scene: Scene, element: Element) -> list[BodyBuilder]:
-    systems = [_system_body(scene, item) for item in children(element, "instance_articulated_system")]
-    models = [_model_body(scene, item) for item in children(element, "instance_kinematics_model")]
+def _bodies(scene: Scene, element: Element, wanted: str) -> list[BodyBuilder]:
+    systems = [_system_body(scene, item, wanted) for item in children(element, "instance_articulated_system")]
+    models = [_model_body(scene, item, wanted) for item in children(element, "instance_kinematics_model")]
     return [body for body in (*systems, *models) if body is not None]
 
 
@@ -74,18 +83,26 @@ class _System(NamedTuple):
     models: list[Element]
     infos: dict[Element, AxisInfo]
 
+    def has(self, name: str) -> bool:
+        """Tell whether a name is that of a part, or that of an instance of one."""
+        parts = (*self.systems, *self.models)
+        return any(name in (part.get("id"), part.get("sid"), (part.get("url") or "").lstrip("#")) for part in parts)
 
-def _system_body(scene: Scene, instance: Element) -> BodyBuilder | None:
+
+def _system_body(scene: Scene, instance: Element, wanted: str) -> BodyBuilder | None:
     parts = _System([], [], {})
     _take_apart(scene, instance, parts, {}, 0)
+    if wanted and not parts.has(wanted) and wanted != instance.get("sid"):
+        return None
     is_robot = interface_kind(instance, *parts.systems) != "kinbody"
     body = BodyBuilder(is_robot, scene.library.source(instance))
     return _filled(scene, body, instance, parts)
 
 
-def _model_body(scene: Scene, instance: Element) -> BodyBuilder | None:
+def _model_body(scene: Scene, instance: Element, wanted: str) -> BodyBuilder | None:
     body = BodyBuilder(is_robot=False, source=scene.library.source(instance))
-    return _filled(scene, body, instance, _System([], [instance], {}))
+    parts = _System([], [instance], {})
+    return None if wanted and not parts.has(wanted) else _filled(scene, body, instance, parts)
 
 
 def _filled(scene: Scene, body: BodyBuilder, instance: Element, parts: _System) -> BodyBuilder | None:

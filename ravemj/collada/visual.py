@@ -13,6 +13,7 @@ from ravemj.transforms import Floats
 
 _MAX_DEPTH = 150
 _MAX_NODES = 100_000
+_TRANSFORMS = ("translate", "rotate", "matrix", "scale", "lookat", "skew")
 
 
 @dataclass(eq=False, slots=True)
@@ -25,6 +26,7 @@ class Node:
         names: Its id and sid, and those of the instances that it comes through.
         transform: Its pose in its parent [m], scale included, shape (4, 4).
         nodes: The nodes in it.
+        named: The nodes below it by their names, once they were asked for.
     """
 
     element: Element
@@ -32,6 +34,7 @@ class Node:
     names: set[str] = field(default_factory=set[str])
     transform: Floats = field(default_factory=lambda: np.eye(4))
     nodes: list["Node"] = field(default_factory=list["Node"])
+    named: dict[str, "Node"] | None = None
 
     @property
     def name(self) -> str:
@@ -54,21 +57,22 @@ class Node:
         """Return the node that a path of names leads to; the last name may be that of a transform in it."""
         node: Node | None = self
         for name in path.strip().removeprefix("#").split("/"):
-            node = None if node is None else node._below(name)
+            node = None if node is None else node._below().get(name)
         return node
 
-    def _below(self, name: str) -> "Node | None":
-        queue: deque[Node] = deque([self])
-        while queue:
-            node = queue.popleft()
-            if name in node.names or (node.parent and any(item.get("sid") == name for item in _transforms(node))):
-                return node
-            queue.extend(node.nodes)
-        return None
-
-
-def _transforms(node: Node) -> Iterator[Element]:
-    return children(node.element, "translate", "rotate", "matrix", "scale", "lookat", "skew")
+    def _below(self) -> dict[str, "Node"]:
+        """Return this node and those in it by their names and by those of their transforms; the nearest ones count."""
+        if self.named is None:
+            self.named = {}
+            queue: deque[Node] = deque([self])
+            while queue:
+                node = queue.popleft()
+                transforms = children(node.element, *_TRANSFORMS) if node.parent else ()
+                for name in (*node.names, *(item.get("sid") for item in transforms)):
+                    if name is not None:
+                        self.named.setdefault(name, node)
+                queue.extend(node.nodes)
+        return self.named
 
 
 def transform_of(library: Library, element: Element) -> Floats:

@@ -9,6 +9,8 @@
     interaction.overlay().lines
 """
 
+from ravemj.interaction.board import Board
+from ravemj.interaction.controls import Control, Controls, Wish
 from ravemj.interaction.core import Interaction, Mode, Overlay
 from ravemj.interaction.events import (
     Button,
@@ -17,6 +19,7 @@ from ravemj.interaction.events import (
     Key,
     Leave,
     Move,
+    Operate,
     Press,
     Release,
     Resize,
@@ -24,12 +27,17 @@ from ravemj.interaction.events import (
     Wheel,
 )
 from ravemj.interaction.layout import Panel, Rect, Tool, tools
+from ravemj.interaction.notices import Notices
 from ravemj.interaction.picking import Hit, pick
+from ravemj.interaction.playback import Playback
 from ravemj.interaction.selecting import Selection
 from ravemj.interaction.view import Ray, View
 
 __all__ = [
+    "Board",
     "Button",
+    "Control",
+    "Controls",
     "Event",
     "Fingers",
     "Hit",
@@ -38,8 +46,11 @@ __all__ = [
     "Leave",
     "Mode",
     "Move",
+    "Notices",
+    "Operate",
     "Overlay",
     "Panel",
+    "Playback",
     "Press",
     "Ray",
     "Rect",
@@ -50,6 +61,7 @@ __all__ = [
     "Use",
     "View",
     "Wheel",
+    "Wish",
     "pick",
     "tools",
 ]

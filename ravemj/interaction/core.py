@@ -12,6 +12,9 @@ from typing import NamedTuple
 
 from ravemj.drawing import Shapes
 from ravemj.interaction import layout
+from ravemj.interaction.board import Board
+from ravemj.interaction.console import Console
+from ravemj.interaction.controls import Control, Controls
 from ravemj.interaction.events import (
     Button,
     Event,
@@ -19,6 +22,7 @@ from ravemj.interaction.events import (
     Key,
     Leave,
     Move,
+    Operate,
     Press,
     Release,
     Resize,
@@ -26,7 +30,9 @@ from ravemj.interaction.events import (
     Wheel,
 )
 from ravemj.interaction.layout import Panel, Tool
+from ravemj.interaction.notices import Notices
 from ravemj.interaction.picking import Hit, pick
+from ravemj.interaction.playback import Playback
 from ravemj.interaction.selecting import OnSelect, Selection, Selector, point_line
 from ravemj.interaction.view import View
 from ravemj.rendering import Camera, bounding_sphere
@@ -52,12 +58,14 @@ class Overlay(NamedTuple):
     Attributes:
         shapes: Figures in the world.
         lines: Text for the top left corner.
-        panels: Buttons and wheels.
+        panels: Buttons, wheels and sliders, for a shell that has none of its own.
+        controls: What the buttons and sliders beside the tutorial's are, as plain data.
     """
 
     shapes: Shapes
     lines: tuple[str, ...]
     panels: tuple[Panel, ...]
+    controls: tuple[Control, ...] = ()
 
 
 _Follow = Callable[[float, float], None]
@@ -69,6 +77,7 @@ class Interaction:
     Attributes:
         view: The camera.
         mode: What the left button does.
+        controls: The buttons and sliders beside the tutorial's.
     """
 
     def __init__(
@@ -86,6 +95,8 @@ class Interaction:
         self.view = View(camera, 0.0, size)
         self.mode = Mode.CAMERA
         self._selector = Selector(simulation, on_select)
+        self.controls = Controls(simulation, self._selector, Playback(simulation), Notices())
+        self._console = Console(self.controls)
         self._has_tools = True
         self._changes = 0
         self._pointer: tuple[float, float] | None = None
@@ -104,13 +115,15 @@ class Interaction:
         other = Interaction(self._simulation, self.view.camera, self.view.size)
         other.view, other.mode = self.view, self.mode
         other._selector = self._selector
+        other.controls = self.controls.another()
+        other._console = Console(other.controls, is_drawn=has_tools)
         other._has_tools = has_tools
         return other
 
     @property
     def version(self) -> int:
         """A number that grows with what changes the view and the overlay; what moves bodies changes these as well."""
-        return self._changes + self._selector.changes
+        return self._changes + self._selector.changes + self.controls.changes
 
     def look_from(self, camera: Camera, distance: float = 0.0) -> None:
         """Take another camera; what the mouse does with the old one ends.
@@ -130,7 +143,8 @@ class Interaction:
         with self._simulation.lock:
             self._forget_what_is_gone()
             self._do(event)
-            hovers = self.hover is not None
+            board = self._console.board(self.view.size)
+            hovers = board.covers(self._pointer) or self._hit(board) is not None
             if not isinstance(event, Move) or self._buttons or hovers or self._hovered:
                 self._changes += 1
             self._hovered = hovers
@@ -145,25 +159,40 @@ class Interaction:
     @property
     def hover(self) -> Hit | None:
         """What is under the pointer now; None while a button is held."""
-        if self._pointer is None or self._buttons:
-            return None
-        if not all(0 <= place < length for place, length in zip(self._pointer, self.view.size, strict=True)):
-            return None
         with self._simulation.lock:
-            return pick(self._simulation, self.view.ray(*self._pointer))
+            return self._hit(self._console.board(self.view.size))
+
+    def _hit(self, board: Board) -> Hit | None:
+        at = self._pointer
+        if at is None or self._buttons or board.covers(at):
+            return None
+        if not all(0 <= place < length for place, length in zip(at, self.view.size, strict=True)):
+            return None
+        return pick(self._simulation, self.view.ray(*at))
+
+    def pass_time(self, now: float) -> None:
+        """Let a motion that plays go on; who draws calls this before each picture, with the simulation locked.
+
+        Args:
+            now: What ``time.monotonic`` says.
+        """
+        self.controls.pass_time(now)
 
     def overlay(self) -> Overlay:
         """Return what is to be drawn over the bodies as they are now. The simulation is locked meanwhile."""
         with self._simulation.lock:
             self._forget_what_is_gone()
             chosen = Tool.CAMERA if self.mode is Mode.CAMERA else Tool.INTERACT
-            hit = self.hover
-            at = (
-                self._selector.point_line() if hit is None else point_line(hit.body, hit.link, hit.position, hit.normal)
-            )
-            lines = (*([at] if at else []), *self._selector.lines())
-            panels = layout.panels(self.view.size, chosen) if self._has_tools else ()
-            return Overlay(self._selector.shapes(), lines, panels)
+            at, board = self._selector.point_line(), self._console.board(self.view.size)
+            hit, control = self._hit(board), board.at(self._pointer)
+            if hit is not None:
+                at = point_line(hit.body, hit.link, hit.position, hit.normal)
+            elif control is not None:
+                at = control.label
+            lines = (*([at] if at else []), *self._selector.lines(), *self.controls.notices.lines)
+            tools = layout.panels(self.view.size, chosen) if self._has_tools else ()
+            panels = *tools, *board.panels()
+            return Overlay(self._selector.shapes(), lines, panels, self.controls.all())
 
     def _forget_what_is_gone(self) -> None:
         if self._selector.forget_what_is_gone():
@@ -184,7 +213,7 @@ class Interaction:
             case _:
                 self._do_without_pointer(event)
 
-    def _do_without_pointer(self, event: Wheel | Fingers | Use | Key | Resize) -> None:
+    def _do_without_pointer(self, event: Wheel | Fingers | Use | Key | Operate | Resize) -> None:
         match event:
             case Wheel(steps):
                 self._on_wheel(steps)
@@ -194,6 +223,8 @@ class Interaction:
                 self._use(tool, amount)
             case Key(name, pressed):
                 self._on_key(name.lower(), pressed)
+            case Operate(name, value):
+                self.controls.operate(name, value)
             case Resize(width, height):
                 self.view = replace(self.view, size=(max(width, 1), max(height, 1)))
 
@@ -202,7 +233,10 @@ class Interaction:
         self._press = self._follow = None
         self._pointer = press.x, press.y
         tool = layout.tool_at(self.view.size, press.x, press.y) if self._has_tools else None
-        if tool is not None:
+        board = self._console.board(self.view.size)
+        if board.covers(self._pointer):
+            self._follow = self._console.press(press, board)
+        elif tool is not None:
             self._press_tool(tool, press)
         elif press.touch:
             self._press = press
@@ -231,7 +265,10 @@ class Interaction:
                 self._set_mode(Mode.INTERACTION)  # what has appeared can be dragged
 
     def _on_wheel(self, steps: float) -> None:
-        if self.mode is Mode.CAMERA:
+        board = self._console.board(self.view.size)
+        if board.covers(self._pointer):
+            self._console.scroll(board, steps)
+        elif self.mode is Mode.CAMERA:
             self.view = self._focused().zoomed(math.log(_STEP) * steps)
 
     def _on_key(self, name: str, pressed: bool) -> None:
@@ -240,6 +277,8 @@ class Interaction:
             return
         if name == "escape" and name not in self._keys:
             self._set_mode(Mode.INTERACTION if self.mode is Mode.CAMERA else Mode.CAMERA)
+        elif name not in self._keys:
+            self._console.key(name)
         self._keys.add(name)
 
     def _on_leave(self) -> None:
@@ -306,6 +345,8 @@ class Interaction:
     def _hold(self, press: Press) -> _Follow | None:
         """Take hold of the cube or the cylinder where the button went down; fingers turn the view elsewhere."""
         follow = self._selector.hold(self.view, press) if self.mode is Mode.INTERACTION else None
-        if follow is not None:
+        selection = self._selector.selection
+        if follow is not None and selection is not None:
+            self.controls.take(selection.body)
             return lambda x, y: follow(self.view.ray(x, y))
         return self._steered(press, self._focused().turned) if press.touch else None

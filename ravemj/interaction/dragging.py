@@ -55,15 +55,17 @@ def move_joint(body: BodyState, dof: int, handle: JointHandle, point: Floats, ra
     joint, _ = joint_and_axis(body, dof)
     measure = Slide(handle.axis, point).way if joint.kind == "slider" else Turn(*_about(handle), point, ray).angle
 
-    def follow(ray: Ray) -> None:
-        kinematics = body.kinematics
-        values, wanted = kinematics.values(), start + measure(ray)
-        if not kinematics.circular[dof]:
-            wanted = min(max(wanted, kinematics.lower[dof]), kinematics.upper[dof])
-        values[dof] = wanted
-        body.set_values(values)
+    return lambda ray: set_dof(body, dof, start + measure(ray))
 
-    return follow
+
+def set_dof(body: BodyState, dof: int, value: float) -> None:
+    """Give a joint another value [rad or m], as far as its limits go."""
+    kinematics = body.kinematics
+    if not kinematics.circular[dof]:
+        value = min(max(value, kinematics.lower[dof]), kinematics.upper[dof])
+    values = kinematics.values()
+    values[dof] = value
+    body.set_values(values)
 
 
 def _about(handle: JointHandle) -> tuple[Floats, Floats]:

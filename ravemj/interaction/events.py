@@ -100,6 +100,19 @@ class Key:
 
 
 @dataclass(frozen=True, slots=True)
+class Operate:
+    """A control is used otherwise than with the pointer on the view.
+
+    Attributes:
+        name: Its name; ``Controls`` has them.
+        value: Where a slider goes.
+    """
+
+    name: str
+    value: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Resize:
     """The view has another size [points]."""
 
@@ -112,4 +125,4 @@ class Leave:
     """The view is left: keys and buttons that are held do not count any more."""
 
 
-Event = Press | Move | Release | Wheel | Fingers | Use | Key | Resize | Leave
+Event = Press | Move | Release | Wheel | Fingers | Use | Key | Operate | Resize | Leave

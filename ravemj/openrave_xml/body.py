@@ -9,10 +9,11 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ravemj.builder import BodyBuilder
+from ravemj.collada import is_collada
 from ravemj.errors import SourceError
 from ravemj.following import Equations
 from ravemj.manipulators import ManipulatorBuilder
-from ravemj.openrave_xml.collada_body import add_collada, is_collada
+from ravemj.openrave_xml.collada_body import add_collada
 from ravemj.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
 from ravemj.openrave_xml.geometry import GeometryScope
 from ravemj.openrave_xml.joint import read_joint
@@ -99,10 +100,8 @@ class _Scope:
             return
         if is_collada(name):
             marks = _Marks.of(self.body)
-            path = self.context.find(name, element.source)
-            if path is not None:
-                add_collada(self.body, path, element.source, self.context, skip_geometry=self.skip_geometry)
-                self._prefix(element.attributes.get("prefix", ""), marks, whole=True)
+            add_collada(self.body, name, element.source, self.context, self.scale, skip_geometry=self.skip_geometry)
+            self._prefix(element.attributes.get("prefix", ""), marks, whole=True)
             return
         root = self.context.include(element)
         if root is None:
@@ -232,7 +231,10 @@ ROBOT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     "attachedsensor": _Scope.read_sensor,
     "controller": _Scope.read_controller,
 }
-ROBOT_IGNORED = reasons(NO_EFFECT_HERE, "sendcommand")
+ROBOT_IGNORED = {
+    **reasons(NO_EFFECT_HERE, "sendcommand"),
+    "conveyorjoint": "a plugin of OpenRAVE's makes links of it that ride along a trajectory; MuJoCo has no such joint",
+}
 KINBODY_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
     **_PLACEMENT_TAGS,
     "kinbody": _Scope.nest,

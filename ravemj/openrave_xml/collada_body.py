@@ -5,30 +5,36 @@ from dataclasses import replace
 from ravemj import collada
 from ravemj.builder import BodyBuilder
 from ravemj.errors import Diagnostics, Source, SourceError
-from ravemj.openrave_xml.context import COLLADA_SUFFIXES, Context
-from ravemj.transforms import Pose
+from ravemj.openrave_xml.context import Context
+from ravemj.transforms import Pose, Vec3
 
 
-def is_collada(name: str) -> bool:
-    """Return whether a file in place of a body is a COLLADA file."""
-    return name.lower().endswith(COLLADA_SUFFIXES)
-
-
-def add_collada(body: BodyBuilder, path: str, source: Source, context: Context, *, skip_geometry: bool) -> None:
+def add_collada(
+    body: BodyBuilder, uri: str, source: Source, context: Context, scale: Vec3, *, skip_geometry: bool
+) -> None:
     """Fill a body with the first one of a COLLADA file, as its values place it; a broken file is reported.
 
     Args:
         body: The body.
-        path: The file.
+        uri: The file, and behind ``#`` the id of what is wanted of it.
         source: Where the file is named.
         context: Takes findings.
+        scale: Factors of lengths along x, y and z.
         skip_geometry: Whether the shapes are left out.
     """
+    path, wanted = collada.split_uri(uri)
+    found_path = context.find(path, source)
+    if found_path is None:
+        return
+    if len(set(scale)) > 1:
+        message = f"scalegeometry scales a COLLADA file by {scale[0]:g} in all directions"
+        context.diagnostics.warn("ignored-attribute", message, source)
+    path = f"{found_path}#{wanted}" if wanted else found_path
     try:
-        content = collada.read_file(path, context.diagnostics, context.files, source)
+        content = collada.read_file(path, context.diagnostics, context.files, source, scale[0])
         found = next(iter((*content.bodies, *content.others)), None)
         if found is None:
-            raise SourceError("there is no body in it", Source(path, included_from=source))
+            raise SourceError("there is no body in it", Source(found_path, included_from=source))
         placed = found.freeze(Diagnostics())
     except SourceError as error:
         context.diagnostics.error("broken-file", error.message, error.source)

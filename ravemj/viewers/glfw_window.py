@@ -19,6 +19,7 @@ class GlfwWindow:
         events: What people did since the list was last emptied.
         size: Width and height, in units of the screen.
         pixels: Width and height of what is drawn [pixels]; 0 while it is minimised.
+        pixel_ratio: How many pixels a point has: 1, or more on screens with small pixels.
         is_lost: Whether what was drawn in it is lost.
     """
 
@@ -51,6 +52,8 @@ class GlfwWindow:
         self.pixels: tuple[int, int] = glfw.get_framebuffer_size(window)
         glfw.set_window_size_callback(window, self._on_size)
         glfw.set_framebuffer_size_callback(window, self._on_pixels)
+        self._on_scale(window, *glfw.get_window_content_scale(window))
+        glfw.set_window_content_scale_callback(window, self._on_scale)
         glfw.set_window_refresh_callback(window, self._on_refresh)
         glfw.set_cursor_pos_callback(window, self._on_pointer)
         glfw.set_cursor_enter_callback(window, self._on_enter)
@@ -63,6 +66,12 @@ class GlfwWindow:
             glfw.MOUSE_BUTTON_MIDDLE: Button.MIDDLE,
             glfw.MOUSE_BUTTON_RIGHT: Button.RIGHT,
         }
+        self._keys = {
+            glfw.KEY_ESCAPE: "escape",
+            glfw.KEY_SPACE: " ",
+            glfw.KEY_LEFT: "arrowleft",
+            glfw.KEY_RIGHT: "arrowright",
+        }
 
     # --- what people do
 
@@ -73,6 +82,10 @@ class GlfwWindow:
     def _on_pixels(self, window: object, width: int, height: int) -> None:
         del window
         self.pixels = width, height
+
+    def _on_scale(self, window: object, x: float, y: float) -> None:
+        del window, y
+        self.pixel_ratio = max(float(x), 0.5)
 
     def _on_refresh(self, window: object) -> None:
         del window
@@ -112,7 +125,7 @@ class GlfwWindow:
     def _on_key(self, window: object, key: int, scancode: int, action: int, mods: int) -> None:
         del window, mods
         glfw = self._glfw
-        name = "escape" if key == glfw.KEY_ESCAPE else glfw.get_key_name(key, scancode)
+        name = self._keys.get(key) or glfw.get_key_name(key, scancode)
         if name and not name.isascii() and key < 128:  # Greek, say: what the key is on an English keyboard
             name = chr(key)
         if name and action != glfw.REPEAT:
@@ -134,11 +147,6 @@ class GlfwWindow:
     def is_closed(self) -> bool:
         """Whether the user closed it."""
         return bool(self._glfw.window_should_close(self._window))
-
-    @property
-    def pixel_ratio(self) -> float:
-        """How many pixels a point has: 1, or more on screens with small pixels."""
-        return max(float(self._glfw.get_window_content_scale(self._window)[0]), 0.5)
 
     @property
     def points(self) -> tuple[int, int]:
@@ -166,6 +174,11 @@ class GlfwWindow:
     def show_or_hide(self, shown: bool) -> None:
         """Show the window, or hide it."""
         (self._glfw.show_window if shown else self._glfw.hide_window)(self._window)
+
+    def copy_text(self, text: str) -> None:
+        """Put a text on the clipboard."""
+        with _dispatching:  # in whose course others ask for it
+            self._glfw.set_clipboard_string(self._window, text)
 
     def wait(self, seconds: float) -> None:
         """Wait until people do something, but not longer than some time."""

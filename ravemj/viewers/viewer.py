@@ -1,6 +1,7 @@
 """What every viewer can do, and the viewer without a window."""
 
 import contextlib
+import weakref
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +16,8 @@ from ravemj.simulation import Simulation
 from ravemj.studio import Format, Frame, Studio, checked_colour
 from ravemj.transforms import Floats
 from ravemj.viewers.callbacks import Callback, Callbacks
-from ravemj.viewers.selecting import Selecting
+from ravemj.viewers.playing import Playing
+from ravemj.viewers.saving import Saving
 
 _SIZE = 640, 480
 _LARGEST = 16384
@@ -24,7 +26,7 @@ _LARGEST = 16384
 _FIGURES = "SetFiguresInCamera"
 
 
-class Viewer(Selecting):
+class Viewer(Playing):
     """A point of view on an environment; ``env.SetViewer`` makes it and ``env.GetViewer()`` returns it.
 
     This one has no window: it draws when it is asked for a picture. The camera is OpenRAVE's: a 4x4 matrix
@@ -49,6 +51,8 @@ class Viewer(Selecting):
         self._name = name
         super().__init__(simulation, studio.file_camera() or studio.camera_from_above(), _SIZE)
         self._background = simulation.view.background
+        self._saving = Saving(self.interaction.controls.notices)
+        weakref.finalize(self, self._saving.end)
         self._title = name
         self._size = _SIZE
         self._figures_in_camera = False
@@ -312,6 +316,7 @@ class Viewer(Selecting):
 
     def close(self) -> None:
         """Close the viewer."""
+        self._saving.end()
         self._studio.close()
 
     def __repr__(self) -> str:

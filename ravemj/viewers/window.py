@@ -12,11 +12,13 @@ import numpy as np
 
 from ravemj.arrays import checked_vector
 from ravemj.errors import ArgumentError, RavemjError, RenderingError
-from ravemj.interaction import Resize
+from ravemj.interaction import Resize, Wish
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
 from ravemj.viewers.glfw_window import GlfwWindow
 from ravemj.viewers.painter import Painter
+from ravemj.viewers.playing import camera_line
+from ravemj.viewers.saving import Look
 from ravemj.viewers.viewer import Viewer
 
 _LOG = logging.getLogger("ravemj")
@@ -171,6 +173,8 @@ class WindowViewer(Viewer):
                 self._simulation.lock.release()
             if is_changed:
                 self._draw(window, painter)
+            for wish in self.interaction.controls.take_wishes():
+                self._grant(wish, window)
             for drawn in waiting:
                 drawn.set()
         else:
@@ -183,6 +187,7 @@ class WindowViewer(Viewer):
         try:
             if self.interaction.view.size != window.points:
                 self.interaction.handle(Resize(*window.points))
+            self.interaction.pass_time(time.monotonic())
             events, window.events = window.events, []
             for event in events:
                 self.interaction.handle(event)
@@ -204,6 +209,19 @@ class WindowViewer(Viewer):
             self._image_callbacks.call(painter.read(pixels))
         painter.draw_overlay(pixels, ratio)
         window.swap()
+
+    def _grant(self, wish: Wish, window: GlfwWindow) -> None:
+        """Do what a button asked for that needs the window."""
+        look = Look(self.interaction, self._studio, self._background, window.pixel_ratio)
+        if wish is Wish.PICTURE:
+            self._saving.save_picture(look)
+        elif wish is Wish.VIDEO:
+            self._saving.record(look, self.playback)
+        else:
+            line = camera_line(self.camera)
+            window.copy_text(line)
+            self.interaction.controls.notices.say("Copied viewer.SetCamera([...])")
+            _LOG.info("%s", line)
 
 
 def _run(reference: "weakref.ref[WindowViewer]") -> None:

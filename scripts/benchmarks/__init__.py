@@ -5,7 +5,7 @@ A new area is a module with such a function, and a line in ``AREAS``.
 
 from collections.abc import Callable
 
-from benchmarks import collision, imports, kinematics, loading, memory, reading, video, viewer, window
+from benchmarks import collada, collision, imports, kinematics, loading, memory, reading, video, viewer, window
 from benchmarks.measure import Row
 
 AREAS: dict[str, Callable[[], list[Row]]] = {
@@ -13,6 +13,7 @@ AREAS: dict[str, Callable[[], list[Row]]] = {
     "collision": collision.rows,
     "loading": loading.rows,
     "reading": reading.rows,
+    "collada": collada.rows,
     "imports": imports.rows,
     "video": video.rows,
     "viewer": viewer.rows,

@@ -9,7 +9,8 @@ from pathlib import Path
 from PIL import ImageGrab
 
 import ravemj
-from ravemj.interaction import Key, Press, Release
+from ravemj.interaction import Key, Leave, Operate, Press, Release
+from ravemj.viewers import Viewer
 
 SIZE = 640, 480
 
@@ -27,7 +28,7 @@ def main(folder: Path) -> None:
 
 
 def take(folder: Path) -> None:
-    """Select a joint and then the robot, with a picture of each."""
+    """Select a joint and then the robot, and play a motion, with a picture of each."""
     env = ravemj.load("models/env.xml")
     env.SetViewer("window")
     viewer, robot = env.GetViewer(), env.GetRobots()[0]
@@ -44,10 +45,20 @@ def take(folder: Path) -> None:
         ((x, y),), _ = viewer.camera.project([arm], *SIZE)
         viewer.interaction.handle(Press(x, y, ctrl=with_ctrl))
         viewer.interaction.handle(Release(x, y))
-        viewer.EnvironmentSync()
-        time.sleep(0.5)  # until the screen has it
-        ImageGrab.grab(xdisplay=os.environ["DISPLAY"]).crop((0, 0, *SIZE)).save(folder / f"window-{name}.png")
+        grab(viewer, folder / f"window-{name}.png")
+    for event in (Press(5, 300), Release(5, 300), Leave(), Key("escape"), Operate("joints")):
+        viewer.interaction.handle(event)
+    viewer.play(ravemj.Motion.line([-0.5, -0.7], [1.5, 1.5], 2.0)).pause()
+    viewer.playback.seek(1.2)
+    grab(viewer, folder / "window-playback.png")
     env.Destroy()
+
+
+def grab(viewer: Viewer, file: Path) -> None:
+    """Save what the screen shows of a window."""
+    viewer.EnvironmentSync()
+    time.sleep(0.5)  # until the screen has it
+    ImageGrab.grab(xdisplay=os.environ["DISPLAY"]).crop((0, 0, *SIZE)).save(file)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 """A COLLADA file as a tree in which elements are found by their kind and id."""
 
+import functools
+import hashlib
 import math
 import re
 from collections.abc import Iterator
@@ -19,6 +21,7 @@ class ColladaDocument:
     Attributes:
         path: Where the file lies.
         root: The outermost element.
+        digest: A name for the content: the same for the same bytes.
     """
 
     def __init__(self, data: bytes, path: str) -> None:
@@ -28,6 +31,7 @@ class ColladaDocument:
             SourceError: It is not well-formed XML, or its root is not COLLADA.
         """
         self.path = path
+        self.digest = hashlib.sha256(data).hexdigest()
         parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
         try:
             root = etree.fromstring(data, parser)
@@ -42,10 +46,17 @@ class ColladaDocument:
             if name is not None:
                 self._by_id.setdefault((local_name(element), name), element)
         self._of_any_kind: dict[str, list[Element]] = {}
+        self._places: dict[Element, int] = {}
 
     def source(self, element: Element) -> Source:
         """Return the place of an element, for messages."""
         return Source(self.path, element.sourceline or 0)
+
+    def place(self, geometry: Element) -> int:
+        """Return which ``<geometry>`` of the file an element is, counted from 0."""
+        if not self._places:
+            self._places = {element: number for number, element in enumerate(self.root.iter("{*}geometry"))}
+        return self._places[geometry]
 
     def find(self, kind: str, url: str | None) -> Element | None:
         """Return the element of a kind that a URL such as ``#id`` names.
@@ -70,10 +81,14 @@ def local_name(element: Element) -> str:
 def children(element: Element | None, *kinds: str) -> Iterator[Element]:
     """Yield the children of some kinds, or all elements if none is named; nothing for no element."""
     if element is None:
-        return
-    for item in element.iterchildren(etree.Element):
-        if not kinds or local_name(item) in kinds:
-            yield item
+        return iter(())
+    return element.iterchildren(*_patterns(kinds)) if kinds else element.iterchildren(etree.Element)
+
+
+@functools.cache
+def _patterns(kinds: tuple[str, ...]) -> tuple[str, ...]:
+    """Return what lxml knows elements of some kinds by, in any namespace."""
+    return tuple(f"{{*}}{kind}" for kind in kinds)
 
 
 def child(element: Element | None, *path: str) -> Element | None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ravemj.errors import SourceError
 from ravemj.meshes import faces
+from ravemj.meshes.cache import remembered
 from ravemj.meshes.collada.document import (
     ColladaDocument,
     Element,
@@ -16,10 +17,12 @@ from ravemj.meshes.collada.document import (
     words,
 )
 from ravemj.meshes.collada.document import numbers as numbers_of
-from ravemj.meshes.parts import MAX_TRIANGLES
+from ravemj.meshes.parts import MAX_TRIANGLES, MeshPart, check_finite, weld
+from ravemj.scene import Mesh
 from ravemj.transforms import Floats, Ints
 
-_KINDS = ("triangles", "trifans", "tristrips", "polylist", "polygons")
+_OF_ROBOTS = ("triangles", "trifans", "tristrips", "polylist")
+_KINDS = (*_OF_ROBOTS, "polygons")
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,17 +30,17 @@ class PrimitiveGroup:
     """The triangles of one primitive element.
 
     Attributes:
-        kind: ``triangles``, ``trifans``, ``tristrips``, ``polylist`` or ``polygons``.
         symbol: The name that an ``<instance_material>`` binds to a material; empty if there is none.
         corners: Three points for each triangle, in the units of the file, shape (n, 3, 3).
     """
 
-    kind: str
     symbol: str
     corners: Floats
 
 
-def primitive_groups(document: ColladaDocument, geometry: Element, concave: bool = True) -> list[PrimitiveGroup]:
+def primitive_groups(
+    document: ColladaDocument, geometry: Element, concave: bool = True, kinds: tuple[str, ...] = _KINDS
+) -> list[PrimitiveGroup]:
     """Read a ``<geometry>``: its ``<mesh>`` or ``<convex_mesh>``, without units or transforms.
 
     Indices that point nowhere and elements that refer to missing ones are tolerated: their polygons are left out.
@@ -46,6 +49,7 @@ def primitive_groups(document: ColladaDocument, geometry: Element, concave: bool
         document: The file.
         geometry: The element.
         concave: Whether to cut polygons ear by ear; otherwise they become fans, as in OpenRAVE's robots.
+        kinds: Which primitive elements count.
 
     Returns:
         One group for each primitive element, in document order, also where it has no triangles.
@@ -53,20 +57,50 @@ def primitive_groups(document: ColladaDocument, geometry: Element, concave: bool
     Raises:
         SourceError: There are too many triangles.
     """
-    mesh = child(geometry, "mesh")
-    if mesh is None:
-        mesh = child(geometry, "convex_mesh")
+    mesh = _mesh(geometry)
     if mesh is None:
         return []
     points = _positions(document, mesh)
     groups: list[PrimitiveGroup] = []
-    for element in children(mesh, *_KINDS):
+    for element in children(mesh, *kinds):
         kind = local_name(element)
         sizes, index = _polygons(element, kind)
         if int(np.maximum(sizes - 2, 0).sum()) > MAX_TRIANGLES:
             raise SourceError(f"the mesh has more than {MAX_TRIANGLES} triangles", document.source(element))
-        groups.append(PrimitiveGroup(kind, element.get("material", ""), _corners(points, sizes, index, concave)))
+        groups.append(PrimitiveGroup(element.get("material", ""), _corners(points, sizes, index, concave)))
     return groups
+
+
+def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float) -> list[tuple[str, Mesh]]:
+    """Return the triangles of a ``<geometry>`` as OpenRAVE's robots have them, from the cache if they are there.
+
+    Args:
+        document: The file.
+        geometry: The element.
+        metres: The length of its unit [m].
+
+    Returns:
+        The symbol and the triangles [m] of each primitive element that has any; polygons do not count.
+
+    Raises:
+        SourceError: There are too many triangles, or a coordinate is not finite.
+    """
+
+    def read() -> tuple[MeshPart, ...]:
+        corners = [group.corners * metres for group in primitive_groups(document, geometry, False, _OF_ROBOTS)]
+        for item in corners:
+            check_finite(item, document.source(geometry))
+        return tuple(MeshPart(weld(item)) for item in corners)
+
+    key = f"{document.digest} {document.place(geometry)} {metres!r}"
+    parts = remembered(key.encode(), "geometry", read)
+    symbols = [element.get("material", "") for element in children(_mesh(geometry), *_OF_ROBOTS)]
+    return [(symbol, part.mesh) for symbol, part in zip(symbols, parts, strict=True) if len(part.mesh.triangles)]
+
+
+def _mesh(geometry: Element) -> Element | None:
+    mesh = child(geometry, "mesh")
+    return child(geometry, "convex_mesh") if mesh is None else mesh
 
 
 def _positions(document: ColladaDocument, mesh: Element) -> Floats:

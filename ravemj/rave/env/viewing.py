@@ -12,8 +12,6 @@ from ravemj.studio import Format, Frame, Studio, checked_colour
 
 if TYPE_CHECKING:
     from ravemj.viewers import Viewer
-
-if TYPE_CHECKING:
     from ravemj.viewers.web import WebViewer
 
 
@@ -25,9 +23,9 @@ class Viewing(EnvironmentPart):
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
         """Attach a viewer, in place of those before; ``RaveCreateViewer`` attaches further ones.
 
-        With a display a window opens and shows every change from then on, while the script goes on; in a notebook
-        without one, a page in the cell does. Without either, as on a server, the viewer draws when it is asked for
-        pictures, so that scripts run there just the same.
+        With a display a window opens and shows every change from then on, while the script goes on; in a notebook, a
+        page in the cell does. Without either, as on a server, the viewer draws when it is asked for pictures, so that
+        scripts run there just the same.
 
         The camera starts with the view that the loaded file asks for, else from above; ``GetViewer().SetCamera``
         moves it.
@@ -56,6 +54,16 @@ class Viewing(EnvironmentPart):
             self.open_viewer(viewername, showviewer)
         return bool(viewername)
 
+    def open_viewer(self, name: str, show: bool) -> "Viewer | None":
+        """Attach a viewer beside those that there are; None for a name that is no viewer's."""
+        from ravemj.viewers import open_viewer  # noqa: PLC0415 - slow to import
+
+        self._check_alive()
+        viewer = open_viewer(self._simulation, self._studio, name, show)
+        if viewer is not None:
+            self._attach(viewer)
+        return viewer
+
     def serve_viewer(self, host: str = "127.0.0.1", port: int = 0) -> "WebViewer":
         """Attach a viewer for browsers, as ``SetViewer('web')`` does, at a port of your choice.
 
@@ -78,20 +86,12 @@ class Viewing(EnvironmentPart):
         self._check_alive()
         viewer = WebViewer(self._simulation, self._studio, "web", host, port)
         self._close_viewers()
+        self._attach(viewer)
+        return viewer
+
+    def _attach(self, viewer: "Viewer") -> None:
         viewer.environment = weakref.ref(self)
         self._viewers.append(viewer)
-        return viewer
-
-    def open_viewer(self, name: str, show: bool) -> "Viewer | None":
-        """Attach a viewer beside those that there are; None for a name that is no viewer's."""
-        from ravemj.viewers import open_viewer  # noqa: PLC0415 - slow to import
-
-        self._check_alive()
-        viewer = open_viewer(self._simulation, self._studio, name, show)
-        if viewer is not None:
-            viewer.environment = weakref.ref(self)
-            self._viewers.append(viewer)
-        return viewer
 
     def _close_viewers(self) -> None:
         if self._viewers:

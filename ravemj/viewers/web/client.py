@@ -1,10 +1,12 @@
 """One page in a browser: its events in, pictures of its view out."""
 
+import base64
 import json
 import logging
 import time
 from collections import deque
 from collections.abc import Iterable
+from dataclasses import asdict
 from typing import NamedTuple, Protocol
 
 from ravemj.errors import RavemjError
@@ -12,6 +14,7 @@ from ravemj.interaction import Interaction, Leave, Move, Overlay
 from ravemj.simulation import Simulation
 from ravemj.studio import Format, Frame, Studio
 from ravemj.viewers.painter import appearance
+from ravemj.viewers.saving import free_path
 from ravemj.viewers.web import encoding
 from ravemj.viewers.web.complaints import Complaints
 from ravemj.viewers.web.link import Link
@@ -130,6 +133,7 @@ class Client:
         if not self._simulation.lock.acquire(timeout=_PERIOD):  # who holds it may wait for this thread to end
             return None
         try:
+            self.interaction.pass_time(time.monotonic())
             while self._waiting:
                 self._do(self._waiting.popleft())
             if not self._link.is_free:
@@ -160,12 +164,23 @@ class Client:
         form = Format(max(int(width * shrink), 1), max(int(height * shrink), 1))
         return self._studio.picture(self.interaction.view.camera, look.background, form, gizmos=overlay.shapes)
 
+    def send_file(self, connection: Connection, look: Look) -> None:
+        """Have the browser save a picture of the view as it is now."""
+        content = encoding.resting(self._picture(self.interaction.overlay(), look), is_exact=True)
+        file = {"task": "save", "name": free_path(".png").name, "data": base64.b64encode(content).decode()}
+        connection.send(json.dumps(file))
+
+    def send_text(self, connection: Connection, text: str) -> None:
+        """Have the browser put a text on the clipboard."""
+        connection.send(json.dumps({"task": "copy", "text": text}))
+
     def _send(self, connection: Connection, overlay: Overlay, picture: Frame, look: Look) -> None:
         link = self._link
         link.sent(is_moving=not self._is_crisp)
         mode = self.interaction.mode.value
+        controls = [asdict(control) for control in overlay.controls]
         text = {"lines": overlay.lines, "mode": mode, "title": look.title, "crisp": self._is_crisp}
-        connection.send(json.dumps(text))
+        connection.send(json.dumps({**text, "controls": controls}))
         if self._is_crisp:
             connection.send(encoding.resting(picture, is_exact=link.is_good))
         else:

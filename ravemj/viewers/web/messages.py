@@ -5,7 +5,21 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from ravemj.interaction import Button, Event, Fingers, Key, Leave, Move, Press, Release, Resize, Tool, Use, Wheel
+from ravemj.interaction import (
+    Button,
+    Event,
+    Fingers,
+    Key,
+    Leave,
+    Move,
+    Operate,
+    Press,
+    Release,
+    Resize,
+    Tool,
+    Use,
+    Wheel,
+)
 
 LONGEST = 1024
 """Longest message of a page [bytes]."""
@@ -102,6 +116,13 @@ def _use(fields: dict[str, Any]) -> Use:
     return Use(_TOOLS[name], _number(fields["amount"]))
 
 
+def _operate(fields: dict[str, Any]) -> Operate:
+    name = fields["name"]
+    if not isinstance(name, str) or len(name) > _LONGEST_KEY:
+        raise ValueError("there is no such control")
+    return Operate(name, _number(fields["value"]))
+
+
 def _shape(fields: dict[str, Any]) -> Shape:
     width, height, ratio = (_number(fields[name]) for name in ("width", "height", "ratio"))
     if not (1 <= width <= _LARGEST and 1 <= height <= _LARGEST and 0.1 <= ratio <= 10):
@@ -118,6 +139,7 @@ _PARSERS: dict[str, Callable[[dict[str, Any]], Message]] = {
     "wheel": lambda fields: Wheel(_number(fields["steps"])),
     "fingers": _fingers,
     "use": _use,
+    "operate": _operate,
     "key": _key,
     "leave": lambda fields: Leave(),
     "shape": _shape,

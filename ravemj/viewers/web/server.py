@@ -24,7 +24,13 @@ LOOPBACK = "127.0.0.1"
 _LOCAL_NAMES = {LOOPBACK, "localhost", "::1"}
 _EVERYWHERE = {"", "0.0.0.0", "::"}
 _FOLDER = Path(__file__).with_name("page")
-_FILES = {"": "text/html", "page.css": "text/css", "page.js": "text/javascript"}
+_FILES = {
+    "": "text/html",
+    "page.css": "text/css",
+    "page.js": "text/javascript",
+    "controls.css": "text/css",
+    "controls.js": "text/javascript",
+}
 _SOCKET = "socket"
 _MOST_CONNECTIONS = 32
 _HANDSHAKE = 5.0

@@ -12,10 +12,13 @@ from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 from websockets.sync.server import ServerConnection
 
-from ravemj.interaction import Interaction
+from ravemj.errors import RavemjError
+from ravemj.interaction import Interaction, Wish
 from ravemj.simulation import Simulation
 from ravemj.studio import Studio
+from ravemj.viewers import saving
 from ravemj.viewers.notebook import frame
+from ravemj.viewers.playing import camera_line
 from ravemj.viewers.viewer import Viewer
 from ravemj.viewers.web.client import Client, Look, receive
 from ravemj.viewers.web.server import LOOPBACK, PageServer, is_local
@@ -141,13 +144,30 @@ class WebViewer(Viewer):
         client = self._clients[connection]
         before = client.interaction.view
         client.take_in(messages, self.server.complain)
-        picture = client.attend(connection, Look(self._background, self._title))
+        look = Look(self._background, self._title)
+        picture = client.attend(connection, look)
         view = client.interaction.view
         if messages and view.camera is not before.camera:
             self.interaction.look_from(view.camera, view.distance)
         if picture is not None:
             self._image_callbacks.call(picture)
+        for wish in client.interaction.controls.take_wishes():
+            self._grant(wish, client, connection, look)
         return not client.is_behind
+
+    def _grant(self, wish: Wish, client: Client, connection: ServerConnection, look: Look) -> None:
+        """Do what a button asked for that needs the page, or writes here."""
+        if wish is Wish.PICTURE:
+            try:
+                client.send_file(connection, look)
+            except RavemjError as error:
+                client.interaction.controls.notices.say(error.message)
+        elif wish is Wish.VIDEO:
+            self._saving.record(saving.Look(client.interaction, self._studio, self._background), self.playback)
+        else:
+            line = camera_line(client.interaction.view.camera)
+            client.send_text(connection, line)
+            _LOG.info("%s", line)
 
     def dismiss(self, connection: ServerConnection) -> None:
         """Forget a page that has left, in the thread that drew for it."""

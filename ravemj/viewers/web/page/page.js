@@ -25,8 +25,10 @@ function connect() {
     ready();
   };
   opened.onmessage = (event) => {
-    if (typeof event.data === "string") overlay = JSON.parse(event.data);
-    else show(event.data, overlay, opened);
+    if (typeof event.data !== "string") return show(event.data, overlay, opened);
+    const said = JSON.parse(event.data);
+    if (said.task) doTask(said);
+    else overlay = said;
   };
   opened.onclose = (event) => {
     if (event.code === GOING_AWAY) {
@@ -76,6 +78,7 @@ function write(over) {
   const lines = over.lines.join("\n");
   if (text.innerText !== lines) text.innerText = lines;
   text.hidden = lines === "";
+  showControls(over.controls);
   document.title = over.title;
   Object.assign(document.body.dataset, { mode: over.mode, crisp: over.crisp });
   for (const button of document.querySelectorAll("#modes button")) {

@@ -1,0 +1,36 @@
+"""How Sphinx builds these pages; ``scripts/docs --html`` calls it."""
+
+import sys
+from pathlib import Path
+
+sys.path[:0] = [str(Path(__file__).parent / "extensions"), str(Path(__file__).parent.parent)]
+
+import ravemj  # noqa: E402 - this repository's
+
+project = "ravemj"
+version = release = ravemj.__version__
+html_title = "ravemj"
+html_theme = "furo"
+html_static_path = ["extensions/pages.css"]
+html_css_files = ["pages.css"]
+html_copy_source = html_show_sourcelink = False
+html_show_copyright = html_show_sphinx = False
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "reference"]
+myst_heading_anchors = 3
+
+toc_object_entries_show_parents = "hide"
+autodoc_typehints = "none"  # the extension writes them
+autoclass_content = "both"
+autodoc_member_order = "bysource"
+python_use_unqualified_type_names = True
+napoleon_google_docstring = True
+napoleon_numpy_docstring = False
+napoleon_attr_annotations = False
+napoleon_use_ivar = True
+
+nitpick_ignore_regex = [  # pages of others, which a build without network knows nothing of
+    ("py:class", r"(collections|mujoco|np|numpy|optparse|os|weakref)\..*|EllipsisType|NDArray|Path"),
+    ("py:class", r"Parameters|Result"),  # type variables
+    ("py:class", r"Simulation|Studio|_\w+"),  # below the API
+]

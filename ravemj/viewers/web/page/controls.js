@@ -1,0 +1,143 @@
+"use strict";
+// Playing a motion, saving, and a slider for each joint: made of what the other side says there is.
+
+const QUIET = 400;  // after so long without a touch [ms], a slider shows what the other side says
+const PLAYING = ["back", "play", "forward", "seek", "speed"];
+const ICONS = {
+  back: "M6 5h2.4v14H6zM19 5v14L9.5 12z",
+  forward: "M15.6 5H18v14h-2.4zM5 5v14l9.5-7z",
+  play: "M7 4.5v15l12-7.5z",
+  pause: "M6.5 5h3.8v14H6.5zM13.7 5h3.8v14h-3.8z",
+};
+const shown = new Map();  // the elements of the controls by their names
+
+function showControls(controls) {
+  const motion = document.getElementById("motion"), joints = document.getElementById("joints");
+  const names = new Set(controls.map((control) => control.name));
+  for (const [name, control] of shown) {
+    if (names.has(name)) continue;
+    control.row.remove();
+    shown.delete(name);
+  }
+  for (const control of controls) {
+    if (!shown.has(control.name)) shown.set(control.name, make(control));
+    update(shown.get(control.name), control);
+  }
+  motion.hidden = !names.has("seek");
+  joints.hidden = !names.has("dof 0") && !controls.some((control) => control.name.startsWith("dof "));
+  document.body.classList.toggle("has-motion", !motion.hidden);
+}
+
+function make({ name, lower, upper }) {
+  const parent = name.startsWith("dof ") ? "joints" : PLAYING.includes(name) ? "motion" : "tools";
+  const made = lower < upper ? makeSlider(name) : makeButton(name);
+  const order = (element) => PLAYING.indexOf(element.dataset.name);
+  const home = document.getElementById(parent);
+  const next = parent === "motion" ? [...home.children].find((other) => order(other) > order(made.row)) : null;
+  home.insertBefore(made.row, next || null);
+  return made;
+}
+
+function makeButton(name) {
+  const row = document.createElement("button");
+  row.type = "button";
+  row.dataset.name = name;
+  row.addEventListener("click", () => send({ type: "operate", name, value: 0 }));
+  return { row };
+}
+
+function makeSlider(name) {
+  const row = document.createElement("label"), title = document.createElement("span");
+  const input = document.createElement("input"), output = document.createElement("output");
+  row.dataset.name = name;
+  input.type = "range";
+  input.step = "any";
+  const made = { row, title, input, output, touched: -QUIET };
+  input.addEventListener("input", () => {
+    made.touched = performance.now();
+    send({ type: "operate", name, value: Number(input.value) });
+  });
+  row.append(title, input, output);
+  return made;
+}
+
+function update(made, control) {
+  if (made.input) {
+    const { input, title, output } = made;
+    if (title.textContent !== control.label) title.textContent = title.title = control.label;
+    [input.min, input.max] = [control.lower, control.upper];
+    const isHeld = input.matches(":active") || performance.now() - made.touched < QUIET;
+    if (!isHeld) input.value = control.value;
+    input.setAttribute("aria-valuetext", control.text);
+    output.textContent = control.text;
+    return;
+  }
+  const { row } = made;
+  const icon = ICONS[control.name === "play" && control.is_on ? "pause" : control.name];
+  const label = control.name === "speed" ? `${control.label} ${control.text}` : control.label;
+  row.title = label;
+  row.setAttribute("aria-label", label);
+  row.dataset.on = control.is_on === true;
+  if (control.name === "joints") row.setAttribute("aria-expanded", control.is_on);
+  if (!icon) row.textContent = control.text;
+  else if (row.dataset.icon !== icon) {
+    row.dataset.icon = icon;
+    row.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${icon}"/></svg>`;
+  }
+}
+
+// --- keys of the view, while there is a motion
+
+const KEYS = { " ": "play", ArrowLeft: "back", ArrowRight: "forward" };
+document.getElementById("view").addEventListener("keydown", (event) => {
+  const name = KEYS[event.key];
+  if (!name || !shown.has(name) || event.ctrlKey || event.altKey || event.metaKey) return;
+  event.preventDefault();
+  if (!event.repeat || name !== "play") send({ type: "operate", name, value: 0 });
+});
+
+// --- what only a browser can do
+
+function doTask({ task, name, data, text }) {
+  if (task === "save") save(name, data);
+  if (task === "copy") copy(text);
+}
+
+function save(name, data) {
+  const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([bytes], { type: "image/png" }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  toast(`Saved ${name} where this browser keeps downloads`);
+}
+
+async function copy(text) {
+  try {
+    await navigator.clipboard.writeText(text);
+    toast("Copied viewer.SetCamera([…])");
+  } catch {
+    if (copyOldWay(text)) toast("Copied viewer.SetCamera([…])");
+    else prompt("The browser lets no page copy; this is the line:", text);
+  }
+}
+
+function copyOldWay(text) {  // where pages have no clipboard: on other machines without https
+  const area = document.createElement("textarea"), before = document.activeElement;
+  area.value = text;
+  document.body.append(area);
+  area.select();
+  const isCopied = document.execCommand("copy");
+  area.remove();
+  if (before) before.focus({ focusVisible: false });
+  return isCopied;
+}
+
+let toasting = 0;
+function toast(words) {
+  const element = document.getElementById("toast");
+  element.textContent = words;
+  clearTimeout(toasting);
+  toasting = setTimeout(() => { element.textContent = ""; }, 6000);
+}

@@ -1,0 +1,103 @@
+"""The tutorial as a notebook, and its pictures: ``python scripts/pictures/tutorial.py docs``.
+
+Blocks of ``docs/tutorial.md`` are cells: ``python`` and ``ipython`` code, ``sh`` commands; one with a file name beside
+its language is saved as that file. ``text`` after one of them is what it prints. All other text is Markdown.
+"""
+
+import json
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+_BLOCK = re.compile(r"^```(python|ipython|sh|xml (?=\S)|text) *(\S*)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
+_COLOUR = re.compile(r"\x1b\[[\d;]*m|\r")
+_LINK = re.compile(r"\]\((?!https?:|#)(?=[^)]+\))")
+
+Cell = dict[str, Any]
+
+
+def main(folder: Path) -> None:
+    """Write the notebook, run it, and keep the pictures that it saves."""
+    text = notebook((folder / "tutorial.md").read_text())
+    (folder / "notebooks").mkdir(exist_ok=True)
+    (folder / "notebooks" / "tutorial.ipynb").write_text(text)
+    with tempfile.TemporaryDirectory() as place:
+        outputs(text, Path(place))
+        for picture in Path(place).glob("tutorial-*.*"):
+            shutil.copy(picture, folder / "pictures")
+
+
+def notebook(page: str) -> str:
+    """Return the notebook that a page makes, as JSON."""
+    cells = [{**cell, "id": f"cell-{number:02}"} for number, cell in enumerate(_cells(page), 1)]
+    kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
+    content = {"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
+    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+
+
+def _cells(page: str) -> Iterator[Cell]:
+    """Yield cells without numbers; what a block prints belongs to the cell before it."""
+    code: Cell | None = None
+    end = 0
+    for block in _BLOCK.finditer(page):
+        language, file, content = block[1].strip(), block[2], block[3].rstrip("\n")
+        prose = page[end : block.start()].strip()
+        end = block.end()
+        if language == "text" and code is not None:
+            assert not prose, f"what is printed follows its block at once, and not: {prose}"
+            code["outputs"] = [{"name": "stdout", "output_type": "stream", "text": f"{content}\n"}]
+            continue
+        if code is not None:
+            yield code
+        if prose:
+            yield _markdown(prose)
+        code = _code(language, file, content)
+    if code is not None:
+        yield code
+    yield _markdown(page[end:].strip())
+
+
+def _code(language: str, file: str, content: str) -> Cell:
+    if file:
+        content = f"%%writefile {file}\n{content}"
+    elif language == "sh":
+        content = "\n".join(f"!{line}" for line in content.splitlines())
+    return {"cell_type": "code", "execution_count": None, "metadata": {}, "outputs": [], "source": content}
+
+
+def _markdown(prose: str) -> Cell:
+    return {"cell_type": "markdown", "metadata": {}, "source": _LINK.sub("](../", prose)}
+
+
+def outputs(text: str, folder: Path) -> list[tuple[str, str]]:
+    """Run a notebook in a folder with a Jupyter kernel of its own.
+
+    Returns:
+        What each code cell prints or answers, and what the notebook says that it does.
+    """
+    import nbformat  # noqa: PLC0415 - only who runs it needs it
+    from nbclient import NotebookClient  # noqa: PLC0415
+
+    said = nbformat.reads(text, as_version=4)
+    run = nbformat.reads(text, as_version=4)
+    NotebookClient(run, timeout=120, resources={"metadata": {"path": str(folder)}}).execute()
+    pairs = zip(run.cells, said.cells, strict=True)
+    return [(_printed(now), _printed(then)) for now, then in pairs if now.cell_type == "code"]
+
+
+def _printed(cell: Any) -> str:  # noqa: ANN401 - nbformat's
+    """Return standard output, then the answer, of one cell; files that are written say nothing."""
+    if cell.source.startswith("%%writefile"):
+        return ""
+    streams = [output.text for output in cell.outputs if output.get("name") == "stdout"]
+    answers = [output.data["text/plain"] for output in cell.outputs if output.output_type == "execute_result"]
+    lines = _COLOUR.sub("", "".join([*streams, *answers])).splitlines()
+    return "\n".join(line.rstrip() for line in lines).strip("\n")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,237 @@
+"""Playing a motion, saving and the joints' sliders on the page, in a real browser, with mouse and keys."""
+
+import io
+import re
+
+import imageio.v3
+import numpy as np
+import pytest
+from browsers import NEEDS_A_BROWSER, SIZE, Desk, await_that
+from conftest import MODELS
+
+import ravemj
+
+pytestmark = NEEDS_A_BROWSER
+LONG = ravemj.Motion.line([0, 0], [2.0, -1.0], 100.0)
+
+
+def pendulum() -> ravemj.Environment:
+    return ravemj.load(MODELS / "env.xml")
+
+
+@pytest.fixture(scope="module")
+def shared_desk(browser):
+    desk = Desk(browser, pendulum, permissions=["clipboard-read", "clipboard-write"])
+    yield desk
+    desk.close()
+
+
+@pytest.fixture
+def desk(shared_desk, tmp_path, monkeypatch):
+    """The pendulum as it was loaded, with nothing to play and the sliders folded away."""
+    monkeypatch.chdir(tmp_path)
+    shared_desk.viewer.playback.clear()
+    shared_desk.viewer.playback.speed = 1.0
+    shared_desk.reset()
+    fold(shared_desk, False)
+    yield shared_desk
+    assert shared_desk.troubles == []
+
+
+def button(desk, name):
+    return desk.page.get_by_role("button", name=name)
+
+
+def slider(desk, name):
+    return desk.page.get_by_role("slider", name=name, exact=True)
+
+
+def fold(desk, unfolded: bool) -> None:
+    joints = button(desk, "DOFs")
+    await_that(lambda: joints.get_attribute("aria-expanded") in {"true", "false"}, "no button for the joints")
+    if joints.get_attribute("aria-expanded") != str(unfolded).lower():
+        joints.click()
+    await_that(lambda: desk.page.locator("#joints").is_visible() == unfolded, "the sliders do not unfold, or fold")
+
+
+def test_the_motion_is_there_while_there_is_one(desk):
+    assert not desk.page.locator("#motion").is_visible()
+    desk.page.focus("#view")
+    plain = desk.picture()
+    for key in ("Space", "ArrowLeft", "ArrowRight"):
+        desk.page.keyboard.press(key)
+    assert np.array_equal(desk.picture(), plain)
+    desk.viewer.play(LONG)
+    await_that(lambda: desk.page.locator("#motion").is_visible(), "no controls")
+    assert button(desk, "Pause").is_visible()
+    desk.viewer.playback.clear()
+    await_that(lambda: not desk.page.locator("#motion").is_visible(), "the controls stay")
+
+
+def test_the_page_plays_in_real_time_and_shows_it(desk):
+    desk.viewer.play(ravemj.Motion.line([0, 0], [2.0, -1.0], 1.0))
+    await_that(lambda: not desk.viewer.playback.playing, "it does not end")
+    np.testing.assert_allclose(desk.robot.GetDOFValues(), [2.0, -1.0])
+    desk.other_robot.SetDOFValues([2.0, -1.0])
+    desk.await_robot()
+    await_that(lambda: desk.page.text_content("#motion output") == "1.00 / 1.00 s", "the clock shows another time")
+    button(desk, "Play").click()  # once more
+    await_that(lambda: desk.viewer.playback.playing, "it does not play again")
+    await_that(lambda: not desk.viewer.playback.playing, "it does not end again")
+
+
+def test_buttons_pause_step_and_change_the_speed(desk):
+    playback = desk.viewer.play(LONG)
+    button(desk, "Pause").click()
+    await_that(lambda: not playback.playing, "it does not pause")
+    playback.seek(50.0)
+    for name, expected in (("One frame forward", 50 + 1 / 30), ("One frame back", 50), ("One frame back", 50 - 1 / 30)):
+        button(desk, name).click()
+        await_that(lambda expected=expected: playback.time == pytest.approx(expected), name)
+    button(desk, "Speed").click()
+    await_that(lambda: playback.speed == 2, "the speed stays")
+    await_that(lambda: button(desk, "Speed 2x").is_visible(), "the speed is not shown")
+    button(desk, "Play").click()
+    await_that(lambda: playback.playing, "it does not play")
+
+
+def test_the_time_is_dragged_and_the_robot_follows(desk):
+    playback = desk.viewer.play(LONG)
+    time = slider(desk, "Time")
+    box = time.bounding_box()
+    y = box["y"] + box["height"] / 2
+    desk.page.mouse.move(box["x"] + 10, y)
+    desk.page.mouse.down()
+    for part in (0.3, 0.5, 0.75):
+        desk.page.mouse.move(box["x"] + part * box["width"], y)
+    await_that(lambda: 60 < playback.time < 90, "the time does not follow")
+    assert not playback.playing
+    desk.page.mouse.up()
+    np.testing.assert_allclose(desk.robot.GetDOFValues(), LONG.sample(playback.time))
+    desk.other_robot.SetDOFValues(desk.robot.GetDOFValues())
+    desk.await_picture()
+    await_that(lambda: float(time.input_value()) == pytest.approx(playback.time), "the slider is elsewhere")
+    assert time.get_attribute("aria-valuetext") == f"{playback.time:.2f} / 100.00 s"
+
+
+def test_everything_can_be_reached_and_done_by_keys(desk):
+    playback = desk.viewer.play(LONG)
+    playback.pause()
+    playback.seek(50.0)
+    await_that(lambda: button(desk, "Play").is_visible(), "no controls")
+    desk.page.focus("#view")
+    desk.page.keyboard.press("ArrowRight")
+    await_that(lambda: playback.time == pytest.approx(50 + 1 / 30), "the arrow does not step")
+    desk.page.keyboard.press("Space")
+    await_that(lambda: playback.playing, "the space bar does not play")
+    desk.page.keyboard.press("Space")
+    await_that(lambda: not playback.playing, "the space bar does not pause")
+    names = []
+    for _ in range(14):
+        desk.page.keyboard.press("Tab")
+        names.append(desk.page.evaluate("document.activeElement.dataset.name || document.activeElement.type"))
+        if names[-1] == "play":
+            desk.page.keyboard.press("Space")
+            await_that(lambda: playback.playing, "the button does not play")
+            desk.page.keyboard.press("Enter")
+            await_that(lambda: not playback.playing, "the button does not pause")
+        if names[-1] == "range":
+            before = playback.time
+            desk.page.keyboard.press("ArrowRight")
+            await_that(lambda before=before: playback.time > before, "the slider does not move")
+    wanted = ["back", "play", "forward", "range", "speed", "picture", "video", "camera", "joints"]
+    assert [name for name in names if name in wanted] == wanted
+
+
+def test_sliders_turn_joints_and_show_what_scripts_do(desk):
+    assert not desk.page.locator("#joints").is_visible()
+    fold(desk, True)
+    joint = slider(desk, "Joint1")
+    box = joint.bounding_box()
+    desk.page.mouse.click(box["x"] + 0.75 * box["width"], box["y"] + box["height"] / 2)
+    await_that(lambda: desk.robot.GetDOFValues()[1] == pytest.approx(np.pi / 2, abs=0.5), "the joint does not turn")
+    turned = desk.robot.GetDOFValues()
+    assert turned[0] == 0
+    desk.other_robot.SetDOFValues(turned)
+    desk.page.mouse.move(1, 1)
+    text = f"{turned[1]:.3f} rad"
+    await_that(lambda: joint.get_attribute("aria-valuetext") == text, "the slider has another text")
+    for page_side in (desk.page.locator("#joints"), desk.page.locator("#modes")):
+        assert page_side.is_visible()
+    desk.robot.SetDOFValues([-1.0, 0.5])
+    await_that(lambda: float(slider(desk, "Joint0").input_value()) == pytest.approx(-1), "it shows another value")
+    fold(desk, False)
+    desk.other_robot.SetDOFValues([-1.0, 0.5])
+    desk.await_robot()
+
+
+def test_a_picture_is_downloaded_as_it_is_seen_without_buttons(desk):
+    desk.viewer.SetBkgndColor([0.2, 0.3, 0.4])
+    desk.await_picture()
+    with desk.page.expect_download() as download:
+        button(desk, "PNG").click()
+    assert re.fullmatch(r"ravemj-\d{8}-\d{6}\.png", download.value.suggested_filename)
+    saved = imageio.v3.imread(io.BytesIO(download.value.path().read_bytes()))
+    assert np.array_equal(saved, desk._expected())
+    await_that(lambda: "Saved ravemj-" in desk.page.inner_text("#toast"), "the page does not say it")
+
+
+def test_a_video_is_written_into_the_working_folder(desk, tmp_path):
+    desk.viewer.play(ravemj.Motion.line([0, 0], [2.0, -1.0], 0.3))
+    button(desk, "MP4").click()
+    await_that(lambda: list(tmp_path.glob("*.mp4")), "there is no video", seconds=30)
+    (file,) = tmp_path.iterdir()
+    assert imageio.v3.imread(file).shape == (10, SIZE[1], SIZE[0], 3)
+    await_that(lambda: f"Saved {file.name} in {tmp_path}" in desk.page.inner_text("#text"), "the page does not say it")
+
+
+def test_the_camera_is_copied_as_a_line_to_paste(desk):
+    button(desk, "Copy").click()
+    await_that(lambda: "Copied" in desk.page.inner_text("#toast"), "the page does not say it")
+    line = desk.page.evaluate("navigator.clipboard.readText()")
+    expected = desk.viewer.GetCameraTransform()
+    desk.viewer.SetCamera(np.eye(4))
+    eval(line, {"viewer": desk.viewer})
+    np.testing.assert_allclose(desk.viewer.GetCameraTransform(), expected, atol=1e-8)
+
+
+def test_the_camera_is_copied_where_pages_have_no_clipboard(desk):
+    desk.page.evaluate("() => { navigator.clipboard.writeText = () => Promise.reject(new Error('none')); }")
+    desk.page.evaluate("() => { document.execCommand = () => false; }")
+    shown = []
+    desk.page.once("dialog", lambda dialog: (shown.append(dialog.default_value), dialog.dismiss()))
+    button(desk, "Copy").click()
+    await_that(lambda: desk.page.evaluate("1") and shown, "the line is not shown")
+    assert shown[0].startswith("viewer.SetCamera([[")
+    desk.page.reload()
+    desk.page.wait_for_selector("[data-crisp]")
+
+
+def test_tabs_share_the_motion(desk):
+    other = desk.open_page()
+    playback = desk.viewer.play(LONG)
+    other.get_by_role("button", name="Pause").click()
+    await_that(lambda: not playback.playing, "it does not pause")
+    await_that(lambda: button(desk, "Play").is_visible(), "the other tab does not show it")
+
+
+@pytest.mark.parametrize("size", [(400, 700), (640, 400), (900, 640)])
+def test_controls_do_not_cover_each_other(desk, size):
+    desk.viewer.play(LONG).pause()
+    desk.page.set_viewport_size({"width": size[0], "height": size[1]})
+    fold(desk, True)
+    boxes = [desk.page.locator(f"#{name}").bounding_box() for name in ("motion", "tools", "joints", "modes")]
+    boxes += [one.bounding_box() for one in desk.page.locator(".wheel").all()]
+    for index, one in enumerate(boxes):
+        assert one["x"] >= 0
+        assert one["y"] >= 0
+        assert one["x"] + one["width"] <= size[0]
+        assert one["y"] + one["height"] <= size[1]
+        for other in boxes[:index]:
+            apart = (
+                one["x"] + one["width"] <= other["x"]
+                or other["x"] + other["width"] <= one["x"]
+                or one["y"] + one["height"] <= other["y"]
+                or other["y"] + other["height"] <= one["y"]
+            )
+            assert apart, (one, other)
