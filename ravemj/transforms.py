@@ -138,7 +138,7 @@ def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
     Raises:
         OverflowError: the angle is infinite.
     """
-    length = math.sqrt(dot(axis, axis))
+    length = math.hypot(*axis)
     if length == 0.0:
         return UNIT_WXYZ
     if math.isinf(angle):
@@ -148,8 +148,7 @@ def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
         cosine, sine = math.copysign(math.sqrt(0.5), cosine), math.copysign(math.sqrt(0.5), sine)
     elif abs(cosine) < 1e-15:
         cosine = 0.0
-    factor = sine / length
-    return (cosine, axis[0] * factor, axis[1] * factor, axis[2] * factor)
+    return (cosine, axis[0] / length * sine, axis[1] / length * sine, axis[2] / length * sine)
 
 
 def wxyz_from_rows(rows: Sequence[Sequence[float]]) -> Wxyz:

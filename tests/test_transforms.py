@@ -34,6 +34,12 @@ def test_inverse(pose):
     np.testing.assert_allclose((pose @ pose.inverse()).matrix(), np.eye(4), atol=1e-14)
 
 
+@given(st.floats(0, 1e-150), st.floats(-7, 7))
+def test_short_axes_are_axes(length, angle):
+    expected = wxyz_from_axis_angle((0, 1, 0), angle) if length else (1, 0, 0, 0)
+    np.testing.assert_allclose(wxyz_from_axis_angle((0, length, 0), angle), expected, atol=1e-15)
+
+
 @given(rotations)
 def test_matrix_and_back(wxyz):
     back = wxyz_from_rows(rows_from_wxyz(wxyz))
