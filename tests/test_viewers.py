@@ -265,11 +265,11 @@ class TestSeveral:
         env.Add(other)  # it is there already
         viewer.SetCamera(FROM_FRONT)
         other.SetCamera([[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 2]])
-        pictures = [one.render(64, 48) for one in (viewer, other)]
+        pictures = [one.render(240, 180) for one in (viewer, other)]
         assert not np.array_equal(*pictures)
         robot.SetDOFValues([1, 1])
         for one, before in zip((viewer, other), pictures, strict=True):
-            assert not np.array_equal(one.render(64, 48), before)
+            assert not np.array_equal(one.render(240, 180), before)
         viewer.interaction.handle(Key("escape"))
         ((x, y),), _ = viewer.camera.project([(0, 0, 0.02)], 640, 480)
         for event in (Press(x, y), Release(x, y)):

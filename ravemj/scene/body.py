@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 from ravemj.errors import Source
 from ravemj.scene.mechanism import Axis, Joint, Link
+from ravemj.scene.record import Record
 from ravemj.transforms import Pose, Vec3
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Manipulator:
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class Manipulator(Record):
     """An arm of a robot.
 
     Attributes:
@@ -36,8 +37,8 @@ class Manipulator:
     source: Source
 
 
-@dataclass(frozen=True, slots=True)
-class Intrinsics:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Intrinsics(Record):
     """A pinhole camera: u = fx x / z + cx, v = fy y / z + cy [pixels], z forward and y down."""
 
     fx: float
@@ -48,8 +49,8 @@ class Intrinsics:
     height: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AttachedSensor:
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class AttachedSensor(Record):
     """A sensor on a link.
 
     Attributes:
@@ -69,8 +70,8 @@ class AttachedSensor:
     source: Source
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class KinBody:
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class KinBody(Record):
     """A body: links and the joints between them.
 
     Attributes:

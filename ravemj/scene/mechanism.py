@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from ravemj.errors import Source
+from ravemj.scene.record import Record
 from ravemj.scene.shapes import Geometry
 from ravemj.transforms import Pose, Rows, Vec3, Wxyz
 
@@ -16,8 +17,8 @@ UNLIMITED = 10000.0
 """The limit [rad] that OpenRAVE reports for a circular joint."""
 
 
-@dataclass(frozen=True, slots=True)
-class Inertial:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Inertial(Record):
     """Mass properties of a link.
 
     Attributes:
@@ -33,8 +34,8 @@ class Inertial:
     axes: Wxyz | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Parameters:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Parameters(Record):
     """What scripts attach to a link or a joint: names, and what they stand for."""
 
     floats: tuple[tuple[str, tuple[float, ...]], ...] = ()
@@ -45,8 +46,8 @@ class Parameters:
 NO_PARAMETERS = Parameters()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Link:
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class Link(Record):
     """A rigid part of a body.
 
     Attributes:
@@ -74,8 +75,8 @@ class Link:
     source: Source
 
 
-@dataclass(frozen=True, slots=True)
-class Axis:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Axis(Record):
     """One degree of freedom of a joint.
 
     Attributes:
@@ -109,8 +110,8 @@ class Axis:
     wrap_offset: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class Mimic:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Mimic(Record):
     """How a joint follows others.
 
     Attributes:
@@ -131,8 +132,8 @@ class Mimic:
     static: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Joint:
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class Joint(Record):
     """A joint between two links; a positive value moves the child right-handed about or along the axis.
 
     Attributes:

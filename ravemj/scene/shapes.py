@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.errors import Source
+from ravemj.scene.record import Record
 from ravemj.transforms import Floats, Ints, Pose, Vec3
 
 Rgb = tuple[float, float, float]
@@ -61,8 +62,8 @@ def _is_settled(numbers: NDArray[Any], kind: type) -> bool:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Box:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Box(Record):
     """A box; ``half_extents`` are half its edge lengths."""
 
     half_extents: Vec3
@@ -73,31 +74,31 @@ class CalibrationBoard(Box):
     """A box with a pattern that cameras are calibrated by; the pattern is not kept."""
 
 
-@dataclass(frozen=True, slots=True)
-class Sphere:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Sphere(Record):
     """A sphere."""
 
     radius: float
 
 
-@dataclass(frozen=True, slots=True)
-class Cylinder:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Cylinder(Record):
     """A cylinder along z, centred; ``height`` is the full height."""
 
     radius: float
     height: float
 
 
-@dataclass(frozen=True, slots=True)
-class Capsule:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Capsule(Record):
     """A capsule along z, centred; ``height`` is that of the cylindrical part."""
 
     radius: float
     height: float
 
 
-@dataclass(frozen=True, slots=True)
-class Container:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Container(Record):
     """An open box that stands on the origin and opens along z; all sizes are full edge lengths.
 
     Attributes:
@@ -113,8 +114,8 @@ class Container:
     bottom: Vec3
 
 
-@dataclass(frozen=True, slots=True)
-class Prism:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Prism(Record):
     """Walls along z over the edges of a polygon, without top and bottom.
 
     Attributes:
@@ -135,23 +136,23 @@ class Prism:
         return Mesh(np.concatenate([below, above]), np.concatenate([np.column_stack(three) for three in triangles]))
 
 
-@dataclass(frozen=True, slots=True)
-class TriMesh:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class TriMesh(Record):
     """Triangles; none where their file is missing."""
 
     mesh: Mesh
 
 
-@dataclass(frozen=True, slots=True)
-class NoShape:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class NoShape(Record):
     """A geometry without a shape."""
 
 
 Shape = Box | Sphere | Cylinder | Capsule | Container | Prism | TriMesh | NoShape
 
 
-@dataclass(frozen=True, slots=True)
-class Surface:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Surface(Record):
     """Triangles that are only drawn, in the frame of their geometry."""
 
     mesh: Mesh
@@ -166,8 +167,8 @@ class MeshFile(NamedTuple):
     scale: Vec3 = (1.0, 1.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Geometry:
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class Geometry(Record):
     """A shape fixed to a link.
 
     Attributes:

@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 
 from ravemj.scene.body import KinBody
+from ravemj.scene.record import Record
 from ravemj.scene.shapes import Rgb
 from ravemj.transforms import Pose, Vec3
 
 
-@dataclass(frozen=True, slots=True)
-class View:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class View(Record):
     """How a file wants to be looked at.
 
     Attributes:
@@ -20,8 +21,8 @@ class View:
     T_world_camera: Pose | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Scene:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Scene(Record):
     """The content of a file.
 
     Attributes:

@@ -1,7 +1,7 @@
 """A body and its state."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 _LOOKS = {"name", "diffuse", "ambient", "transparency"}
 
 
-@dataclass(frozen=True, slots=True)
-class GrabbedBody:
+class GrabbedBody(NamedTuple):
     """One body held by a link of another.
 
     Attributes:

@@ -149,7 +149,7 @@ def _hold(state: BodyState, grabs: Sequence[GrabbedBody]) -> None:
     world = state.simulation
     bodies = [one.body if one.body.simulation is world else world.body(one.body.scene.name) for one in grabs]
     state.grabs = [
-        replace(grab, body=body)
+        grab._replace(body=body)
         for grab, body in zip(grabs, bodies, strict=True)
         if body is not None and world.holds(state) and world.holds(body) and not body.carries(state)
     ]
