@@ -340,6 +340,7 @@ class BodyKinematics:
 
 
 _BODY = mujoco.mjtObj.mjOBJ_BODY
+_BALL = int(mujoco.mjtJoint.mjJNT_BALL)
 
 
 def _qpos_index(model: mujoco.MjModel, joint_name: str) -> int:
@@ -351,7 +352,7 @@ def _all_qpos(model: mujoco.MjModel, names: "BodyNames") -> Ints:
     places: list[int] = []
     for name in (name for joint_names in names.joints for name in joint_names):
         joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
-        first, width = int(model.jnt_qposadr[joint]), 4 if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_BALL else 1
+        first, width = int(model.jnt_qposadr[joint]), 4 if int(model.jnt_type[joint]) == _BALL else 1
         places.extend(range(first, first + width))
     return np.array(places, dtype=int)
 
