@@ -448,6 +448,29 @@ class TestPage:
         desk.page.bring_to_front()
         desk.await_picture()
 
+    def test_a_picture_that_is_decoded_late_does_not_cover_a_newer_one(self, desk):
+        page = desk.context.new_page()
+        page.add_init_script(
+            """
+            const decode = createImageBitmap;
+            window.isLate = false;
+            window.createImageBitmap = async (blob) => {
+              const wait = window.isLate ? 1000 : 0;
+              window.isLate = false;
+              const picture = await decode(blob);
+              await new Promise((done) => setTimeout(done, wait));
+              return picture;
+            };
+            """
+        )
+        page.goto(desk.viewer.url)
+        page.wait_for_selector("[data-crisp=true]")
+        desk.await_picture(page)
+        page.evaluate("window.isLate = true")
+        desk.robot.SetDOFValues([0.5, 0.5])
+        page.wait_for_timeout(1500)
+        desk.await_picture(page)
+
     def test_the_title_is_the_viewers(self, desk):
         desk.viewer.SetTitle("My robot")
         await_that(lambda: desk.page.title() == "My robot", "another title")

@@ -61,10 +61,14 @@ window.addEventListener("online", () => {
 
 // --- pictures and text
 
+let received = 0, newest = 0;
+
 async function show(data, over, from) {
+  const number = received += 1;
   try {
     const picture = await createImageBitmap(new Blob([data]));
-    if (from === socket) {
+    if (from === socket && number > newest) {  // a later one may have been decoded first
+      newest = number;
       paint.drawImage(picture, 0, 0, view.width, view.height);
       write(over);
     }
