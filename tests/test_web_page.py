@@ -1,5 +1,6 @@
 """The page of the viewer in a real browser, with its mouse, keys and fingers; WebGL is off."""
 
+import itertools
 import math
 import re
 
@@ -420,15 +421,15 @@ class TestPage:
         desk.page.set_viewport_size({"width": size[0], "height": size[1]})
         desk.viewer.SetCamera(desk.viewer.GetCameraTransform() - [[0, 0, 0, 0.3], [0] * 4, [0] * 4, [0] * 4])
         desk.page.mouse.move(size[0] / 2, size[1] / 2)
-        boxes = []
-        for element in desk.page.locator("button, .wheel, #text:not([hidden])").all():
-            box = element.bounding_box()
-            left, top, right, bottom = box["x"], box["y"], box["x"] + box["width"], box["y"] + box["height"]
-            assert 0 <= left < right <= size[0]
-            assert 0 <= top < bottom <= size[1]
-            for x, y, other_right, other_bottom in boxes:
-                assert right <= x or other_right <= left or bottom <= y or other_bottom <= top
-            boxes.append((left, top, right, bottom))
+        shown = desk.page.locator("button, .wheel, #text:not([hidden])")  # all at once: the text comes and goes
+        boxes = shown.evaluate_all("all => all.map((one) => one.getBoundingClientRect().toJSON())")
+        for box, other in itertools.combinations(boxes, 2):
+            assert any(one["right"] <= two["left"] for one, two in [(box, other), (other, box)]) or any(
+                one["bottom"] <= two["top"] for one, two in [(box, other), (other, box)]
+            )
+        for box in boxes:
+            assert 0 <= box["left"] < box["right"] <= size[0]
+            assert 0 <= box["top"] < box["bottom"] <= size[1]
         assert len(boxes) >= 5
 
     def test_tabs_have_their_own_cameras_and_keep_them_when_they_are_loaded_again(self, desk):
