@@ -12,8 +12,9 @@
 import importlib
 from typing import TYPE_CHECKING
 
-import ravemj._mujoco  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco
+import ravemj.engine.mujoco_import  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco
 from ravemj import geometry_functions, rave
+from ravemj.compat.extension import load_ipython_extension
 from ravemj.errors import (
     ArgumentError,
     CompileError,
@@ -26,14 +27,13 @@ from ravemj.errors import (
     SourceError,
     UnsupportedError,
 )
-from ravemj.extension import load_ipython_extension
 from ravemj.geometry_functions import *  # noqa: F403 - as its __all__ lists them
-from ravemj.motion import Motion, read_motion
 from ravemj.rave import *  # noqa: F403 - OpenRAVE's names, which ravemj/rave/__init__.py lists
-from ravemj.recording import record
+from ravemj.rave.recording import record
+from ravemj.trajectories.motion import Motion, read_motion
 
 if TYPE_CHECKING:
-    from ravemj.viewers import Viewer
+    from ravemj.gui.viewers import Viewer
 
 __version__ = "0.1.0"
 
@@ -67,7 +67,7 @@ def __getattr__(name: str) -> object:
     if name in _MODULES:
         return importlib.import_module(f"ravemj.{name}")
     if name == "Viewer":
-        return importlib.import_module("ravemj.viewers").Viewer
+        return importlib.import_module("ravemj.gui.viewers").Viewer
     raise AttributeError(f"module 'ravemj' has no attribute '{name}'")
 
 

@@ -11,9 +11,9 @@ import pytest
 from PIL import Image
 
 import ravemj
-from ravemj.interaction import Button, Fingers, Interaction, Key, Leave, Move, Press, Release, Use, Wheel
-from ravemj.rendering import Camera
-from ravemj.studio import Format
+from ravemj.graphics.rendering import Camera
+from ravemj.graphics.studio import Format
+from ravemj.gui.interaction import Button, Fingers, Interaction, Key, Leave, Move, Press, Release, Use, Wheel
 
 CHROMIUM = shutil.which("chromium")
 FLAGS = [

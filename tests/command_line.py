@@ -12,7 +12,7 @@ import numpy as np
 import pexpect
 
 import ravemj
-from ravemj.rendering import Camera
+from ravemj.graphics.rendering import Camera
 
 PACKAGE_ROOT = Path(ravemj.__file__).resolve().parent.parent
 TUTORIAL = Path(__file__).resolve().parent / "data" / "tutorial"

@@ -9,8 +9,8 @@ from command_line import colour_of, on_terminal
 from screens import Display, await_that
 
 import ravemj
-from ravemj.interaction import Button, Interaction, Key, Move, Press, Release, Wheel
-from ravemj.rendering import Camera
+from ravemj.graphics.rendering import Camera
+from ravemj.gui.interaction import Button, Interaction, Key, Move, Press, Release, Wheel
 
 SIZE = 640, 480
 ASLANT = ravemj.transformLookat(lookat=[0.386, 0.325, 0.136], camerapos=[0.943, 0.792, 0.474], cameraup=[0, 0, -1])

@@ -21,15 +21,15 @@ import numpy as np
 from lxml import etree
 from strategies import Node, RandomChoices, SceneModel, document, draw_scene, scene_node, split, xml
 
-from ravemj import mjcf
+from ravemj.engine.simulation import Simulation
 from ravemj.errors import Diagnostics, RavemjError, RavemjWarning
-from ravemj.openrave_xml.actuator import ACTUATOR_TAGS
-from ravemj.openrave_xml.environment import ENVIRONMENT_IGNORED
-from ravemj.openrave_xml.geometry import GEOM_TAGS
-from ravemj.openrave_xml.joint import JOINT_ATTRIBUTES, JOINT_TAGS
-from ravemj.openrave_xml.sensor import CAMERA_TAGS
-from ravemj.readers import read_file
-from ravemj.simulation import Simulation
+from ravemj.formats import mjcf
+from ravemj.formats.openrave_xml.actuator import ACTUATOR_TAGS
+from ravemj.formats.openrave_xml.environment import ENVIRONMENT_IGNORED
+from ravemj.formats.openrave_xml.geometry import GEOM_TAGS
+from ravemj.formats.openrave_xml.joint import JOINT_ATTRIBUTES, JOINT_TAGS
+from ravemj.formats.openrave_xml.sensor import CAMERA_TAGS
+from ravemj.formats.readers import read_file
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 SEEDS = (REPOSITORY / "models", REPOSITORY / "tests" / "data", REPOSITORY / "tests" / "conformance" / "cases")

@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ravemj import alias
+from ravemj.compat import alias
 
 CASES = Path(__file__).parent / "data" / "api-conformance"
 NAMES = sorted(path.stem for path in CASES.glob("*.py"))

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import ravemj
-from ravemj import scene
 from ravemj.errors import Source
+from ravemj.model import scene
 
 TURNED = [[0.0, -1, 0], [1, 0, 0], [0, 0, 1]]
 

@@ -8,7 +8,7 @@ import pytest
 from command_line import ravemj_command
 from conftest import MODELS
 
-from ravemj.checking import check
+from ravemj.cli.checking import check
 
 ROBOT = """<Robot name="r">
   <Body name="lost"/>

@@ -11,7 +11,7 @@ import weakref
 import pytest
 
 import ravemj
-from ravemj.clock import Clock
+from ravemj.engine.clock import Clock
 
 PENDULUM = "models/env.xml"
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import ravemj
-from ravemj.readers import read_data, read_file
-from ravemj.scene import Box, Cylinder, TriMesh
+from ravemj.formats.readers import read_data, read_file
+from ravemj.model.scene import Box, Cylinder, TriMesh
 
 DATA = Path(__file__).parent / "data" / "collada"
 ARM = (DATA / "arm.dae").read_text("utf8")

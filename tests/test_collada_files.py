@@ -14,7 +14,7 @@ from PIL import Image
 
 import ravemj
 from ravemj.cli import main
-from ravemj.readers import read_file
+from ravemj.formats.readers import read_file
 
 DATA = Path(__file__).parent / "data" / "collada"
 MODELS = Path(ravemj.__file__).parent.parent / "models"
@@ -175,7 +175,7 @@ class TestFunctions:
 
 PEAK = """
 import hashlib, sys
-from ravemj import readers
+from ravemj.formats import readers
 
 def peak():
     with open("/proc/self/status") as status:

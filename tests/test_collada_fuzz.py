@@ -12,10 +12,10 @@ import pytest
 from fuzzing import NUMBERS, time_limit
 from lxml import etree
 
-from ravemj import mjcf
+from ravemj.engine.simulation import Simulation
 from ravemj.errors import Diagnostics, RavemjError, RavemjWarning
-from ravemj.readers import read_data, read_file
-from ravemj.simulation import Simulation
+from ravemj.formats import mjcf
+from ravemj.formats.readers import read_data, read_file
 
 ARM = Path(__file__).parent / "data" / "collada" / "arm.dae"
 BATCHES, BATCH = 4, 500

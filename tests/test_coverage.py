@@ -3,15 +3,16 @@
 import re
 import shlex
 
+import api_coverage
+import format_coverage as coverage
 import pytest
+from api_names import BEHIND, PYMANOID, SCRIPTS
 from conftest import REPOSITORY
+from format_notes import NOTES
 
-from ravemj import api_coverage, coverage
-from ravemj.api_names import BEHIND, PYMANOID, SCRIPTS
 from ravemj.cli import reference
 from ravemj.cli.parser import make_parser
-from ravemj.coverage_notes import NOTES
-from ravemj.readers import read_file
+from ravemj.formats.readers import read_file
 
 WAYS_IN = {
     "Environment": "<Environment>{}</Environment>",
@@ -36,7 +37,7 @@ def test_the_page_is_up_to_date(page, made):
 
 def test_the_page_of_the_api_is_up_to_date():
     page = (REPOSITORY / "docs" / "api-coverage.md").read_text(encoding="utf-8")
-    assert page == api_coverage.markdown(), "run python -m ravemj.api_coverage > docs/api-coverage.md"
+    assert page == api_coverage.markdown(), "run python -m api_coverage > docs/api-coverage.md"
 
 
 def test_names_of_the_api_are_found_where_they_are():

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import ravemj
-import ravemj.openravepy
+import ravemj.compat.openravepy
 from ravemj.cli.parser import make_parser
 
 ROOT = Path(ravemj.__file__).parent.parent
@@ -24,7 +24,7 @@ def test_python_runs(page, tmp_path, monkeypatch, capsys):
     """The tutorial has tests of its own."""
     (tmp_path / "models").symlink_to(ROOT / "models")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setitem(sys.modules, "openravepy", ravemj.openravepy)  # as in `ravemj run`
+    monkeypatch.setitem(sys.modules, "openravepy", ravemj.compat.openravepy)  # as in `ravemj run`
     session: dict[str, object] = {"__name__": "__main__"}  # a page is read from its top
     for block in blocks(page, "python"):
         exec(compile(block, str(page), "exec"), session)

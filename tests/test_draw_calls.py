@@ -11,8 +11,8 @@ from PIL import Image
 
 import ravemj
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.interaction import Key, Press, Release
-from ravemj.viewers import Viewer
+from ravemj.gui.interaction import Key, Press, Release
+from ravemj.gui.viewers import Viewer
 
 P = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]])
 T_AHEAD = np.array([[0, 0, 1, -3], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1.0]])  # from -3 m along world x

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from test_rendering_pictures import GL, LIGHT, SKYBOX, both, camera_with_roll, near_an_edge, open_as, state_of
 
-from ravemj import drawing
-from ravemj.drawing import NOTHING, Drawings
-from ravemj.rendering import Camera, Pinhole
+from ravemj.graphics.rendering import Camera, Pinhole
+from ravemj.model import drawing
+from ravemj.model.drawing import NOTHING, Drawings
 
 WIDTH, HEIGHT = 160, 120
 AHEAD = Camera(np.eye(4))  # at the origin, along z
@@ -327,7 +327,7 @@ def test_tens_of_thousands_of_points(how):
 
 @pytest.mark.parametrize("how", [GL])
 def test_a_limit_of_opengl_is_said(how, caplog, monkeypatch):
-    monkeypatch.setattr("ravemj.rendering.stage._MAX_FIGURES", 1500)
+    monkeypatch.setattr("ravemj.graphics.rendering.stage._MAX_FIGURES", 1500)
     columns = np.linspace(-0.5, 0.5, 3000)
     shapes = drawing.points(np.column_stack([columns, 0 * columns, 0 * columns + 2]), 1, many(RED, 3000))
     shown = mask_of(picture_of(how, shapes))

@@ -10,7 +10,7 @@ from strategies import Taste, choices, examples, number, scene_node, scenes, xml
 from test_properties import SMOOTH, Kinematics, draw_smooth, draw_values, spin
 
 import ravemj
-from ravemj.dynamics import rotation_rate
+from ravemj.engine.dynamics import rotation_rate
 
 Nothing = ravemj.CheckLimitsAction.Nothing
 STEP = 1e-6

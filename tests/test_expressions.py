@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from ravemj.errors import RavemjError
-from ravemj.expressions import (
+from ravemj.model.expressions import (
     Expression,
     ExpressionError,
     first_within,
@@ -23,9 +23,9 @@ from ravemj.expressions import (
     partials,
     substitute,
 )
-from ravemj.expressions.functions import FUNCTIONS, NAMED, OPERATORS
-from ravemj.expressions.nodes import Graph
-from ravemj.expressions.parser import MAX_DEPTH, MAX_LENGTH
+from ravemj.model.expressions.functions import FUNCTIONS, NAMED, OPERATORS
+from ravemj.model.expressions.nodes import Graph
+from ravemj.model.expressions.parser import MAX_DEPTH, MAX_LENGTH
 
 NAMES = ("x", "y", "z")
 CASES = Path(__file__).resolve().parents[1] / ".." / "shared" / "conformance" / "cases"

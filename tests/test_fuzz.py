@@ -10,9 +10,9 @@ from fuzzing import MAIN, Fuzzer, Outcome, Trial, parsed, smaller, time_limit
 from lxml import etree
 
 import ravemj
-from ravemj import mjcf
 from ravemj.errors import Diagnostics
-from ravemj.readers import read_file
+from ravemj.formats import mjcf
+from ravemj.formats.readers import read_file
 
 BATCHES, BATCH = 20, 250
 DEEP = 5

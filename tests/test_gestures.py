@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import ravemj
-from ravemj.interaction import Button, Interaction, Key, Leave, Move, Press, Release, Resize, Wheel
-from ravemj.interaction.cube import Cube
-from ravemj.rendering import Camera
-from ravemj.viewers.glfw_window import GlfwWindow
+from ravemj.graphics.rendering import Camera
+from ravemj.gui.interaction import Button, Interaction, Key, Leave, Move, Press, Release, Resize, Wheel
+from ravemj.gui.interaction.cube import Cube
+from ravemj.gui.viewers.glfw_window import GlfwWindow
 
 SIZE = 800, 600
 FROM_FRONT = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])

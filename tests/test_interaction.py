@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ravemj
-from ravemj import drawing
-from ravemj.interaction import (
+from ravemj.graphics.rendering import Camera
+from ravemj.gui.interaction import (
     Button,
     Fingers,
     Interaction,
@@ -25,9 +25,9 @@ from ravemj.interaction import (
     pick,
     tools,
 )
-from ravemj.interaction.cube import Cube
-from ravemj.interaction.joint_handle import JointHandle
-from ravemj.rendering import Camera
+from ravemj.gui.interaction.cube import Cube
+from ravemj.gui.interaction.joint_handle import JointHandle
+from ravemj.model import drawing
 
 SIZE = 800, 600
 FROM_FRONT = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from ravemj.errors import SourceError
-from ravemj.meshes import cache, collision_form, read_mesh, reading
-from ravemj.scene import Mesh
+from ravemj.formats.meshes import cache, collision_form, read_mesh, reading
+from ravemj.model.scene import Mesh
 
 FILES = Path(__file__).parent / "data" / "meshes"
 OBJ = "mtllib m.mtl\nv 0 0 0\nv 0.1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"
@@ -313,7 +313,7 @@ def test_folders(tmp_path, monkeypatch):
     assert cache.cache_folder() == tmp_path / "ravemj" / "meshes"
     monkeypatch.setenv("XDG_CACHE_HOME", "relative/is/no/good")
     monkeypatch.setenv("HOME", "/home/someone")
-    assert cache.cache_folder() == Path("/home/someone/.cache/ravemj/meshes")
+    assert cache.cache_folder() == Path("/home/someone/.cache/ravemj/formats/meshes")
     monkeypatch.setattr(Path, "home", lambda: (_ for _ in ()).throw(RuntimeError))
     assert cache.cache_folder() is None
 

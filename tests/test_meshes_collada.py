@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from ravemj.errors import SourceError
-from ravemj.meshes import area, read_mesh
-from ravemj.meshes.collada.document import ColladaDocument
-from ravemj.meshes.collada.geometry import primitive_groups
-from ravemj.meshes.collada.materials import read_material
+from ravemj.formats.meshes import area, read_mesh
+from ravemj.formats.meshes.collada.document import ColladaDocument
+from ravemj.formats.meshes.collada.geometry import primitive_groups
+from ravemj.formats.meshes.collada.materials import read_material
 
 FILES = Path(__file__).parent / "data" / "meshes"
 GRAY = pytest.approx((0.6, 0.6, 0.6))

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from ravemj.errors import SourceError
-from ravemj.meshes import area, read_mesh, volume
+from ravemj.formats.meshes import area, read_mesh, volume
 
 FILES = Path(__file__).parent / "data" / "meshes"
 WEDGE_AREA = 0.06 + 0.04 + 0.03 + 0.5 * np.sqrt(0.08**2 + 0.06**2 + 0.12**2)

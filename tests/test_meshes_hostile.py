@@ -11,9 +11,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from ravemj.errors import SourceError
-from ravemj.meshes import MESH_SUFFIXES, files, read_mesh
-from ravemj.meshes.files import MeshFile
-from ravemj.meshes.reading import _READERS, _read
+from ravemj.formats.meshes import MESH_SUFFIXES, files, read_mesh
+from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.reading import _READERS, _read
 
 DATA = Path(__file__).parent / "data" / "meshes"
 SAMPLES = {path.name: path.read_bytes() for path in sorted(DATA.iterdir()) if path.suffix in MESH_SUFFIXES}

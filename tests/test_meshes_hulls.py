@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ravemj.errors import RavemjError
-from ravemj.meshes import area, collision_form, decompose, decomposition, volume, write_obj
-from ravemj.meshes.faces import clip_ears, clipped, fans
-from ravemj.meshes.inventor import primitives
-from ravemj.meshes.parts import corners_of, weld
-from ravemj.scene import Mesh
+from ravemj.formats.meshes import area, collision_form, decompose, decomposition, volume, write_obj
+from ravemj.formats.meshes.faces import clip_ears, clipped, fans
+from ravemj.formats.meshes.inventor import primitives
+from ravemj.formats.meshes.parts import corners_of, weld
+from ravemj.model.scene import Mesh
 
 SQUARE = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
 TRIANGLE = Mesh(SQUARE.vertices[:3], np.array([[0, 1, 2]]))

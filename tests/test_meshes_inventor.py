@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ravemj.errors import SourceError
-from ravemj.meshes import area, read_mesh, volume
+from ravemj.formats.meshes import area, read_mesh, volume
 
 FILES = Path(__file__).parent / "data" / "meshes"
 BROWN = (0.5, 0.25, 0.125)

@@ -9,10 +9,10 @@ import pytest
 from lxml import etree
 
 from ravemj.errors import SourceError
-from ravemj.meshes import MESH_SUFFIXES, read_mesh, volume
-from ravemj.meshes.collada.document import ColladaDocument, attribute_number, child
-from ravemj.meshes.collada.geometry import primitive_groups
-from ravemj.scene import Mesh
+from ravemj.formats.meshes import MESH_SUFFIXES, read_mesh, volume
+from ravemj.formats.meshes.collada.document import ColladaDocument, attribute_number, child
+from ravemj.formats.meshes.collada.geometry import primitive_groups
+from ravemj.model.scene import Mesh
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 CASES = SHARED / "conformance" / "cases"

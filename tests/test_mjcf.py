@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 import ravemj
-import ravemj.mjcf.document
-from ravemj import mjcf
+import ravemj.formats.mjcf.document
+from ravemj.engine.simulation import Simulation
 from ravemj.errors import Diagnostics
-from ravemj.openrave_xml import read
-from ravemj.scene import Inertial, Scene
-from ravemj.simulation import Simulation
+from ravemj.formats import mjcf
+from ravemj.formats.openrave_xml import read
+from ravemj.model.scene import Inertial, Scene
 
 
 @pytest.fixture

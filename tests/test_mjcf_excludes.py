@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import Choices, chance, choices, examples, one_of
 
-from ravemj import mjcf
-from ravemj.adjacency import adjacent_pairs
 from ravemj.errors import Diagnostics
-from ravemj.mjcf import Options
-from ravemj.openrave_xml import read
-from ravemj.scene import Scene
+from ravemj.formats import mjcf
+from ravemj.formats.mjcf import Options
+from ravemj.formats.openrave_xml import read
+from ravemj.model.adjacency import adjacent_pairs
+from ravemj.model.scene import Scene
 
 KINDS = {"hinge": "", "weld": "<limits>0 0</limits>", "loose": ""}
 

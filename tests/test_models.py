@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import ravemj
-from ravemj import mjcf
 from ravemj.errors import Diagnostics
-from ravemj.readers import read_file
+from ravemj.formats import mjcf
+from ravemj.formats.readers import read_file
 
 MODELS = Path(ravemj.__file__).parent.parent / "models"
 ROBOTS = ["puma560.xml", "panda.xml", "scara.dae"]

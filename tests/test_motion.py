@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from ravemj.errors import ArgumentError, SourceError
-from ravemj.motion import Motion, read_motion
+from ravemj.trajectories.motion import Motion, read_motion
 
 JOINTS = ["Arm0", "Arm1", "Slider"]
 CURRENT = [0.1, 0.2, 0.3]

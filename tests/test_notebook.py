@@ -17,8 +17,8 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 import ravemj
-from ravemj.viewers import notebook
-from ravemj.viewers.web import WebViewer
+from ravemj.gui.viewers import notebook
+from ravemj.gui.viewers.web import WebViewer
 
 
 @pytest.fixture

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from ravemj import scene
-from ravemj.meshes import area, volume
-from ravemj.openrave_xml import Reading, read
+from ravemj.formats.meshes import area, volume
+from ravemj.formats.openrave_xml import Reading, read
+from ravemj.model import scene
 
 
 @pytest.fixture

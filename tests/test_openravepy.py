@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ravemj
-from ravemj import alias
+from ravemj.compat import alias
 from ravemj.rave import environment, library, plugins
 
 

@@ -102,7 +102,9 @@ def test_every_room_has_a_level():
     assert {room(path) for path in modules()} <= set().union(*LEVELS)
 
 
-@pytest.mark.parametrize("name", ["ravemj", "ravemj.rendering", "ravemj.rave", "ravemj.viewers", "ravemj.openrave_xml"])
+@pytest.mark.parametrize(
+    "name", ["ravemj", "ravemj.graphics.rendering", "ravemj.rave", "ravemj.gui.viewers", "ravemj.formats.openrave_xml"]
+)
 def test_all_is_what_is_exported(name):
     module = __import__(name, fromlist=["x"])
     assert module.__all__ == sorted(module.__all__, key=module.__all__.index)

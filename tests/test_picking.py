@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import ravemj
-from ravemj.interaction import pick
-from ravemj.interaction.view import Ray
+from ravemj.gui.interaction import pick
+from ravemj.gui.interaction.view import Ray
 
 HALF = np.array([0.1, 0.2, 0.3])
 RADIUS, HEIGHT = 0.15, 0.5

@@ -13,9 +13,22 @@ from test_interaction import SIZE, Hand
 
 import ravemj
 from ravemj.errors import ArgumentError
-from ravemj.interaction import Board, Control, Interaction, Key, Leave, Mode, Move, Operate, Resize, Wheel, Wish, tools
-from ravemj.rendering import Camera
-from ravemj.viewers.playing import camera_line
+from ravemj.graphics.rendering import Camera
+from ravemj.gui.interaction import (
+    Board,
+    Control,
+    Interaction,
+    Key,
+    Leave,
+    Mode,
+    Move,
+    Operate,
+    Resize,
+    Wheel,
+    Wish,
+    tools,
+)
+from ravemj.gui.viewers.playing import camera_line
 
 SWING = ravemj.Motion([1.0, 2.0, 5.0], [[0.0, 0.0], [1.0, 0.5], [2.5, -1.0]])
 """Four seconds; times of motions need not start at 0."""
@@ -435,8 +448,8 @@ def test_other_buttons_and_misses_press_nothing_and_reach_nothing_behind(panel, 
     viewer.play(SWING).pause()
     panel.press("joints")
     camera = panel.view.camera
-    panel.drag(panel.middle("play"), (100, 100), button=ravemj.interaction.Button.RIGHT)
-    panel.drag(panel.middle("play"), (100, 100), button=ravemj.interaction.Button.MIDDLE)
+    panel.drag(panel.middle("play"), (100, 100), button=ravemj.gui.interaction.Button.RIGHT)
+    panel.drag(panel.middle("play"), (100, 100), button=ravemj.gui.interaction.Button.MIDDLE)
     x, y, _, height = panel.rect("dof 0")
     panel.drag((x - 20, y + height / 2), (100, 300))  # on the joint's name
     assert not viewer.playback.playing

@@ -33,10 +33,10 @@ from strategies import (
 )
 
 import ravemj
-from ravemj.expressions import Expression
-from ravemj.openrave_xml import Reading, read
-from ravemj.scene import Mesh
-from ravemj.transforms import Pose
+from ravemj.core.transforms import Pose
+from ravemj.formats.openrave_xml import Reading, read
+from ravemj.model.expressions import Expression
+from ravemj.model.scene import Mesh
 
 
 @pytest.fixture

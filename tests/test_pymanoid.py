@@ -2,13 +2,13 @@
 
 import threading
 
+import api_coverage
 import numpy as np
 import pytest
+from api_names import PYMANOID
 from conftest import MODELS
 
 import ravemj
-from ravemj import api_coverage
-from ravemj.api_names import PYMANOID
 
 FLYING = [
     ("TRANS_X", "slider", "1 0 0"),

@@ -10,7 +10,7 @@ from command_line import ravemj_command
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravemj import python2
+from ravemj.compat import python2
 
 
 def run(source: str, path: str = "old.py") -> dict[str, object]:

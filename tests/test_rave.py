@@ -409,7 +409,7 @@ class TestRecord:
             ravemj.record(env, tmp_path / "x.mp4", ravemj.Motion.line([0], [1]))
 
     def test_default_view_shows_the_whole_motion(self, env, robot):
-        from ravemj.recording import camera_for_motion
+        from ravemj.rave.recording import camera_for_motion
 
         camera = camera_for_motion(env, robot, ravemj.Motion.line([0, 0], [math.pi, 0]), 4 / 3)
         for q in ([0, 0], [math.pi / 2, 0], [math.pi, 0]):

@@ -7,11 +7,11 @@ import pytest
 import strategies
 from hypothesis import given
 from hypothesis import strategies as st
+from ravemj.databases.linkstatistics import LinkStatisticsModel
 
 import ravemj
-from ravemj.databases.linkstatistics import LinkStatisticsModel
-from ravemj.reach import travel
-from ravemj.tessellation import merged, moved, triangulated
+from ravemj.model.reach import travel
+from ravemj.model.tessellation import merged, moved, triangulated
 
 MECHANISM = """<Robot name="m"><KinBody>
   <Body name="a"><Geom type="box"><extents>0.1 0.1 0.1</extents></Geom></Body>

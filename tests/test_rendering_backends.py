@@ -8,16 +8,16 @@ from pathlib import Path
 import pytest
 
 from ravemj.errors import RenderingError
-from ravemj.rendering import open_renderer
-from ravemj.rendering.contexts import GL_BACKENDS, requested_backend
-from ravemj.rendering.doctor import probe_backends
+from ravemj.graphics.rendering import open_renderer
+from ravemj.graphics.rendering.contexts import GL_BACKENDS, requested_backend
+from ravemj.graphics.rendering.doctor import probe_backends
 
 ROOT = Path(__file__).parents[1]
 DRAW = """
 import sys
 import mujoco
 import numpy as np
-from ravemj.rendering import Camera, open_renderer
+from ravemj.graphics.rendering import Camera, open_renderer
 
 def draw(backend=None, close=True):
     model = mujoco.MjModel.from_xml_string('<mujoco><worldbody><geom size=".1"/></worldbody></mujoco>')
@@ -150,7 +150,7 @@ def test_unknown_mujoco_gl(monkeypatch):
 def test_import_loads_no_opengl():
     if not Path("/proc/self/maps").exists():
         pytest.skip("this system has no /proc/self/maps")
-    code = "import ravemj.rendering\nmaps = open('/proc/self/maps').read()\n"
+    code = "import ravemj.graphics.rendering\nmaps = open('/proc/self/maps').read()\n"
     code += "print([name for name in ('libEGL', 'libOSMesa', 'libGL.so', 'libOpenGL') if name in maps])"
     assert python(code) == "[]"
 
@@ -180,7 +180,7 @@ def test_the_log_names_what_draws(caplog):
 
 
 def test_probes_survive_a_driver_that_ends_the_process(monkeypatch):
-    monkeypatch.setattr("ravemj.rendering.doctor._CHILD", "import os\nos.abort()")
+    monkeypatch.setattr("ravemj.graphics.rendering.doctor._CHILD", "import os\nos.abort()")
     egl = probe_backends()[0]
     assert not egl.works
     assert egl.detail == "the driver ended the process (SIGABRT)"
@@ -188,6 +188,6 @@ def test_probes_survive_a_driver_that_ends_the_process(monkeypatch):
 
 
 def test_probes_wait_only_so_long(monkeypatch):
-    monkeypatch.setattr("ravemj.rendering.doctor._CHILD", "import time\ntime.sleep(60)")
-    monkeypatch.setattr("ravemj.rendering.doctor._TIMEOUT", 0.2)
+    monkeypatch.setattr("ravemj.graphics.rendering.doctor._CHILD", "import time\ntime.sleep(60)")
+    monkeypatch.setattr("ravemj.graphics.rendering.doctor._TIMEOUT", 0.2)
     assert probe_backends()[0].detail == "no answer within 0.2 s"

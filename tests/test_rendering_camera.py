@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from ravemj.errors import ArgumentError, OutputError, SourceError
-from ravemj.rendering import Camera, bounding_sphere, three_quarter_view, view_from_above
-from ravemj.rendering.camera_file import read_camera, write_camera
+from ravemj.graphics.rendering import Camera, bounding_sphere, three_quarter_view, view_from_above
+from ravemj.graphics.rendering.camera_file import read_camera, write_camera
 
 TUTORIAL = [[0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]]
 SAVED = [

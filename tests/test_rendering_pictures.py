@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from ravemj.errors import ArgumentError, RenderingError
-from ravemj.rendering import Camera, bounding_sphere, open_renderer, three_quarter_view
-from ravemj.rendering.contexts import make_with_any_backend
-from ravemj.rendering.visibility import drawn_geoms, geom_rgba
+from ravemj.graphics.rendering import Camera, bounding_sphere, open_renderer, three_quarter_view
+from ravemj.graphics.rendering.contexts import make_with_any_backend
+from ravemj.graphics.rendering.visibility import drawn_geoms, geom_rgba
 
 LIGHT = '<visual><headlight ambient=".4 .4 .4" diffuse=".6 .6 .6" specular=".1 .1 .1"/></visual>'
 SKYBOX = '<asset><texture name="background" type="skybox" builtin="flat" rgb1="1 1 1" width="8" height="48"/></asset>'
@@ -435,7 +435,7 @@ def test_rays_where_no_context_can_be_made(monkeypatch):
         raise OSError("no driver")
 
     monkeypatch.delenv("MUJOCO_GL", raising=False)
-    monkeypatch.setattr("ravemj.rendering.contexts.OffscreenContext", refuse)
+    monkeypatch.setattr("ravemj.graphics.rendering.contexts.OffscreenContext", refuse)
     assert make_with_any_backend(lambda context: context) is None
     with open_renderer(mujoco.MjModel.from_xml_string("<mujoco/>"), 8, 8) as renderer:
         assert renderer.backend == "ray"

@@ -12,7 +12,7 @@ import pytest
 from command_line import colour_of
 
 import ravemj
-from ravemj.viewers.saving import Look, free_path
+from ravemj.gui.viewers.saving import Look, free_path
 
 SIZE = 320, 240
 SWING = ravemj.Motion.line([0, 0], [np.pi, 0], 0.4)

@@ -105,7 +105,8 @@ def test_run_stays_in_ipython(folder):
     terminal = on_terminal(folder, "-m", "ravemj", "run", "-i", "myscript.py")
     assert answer(terminal, 1, "robot.GetDOF()") == "2"
     assert (
-        answer(terminal, 2, "import openravepy; openravepy.__name__, __name__") == "('ravemj.openravepy', '__main__')"
+        answer(terminal, 2, "import openravepy; openravepy.__name__, __name__")
+        == "('ravemj.compat.openravepy', '__main__')"
     )
     assert answer(terminal, 3, "robot.GetDOFValues().round(6).tolist()") == "[3.141593, 0.0]"
     assert leave(terminal, 4)[1] == 0
@@ -150,7 +151,7 @@ def test_a_script_runs_as_python_runs_it(folder):
     (sub / "helper.py").write_text("VALUE = 5\n")
     (sub / "script.py").write_text(
         "import sys, helper\nimport openravepy.errors\nfrom openravepy import *\nimport ravemj\n"
-        "print(helper.VALUE, sys.argv, __name__, __file__, openravepy is ravemj.openravepy)\n"
+        "print(helper.VALUE, sys.argv, __name__, __file__, openravepy is ravemj.compat.openravepy)\n"
         "print(Environment is ravemj.Environment)\n"
         "sys.exit('bye')\n"
     )
@@ -184,7 +185,7 @@ def test_load_ext_gives_openravepy_to_a_session(folder):
         "get_ipython().run_line_magic('reload_ext', 'ravemj')",
         "get_ipython().run_line_magic('run', 'myscript.py')",
         "import openravepy",
-        "print(before, openravepy is ravemj.openravepy, robot.GetDOF())",
+        "print(before, openravepy is ravemj.compat.openravepy, robot.GetDOF())",
     ]
     done = run(folder, "-m", "IPython", "--no-banner", "--colors=NoColor", "-c", "\n".join(lines))
     assert done.stderr == ""
@@ -351,7 +352,7 @@ def test_alias_installs_runs_old_scripts_and_is_removed(venv, folder):
 
     lazy = "import sys, ravemj\nassert 'openravepy' not in sys.modules\n"
     text = (
-        lazy + "import openravepy, openravepy.errors\nprint(openravepy is ravemj.openravepy)\n"
+        lazy + "import openravepy, openravepy.errors\nprint(openravepy is ravemj.compat.openravepy)\n"
         "print(openravepy.errors is ravemj.errors)"
     )
     done = venv.python(folder, text)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ravemj import scene
-from ravemj.tessellation import merged, moved, triangulated
-from ravemj.transforms import Pose
+from ravemj.core.transforms import Pose
+from ravemj.model import scene
+from ravemj.model.tessellation import merged, moved, triangulated
 
 SHAPES = {
     "box": (scene.Box((0.1, 0.2, 0.3)), 8 * 0.1 * 0.2 * 0.3),

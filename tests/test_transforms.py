@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravemj.transforms import (
+from ravemj.core.transforms import (
     Pose,
     conjugate,
     multiply,

@@ -21,9 +21,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-import ravemj.video
+import ravemj.graphics.video
 from ravemj.errors import ArgumentError, OutputError
-from ravemj.video import check_target, write_frames, write_picture
+from ravemj.graphics.video import check_target, write_frames, write_picture
 
 TARGETS = ["video.mp4", "video.gif", "video.webp", "video"]
 SKY = (204, 217, 230)
@@ -395,7 +395,7 @@ def test_what_on_frame_raises_comes_through(target, old):
 
 
 def use_encoder(monkeypatch, encoder):
-    monkeypatch.setitem(ravemj.video._VIDEO_FORMATS, ".mp4", (encoder, 1000))
+    monkeypatch.setitem(ravemj.graphics.video._VIDEO_FORMATS, ".mp4", (encoder, 1000))
 
 
 def test_an_encoder_that_fails_frees_a_waiting_producer(tmp_path, monkeypatch):
@@ -454,7 +454,7 @@ def test_a_disk_that_fills(target, old):
         import resource, sys
         import numpy as np
         from ravemj.errors import OutputError
-        from ravemj.video import write_frames
+        from ravemj.graphics.video import write_frames
         resource.setrlimit(resource.RLIMIT_FSIZE, (5000, 5000))
         noise = np.random.default_rng(0)
         try:
@@ -469,7 +469,7 @@ def test_a_disk_that_fills(target, old):
 
 def run_script(script, *arguments):
     command = [sys.executable, "-W", "error", "-c", textwrap.dedent(script), *arguments]
-    environment = {**os.environ, "PYTHONPATH": str(Path(ravemj.video.__file__).parents[1])}
+    environment = {**os.environ, "PYTHONPATH": str(Path(ravemj.graphics.video.__file__).parents[1])}
     return subprocess.run(command, check=True, capture_output=True, text=True, env=environment, timeout=60).stdout
 
 
@@ -483,7 +483,7 @@ def test_memory_does_not_grow_with_the_number_of_frames(tmp_path, name):
         import re, sys
         from pathlib import Path
         import numpy as np
-        from ravemj.video import write_frames
+        from ravemj.graphics.video import write_frames
         frame = np.random.default_rng(0).integers(0, 255, (96, 128, 3), np.uint8)
         for count in 50, 1000:
             write_frames(sys.argv[1], (np.roll(frame, k, axis=1) for k in range(count)), 30)
@@ -510,10 +510,10 @@ def test_drawing_and_encoding_overlap(tmp_path, monkeypatch):
 
 
 def test_importing_is_cheap():
-    script = "import sys, ravemj.video; print([m for m in ('av', 'PIL', 'imageio') if m in sys.modules])"
+    script = "import sys, ravemj.graphics.video; print([m for m in ('av', 'PIL', 'imageio') if m in sys.modules])"
     assert run_script(script) == "[]\n"
 
 
 @given(fps=st.floats(0.01, 1000))
 def test_every_fps_is_a_usable_fraction(fps):
-    assert float(ravemj.video._rate(fps, 1000)) == pytest.approx(fps, rel=0.1)
+    assert float(ravemj.graphics.video._rate(fps, 1000)) == pytest.approx(fps, rel=0.1)

@@ -10,8 +10,8 @@ import pytest
 
 import ravemj
 from ravemj.errors import RenderingError
-from ravemj.interaction import Key, Move, Press, Release
-from ravemj.viewers import Viewer, notebook
+from ravemj.gui.interaction import Key, Move, Press, Release
+from ravemj.gui.viewers import Viewer, notebook
 
 FROM_FRONT = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 BOX = '<KinBody name="{}"><Body><Geom type="box"><extents>1 2 3</extents></Geom></Body></KinBody>'
@@ -42,8 +42,8 @@ def opened(monkeypatch):
 
         return Pretended
 
-    monkeypatch.setitem(sys.modules, "ravemj.viewers.window", types.SimpleNamespace(WindowViewer=pretend("window")))
-    monkeypatch.setitem(sys.modules, "ravemj.viewers.web", types.SimpleNamespace(WebViewer=pretend("web")))
+    monkeypatch.setitem(sys.modules, "ravemj.gui.viewers.window", types.SimpleNamespace(WindowViewer=pretend("window")))
+    monkeypatch.setitem(sys.modules, "ravemj.gui.viewers.web", types.SimpleNamespace(WebViewer=pretend("web")))
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setattr(notebook, "show", lambda viewer: None)
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
@@ -126,7 +126,7 @@ class TestChoice:
             raise RenderingError("no window can be opened: the display offers no OpenGL")
 
         monkeypatch.setenv("DISPLAY", ":0")
-        monkeypatch.setitem(sys.modules, "ravemj.viewers.window", types.SimpleNamespace(WindowViewer=fail))
+        monkeypatch.setitem(sys.modules, "ravemj.gui.viewers.window", types.SimpleNamespace(WindowViewer=fail))
         assert env.SetViewer("qtcoin") is True
         assert "the display offers no OpenGL; pictures are drawn without a window" in caplog.text
         assert env.GetViewer().render(64, 48).std() > 1

@@ -24,12 +24,12 @@ from websockets.sync.client import connect
 
 import ravemj
 from ravemj.errors import RenderingError
-from ravemj.interaction import Button, Fingers, Key, Leave, Move, Press, Release, Resize, Tool, Use, Wheel
-from ravemj.interaction.joint_handle import JointHandle
-from ravemj.rendering import Camera
-from ravemj.viewers.web import WebViewer
-from ravemj.viewers.web.link import Link
-from ravemj.viewers.web.messages import Ready, Shape, parse
+from ravemj.graphics.rendering import Camera
+from ravemj.gui.interaction import Button, Fingers, Key, Leave, Move, Press, Release, Resize, Tool, Use, Wheel
+from ravemj.gui.interaction.joint_handle import JointHandle
+from ravemj.gui.viewers.web import WebViewer
+from ravemj.gui.viewers.web.link import Link
+from ravemj.gui.viewers.web.messages import Ready, Shape, parse
 
 FROM_FRONT = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 SIZE = 400, 300

@@ -11,9 +11,9 @@ from command_line import colour_of
 from conftest import MODELS
 
 import ravemj
-from ravemj.interaction import Button, Move, Press, Release, Tool, Use
-from ravemj.interaction.cube import Cube
-from ravemj.interaction.joint_handle import JointHandle
+from ravemj.gui.interaction import Button, Move, Press, Release, Tool, Use
+from ravemj.gui.interaction.cube import Cube
+from ravemj.gui.interaction.joint_handle import JointHandle
 
 pytestmark = NEEDS_A_BROWSER
 SLIDING = """<Robot name="Sliding"><KinBody>

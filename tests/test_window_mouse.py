@@ -10,9 +10,9 @@ from desk import ASLANT, DISTANCE, SIZE, Desk
 from screens import NEEDS_A_SCREEN, await_that
 from test_interaction import SLIDING
 
-from ravemj.interaction import Button, Resize, Tool, tools
-from ravemj.interaction.cube import Cube
-from ravemj.interaction.joint_handle import SIZES, JointHandle
+from ravemj.gui.interaction import Button, Resize, Tool, tools
+from ravemj.gui.interaction.cube import Cube
+from ravemj.gui.interaction.joint_handle import SIZES, JointHandle
 
 pytestmark = NEEDS_A_SCREEN
 ARMS = (1, "red"), (2, "blue")

@@ -9,7 +9,7 @@ import pytest
 from command_line import on_terminal
 from screens import NEEDS_A_SCREEN, await_that
 
-from ravemj.interaction import Board, Control
+from ravemj.gui.interaction import Board, Control
 
 pytestmark = NEEDS_A_SCREEN
 SIZE = 640, 480

@@ -10,9 +10,9 @@ from desk import ASLANT, DISTANCE, SIZE
 from screens import NEEDS_A_SCREEN, await_that
 
 import ravemj
-from ravemj.interaction import View
-from ravemj.interaction.cube import Cube
-from ravemj.rendering import Camera
+from ravemj.graphics.rendering import Camera
+from ravemj.gui.interaction import View
+from ravemj.gui.interaction.cube import Cube
 
 pytestmark = NEEDS_A_SCREEN
 
@@ -27,7 +27,7 @@ SCRIPT = """
 import sys, threading, time
 import numpy as np
 import ravemj
-from ravemj.interaction import Key
+from ravemj.gui.interaction import Key
 env = ravemj.load('env.xml')
 robot = env.GetRobots()[0]
 BOX

@@ -8,8 +8,8 @@ from command_line import TUTORIAL, finish, on_terminal
 from desk import SIZE, Desk
 from screens import NEEDS_A_SCREEN, Started, await_that, virtual_screen
 
-from ravemj.interaction import Tool, tools
-from ravemj.interaction.cube import Cube
+from ravemj.gui.interaction import Tool, tools
+from ravemj.gui.interaction.cube import Cube
 
 pytestmark = NEEDS_A_SCREEN
 
@@ -48,7 +48,7 @@ def test_a_display_that_goes_away_takes_the_window_and_not_the_script(folder, st
 def test_opengl_that_fails_closes_the_window_and_not_the_script(display, folder):
     (folder / "fails.py").write_text("""
 import mujoco, time, ravemj
-from ravemj.viewers import painter
+from ravemj.gui.viewers import painter
 
 def fail(*arguments):
     raise mujoco.FatalError('OpenGL version 1.5 or higher required')

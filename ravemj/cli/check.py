@@ -6,7 +6,7 @@ import os
 import sys
 from collections import Counter
 
-from ravemj.checking import Finding, check
+from ravemj.cli.checking import Finding, check
 from ravemj.cli.console import print_findings
 from ravemj.errors import Source
 

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from typing import TYPE_CHECKING, TextIO
 
-from ravemj.checking import Finding
+from ravemj.cli.checking import Finding
 from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, Source, SourceError
 
 if TYPE_CHECKING:

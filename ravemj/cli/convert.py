@@ -7,9 +7,9 @@ import warnings
 
 from ravemj.cli.console import print_findings
 from ravemj.cli.models import failure_of, load_model
+from ravemj.engine.export import is_folder, marked, translate, write_file, write_folder
 from ravemj.errors import Diagnostics, OutputError, RavemjWarning
-from ravemj.export import is_folder, marked, translate, write_file, write_folder
-from ravemj.mjcf import Options
+from ravemj.formats.mjcf import Options
 
 TO_STANDARD_OUTPUT = "-"
 

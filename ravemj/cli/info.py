@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 
 from ravemj.cli.console import console, table
 from ravemj.cli.models import load_model
-from ravemj.scene import AttachedSensor, Axis, Joint, KinBody, Link, Manipulator
-from ravemj.summary import dof_starts, summarize
+from ravemj.cli.summary import dof_starts, summarize
+from ravemj.model.scene import AttachedSensor, Axis, Joint, KinBody, Link, Manipulator
 
 
 def info(options: argparse.Namespace) -> int:

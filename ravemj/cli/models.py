@@ -4,7 +4,7 @@ import argparse
 import warnings
 from collections.abc import Sequence
 
-from ravemj.checking import FATAL_CODES
+from ravemj.cli.checking import FATAL_CODES
 from ravemj.cli.console import print_findings
 from ravemj.errors import Diagnostic, RavemjWarning, SourceError
 from ravemj.rave import Environment, load

@@ -13,16 +13,16 @@ import numpy as np
 from ravemj.cli.console import console, progress, table
 from ravemj.cli.models import load_model
 from ravemj.errors import ArgumentError
-from ravemj.motion import Motion, read_motion
+from ravemj.graphics.rendering.camera_file import read_camera
+from ravemj.graphics.rendering.contexts import INSTALL, RAY, requested_backend
+from ravemj.graphics.rendering.doctor import probe_backends
+from ravemj.graphics.studio import Format
+from ravemj.graphics.video import check_picture, check_target, write_frames, write_picture
+from ravemj.gui.viewers import has_display
+from ravemj.gui.viewers.window import WindowViewer
 from ravemj.rave import Environment, KinBody
-from ravemj.recording import Shot, camera_for_motion, draw_frames, moving_body, within_limits
-from ravemj.rendering.camera_file import read_camera
-from ravemj.rendering.contexts import INSTALL, RAY, requested_backend
-from ravemj.rendering.doctor import probe_backends
-from ravemj.studio import Format
-from ravemj.video import check_picture, check_target, write_frames, write_picture
-from ravemj.viewers import has_display
-from ravemj.viewers.window import WindowViewer
+from ravemj.rave.recording import Shot, camera_for_motion, draw_frames, moving_body, within_limits
+from ravemj.trajectories.motion import Motion, read_motion
 
 
 def play(options: argparse.Namespace) -> int:

@@ -11,9 +11,9 @@ from types import ModuleType
 import numpy as np
 
 import ravemj
-from ravemj import alias as openravepy_alias
-from ravemj import python2
 from ravemj.cli.models import load_model
+from ravemj.compat import alias as openravepy_alias
+from ravemj.compat import python2
 from ravemj.errors import Source, SourceError
 
 _OUR_FILES = {__file__, python2.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}

@@ -4,9 +4,9 @@ import argparse
 import sys
 
 from ravemj.cli.models import load_model
+from ravemj.gui.viewers import Viewer, has_display
+from ravemj.gui.viewers.window import WindowViewer
 from ravemj.rave import Environment
-from ravemj.viewers import Viewer, has_display
-from ravemj.viewers.window import WindowViewer
 
 
 def view(options: argparse.Namespace) -> int:
@@ -31,7 +31,7 @@ def _open_window(env: Environment) -> WindowViewer | None:
 
 def _serve(env: Environment, host: str, port: int) -> Viewer:
     """Serve the page and print its address."""
-    from ravemj.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
+    from ravemj.gui.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
 
     viewer = env.serve_viewer(host, port)
     if not is_local(host):

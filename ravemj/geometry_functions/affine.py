@@ -5,10 +5,10 @@ from enum import IntFlag
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.transforms import Floats, Pose, Vec3, normalize, wxyz_from_axis_angle
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import arguments
 from ravemj.geometry_functions.rotations import normalizeAxisRotation
-from ravemj.transforms import Floats, Pose, Vec3, normalize, wxyz_from_axis_angle
 
 Z_AXIS: Vec3 = (0.0, 0.0, 1.0)
 

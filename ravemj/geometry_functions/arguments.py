@@ -6,9 +6,9 @@ As in OpenRAVE, what is too short is refused, and of what is too long the beginn
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats, Pose, Vec3, Wxyz, normalize, wxyz_from_rows
 from ravemj.errors import ArgumentError, ErrorCode
-from ravemj.transforms import Floats, Pose, Vec3, Wxyz, normalize, wxyz_from_rows
 
 
 def numbers(values: ArrayLike, length: int, name: str) -> Floats:

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats
 from ravemj.geometry_functions import arguments
-from ravemj.transforms import Floats
 
 
 def quatArrayTMult(qarray: ArrayLike, q: ArrayLike) -> Floats:

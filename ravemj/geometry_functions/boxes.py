@@ -5,9 +5,9 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.showing import Shown
+from ravemj.core.transforms import ZERO, Floats, Pose
 from ravemj.geometry_functions import arguments
-from ravemj.showing import Shown
-from ravemj.transforms import ZERO, Floats, Pose
 
 
 class Ray(Shown):

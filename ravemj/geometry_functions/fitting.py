@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
-from ravemj.transforms import Floats
 
 
 def fitCircle(points: ArrayLike, geometric_refinement: bool = True) -> tuple[Floats, float, float]:

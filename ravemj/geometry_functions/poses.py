@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats, Pose, Vec3, wxyz_from_rows
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import arguments
-from ravemj.transforms import Floats, Pose, Vec3, wxyz_from_rows
 
 
 def matrixFromPose(pose: ArrayLike) -> Floats:

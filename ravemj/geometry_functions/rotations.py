@@ -5,9 +5,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.errors import ArgumentError
-from ravemj.geometry_functions import arguments
-from ravemj.transforms import (
+from ravemj.core.transforms import (
     Floats,
     Wxyz,
     conjugate,
@@ -17,6 +15,8 @@ from ravemj.transforms import (
     wxyz_from_axis_angle,
     wxyz_from_rows,
 )
+from ravemj.errors import ArgumentError
+from ravemj.geometry_functions import arguments
 
 
 def quatFromAxisAngle(

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj import chains, scene
-from ravemj.arrays import checked_transform
-from ravemj.collision.questions import body_and_others, held_with, itself
-from ravemj.collision.world import CollisionWorld, world_of
+from ravemj.core.arrays import checked_transform
+from ravemj.core.transforms import Floats, inverse
+from ravemj.engine.collision.questions import body_and_others, held_with, itself
+from ravemj.engine.collision.world import CollisionWorld, world_of
+from ravemj.engine.simulation import BodyState
+from ravemj.model import chains, scene
 from ravemj.rave.ikparameterization import IkParameterization
 from ravemj.rave.report import CollisionReport
-from ravemj.simulation import BodyState
-from ravemj.transforms import Floats, inverse
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody

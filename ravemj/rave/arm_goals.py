@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.showing import Shown
+from ravemj.core.transforms import Floats, inverse
 from ravemj.errors import ErrorCode, UnsupportedError
 from ravemj.geometry_functions import Ray, quatFromRotationMatrix
 from ravemj.rave.enums import IkParameterizationType
 from ravemj.rave.ikparameterization import IkParameterization
-from ravemj.showing import Shown
-from ravemj.transforms import Floats, inverse
 
 if TYPE_CHECKING:
     from ravemj.rave.manipulator import Manipulator

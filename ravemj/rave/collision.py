@@ -6,10 +6,13 @@ from typing import TYPE_CHECKING, Self, cast
 
 import numpy as np
 
-from ravemj.collision import questions
-from ravemj.collision.questions import LinkOf, Links, MovedBy
-from ravemj.collision.rays import RayHit
-from ravemj.collision.world import CollisionWorld, Pairs, world_of
+from ravemj.core.showing import Shown
+from ravemj.core.transforms import Floats
+from ravemj.engine.collision import questions
+from ravemj.engine.collision.questions import LinkOf, Links, MovedBy
+from ravemj.engine.collision.rays import RayHit
+from ravemj.engine.collision.world import CollisionWorld, Pairs, world_of
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import Ray
 from ravemj.rave.body.base import BodyPart
@@ -17,9 +20,6 @@ from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
 from ravemj.rave.interface import Annotations, Interface, checked_environment, checked_kind
 from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact, Part
-from ravemj.showing import Shown
-from ravemj.simulation import BodyState
-from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
     from ravemj.rave.env.collision import CollisionCallback

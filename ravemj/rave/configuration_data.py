@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.showing import Shown
+from ravemj.core.transforms import Floats, Ints, Pose
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import arguments
-from ravemj.showing import Shown
 from ravemj.trajectories import extraction, layout
 from ravemj.trajectories.conversion import FindBody, convert_group, converted, nobody
 from ravemj.trajectories.groups import Group, ik_type
-from ravemj.transforms import Floats, Ints, Pose
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

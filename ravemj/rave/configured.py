@@ -3,14 +3,14 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import DOFAffine
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.bodies import body_groups, configuration_values, split_configuration
-from ravemj.transforms import Floats
 
 
 class Configured(Placement):

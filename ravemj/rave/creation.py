@@ -1,11 +1,11 @@
 """OpenRAVE's functions that make bodies."""
 
 from ravemj.errors import Source
+from ravemj.model.scene import KinBody as SceneBody
 from ravemj.rave.environment import Environment
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
-from ravemj.scene import KinBody as SceneBody
 
 _NOWHERE = Source("made by the script")
 

@@ -6,6 +6,7 @@ import weakref
 
 import mujoco
 
+from ravemj.engine.simulation import Simulation
 from ravemj.errors import SourceError
 from ravemj.rave.env.cloning import Cloning
 from ravemj.rave.env.collision import Collision
@@ -18,7 +19,6 @@ from ravemj.rave.env.running import Running
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
-from ravemj.simulation import Simulation
 
 _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
@@ -168,7 +168,7 @@ def load(path: str | os.PathLike[str]) -> Environment:
         >>> env.GetRobots()[0].GetDOF()
         2
     """
-    from ravemj.readers import read_file  # noqa: PLC0415 - slow to import
+    from ravemj.formats.readers import read_file  # noqa: PLC0415 - slow to import
 
     reading = read_file(path)
     env = Environment()

@@ -6,18 +6,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj import scene
-from ravemj.arrays import checked_numbers, checked_transform, checked_vector
-from ravemj.bounds import geometry_bounds
+from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
+from ravemj.core.showing import Shown
+from ravemj.core.transforms import Floats, pose_of
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import AABB
+from ravemj.model import scene
+from ravemj.model.bounds import geometry_bounds
+from ravemj.model.tessellation import triangulated
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.geometry import TYPES, GeometryInfo
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
-from ravemj.showing import Shown
-from ravemj.simulation import BodyState
-from ravemj.tessellation import triangulated
-from ravemj.transforms import Floats, pose_of
 
 
 class Geometry(Shown):

@@ -2,9 +2,9 @@
 
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_transform
-from ravemj.drawing import Drawings, Shapes
-from ravemj.handles import Handle
+from ravemj.core.arrays import checked_transform
+from ravemj.core.handles import Handle
+from ravemj.model.drawing import Drawings, Shapes
 
 
 class GraphHandle(Handle):

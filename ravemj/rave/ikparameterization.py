@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers, checked_transform, checked_vector
+from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
+from ravemj.core.showing import Shown
+from ravemj.core.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
 from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.geometry_functions import Ray
 from ravemj.rave.enums import IkParameterizationType
 from ravemj.rave.specification import ConfigurationSpecification
-from ravemj.showing import Shown
-from ravemj.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
 
 _Type = IkParameterizationType
 _RAYS = {_Type.Ray4D, _Type.TranslationDirection5D}

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from ravemj.core.showing import Shown
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
-from ravemj.showing import Shown
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

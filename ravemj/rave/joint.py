@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_indices, checked_vector
-from ravemj.joints import directions_at, measured_values, relative_pose, reported_anchor
+from ravemj.core.arrays import checked_indices, checked_vector
+from ravemj.core.transforms import Floats, Pose, pose_of
+from ravemj.model.joints import directions_at, measured_values, relative_pose, reported_anchor
 from ravemj.rave.body.limits import wrapped_angle
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
 from ravemj.rave.joints.following import JointFollowing
 from ravemj.rave.joints.limits import JointLimits
 from ravemj.rave.link import Link
-from ravemj.transforms import Floats, Pose, pose_of
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from ravemj.engine.simulation import BodyState
 from ravemj.rave.body.base import both_locks
 from ravemj.rave.body.building import Building
 from ravemj.rave.body.collision import BodyCollision
@@ -19,7 +20,6 @@ from ravemj.rave.infos import GeometryInfo, JointInfo, KinBodyInfo, LinkInfo
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
-from ravemj.simulation import BodyState
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

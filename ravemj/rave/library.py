@@ -103,7 +103,7 @@ def RaveFindLocalFile(filename: str, curdir: str = "") -> str:
     Returns:
         The absolute path, or an empty text.
     """
-    from ravemj.readers import find  # noqa: PLC0415 - slow to import
+    from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
 
     beside = os.path.join(curdir, filename)
     found = beside if curdir and os.path.exists(beside) else find(filename)

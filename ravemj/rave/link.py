@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
-from ravemj import chains
-from ravemj.arrays import checked_transform, checked_vector
+from ravemj.core.arrays import checked_transform, checked_vector
+from ravemj.core.transforms import Floats, pose_of
+from ravemj.model import chains
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, LinkInfo
@@ -14,7 +15,6 @@ from ravemj.rave.links.loads import LinkLoads
 from ravemj.rave.links.mass import LinkMass
 from ravemj.rave.links.parameters import LinkParameters
 from ravemj.rave.links.shapes import LinkShapes
-from ravemj.transforms import Floats, pose_of
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody

@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj import chains, fingerprints, scene
-from ravemj.arrays import checked_transform, checked_vector
+from ravemj.core.arrays import checked_transform, checked_vector
+from ravemj.core.transforms import Floats, Ints, pose_of, wxyz_from_rows
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, RavemjError
-from ravemj.manipulators import joint_dofs
+from ravemj.model import chains, fingerprints, scene
+from ravemj.model.manipulators import joint_dofs
 from ravemj.rave.arm_collision import ArmCollision
 from ravemj.rave.arm_goals import ArmGoals
 from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 from ravemj.rave.specification import ConfigurationSpecification
-from ravemj.simulation import BodyState
-from ravemj.transforms import Floats, Ints, pose_of, wxyz_from_rows
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody

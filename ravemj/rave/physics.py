@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers, checked_vector
+from ravemj.core.arrays import checked_numbers, checked_vector
+from ravemj.core.transforms import ZERO, Floats, Vec3
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import InterfaceType, PhysicsEngineOptions
 from ravemj.rave.interface import Annotations, Interface, checked_environment
-from ravemj.simulation import BodyState
-from ravemj.transforms import ZERO, Floats, Vec3
 
 if TYPE_CHECKING:
-    from ravemj.physics import Loads
+    from ravemj.engine.physics import Loads
     from ravemj.rave.environment import Environment
     from ravemj.rave.joint import Joint
     from ravemj.rave.link import Link
@@ -206,7 +206,7 @@ class SimulatedEngine(PhysicsEngine):
 
     def __init__(self, env: "Environment", xml_id: str) -> None:
         super().__init__(env, xml_id)
-        from ravemj.physics import Physics  # noqa: PLC0415 - slow to import
+        from ravemj.engine.physics import Physics  # noqa: PLC0415 - slow to import
 
         self._physics = Physics(env.simulation)
 

@@ -14,7 +14,7 @@ from ravemj.rave.planning import PLANNING, Planner
 from ravemj.rave.sensors import SENSING, Sensor
 
 if TYPE_CHECKING:
-    from ravemj.viewers import Viewer
+    from ravemj.gui.viewers import Viewer
 
 _GRASPING = "planning of grasps"
 _SAMPLING = "sampling of spaces"
@@ -154,7 +154,7 @@ def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
     Returns:
         The viewer, or None for a name that is no viewer's.
     """
-    from ravemj.viewers import VIEWERS  # noqa: PLC0415 - slow to import
+    from ravemj.gui.viewers import VIEWERS  # noqa: PLC0415 - slow to import
 
     if name.lower() not in VIEWERS:
         return None
@@ -163,7 +163,7 @@ def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
 
 def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
     """Return the names that ``RaveCreate…`` of each kind makes something for."""
-    from ravemj.viewers import VIEWERS  # noqa: PLC0415 - slow to import
+    from ravemj.gui.viewers import VIEWERS  # noqa: PLC0415 - slow to import
 
     made: dict[InterfaceType, list[str]] = {
         InterfaceType.collisionchecker: ["ode"],

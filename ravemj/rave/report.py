@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravemj.showing import Shown
-from ravemj.transforms import Floats
+from ravemj.core.showing import Shown
+from ravemj.core.transforms import Floats
 
 if TYPE_CHECKING:
     from ravemj.rave.geometry import Geometry

@@ -3,6 +3,8 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ravemj.core.transforms import Floats
+from ravemj.engine.simulation import BodyState
 from ravemj.geometry_functions import DOFAffine
 from ravemj.rave.body.active import ActiveChoice
 from ravemj.rave.body.active_motion import ActiveMotion
@@ -17,8 +19,6 @@ from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.robot_control import RobotControl
 from ravemj.rave.sensors import AttachedSensor
-from ravemj.simulation import BodyState
-from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_indices
+from ravemj.core.arrays import checked_indices
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.controllers import Controller, IdealController

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ravemj import scene
+from ravemj.core.showing import Shown
+from ravemj.core.transforms import Floats
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
+from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
+from ravemj.graphics.studio import Format
+from ravemj.model import scene
 from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.infos import AttachedSensorInfo
 from ravemj.rave.link import Link
-from ravemj.rendering import Camera, CameraIntrinsics, Pinhole
-from ravemj.showing import Shown
-from ravemj.simulation import BodyState
-from ravemj.studio import Format
-from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
     from ravemj.rave.robot import Robot

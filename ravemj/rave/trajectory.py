@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.output import AnyPath, new_file
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.output import AnyPath, new_file
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.serialization import AS_TEXT, Stored, read, to_bytes, to_text
 from ravemj.trajectories.waypoints import Waypoints
-from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError
-from ravemj.scene import Mesh
-from ravemj.transforms import Floats, Ints
+from ravemj.model.scene import Mesh
 
 
 class TriMesh:

@@ -5,12 +5,12 @@ from typing import Protocol
 
 import numpy as np
 
+from ravemj.core.transforms import Floats, Pose
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import arguments
 from ravemj.geometry_functions.affine import DOFAffine, RaveGetAffineDOF, affine_values, pose_with_values
 from ravemj.trajectories.groups import AFFINE, JOINTS, Group
 from ravemj.trajectories.layout import packed
-from ravemj.transforms import Floats, Pose
 
 
 class Configurable(Protocol):

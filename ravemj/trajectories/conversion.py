@@ -5,6 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
+from ravemj.core.transforms import Floats, Pose
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import arguments
 from ravemj.geometry_functions.affine import (
@@ -16,7 +17,6 @@ from ravemj.geometry_functions.affine import (
 from ravemj.trajectories.extraction import rotation_columns
 from ravemj.trajectories.groups import AFFINE, JOINTS, Group, affine_parts, joint_indices
 from ravemj.trajectories.layout import find_compatible
-from ravemj.transforms import Floats, Pose
 
 
 class Body(Protocol):

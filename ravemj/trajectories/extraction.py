@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ravemj.core.transforms import Floats, Pose
 from ravemj.geometry_functions.affine import (
     DOFAffine,
     RaveGetAffineDOF,
@@ -12,7 +13,6 @@ from ravemj.geometry_functions.affine import (
     pose_with_values,
 )
 from ravemj.trajectories.groups import AFFINE, DELTATIME, IK, JOINTS, Group, affine_parts, joint_indices
-from ravemj.transforms import Floats, Pose
 
 
 def _of_body(groups: Sequence[Group], kind: str, body: str | None) -> list[Group]:

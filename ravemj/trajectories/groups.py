@@ -7,9 +7,9 @@ A name is a kind and further words: ``joint_values BODY INDEX...``, ``affine_tra
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ravemj.core.transforms import Vec3
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import Z_AXIS
-from ravemj.transforms import Vec3
 
 _RATES = ("velocities", "accelerations", "jerks", "snaps", "crackles", "pops")
 JOINTS = ("joint_values", *(f"joint_{rate}" for rate in _RATES))

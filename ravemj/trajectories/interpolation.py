@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 
-from ravemj.transforms import Floats
+from ravemj.core.transforms import Floats
 
 Ends = tuple[Floats, Floats]
 """Values at the two waypoints."""

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.layout import count
 from ravemj.trajectories.text import groups_of, layout_text, read_element
 from ravemj.trajectories.waypoints import Waypoints
-from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
-    from ravemj.openrave_xml.tree import Element
+    from ravemj.formats.openrave_xml.tree import Element
 
 AS_TEXT = 0x8000
 """The option that asks for text."""

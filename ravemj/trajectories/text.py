@@ -8,7 +8,7 @@ from ravemj.trajectories.groups import Group
 from ravemj.trajectories.layout import flaw
 
 if TYPE_CHECKING:
-    from ravemj.openrave_xml.tree import Element
+    from ravemj.formats.openrave_xml.tree import Element
 
 
 def layout_text(groups: Sequence[Group]) -> str:
@@ -43,7 +43,7 @@ def read_element(text: str, tag: str) -> "Element":
     Raises:
         ArgumentError: the text is no XML, or its root has another name.
     """
-    from ravemj.openrave_xml.tree import parse  # noqa: PLC0415 - slow to import
+    from ravemj.formats.openrave_xml.tree import parse  # noqa: PLC0415 - slow to import
 
     try:
         document = parse(text.encode(), tag)

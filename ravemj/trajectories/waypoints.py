@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.trajectories.conversion import FindBody, converted, nobody
 from ravemj.trajectories.extraction import time_column
 from ravemj.trajectories.groups import DELTATIME, IK, INTERPOLATIONS, Group, derived_interpolation
 from ravemj.trajectories.interpolation import DERIVATIVES, HELD, ROUNDING, Ends, curve, differentiated, held, value
 from ravemj.trajectories.layout import copied, count, equal, find_shifted
-from ravemj.transforms import Floats
 
 _ORDER = (
     DELTATIME,

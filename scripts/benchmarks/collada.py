@@ -11,19 +11,21 @@ from lxml import etree
 
 from benchmarks.measure import ROOT, Row, microseconds, peak_memory, take_turns
 from benchmarks.reading import CORPUS
-from ravemj import mjcf
-from ravemj.collada.archive import Archive
+from ravemj.engine.simulation import Compiled
 from ravemj.errors import Diagnostics
-from ravemj.meshes.collada.document import ColladaDocument
-from ravemj.meshes.collada.geometry import triangle_meshes
-from ravemj.readers import read_file
-from ravemj.simulation import Compiled
+from ravemj.formats import mjcf
+from ravemj.formats.collada.archive import Archive
+from ravemj.formats.meshes.collada.document import ColladaDocument
+from ravemj.formats.meshes.collada.geometry import triangle_meshes
+from ravemj.formats.readers import read_file
 
 _ROBOTS = CORPUS / "rdiankov+collada_robots"
 _CORNERS = 1000  # of the circles of the SCARA: meshes as large as those of real robots
 _BOX = "<box><half_extents>0.1 0.1 0.1</half_extents></box>"
 _INFO = f"<extra type='geometry_info'><technique profile='OpenRAVE'>{_BOX}</technique></extra>"
-_IMPORT = "import sys, hashlib; from ravemj import collada, readers; from ravemj.meshes.collada import geometry; "
+_IMPORT = (
+    "import sys, hashlib; from ravemj import collada, readers; from ravemj.formats.meshes.collada import geometry; "
+)
 _ROUNDS = 5
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 import ravemj
 from benchmarks.measure import MODEL, Row, microseconds, take_turns
-from ravemj.transforms import Floats
+from ravemj.core.transforms import Floats
 
 AXES = ("1 0 0", "0 1 0", "0 0 1")
 MANY = 600

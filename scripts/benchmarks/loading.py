@@ -4,10 +4,10 @@ import mujoco
 
 import ravemj
 from benchmarks.measure import MODEL, Row, microseconds, take_turns
-from ravemj import mjcf
+from ravemj.engine.simulation import Compiled
 from ravemj.errors import Diagnostics
-from ravemj.readers import read_file
-from ravemj.simulation import Compiled
+from ravemj.formats import mjcf
+from ravemj.formats.readers import read_file
 
 
 def rows() -> list[Row]:

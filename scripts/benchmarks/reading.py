@@ -8,10 +8,10 @@ from pathlib import Path
 import mujoco
 
 from benchmarks.measure import ROOT, Row, microseconds, take_turns
-from ravemj import mjcf
+from ravemj.engine.simulation import Compiled
 from ravemj.errors import Diagnostics
-from ravemj.readers import read_file
-from ravemj.simulation import Compiled
+from ravemj.formats import mjcf
+from ravemj.formats.readers import read_file
 
 CORPUS = ROOT.parent / "shared" / "corpus" / "models"
 WAM = CORPUS / "rdiankov+openrave" / "src" / "robots" / "barrettwam.robot.xml"

@@ -20,13 +20,13 @@ import numpy as np
 
 import ravemj
 from benchmarks.measure import CAMERA, MODEL, Row, run_python, take_turns
-from ravemj.recording import Shot, draw_frames
-from ravemj.rendering import Renderer, open_renderer
-from ravemj.rendering.camera_file import read_camera
-from ravemj.rendering.contexts import RAY, OffscreenContext
-from ravemj.rendering.stage import Quality, Stage
-from ravemj.studio import Format, Frame
-from ravemj.video import write_frames
+from ravemj.graphics.rendering import Renderer, open_renderer
+from ravemj.graphics.rendering.camera_file import read_camera
+from ravemj.graphics.rendering.contexts import RAY, OffscreenContext
+from ravemj.graphics.rendering.stage import Quality, Stage
+from ravemj.graphics.studio import Format, Frame
+from ravemj.graphics.video import write_frames
+from ravemj.rave.recording import Shot, draw_frames
 
 _STEADY = 30
 _FRAMES = 241

@@ -15,11 +15,11 @@ from websockets.sync.client import ClientConnection, connect
 
 import ravemj
 from benchmarks.measure import CAMERA, MODEL, Row, take_turns
-from ravemj.rendering import Camera
-from ravemj.rendering.camera_file import read_camera
-from ravemj.rendering.contexts import RAY, OffscreenContext
-from ravemj.rendering.stage import Quality, Stage
-from ravemj.studio import Format
+from ravemj.graphics.rendering import Camera
+from ravemj.graphics.rendering.camera_file import read_camera
+from ravemj.graphics.rendering.contexts import RAY, OffscreenContext
+from ravemj.graphics.rendering.stage import Quality, Stage
+from ravemj.graphics.studio import Format
 
 _SIZE = 800, 600
 _FRAMES = 60

@@ -4,7 +4,7 @@ import statistics
 import sys
 
 from benchmarks.measure import MODEL, Row, run_python
-from ravemj.viewers import has_display
+from ravemj.gui.viewers import has_display
 
 _PROCESSES = 3
 _MOST_IDLE = 3.0

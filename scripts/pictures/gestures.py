@@ -16,8 +16,8 @@ from PIL import Image, ImageGrab
 from playwright.sync_api import Page, sync_playwright
 
 import ravemj
-from ravemj.interaction.cube import Cube
-from ravemj.interaction.joint_handle import JointHandle
+from ravemj.gui.interaction.cube import Cube
+from ravemj.gui.interaction.joint_handle import JointHandle
 
 SIZE = 480, 360
 SIDE = [[-0.643, 0.324, -0.694, 0.755], [0.766, 0.272, -0.583, 0.634], [0, -0.906, -0.423, 0.285]]

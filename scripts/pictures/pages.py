@@ -7,7 +7,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, Page, sync_playwright
 
 import ravemj
-from ravemj.viewers import Viewer
+from ravemj.gui.viewers import Viewer
 
 DESK = {"viewport": {"width": 640, "height": 480}}
 PHONE = {"viewport": {"width": 360, "height": 600}, "device_scale_factor": 2, "is_mobile": True, "has_touch": True}

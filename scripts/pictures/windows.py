@@ -9,8 +9,8 @@ from pathlib import Path
 from PIL import ImageGrab
 
 import ravemj
-from ravemj.interaction import Key, Leave, Operate, Press, Release
-from ravemj.viewers import Viewer
+from ravemj.gui.interaction import Key, Leave, Operate, Press, Release
+from ravemj.gui.viewers import Viewer
 
 SIZE = 640, 480
 

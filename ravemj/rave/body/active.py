@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_indices, checked_numbers, checked_vector
+from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector
+from ravemj.core.transforms import Floats, Ints, Vec3
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
 from ravemj.rave.body.affine import AffineSettings
@@ -15,7 +16,6 @@ from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.bodies import body_groups
-from ravemj.transforms import Floats, Ints, Vec3
 
 Z_AXIS: Vec3 = (0.0, 0.0, 1.0)
 

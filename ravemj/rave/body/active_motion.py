@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_vector
+from ravemj.core.arrays import checked_vector
+from ravemj.core.transforms import Floats
 from ravemj.geometry_functions.affine import DOFAffine, affine_values
 from ravemj.rave.body.active import ActiveDofs
 from ravemj.rave.body.motion import Motion, quaternion_rates
 from ravemj.rave.enums import CheckLimitsAction
-from ravemj.transforms import Floats
 
 _AXES = (DOFAffine.X, DOFAffine.Y, DOFAffine.Z)
 
@@ -98,7 +98,7 @@ class ActiveMotion(ActiveDofs, Motion):
         if affine & DOFAffine.RotationAxis:
             return np.array(self.active_choice.axis).reshape(3, 1)
         if affine & DOFAffine.Rotation3D:
-            from ravemj.dynamics import rotation_rate  # noqa: PLC0415 - rarely wanted
+            from ravemj.engine.dynamics import rotation_rate  # noqa: PLC0415 - rarely wanted
 
             rate, _ = rotation_rate(affine_values(pose, DOFAffine.Rotation3D))
             return rate.T  # the left Jacobian of SO(3) is the right one's transpose

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_vector
+from ravemj.core.arrays import checked_vector
+from ravemj.core.transforms import Floats
 from ravemj.rave.body.base import BodyPart
-from ravemj.transforms import Floats
 
 
 def _single(value: float) -> float:

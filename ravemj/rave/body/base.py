@@ -4,8 +4,8 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.rave.interface import Annotations, Interface
-from ravemj.simulation import BodyState, Simulation
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -6,16 +6,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats, Pose
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.making import body_of_geometries, box_geometries, shape_geometry, sphere_geometries
+from ravemj.model.making import body_of_geometries, box_geometries, shape_geometry, sphere_geometries
+from ravemj.model.scene import Geometry, KinBody
+from ravemj.model.scene import TriMesh as Triangles
 from ravemj.rave.body.mechanism import Mechanism
 from ravemj.rave.infos import ExtractInfoOptions, GeometryInfo, JointInfo, KinBodyInfo, LinkInfo, body_of
 from ravemj.rave.infos.link import geometries_of
 from ravemj.rave.trimesh import TriMesh, checked_mesh
-from ravemj.scene import Geometry, KinBody
-from ravemj.scene import TriMesh as Triangles
-from ravemj.transforms import Floats, Pose
 
 
 class Building(Mechanism):

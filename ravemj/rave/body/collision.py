@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.arrays import checked_numbers, checked_transform
-from ravemj.bounds import Bounds, links_bounds
-from ravemj.collision.batch import batch_collides
-from ravemj.collision.questions import moved_apart
-from ravemj.collision.resting import tested_pairs
-from ravemj.collision.world import world_of
+from ravemj.core.arrays import checked_numbers, checked_transform
+from ravemj.core.transforms import Floats, inverse
+from ravemj.engine.collision.batch import batch_collides
+from ravemj.engine.collision.questions import moved_apart
+from ravemj.engine.collision.resting import tested_pairs
+from ravemj.engine.collision.world import world_of
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import AABB
+from ravemj.model.bounds import Bounds, links_bounds
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import AdjacentOptions
-from ravemj.transforms import Floats, inverse
 
 if TYPE_CHECKING:
     from ravemj.rave.collision import CollisionChecker

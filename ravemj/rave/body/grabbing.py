@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravemj.collision.questions import touching_links
-from ravemj.collision.world import world_of
+from ravemj.core.transforms import Floats, inverse
+from ravemj.engine.collision.questions import touching_links
+from ravemj.engine.collision.world import world_of
+from ravemj.engine.simulation import BodyState
+from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.infos.content import Info
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.link import Link
-from ravemj.simulation import BodyState
-from ravemj.simulation.body import GrabbedBody
-from ravemj.transforms import Floats, inverse
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody

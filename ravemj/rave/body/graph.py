@@ -2,8 +2,8 @@
 
 from typing import Literal, overload
 
-from ravemj import chains, fingerprints
 from ravemj.errors import ArgumentError
+from ravemj.model import chains, fingerprints
 from ravemj.rave.body.mechanism import Mechanism
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link

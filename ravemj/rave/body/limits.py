@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_indices, checked_numbers
+from ravemj.core.arrays import checked_indices, checked_numbers
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.rave.body.base import BodyPart
-from ravemj.transforms import Floats
 
 
 class Limits(BodyPart):

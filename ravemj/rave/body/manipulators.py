@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, cast
 
-from ravemj import fingerprints
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
-from ravemj.manipulators import freeze_manipulator
+from ravemj.model import fingerprints
+from ravemj.model.manipulators import freeze_manipulator
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.interface import checked_kind

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_vector
+from ravemj.core.arrays import checked_vector
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.rave.body.base import BodyPart
-from ravemj.transforms import Floats
 
 
 class Many(BodyPart):

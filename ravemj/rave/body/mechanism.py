@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, cast
 
-from ravemj.adjacency import adjacent_pairs
-from ravemj.arrays import checked_indices
+from ravemj.core.arrays import checked_indices
+from ravemj.model.adjacency import adjacent_pairs
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link

@@ -6,12 +6,12 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_vector
+from ravemj.core.arrays import checked_vector
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.rave.body.many import Many
 from ravemj.rave.body.velocities import Velocities
 from ravemj.rave.interface import checked_kind
-from ravemj.transforms import Floats
 
 
 class Motion(Velocities, Many):

@@ -6,11 +6,11 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_transform, checked_vector
+from ravemj.core.arrays import checked_transform, checked_vector
+from ravemj.core.transforms import Floats, pose_of
 from ravemj.errors import RavemjError
 from ravemj.rave.body.values import JointValues
 from ravemj.rave.enums import CheckLimitsAction
-from ravemj.transforms import Floats, pose_of
 
 
 class Placement(JointValues):

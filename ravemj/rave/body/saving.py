@@ -5,14 +5,14 @@ from dataclasses import replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Self, cast
 
+from ravemj.core.showing import Shown
+from ravemj.engine.simulation import BodyState
+from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import ArgumentError
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import SaveParameters
 from ravemj.rave.interface import checked_kind
-from ravemj.showing import Shown
-from ravemj.simulation import BodyState
-from ravemj.simulation.body import GrabbedBody
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.rave.body.base import BodyPart
 

@@ -5,11 +5,11 @@ from types import EllipsisType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_indices, checked_numbers
+from ravemj.core.arrays import checked_indices, checked_numbers
+from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import CheckLimitsAction
-from ravemj.transforms import Floats, Ints
 
 ROUNDING = 2e-10
 """How far outside its limits [rad or m] OpenRAVE moves a value without a warning."""

@@ -5,11 +5,11 @@ from types import EllipsisType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_indices, checked_numbers, checked_vector
+from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import CheckLimitsAction
-from ravemj.transforms import Floats
 
 ROUNDING = 1e-10
 """How far beyond its limit [rad/s or m/s] a velocity counts as within."""

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_indices, checked_transform, checked_vector
+from ravemj.core.arrays import checked_indices, checked_transform, checked_vector
+from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.interface import Annotations, Interface
 from ravemj.rave.trajectory import Trajectory
-from ravemj.transforms import Floats, Ints
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -4,13 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.rave.controllers.base import Controller
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.groups import joint_indices
-from ravemj.transforms import Floats, Ints
 
 
 class _Path(NamedTuple):

@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_indices
+from ravemj.core.arrays import checked_indices
+from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError
 from ravemj.rave.controllers.base import Controller
 from ravemj.rave.trajectory import Trajectory
-from ravemj.transforms import Floats, Ints
 
 
 class _Part(NamedTuple):

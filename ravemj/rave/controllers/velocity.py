@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from ravemj.core.transforms import Floats
 from ravemj.rave.controllers.base import Controller
 from ravemj.rave.enums import CheckLimitsAction
-from ravemj.transforms import Floats
 
 
 class VelocityController(Controller):
@@ -44,7 +44,7 @@ class VelocityController(Controller):
         if self._attached_robot is not None:
             loads = self._env.GetPhysicsEngine().loads(self._attached_robot.simulation_state)
             if loads is not None:
-                from ravemj.physics import Motor  # noqa: PLC0415 - imported with the engine
+                from ravemj.engine.physics import Motor  # noqa: PLC0415 - imported with the engine
 
                 loads.motor = None if velocities is None else Motor(self._robot_dofs(), velocities)
 

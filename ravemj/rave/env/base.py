@@ -2,16 +2,16 @@
 
 from typing import TYPE_CHECKING, cast
 
+from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import Diagnostic, ErrorCode, RavemjError
+from ravemj.graphics.studio import Studio
 from ravemj.rave.interface import Annotations, UserData
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
-from ravemj.simulation import BodyState, Simulation
-from ravemj.studio import Studio
 
 if TYPE_CHECKING:
+    from ravemj.gui.viewers import Viewer
     from ravemj.rave.environment import Environment
-    from ravemj.viewers import Viewer
 
 
 class EnvironmentPart(UserData):

@@ -2,13 +2,13 @@
 
 from typing import TYPE_CHECKING
 
+from ravemj.engine.simulation import BodyState
+from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.rave.body.base import both_locks
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.contents import Contents
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.robot import Robot
-from ravemj.simulation import BodyState
-from ravemj.simulation.body import GrabbedBody
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -5,16 +5,16 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.arrays import checked_numbers
-from ravemj.collision.world import world_of
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.showing import Shown
+from ravemj.core.transforms import Floats
+from ravemj.engine.collision.world import world_of
 from ravemj.errors import ArgumentError
 from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.report import CollisionReport
-from ravemj.showing import Shown
-from ravemj.transforms import Floats
 
 CollisionCallback = Callable[[CollisionReport, bool], int]
 """Takes a report of one collision and whether time runs, and returns a ``CollisionAction``."""

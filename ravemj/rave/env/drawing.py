@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj import drawing
-from ravemj.arrays import checked_numbers, checked_transform, checked_vector
-from ravemj.drawing import Shapes
+from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
+from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.model import drawing
+from ravemj.model.drawing import Shapes
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.graph_handle import GraphHandle
-from ravemj.transforms import Floats, Ints
 
 _DEFAULT_COLOR = (1.0, 0.5, 0.5, 1.0)
 

@@ -13,7 +13,7 @@ from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 
 if TYPE_CHECKING:
-    from ravemj.openrave_xml import Reading
+    from ravemj.formats.openrave_xml import Reading
 
 Attributes = Mapping[str, str]
 """OpenRAVE's options of reading; all are ignored."""
@@ -181,12 +181,12 @@ def _read_arguments(
 
 
 def _read_file(path: str | os.PathLike[str]) -> "Reading":
-    from ravemj.readers import read_file  # noqa: PLC0415
+    from ravemj.formats.readers import read_file  # noqa: PLC0415
 
     return read_file(path)
 
 
 def _read_data(data: str | bytes) -> "Reading":
-    from ravemj.readers import read_data  # noqa: PLC0415
+    from ravemj.formats.readers import read_data  # noqa: PLC0415
 
     return read_data(data)

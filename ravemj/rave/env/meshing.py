@@ -4,15 +4,15 @@ import logging
 from collections.abc import Callable
 from enum import IntEnum
 
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import Source, SourceError
+from ravemj.model.scene import KinBody as Description
+from ravemj.model.scene import Mesh
+from ravemj.model.tessellation import merged, moved, triangulated
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.trimesh import TriMesh, trimesh_of
-from ravemj.scene import KinBody as Description
-from ravemj.scene import Mesh
-from ravemj.simulation import BodyState
-from ravemj.tessellation import merged, moved, triangulated
 
 _LOG = logging.getLogger("ravemj")
 
@@ -67,8 +67,8 @@ class Meshing(EnvironmentPart):
         Returns:
             The triangles, or None, with the reason in the log, where there is no such file or it is broken.
         """
-        from ravemj.meshes import read_mesh  # noqa: PLC0415 - slow to import
-        from ravemj.readers import find  # noqa: PLC0415
+        from ravemj.formats.meshes import read_mesh  # noqa: PLC0415 - slow to import
+        from ravemj.formats.readers import find  # noqa: PLC0415
 
         path = find(filename)
         try:

@@ -2,7 +2,8 @@
 
 import math
 
-from ravemj.clock import Clock
+from ravemj.engine.clock import Clock
+from ravemj.engine.simulation import DEFAULT_GRAVITY
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
@@ -10,7 +11,6 @@ from ravemj.rave.kinbody import KinBody
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor
-from ravemj.simulation import DEFAULT_GRAVITY
 
 
 class Running(EnvironmentPart):

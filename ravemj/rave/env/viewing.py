@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
+from ravemj.graphics.rendering import Camera
+from ravemj.graphics.studio import Format, Frame, Studio, checked_colour
 from ravemj.rave.env.base import EnvironmentPart
-from ravemj.rendering import Camera
-from ravemj.studio import Format, Frame, Studio, checked_colour
 
 if TYPE_CHECKING:
-    from ravemj.viewers import Viewer
-    from ravemj.viewers.web import WebViewer
+    from ravemj.gui.viewers import Viewer
+    from ravemj.gui.viewers.web import WebViewer
 
 
 class Viewing(EnvironmentPart):
@@ -56,7 +56,7 @@ class Viewing(EnvironmentPart):
 
     def open_viewer(self, name: str, show: bool) -> "Viewer | None":
         """Attach a viewer beside those that there are; None for a name that is no viewer's."""
-        from ravemj.viewers import open_viewer  # noqa: PLC0415 - slow to import
+        from ravemj.gui.viewers import open_viewer  # noqa: PLC0415 - slow to import
 
         self._check_alive()
         viewer = open_viewer(self._simulation, self._studio, name, show)
@@ -81,7 +81,7 @@ class Viewing(EnvironmentPart):
         Example:
             >>> print(env.serve_viewer(port=8080).url)
         """
-        from ravemj.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
+        from ravemj.gui.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
 
         self._check_alive()
         viewer = WebViewer(self._simulation, self._studio, "web", host, port)
@@ -185,6 +185,6 @@ class Viewing(EnvironmentPart):
 
     def _repr_png_(self) -> bytes:
         """Return the picture that notebooks show for an environment."""
-        from ravemj.video import png_bytes  # noqa: PLC0415 - only notebooks want it
+        from ravemj.graphics.video import png_bytes  # noqa: PLC0415 - only notebooks want it
 
         return png_bytes(self.render(480, 360))

@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj import scene
-from ravemj.arrays import checked_transform
+from ravemj.core.arrays import checked_transform
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
-from ravemj.making import MADE
+from ravemj.model import scene
+from ravemj.model.making import MADE
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.joint import JointInfo
 from ravemj.rave.infos.link import LinkInfo
 from ravemj.rave.infos.numbers import identity
 from ravemj.rave.infos.robot import AttachedSensorInfo, ManipulatorInfo
-from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
-    from ravemj.builder import BodyBuilder
+    from ravemj.model.builder import BodyBuilder
 
 T = TypeVar("T")
 
@@ -98,7 +98,7 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
     Raises:
         RavemjError: something is described by a thing of another kind, has no name, or cannot be.
     """
-    from ravemj.builder import BodyBuilder  # noqa: PLC0415 - slow to import
+    from ravemj.model.builder import BodyBuilder  # noqa: PLC0415 - slow to import
 
     builder = BodyBuilder(is_robot=like.is_robot, source=MADE, name=info._name or like.name)
     for one in _checked(info._vLinkInfos, LinkInfo):

@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj import scene
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceError
-from ravemj.making import MADE
+from ravemj.model import scene
+from ravemj.model.making import MADE
+from ravemj.model.tessellation import merged
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, identity, pose, vector
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
-from ravemj.tessellation import merged
-from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
-    from ravemj.meshes import MeshPart
+    from ravemj.formats.meshes import MeshPart
 
 TYPES: dict[type[scene.Shape], GeometryType] = {
     scene.Box: GeometryType.Box,
@@ -225,8 +225,8 @@ def _file(name: str | None, scale: ArrayLike) -> scene.MeshFile | None:
 
 def _parts(file: scene.MeshFile) -> "tuple[MeshPart, ...]":
     """Read a mesh file."""
-    from ravemj.meshes import read_mesh  # noqa: PLC0415 - slow to import
-    from ravemj.readers import find  # noqa: PLC0415
+    from ravemj.formats.meshes import read_mesh  # noqa: PLC0415 - slow to import
+    from ravemj.formats.readers import find  # noqa: PLC0415
 
     path = find(file.name)
     if path is None:

@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj import scene
+from ravemj.core.transforms import Vec3, add, conjugate, dot, rotate, scale
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.following import Equations
-from ravemj.joints import about, directions_at, reported_anchor, wxyz_from_rotation_vector
-from ravemj.making import MADE
+from ravemj.model import scene
+from ravemj.model.following import Equations
+from ravemj.model.joints import about, directions_at, reported_anchor, wxyz_from_rotation_vector
+from ravemj.model.making import MADE
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, per_axis, vector
 from ravemj.rave.infos.parameters import ParameterFields
-from ravemj.transforms import Vec3, add, conjugate, dot, rotate, scale
 
 if TYPE_CHECKING:
-    from ravemj.builder import JointBuilder, LinkBuilder
-    from ravemj.openrave_xml.actuator import Motor
+    from ravemj.formats.openrave_xml.actuator import Motor
+    from ravemj.model.builder import JointBuilder, LinkBuilder
 
 _KINDS: dict[JointType, scene.JointKind] = {
     JointType.Hinge: "hinge",
@@ -71,7 +71,7 @@ class ElectricMotorActuatorInfo(Info):
     def motor(self) -> "Motor":
         """Return torque and inertia at the joint."""
         names = ("gear_ratio", "max_instantaneous_torque", "nominal_torque", "rotor_inertia")
-        from ravemj.openrave_xml.actuator import motor_of  # noqa: PLC0415 - rarely wanted
+        from ravemj.formats.openrave_xml.actuator import motor_of  # noqa: PLC0415 - rarely wanted
 
         return motor_of({name: float(getattr(self, name)) for name in names})
 
@@ -200,7 +200,7 @@ class JointInfo(ParameterFields):
             )
         if kind == "slider":
             anchor = add(anchor, scale(axes[0].direction, values[0]))
-        from ravemj.builder import JointBuilder  # noqa: PLC0415 - slow to import
+        from ravemj.model.builder import JointBuilder  # noqa: PLC0415 - slow to import
 
         return JointBuilder(
             name=self._name or "",

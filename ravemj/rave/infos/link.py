@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Self
 
 from numpy.typing import ArrayLike
 
-from ravemj import scene
-from ravemj.arrays import checked_vector
+from ravemj.core.arrays import checked_vector
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
-from ravemj.inertia import inertial_about, principal_frame, principal_moments
-from ravemj.making import MADE
+from ravemj.model import scene
+from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
+from ravemj.model.making import MADE
 from ravemj.rave.infos.geometry import GeometryInfo
 from ravemj.rave.infos.numbers import filled, identity, pose
 from ravemj.rave.infos.parameters import ParameterFields
-from ravemj.transforms import Floats
 
 if TYPE_CHECKING:
-    from ravemj.builder import LinkBuilder
+    from ravemj.model.builder import LinkBuilder
 
 
 @dataclass(eq=False, repr=False)
@@ -87,7 +87,7 @@ class LinkInfo(ParameterFields):
         (mass,) = checked_vector([self._mass], 1, "LinkInfo._mass").tolist()
         T_link_mass = pose(self._tMassFrame, "LinkInfo._tMassFrame")
         moments = checked_vector(self._vinertiamoments, 3, "LinkInfo._vinertiamoments")
-        from ravemj.builder import LinkBuilder  # noqa: PLC0415 - slow to import
+        from ravemj.model.builder import LinkBuilder  # noqa: PLC0415 - slow to import
 
         return LinkBuilder(
             name=self._name,

@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers, checked_transform
+from ravemj.core.arrays import checked_numbers, checked_transform
+from ravemj.core.transforms import Floats, Pose, Vec3, pose_of
 from ravemj.errors import ArgumentError
-from ravemj.transforms import Floats, Pose, Vec3, pose_of
 
 
 def identity() -> Floats:

@@ -10,9 +10,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.model.scene import Parameters
 from ravemj.rave.infos.content import Info
-from ravemj.scene import Parameters
 
 
 @dataclass(eq=False, repr=False)

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj import scene
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError
-from ravemj.making import MADE
+from ravemj.model import scene
+from ravemj.model.making import MADE
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import identity, pose, vector
 
 if TYPE_CHECKING:
-    from ravemj.manipulators import ManipulatorBuilder
+    from ravemj.model.manipulators import ManipulatorBuilder
 
 
 def _ahead() -> ArrayLike:
@@ -82,7 +82,7 @@ class ManipulatorInfo(Info):
         """
         if not self._name:
             raise ArgumentError("ManipulatorInfo._name: is empty, and should name the manipulator")
-        from ravemj.manipulators import ManipulatorBuilder  # noqa: PLC0415 - slow to import
+        from ravemj.model.manipulators import ManipulatorBuilder  # noqa: PLC0415 - slow to import
 
         return ManipulatorBuilder(
             name=self._name,

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from ravemj.core.transforms import Ints
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.following import Equations, leaders, with_equations
-from ravemj.manipulators import joint_dofs
+from ravemj.model.following import Equations, leaders, with_equations
+from ravemj.model.manipulators import joint_dofs
 from ravemj.rave.joints.base import JointPart
-from ravemj.transforms import Ints
 
 
 class JointFollowing(JointPart):

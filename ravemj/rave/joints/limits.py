@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.rave.joints.base import JointPart
-from ravemj.transforms import Floats
 
 
 class JointLimits(JointPart):

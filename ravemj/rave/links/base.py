@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING
 
-from ravemj import scene
-from ravemj.showing import Shown
-from ravemj.simulation import BodyState
+from ravemj.core.showing import Shown
+from ravemj.engine.simulation import BodyState
+from ravemj.model import scene
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody

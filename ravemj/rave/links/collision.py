@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_transform
-from ravemj.bounds import link_bounds
+from ravemj.core.arrays import checked_transform
 from ravemj.geometry_functions import AABB
+from ravemj.model.bounds import link_bounds
 from ravemj.rave.body.collision import aabb_of
 from ravemj.rave.links.base import LinkPart
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_transform, checked_vector
-from ravemj.inertia import inertial_about, principal_frame, principal_moments
+from ravemj.core.arrays import checked_transform, checked_vector
+from ravemj.core.transforms import Floats, pose_of
+from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
+from ravemj.model.scene import Inertial
 from ravemj.rave.links.base import LinkPart
-from ravemj.scene import Inertial
-from ravemj.transforms import Floats, pose_of
 
 
 class LinkMass(LinkPart):

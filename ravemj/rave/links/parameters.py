@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats, Ints
 from ravemj.rave.links.base import LinkPart
-from ravemj.transforms import Floats, Ints
 
 
 class LinkParameters(LinkPart):

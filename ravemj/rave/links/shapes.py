@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
-from ravemj import scene
 from ravemj.errors import ArgumentError
+from ravemj.model import scene
+from ravemj.model.tessellation import merged, moved, triangulated
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo
 from ravemj.rave.infos.link import geometries_of
 from ravemj.rave.links.base import LinkPart
 from ravemj.rave.trimesh import TriMesh, trimesh_of
-from ravemj.tessellation import merged, moved, triangulated
 
 
 class LinkShapes(LinkPart):

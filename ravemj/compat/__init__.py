@@ -1,0 +1,1 @@
+"""OpenRAVE's sub-modules, and how scripts written for openravepy run unchanged."""

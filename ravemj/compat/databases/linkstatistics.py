@@ -1,0 +1,60 @@
+"""How far the links of a robot reach, for the weights and resolutions of planners."""
+
+import numpy as np
+
+from ravemj.compat.databases.model import DatabaseGenerator
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.model.reach import travel
+
+
+class LinkStatisticsModel(DatabaseGenerator):
+    """How far the links of a robot reach. It is computed from their boxes when it is asked for.
+
+    Args:
+        robot: The robot.
+
+    Example:
+        >>> model = databases.linkstatistics.LinkStatisticsModel(robot)
+        >>> if not model.load():
+        ...     model.autogenerate()
+        >>> model.setRobotWeights()
+        >>> model.setRobotResolutions(xyzdelta=0.005)
+    """
+
+    def load(self) -> bool:
+        """Return whether there is something to use: True."""
+        return True
+
+    def autogenerate(self, options: object = None) -> None:
+        """Do nothing."""
+
+    def save(self) -> None:
+        """Do nothing."""
+
+    def setRobotWeights(self, type: int = 0, weightmult: float = 1.0) -> None:
+        """Set the weights of the DOFs by how far they move the robot.
+
+        Args:
+            type: Only OpenRAVE's 0: in proportion to the distance that a point of the robot travels at most per unit
+                of the DOF.
+            weightmult: The mean of the weights.
+        """
+        if type != 0:
+            raise ArgumentError(f"setRobotWeights: type is {type}, and should be 0")
+        distances = self._distances()
+        self.robot.SetDOFWeights(weightmult * distances / distances.mean() if len(distances) else distances)
+
+    def setRobotResolutions(self, xyzdelta: float | None = None) -> None:
+        """Set the resolutions of the DOFs so that one step of a DOF moves no point of the robot too far.
+
+        Args:
+            xyzdelta: How far a point may travel [m]; None: 0.005.
+        """
+        delta = 0.005 if xyzdelta is None else xyzdelta
+        self.robot.SetDOFResolutions(delta / self._distances())
+
+    def _distances(self) -> Floats:
+        """Return how far a point travels at most per unit of each DOF; the least of all where nothing moves."""
+        distances = travel(self.robot.simulation_state.scene)
+        return np.where(distances > 0, distances, np.min(distances, initial=1.0, where=distances > 0))

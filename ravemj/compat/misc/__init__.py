@@ -1,0 +1,31 @@
+"""``openravepy.misc``: what scripts need beside the API."""
+
+from ravemj.compat.misc.drawing import DrawAxes, DrawCircle, DrawIkparam, DrawIkparam2
+from ravemj.compat.misc.sampling import SpaceSamplerExtra
+from ravemj.compat.misc.scripts import (
+    InitOpenRAVELogging,
+    LoadTrajectoryFromFile,
+    OpenRAVEGlobalArguments,
+    SetViewerUserThread,
+    mkdir_recursive,
+    myproduct,
+)
+from ravemj.geometry_functions.solids import TSP, ComputeBoxMesh, ComputeCylinderYMesh, ComputeGeodesicSphereMesh
+
+__all__ = [
+    "TSP",
+    "ComputeBoxMesh",
+    "ComputeCylinderYMesh",
+    "ComputeGeodesicSphereMesh",
+    "DrawAxes",
+    "DrawCircle",
+    "DrawIkparam",
+    "DrawIkparam2",
+    "InitOpenRAVELogging",
+    "LoadTrajectoryFromFile",
+    "OpenRAVEGlobalArguments",
+    "SetViewerUserThread",
+    "SpaceSamplerExtra",
+    "mkdir_recursive",
+    "myproduct",
+]

@@ -1,0 +1,162 @@
+"""Axes, circles and goals of arms, drawn into an environment."""
+
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.arrays import checked_numbers, checked_transform
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.rave.enums import IkParameterizationType
+from ravemj.rave.ikparameterization import IkParameterization
+
+_FRAMES = {
+    IkParameterizationType.Transform6D,
+    IkParameterizationType.Rotation3D,
+    IkParameterizationType.Translation3D,
+    IkParameterizationType.Lookat3D,
+}
+_LINES = {
+    IkParameterizationType.Direction3D,
+    IkParameterizationType.Ray4D,
+    IkParameterizationType.TranslationDirection5D,
+}
+_AXIS_COLOURS = {"rgb": np.eye(3), "cmy": 1 - np.eye(3)}
+
+
+class HasTransform(Protocol):
+    """A body, a link, a manipulator, a sensor."""
+
+    def GetTransform(self) -> Floats:
+        """Return the pose in the world, shape (4, 4)."""
+        ...
+
+
+class Canvas(Protocol):
+    """An environment, as far as drawing is concerned."""
+
+    def GetKinBody(self, name: str) -> HasTransform | None:
+        """Return the body of that name, or None."""
+        ...
+
+    def drawlinelist(self, points: ArrayLike, linewidth: float, colors: ArrayLike) -> object:
+        """Draw lines between pairs of points."""
+        ...
+
+    def drawlinestrip(self, points: ArrayLike, linewidth: float, colors: ArrayLike) -> object:
+        """Draw a line through points."""
+        ...
+
+
+def DrawAxes(
+    env: Canvas,
+    target: Any,  # noqa: ANN401 - a body, a name, a matrix, a list of these
+    dist: float = 1.0,
+    linewidth: float = 1,
+    colormode: str = "rgb",
+    coloradd: ArrayLike | None = None,
+) -> object:
+    """Draw the three axes of a frame, in red, green and blue.
+
+    Args:
+        env: The environment.
+        target: A pose (4x4, or [w, x, y, z, tx, ty, tz]), the name of a body, something with ``GetTransform``, a list
+            of these, or None for the world.
+        dist: Length of the axes [m].
+        linewidth: Width of the lines [pixels].
+        colormode: ``'rgb'`` or ``'cmy'``.
+        coloradd: Colour that is added to each, shape (3,).
+
+    Returns:
+        The handle of the lines, which disappear with it; a list of handles for a list; None without a viewer.
+
+    Example:
+        >>> handle = misc.DrawAxes(env, robot.GetActiveManipulator(), dist=0.2)
+    """
+    if isinstance(target, list) and not _is_pose(target):  # pyright: ignore[reportUnknownArgumentType]
+        return [DrawAxes(env, one, dist, linewidth, colormode, coloradd) for one in target]  # pyright: ignore[reportUnknownVariableType]
+    T = _transform(env, target)
+    colours = _AXIS_COLOURS[colormode] + (0 if coloradd is None else checked_numbers(coloradd, "coloradd"))
+    origin = T[:3, 3]
+    points = np.array([point for axis in T[:3, :3].T for point in (origin, origin + dist * axis)])
+    return env.drawlinelist(points, linewidth, colors=np.clip(np.repeat(colours, 2, axis=0), 0, 1))
+
+
+def DrawCircle(
+    env: Canvas,
+    center: ArrayLike,
+    normal: ArrayLike,
+    radius: float,
+    linewidth: float = 1,
+    colors: ArrayLike = (0, 0, 0),
+) -> object:
+    """Draw a circle; returns the handle of the line.
+
+    Args:
+        env: The environment.
+        center: Its centre [m], shape (3,).
+        normal: The axis that it goes around, shape (3,).
+        radius: Radius [m].
+        linewidth: Width of the line [pixels].
+        colors: Red, green and blue from 0 to 1.
+    """
+    right, up = np.linalg.svd(checked_numbers(normal, "normal").reshape(1, 3))[2][1:]
+    angles = np.linspace(0, 2 * np.pi, 65)
+    points = checked_numbers(center, "center") + radius * (
+        np.outer(np.cos(angles), right) + np.outer(np.sin(angles), up)
+    )
+    return env.drawlinestrip(points, linewidth, colors=np.array(colors))
+
+
+def DrawIkparam(
+    env: Canvas, ikparam: IkParameterization, dist: float = 1.0, linewidth: float = 1, coloradd: ArrayLike | None = None
+) -> object:
+    """Draw what an arm shall reach: axes at its place, or a line along its direction.
+
+    Args:
+        env: The environment.
+        ikparam: The goal.
+        dist: Length of axes and lines [m].
+        linewidth: Width of the lines [pixels].
+        coloradd: Colour that is added, shape (3,).
+
+    Returns:
+        The handle of the lines.
+    """
+    kind, values = ikparam.GetType(), ikparam.GetValues()
+    if kind in _FRAMES:
+        rotation = values[:4] if len(values) > 3 else [1, 0, 0, 0]
+        origin = [0, 0, 0] if kind == IkParameterizationType.Rotation3D else values[-3:]
+        return DrawAxes(env, [*rotation, *origin], dist, linewidth, coloradd=coloradd)
+    if kind not in _LINES:
+        raise ArgumentError(f"ikparam: its type is {kind.name}, which cannot be drawn")
+    start = values[3:] if len(values) > 3 else np.zeros(3)
+    colour = np.array([1.0, 0, 0]) + (0 if coloradd is None else checked_numbers(coloradd, "coloradd"))
+    return env.drawlinelist(np.array([start, start + dist * values[:3]]), linewidth, colors=np.clip(colour, 0, 1))
+
+
+def DrawIkparam2(
+    env: Canvas, ikparam: IkParameterization, dist: float = 1.0, linewidth: float = 1, coloradd: ArrayLike | None = None
+) -> list[object]:
+    """Draw as ``DrawIkparam``; returns a list of handles."""
+    return [DrawIkparam(env, ikparam, dist, linewidth, coloradd)]
+
+
+def _is_pose(target: object) -> bool:
+    """Tell the numbers of one pose from a list of targets."""
+    try:
+        return np.shape(np.array(target, dtype=np.float64)) in {(7,), (3, 4), (4, 4)}
+    except (TypeError, ValueError):
+        return False
+
+
+def _transform(env: Canvas, target: Any) -> Floats:  # noqa: ANN401 - as of DrawAxes
+    if target is None:
+        return np.eye(4)
+    thing: Any = env.GetKinBody(target) if isinstance(target, str) else target
+    if thing is None:
+        raise ArgumentError(f"target: there is no body '{target}'")
+    if hasattr(thing, "GetTransform"):
+        return thing.GetTransform()
+    return checked_transform(thing, "target")

@@ -1,0 +1,37 @@
+"""What ``import openravepy`` gives: OpenRAVE's names, and what its own module lets slip.
+
+Scripts that say ``from openravepy import *`` rely on ``numpy``, ``sys``, ``pickle``, ``logging`` and ``log`` too.
+What is ravemj's own (``load``, ``record``, ...) can be asked for, and does not come with the star, where it would hide
+names such as ``numpy.load``.
+"""
+
+import builtins
+import logging
+import pickle
+import sys
+
+import numpy
+
+import ravemj
+from ravemj.rave.logs import log
+
+__version__ = "0.9.0"
+"""That of OpenRAVE's last release, for scripts that compare."""
+
+_OWN = {"load", "load_ipython_extension", "read_motion", "record"}
+_LEAKS = {"numpy": numpy, "sys": sys, "pickle": pickle, "logging": logging, "log": log}
+_NAMES: list[str] = [name for name in dir(ravemj) if name not in _OWN and not name.startswith("_")]
+
+builtins.__dict__["__openravepy_build_doc__"] = False
+__path__: list[str] = []  # sub-modules are found by ravemj.compat.alias
+globals().update({name: getattr(ravemj, name) for name in _NAMES}, **_LEAKS, __all__=[*_NAMES, *_LEAKS])
+
+
+def __getattr__(name: str) -> object:
+    """Give what is ravemj's own."""
+    return getattr(ravemj, name)
+
+
+def __dir__() -> list[str]:
+    """Return what completion shows."""
+    return [*_NAMES, *_LEAKS]

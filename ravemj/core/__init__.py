@@ -1,0 +1,1 @@
+"""What knows nothing of robots: poses, arrays, files that appear whole."""

@@ -1,0 +1,99 @@
+"""Arrays that users hand in, checked once."""
+
+from types import EllipsisType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.transforms import Floats, Ints, normalize, rows_from_wxyz, wxyz_from_rows
+from ravemj.errors import ArgumentError
+
+NOT_RIGID = 1e-3
+"""How far a rotation times its transpose may be from the identity."""
+
+ROUNDING = 1e-12
+"""How far it may be to be taken as it is."""
+
+
+def checked_numbers(values: ArrayLike, name: str) -> Floats:
+    """Return a copy as floats, at least one-dimensional.
+
+    Raises:
+        ArgumentError: they are no numbers.
+    """
+    try:
+        return np.array(values, dtype=np.float64, ndmin=1)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{name}: {values!r} should be numbers") from None
+
+
+def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
+    """Return a copy of a finite vector.
+
+    Raises:
+        ArgumentError: it has another length, or something in it is no finite number.
+    """
+    vector = checked_numbers(values, name)
+    if vector.shape != (length,) and not (length == 0 and vector.size == 0):
+        raise ArgumentError(f"{name}: has shape {vector.shape}, and should have shape ({length},)")
+    if not np.isfinite(vector).all():
+        raise ArgumentError(f"{name}: is {vector.tolist()}, and should be finite")
+    return vector.reshape(length)
+
+
+def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "DOF indices") -> Ints:
+    """Return indices as an array; None stands for none, ``...`` for all.
+
+    Raises:
+        ArgumentError: they are no whole numbers.
+        IndexError: one is not from 0 to ``count - 1``.
+    """
+    if indices is ...:
+        return np.arange(count)
+    given = checked_numbers([] if indices is None else indices, name).reshape(-1)
+    if not np.all(given == np.round(given)) or not np.isfinite(given).all():
+        raise ArgumentError(f"{name} are {given.tolist()}, and should be whole numbers")
+    checked = given.astype(np.int_)
+    if checked.size and not (checked.min() >= 0 and checked.max() < count):
+        raise IndexError(f"{name} are {checked.tolist()}, and should be from 0 to {count - 1}")
+    return checked
+
+
+def checked_transform(transform: ArrayLike, name: str) -> Floats:
+    """Return a rigid transform as a 4x4 matrix.
+
+    Args:
+        transform: Shape (4, 4) or (3, 4), or a pose [w, x, y, z, tx, ty, tz]. The quaternion is normalised, and so is
+            a rotation that is scaled, as in OpenRAVE.
+        name: What to call it in errors.
+
+    Raises:
+        ArgumentError: it has another shape, is not finite, or its rotation is none.
+    """
+    given = checked_numbers(transform, name)
+    matrix = np.eye(4)
+    if not np.isfinite(given).all():
+        raise ArgumentError(f"{name}: is {given.tolist()}, and should be finite")
+    if given.shape == (7,):
+        if not given[:4].any():
+            raise ArgumentError(f"{name}: the quaternion is zero, and should be [w, x, y, z]")
+        matrix[:3, :3] = rows_from_wxyz(normalize((given[0], given[1], given[2], given[3])))
+        matrix[:3, 3] = given[4:]
+    elif given.shape in {(4, 4), (3, 4)}:
+        matrix[:3] = given[:3]
+        matrix[:3, :3] = _rotation(matrix[:3, :3], name)
+    else:
+        raise ArgumentError(f"{name}: has shape {given.shape}, and should have (4, 4), (3, 4) or (7,)")
+    return matrix
+
+
+def _rotation(given: Floats, name: str) -> Floats:
+    """Return a rotation matrix without the scale that it may have."""
+    determinant = float(np.linalg.det(given))
+    rotation = given / np.cbrt(determinant) if determinant > 0 else given
+    off = float(np.abs(rotation @ rotation.T - np.eye(3)).max())
+    if determinant <= 0 or off > NOT_RIGID:
+        raise ArgumentError(f"{name}: the rotation {given.tolist()} is none: its rows should be orthonormal")
+    if off < ROUNDING and abs(determinant - 1) < ROUNDING:
+        return given
+    return np.array(rows_from_wxyz(wxyz_from_rows(given.tolist())))  # with the scale, as OpenRAVE does

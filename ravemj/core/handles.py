@@ -1,0 +1,42 @@
+"""Handles: objects that undo something when they are closed, or when nobody holds them any more."""
+
+import weakref
+from collections.abc import Callable
+from types import TracebackType
+from typing import ParamSpec, Self
+
+from ravemj.core.showing import Shown
+
+_Arguments = ParamSpec("_Arguments")
+
+
+class Handle(Shown):
+    """Holds something for as long as somebody holds the handle."""
+
+    def __init__(
+        self, release: Callable[_Arguments, object], *args: _Arguments.args, **kwargs: _Arguments.kwargs
+    ) -> None:
+        """Make a handle.
+
+        Args:
+            release: Called once, at the end. It has to be safe in any thread at any time: garbage collection calls it.
+            args: What it is called with.
+            kwargs: What it is called with, by name.
+        """
+        self._release = weakref.finalize(self, release, *args, **kwargs)
+        self._release.atexit = False
+
+    def Close(self) -> None:  # noqa: N802 - OpenRAVE's name
+        """Let go now; a second call does nothing."""
+        self._release()
+
+    close = Close
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        """Let go."""
+        self._release()

@@ -1,9 +1,0 @@
-"""Grasps of a body by a hand."""
-
-from ravemj.databases.model import DatabaseGenerator
-
-
-class GraspingModel(DatabaseGenerator):
-    """Grasps of a body by a hand."""
-
-    capability = "planning of grasps"

@@ -1,9 +1,0 @@
-"""Where a robot can stand to reach a pose."""
-
-from ravemj.databases.model import DatabaseGenerator
-
-
-class InverseReachabilityModel(DatabaseGenerator):
-    """Where a robot can stand to reach a pose."""
-
-    capability = "maps of what arms reach"

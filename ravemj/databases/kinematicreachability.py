@@ -1,9 +1,0 @@
-"""Which poses an arm reaches."""
-
-from ravemj.databases.model import DatabaseGenerator
-
-
-class ReachabilityModel(DatabaseGenerator):
-    """Which poses an arm reaches."""
-
-    capability = "maps of what arms reach"

@@ -1,0 +1,1 @@
+"""The MuJoCo model of all bodies, and what is computed with it."""

@@ -1,0 +1,81 @@
+"""Whether two geoms touch, how far they are apart, how deep they are in each other."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import mujoco
+import numpy as np
+
+from ravemj.core.transforms import Floats
+
+if TYPE_CHECKING:
+    from ravemj.engine.collision.triangles import TriangleTests
+
+TOUCHING = 1e-10
+"""Shapes this near [m] touch, and count as colliding."""
+
+_RANGE = 1e-8  # m; MuJoCo looks no farther when only touching is asked for
+_FAR = 1e10  # m
+
+
+class Contact(NamedTuple):
+    """Where two geoms are in each other.
+
+    Attributes:
+        position: The middle between the deepest point of each, in the world [m], shape (3,).
+        normal: Unit vector out of the second geom towards the first, shape (3,).
+        depth: How far they are in each other [m]; 0 where they just touch.
+    """
+
+    position: Floats
+    normal: Floats
+    depth: float
+
+
+def _triangle_tests(model: mujoco.MjModel, data: mujoco.MjData) -> "TriangleTests":
+    from ravemj.engine.collision.triangles import TriangleTests  # noqa: PLC0415 - most models have no meshes
+
+    return TriangleTests(model, data)
+
+
+class ShapeTests:
+    """Exact tests of pairs of geoms of one compiled model, in its present state."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        self._model, self._data = model, data
+        self._triangles = _triangle_tests(model, data) if model.nmesh else None
+        self._segment = np.zeros(6)
+
+    def touch(self, first: int, second: int) -> bool:
+        """Return whether two geoms overlap or touch."""
+        if mujoco.mj_geomDistance(self._model, self._data, first, second, _RANGE, None) > TOUCHING:
+            return False
+        return self._triangles is None or self._exact(self._triangles, first, second, _RANGE, TOUCHING) <= TOUCHING
+
+    def distance(self, first: int, second: int, limit: float = _FAR) -> float:
+        """Return the signed distance of two geoms [m], negative if they overlap; at most ``limit``."""
+        hulls = mujoco.mj_geomDistance(self._model, self._data, first, second, limit, self._segment)
+        if self._triangles is None or hulls >= limit:
+            return hulls
+        return self._exact(self._triangles, first, second, limit, -_FAR, hulls)
+
+    def contact(self, first: int, second: int) -> Contact:
+        """Return the deepest contact of two geoms that touch."""
+        depth = max(-self.distance(first, second), 0.0)
+        start, end = self._segment[:3].copy(), self._segment[3:].copy()
+        normal = end - start
+        if depth <= TOUCHING:  # no direction in the two points
+            normal = self._data.geom_xpos[first] - self._data.geom_xpos[second]
+        length = float(np.linalg.norm(normal))
+        return Contact((start + end) / 2, normal / length if length else np.array([0.0, 0.0, 1.0]), depth)
+
+    def _exact(
+        self, triangles: "TriangleTests", first: int, second: int, limit: float, enough: float, hulls: float = 0.0
+    ) -> float:
+        """Return the distance with meshes that are not convex taken as triangles; ``hulls`` is that of the hulls."""
+        if triangles.is_concave(first):
+            return triangles.distance(first, second, limit, enough, self._segment)
+        if triangles.is_concave(second):
+            found = triangles.distance(second, first, limit, enough, self._segment)
+            self._segment[:] = np.roll(self._segment, 3)
+            return found
+        return hulls

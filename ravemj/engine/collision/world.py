@@ -1,0 +1,233 @@
+"""What collision checking knows of a world: which geom is whose, and which pairs of geoms each question is about."""
+
+from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+
+import mujoco
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.collision.rays import RayHit, first_hit
+from ravemj.engine.collision.shapes import TOUCHING, ShapeTests
+from ravemj.engine.simulation import BodyState, Compiled, Simulation
+
+MOST_PAIRS = 1_000_000
+"""Pairs of geoms that are kept for all questions together."""
+
+_ONES = np.ones(3)  # summing rows by a product with it is the fastest way for few of them
+_NO_PAIRS: list[tuple[int, int]] = []
+
+
+class Pairs:
+    """Pairs of geoms, with spheres around them for a first look.
+
+    Attributes:
+        first: The first geom of each pair, shape (n,).
+        second: The second one, shape (n,).
+    """
+
+    def __init__(self, first: Ints, second: Ints, radii: Floats) -> None:
+        count = len(first)
+        self._geoms = np.concatenate([first, second])
+        self.first, self.second = self._geoms[:count], self._geoms[count:]
+        self._reach = radii[first] + radii[second]
+        self._square = (self._reach * (1 + 1e-9) + 2 * TOUCHING) ** 2
+        # For what is computed each time: making new arrays takes longer than filling these.
+        self._centers = np.empty((2 * count, 3))
+        self._from, self._apart = self._centers[:count], self._centers[count:]
+        self._distance = np.empty(count)
+
+    def near(self, positions: Floats) -> list[tuple[int, int]]:
+        """Return the pairs whose spheres touch, in order, for the present positions of all geoms.
+
+        The caller holds the lock.
+        """
+        apart = self._apart
+        positions.take(self._geoms, 0, self._centers, "clip")  # all are there; the default mode is slower
+        apart -= self._from
+        apart *= apart
+        found = (apart.dot(_ONES, self._distance) < self._square).nonzero()[0]
+        if not len(found):
+            return _NO_PAIRS
+        return list(zip(self.first[found].tolist(), self.second[found].tolist(), strict=True))
+
+    def gaps(self, positions: Floats) -> Floats:
+        """Return how far apart the spheres of each pair are [m], negative where they overlap, shape (n,)."""
+        return np.linalg.norm(positions[self.first] - positions[self.second], axis=1) - self._reach
+
+
+class CollisionWorld:
+    """The geoms of all bodies in the present model, and the pairs that were asked for before.
+
+    ``world_of`` returns it, up to date. Bodies may move in the meantime; whatever else changes makes a new one.
+
+    Attributes:
+        version: What it was made for.
+        shapes: Exact tests.
+        collides: For each geom, whether it collides: it belongs to an enabled link and is no mere picture.
+    """
+
+    def __init__(self, simulation: Simulation, compiled: Compiled) -> None:
+        self.version = (simulation.version, simulation.collision_stamp)
+        self.bodies = simulation.bodies
+        self._model, self._data = compiled.model, compiled.data
+        self._positions = compiled.data.geom_xpos
+        self.shapes = ShapeTests(compiled.model, compiled.data)
+        self._number = {body: number for number, body in enumerate(self.bodies)}
+        self._pairs: dict[Hashable, Pairs] = {}
+        self._pair_count = 0
+        self._find_owners(compiled.model)
+        self._groups = _groups(self.bodies)
+
+    def _find_owners(self, model: mujoco.MjModel) -> None:
+        """Find body and link of each geom; the arrays have a place for each MuJoCo body first."""
+        owners, links = np.full(model.nbody, -1), np.zeros(model.nbody, dtype=int)
+        enabled = np.zeros(model.nbody, dtype=bool)
+        for number, body in enumerate(self.bodies):
+            ids = body.kinematics.body_ids
+            owners[ids], links[ids], enabled[ids] = number, np.arange(len(ids)), body.link_enabled
+        of_geom = model.geom_bodyid
+        self._owner, self._link = owners[of_geom], links[of_geom]
+        self._is_solid = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
+        self.collides = self._is_solid & enabled[of_geom]
+
+    def group(self, body: BodyState) -> list[BodyState]:
+        """Return a body and all that are connected to it by grabbing; it comes first."""
+        group = self._groups.get(body, [body])
+        return [body, *(one for one in group if one is not body)]
+
+    def geoms_of_body(self, body: BodyState) -> Ints:
+        """Return the geoms of a body that collide."""
+        number = self._number.get(body, -2)
+        return np.flatnonzero(self.collides & (self._owner == number))
+
+    def geoms_of_link(self, body: BodyState, link: int, *, enabled_only: bool = True) -> Ints:
+        """Return the geoms of a link that collide, or would if it were enabled."""
+        number = self._number.get(body, -2)
+        among = self.collides if enabled_only else self._is_solid
+        return np.flatnonzero(among & (self._owner == number) & (self._link == link))
+
+    def geoms_of_group(self, body: BodyState) -> Ints:
+        """Return the geoms of a body and all that are connected to it by grabbing."""
+        return np.concatenate([self.geoms_of_body(one) for one in self.group(body)])
+
+    def geoms_of_others(self, body: BodyState) -> Ints:
+        """Return the geoms of the bodies that are not connected to this one by grabbing."""
+        numbers = [self._number[one] for one in self.group(body) if one in self._number]
+        return np.flatnonzero(self.collides & ~np.isin(self._owner, numbers))
+
+    def owner(self, geom: int) -> tuple[BodyState, int]:
+        """Return the body and the index of the link that a geom belongs to."""
+        return self.bodies[int(self._owner[geom])], int(self._link[geom])
+
+    def geometry(self, geom: int) -> int:
+        """Return which of its link's geometries a geom belongs to."""
+        body, link = self.owner(geom)
+        kinematics = body.kinematics
+        number = geom - int(self._model.body_geomadr[kinematics.body_ids[link]])
+        return int(np.searchsorted(np.cumsum(kinematics.names.geoms[link]), number, side="right"))
+
+    def pairs(self, question: Hashable, find: Callable[[], tuple[Ints, Ints]]) -> Pairs:
+        """Return the pairs that a question is about.
+
+        Args:
+            question: The question; pairs are kept under it.
+            find: Returns the first and the second geoms, where they are not known yet.
+        """
+        pairs = self._pairs.get(question)
+        if pairs is None:
+            first, second = find()
+            self._pair_count += len(first)
+            if self._pair_count > MOST_PAIRS:
+                self._pairs.clear()
+                self._pair_count = len(first)
+            pairs = self._pairs[question] = self.make_pairs(first, second)
+        return pairs
+
+    def make_pairs(self, first: Ints, second: Ints) -> Pairs:
+        """Return pairs of geoms for a question that is asked once."""
+        return Pairs(first, second, self._model.geom_rbound)
+
+    def collide(self, pairs: Pairs) -> bool:
+        """Return whether any of the pairs touch or overlap."""
+        near = pairs.near(self._positions)
+        return bool(near) and any(self.shapes.touch(first, second) for first, second in near)
+
+    def hits(self, pairs: Pairs) -> Iterator[tuple[int, int]]:
+        """Yield the pairs that touch or overlap."""
+        touch = self.shapes.touch
+        return ((first, second) for first, second in pairs.near(self._positions) if touch(first, second))
+
+    def distance(self, pairs: Pairs, limit: float) -> float:
+        """Return the least signed distance of the pairs [m], or the limit if none is nearer."""
+        gaps = pairs.gaps(self._positions)
+        for number in np.argsort(gaps, kind="stable"):
+            if gaps[number] >= limit:
+                break
+            limit = self.shapes.distance(int(pairs.first[number]), int(pairs.second[number]), limit)
+        return limit
+
+    def count_within(self, pairs: Pairs, tolerance: float) -> int:
+        """Return how many of the pairs are nearer than a tolerance [m]."""
+        near = np.flatnonzero(pairs.gaps(self._positions) <= tolerance)
+        beyond = float(np.nextafter(tolerance, np.inf))
+        measured = (self.shapes.distance(int(pairs.first[n]), int(pairs.second[n]), beyond) for n in near)
+        return sum(distance <= tolerance for distance in measured)
+
+    def ray(self, start: Floats, direction: Floats, geoms: Ints | None = None) -> RayHit | None:
+        """Return where a ray first meets one of the geoms; None: any that collides. See ``rays.first_hit``."""
+        among = np.flatnonzero(self.collides) if geoms is None else geoms
+        return first_hit(self._model, self._data, among, start, direction)
+
+    @contextmanager
+    def moved(self, motions: Mapping[tuple[BodyState, int], Floats]) -> Generator[None]:
+        """Put links elsewhere for the tests inside the ``with``; the bodies themselves stay.
+
+        Args:
+            motions: For a body and a link, the motion in the world, shape (4, 4).
+        """
+        positions, rotations = self._data.geom_xpos, self._data.geom_xmat
+        try:
+            for (body, link), motion in motions.items():
+                for geom in self.geoms_of_link(body, link, enabled_only=False):
+                    positions[geom] = motion[:3, :3] @ positions[geom] + motion[:3, 3]
+                    rotations[geom] = (motion[:3, :3] @ rotations[geom].reshape(3, 3)).ravel()
+            yield
+        finally:
+            mujoco.mj_kinematics(self._model, self._data)
+
+
+def world_of(simulation: Simulation) -> CollisionWorld:
+    """Return what collision checking knows of the present world. The caller holds ``simulation.lock``."""
+    world = simulation.collision_world
+    compiled = simulation.compile()
+    if isinstance(world, CollisionWorld) and world.version == (simulation.version, simulation.collision_stamp):
+        return world
+    simulation.collision_world = world = CollisionWorld(simulation, compiled)
+    return world
+
+
+def cross(first: Ints, second: Ints) -> tuple[Ints, Ints]:
+    """Return all pairs of two sets of geoms."""
+    return np.repeat(first, len(second)), np.tile(second, len(first))
+
+
+def joined(pairs: Iterable[tuple[Ints, Ints]]) -> tuple[Ints, Ints]:
+    """Return the pairs of several sets of pairs, one after the other."""
+    sets = list(pairs)
+    empty = np.zeros(0, dtype=int)
+    return np.concatenate([empty, *(first for first, _ in sets)]), np.concatenate(
+        [empty, *(other for _, other in sets)]
+    )
+
+
+def _groups(bodies: Iterable[BodyState]) -> dict[BodyState, list[BodyState]]:
+    """Return for each body that holds others or is held the bodies that are connected to it by grabbing."""
+    groups: dict[BodyState, list[BodyState]] = {}
+    for holder in bodies:
+        for grab in holder.grabs:
+            ours, theirs = groups.setdefault(holder, [holder]), groups.setdefault(grab.body, [grab.body])
+            if ours is not theirs:
+                ours += theirs
+                groups.update((one, ours) for one in theirs)
+    return groups

@@ -1,0 +1,107 @@
+"""What pushes bodies during a step of physics."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.kinematics import WELDED
+from ravemj.engine.physics.body import PhysicalBody
+from ravemj.engine.simulation import BodyState
+
+
+@dataclass
+class Motor:
+    """Joints that are to move at given velocities.
+
+    Attributes:
+        dofs: Which DOFs.
+        velocities: Their velocities [rad/s or m/s], shape (len(dofs),).
+    """
+
+    dofs: Ints
+    velocities: Floats
+
+
+class Loads:
+    """What pushes one body: torques and forces during the next step only, and a motor until it is let go.
+
+    Attributes:
+        torques: On the DOFs [N m or N], shape (dof,).
+        motor: What drives joints, or None.
+    """
+
+    def __init__(self, state: BodyState, motor: Motor | None = None) -> None:
+        self._state = state
+        self.motor = motor
+        links = len(state.scene.links)
+        self.torques = np.zeros(len(state.scene.dof_axes))
+        self._forces, self._levers, self._moments = np.zeros((links, 3)), np.zeros((links, 3)), np.zeros((links, 3))
+
+    def next(self) -> "Loads":
+        """Return what is left for the step after: the motor."""
+        return Loads(self._state, self.motor)
+
+    def push(self, link: int, force: Floats, position: Floats, *, add: bool) -> None:
+        """Let a force act on a link.
+
+        Args:
+            link: Index of the link.
+            force: In the world [N], shape (3,).
+            position: Where it acts, in the world [m], shape (3,).
+            add: Whether forces that were there stay.
+        """
+        T_world_link = self._state.link_transform(link)
+        center = T_world_link[:3, :3] @ self._state.scene.links[link].inertial.com + T_world_link[:3, 3]
+        self._forces[link] = force + add * self._forces[link]
+        self._levers[link] = np.cross(position - center, force) + add * self._levers[link]
+
+    def turn(self, link: int, moment: Floats, *, add: bool) -> None:
+        """Let a torque act on a link.
+
+        Args:
+            link: Index of the link.
+            moment: In world axes [N m], shape (3,).
+            add: Whether torques that were there stay.
+        """
+        self._moments[link] = moment + add * self._moments[link]
+
+    def apply(self, body: PhysicalBody) -> None:
+        """Let torques and forces act on a body in the model of physics, until they are replaced."""
+        data = body.kinematics.data
+        data.xfrc_applied[body.kinematics.body_ids] = np.hstack([self._forces, self._levers + self._moments])
+        if self.torques.any():
+            slopes = self._state.dynamics.map.at(self._state.kinematics.values(), second=False)
+            columns = slopes.forward(np.eye(len(self.torques)))
+            data.qfrc_applied[body.rows] += np.linalg.lstsq(columns.T, self.torques)[0]
+
+    def drive(self, body: PhysicalBody, applied: Floats) -> None:
+        """Let the motor act: the torques with which the joints have their velocities after a time step.
+
+        Args:
+            body: The body, in a model whose accelerations are computed.
+            applied: The other forces on all joints of the model, shape (nv,).
+        """
+        if self.motor is None:
+            return
+        model, data = body.kinematics.model, body.kinematics.data
+        rows, wanted, limits = _motor_rows(body, self.motor)
+        unit = np.zeros((len(rows), model.nv))
+        unit[np.arange(len(rows)), rows] = 1.0
+        answers = np.zeros_like(unit)
+        mujoco.mj_solveM(model, data, answers, unit)
+        missing = (wanted - data.qvel[rows]) / model.opt.timestep - data.qacc_smooth[rows]
+        torques = np.linalg.solve(answers[:, rows], missing)
+        data.qfrc_applied[rows] = applied[rows] + np.clip(torques, -limits, limits)
+
+
+def _motor_rows(body: PhysicalBody, motor: Motor) -> tuple[Ints, Floats, Floats]:
+    """Return where the driven joints are in ``qvel``, and their velocities and greatest torques."""
+    kinematics = body.state.kinematics
+    movers = body.state.dynamics.tree.mover_of_qpos(kinematics.model)
+    places = np.flatnonzero(kinematics.qpos_indices[motor.dofs] != WELDED)
+    dofs = motor.dofs[places]
+    rows = body.rows[[movers[int(qpos)] for qpos in kinematics.qpos_indices[dofs]]]
+    torques = [body.state.scene.dof_axes[int(dof)].max_torque or np.inf for dof in dofs]
+    return rows, motor.velocities[places], np.array(torques)

@@ -1,0 +1,195 @@
+"""MuJoCo's dynamics for the bodies of a simulation.
+
+The simulation's own model holds every body where it is put. Here is a second one, in which bodies without a static
+link are free. It has no state that the simulation has not: before each step it takes over what users moved, and after
+it the simulation follows. So it can be made anew whenever bodies come, go or change.
+"""
+
+import itertools
+import logging
+import math
+
+import mujoco
+import numpy as np
+
+from ravemj.core.transforms import Floats, wxyz_from_rows
+from ravemj.engine.collision.resting import tested_pairs
+from ravemj.engine.collision.world import world_of
+from ravemj.engine.physics.body import PhysicalBody
+from ravemj.engine.physics.loads import Loads
+from ravemj.engine.simulation import BodyState, Compiled, Simulation
+from ravemj.errors import Diagnostics
+from ravemj.formats.mjcf import Mjcf, Options
+from ravemj.model.scene import Scene
+
+_LOG = logging.getLogger("ravemj")
+
+LONGEST_STEP = 0.002
+"""The longest time step [s] that is computed at once; longer ones are divided."""
+
+
+class Physics:
+    """Moves the bodies of a simulation as their masses, forces, joints and contacts say.
+
+    Attributes:
+        self_collisions: Whether links of one body collide with one another.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self.self_collisions = True
+        self._loads: dict[BodyState, Loads] = {}
+        self._bodies: dict[BodyState, PhysicalBody] = {}
+        self._made_of: list[object] = []
+        self._model = mujoco.MjModel.from_xml_string("<mujoco/>")
+        self._data = mujoco.MjData(self._model)
+
+    def set_self_collisions(self, value: bool) -> None:
+        """Say whether links of one body collide with one another."""
+        self.self_collisions = value
+        self._made_of.clear()
+
+    def loads(self, state: BodyState) -> Loads:
+        """Return what pushes a body during the next step, to be changed."""
+        return self._loads.setdefault(state, Loads(state))
+
+    def step(self, timestep: float) -> None:
+        """Let time pass: the bodies move, and the simulation follows.
+
+        Args:
+            timestep: How long [s].
+        """
+        self._prepare()
+        model, data = self._model, self._data
+        count = math.ceil(timestep / LONGEST_STEP)
+        if not count:
+            return
+        model.opt.gravity[:] = self._simulation.gravity
+        model.opt.timestep = timestep / count
+        before = data.qpos.copy()
+        data.qfrc_applied[:], data.xfrc_applied[:] = 0.0, 0.0
+        for body in self._bodies.values():
+            self.loads(body.state).apply(body)
+        applied = data.qfrc_applied.copy()
+        for _ in range(count):
+            self._drive(applied)
+            mujoco.mj_step(model, data)
+        if not (np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()):
+            _LOG.error("physics got unstable and starts again at rest; very light links or strong forces do that")
+            mujoco.mj_resetData(model, data)
+            data.qpos[:] = before
+        self._loads = {state: loads.next() for state, loads in self._loads.items() if loads.motor is not None}
+        self._give_back()
+
+    def _drive(self, applied: Floats) -> None:
+        """Let motors act during the next time step."""
+        driven = [body for body in self._bodies.values() if self.loads(body.state).motor is not None]
+        if driven:
+            self._data.qfrc_applied[:] = applied
+            mujoco.mj_forward(self._model, self._data)
+            for body in driven:
+                self.loads(body.state).drive(body, applied)
+
+    def _prepare(self) -> None:
+        """Make the model anew if the bodies are others, and take over what users moved."""
+        self._simulation.compile()
+        states = self._simulation.bodies
+        made_of: list[object] = [
+            part for state in states for part in (state, state.scene, state.rest_poses, *state.grabs)
+        ]
+        if len(made_of) != len(self._made_of) or any(a is not b for a, b in zip(made_of, self._made_of, strict=True)):
+            self._make(states)
+            self._made_of = made_of
+        for body in self._bodies.values():
+            body.take_over()
+
+    def _make(self, states: tuple[BodyState, ...]) -> None:
+        scene = Scene(tuple(state.scene for state in states), None)
+        compiled = Compiled(scene, Diagnostics(), Options(free_bases=True, excludes=False), self._add_grabs)
+        self._model, self._data = compiled.model, compiled.data
+        self._model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
+        self._model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+        self._bodies = {
+            state: PhysicalBody(state, self._model, self._data, names)
+            for state, names in zip(states, compiled.mjcf.names, strict=True)
+        }
+
+    def _add_grabs(self, spec: mujoco.MjSpec, written: Mjcf) -> None:
+        """Hang what bodies hold on them, and let them not collide with it."""
+        names = dict(zip(self._simulation.bodies, written.names, strict=True))
+        for state, own in names.items():
+            for grab in state.grabs:
+                held = names[grab.body]
+                if not any(link.static for link in grab.body.scene.links):
+                    pose = [*grab.T_link_body[:3, 3], *wxyz_from_rows(grab.T_link_body[:3, :3].tolist())]
+                    weld = spec.add_equality(type=mujoco.mjtEq.mjEQ_WELD, objtype=mujoco.mjtObj.mjOBJ_BODY)
+                    weld.name1, weld.name2 = own.links[grab.link], held.links[0]
+                    weld.data[:11] = [0, 0, 0, *pose, 1]
+                for link in {grab.link, *grab.ignored}:
+                    for name in held.links:
+                        spec.add_exclude(bodyname1=own.links[link], bodyname2=name)
+            for first, second in self._untested_pairs(state):
+                spec.add_exclude(bodyname1=own.links[first], bodyname2=own.links[second])
+
+    def _untested_pairs(self, state: BodyState) -> set[tuple[int, int]]:
+        """Return the pairs of a body's links that do not collide, by index."""
+        pairs = set(itertools.combinations(range(len(state.scene.links)), 2))
+        return pairs.difference(tested_pairs(world_of(self._simulation), state)) if self.self_collisions else pairs
+
+    def joint_wrench(self, state: BodyState, child: int, anchor: Floats) -> tuple[Floats, Floats]:
+        """Return the force on a link from its parent [N], and the torque about a point [N m], in world axes.
+
+        Args:
+            state: The body.
+            child: Index of the link.
+            anchor: The point, in the world [m], shape (3,).
+        """
+        body_id = self._body_id(state, child)
+        if body_id is None:
+            return np.zeros(3), np.zeros(3)
+        return self._wrench(body_id, self._data.cfrc_int[body_id], anchor)
+
+    def link_wrench(self, state: BodyState, link: int) -> tuple[Floats, Floats]:
+        """Return force [N] and torque about its centre of mass [N m] of joints and contacts on a link."""
+        body_id = self._body_id(state, link)
+        if body_id is None:
+            return np.zeros(3), np.zeros(3)
+        children = np.flatnonzero(self._model.body_parentid == body_id)
+        data = self._data
+        total = data.cfrc_int[body_id] + data.cfrc_ext[body_id] - data.cfrc_int[children].sum(axis=0)
+        force, torque = self._wrench(body_id, total, data.xipos[body_id])
+        applied = data.xfrc_applied[body_id]
+        return force - applied[:3], torque - applied[3:]
+
+    def _body_id(self, state: BodyState, link: int) -> int | None:
+        """Return MuJoCo's index of a link, with the forces on it computed; None if no step has seen it."""
+        body = self._bodies.get(state)
+        if body is None:
+            return None
+        mujoco.mj_forward(self._model, self._data)
+        mujoco.mj_rnePostConstraint(self._model, self._data)
+        return int(body.kinematics.body_ids[link])
+
+    def _wrench(self, body_id: int, spatial: Floats, point: Floats) -> tuple[Floats, Floats]:
+        """Return force, and torque about a point, of MuJoCo's spatial force: torque about the tree's centre of mass."""
+        center = self._data.subtree_com[self._model.body_rootid[body_id]]
+        return spatial[3:].copy(), spatial[:3] - np.cross(point - center, spatial[3:])
+
+    def _give_back(self) -> None:
+        """Let the simulation follow."""
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_comVel(self._model, self._data)
+        moving = [body for body in self._bodies.values() if body.can_move]
+        held = {grab.body for state in self._bodies for grab in state.grabs}
+        own = [body for body in moving if body.state not in held]
+        for body in own:
+            body.give_configuration()
+        compiled = self._simulation.compile()
+        mujoco.mj_kinematics(compiled.model, compiled.data)
+        for body in own:
+            body.state.moved()
+        for body in own:
+            body.settle()
+        for body in moving:
+            body.give_velocities()

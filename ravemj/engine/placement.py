@@ -1,0 +1,71 @@
+"""Links put where their joints do not place them.
+
+OpenRAVE's state are the poses of the links, and joint values are read off them. MuJoCo's are joint values, from which
+``mj_kinematics`` computes the poses. Where poses are given, the joint values that they show are set, and what is left
+goes into the fixed part of a link's pose in its parent, ``body_pos`` and ``body_quat``, so that the next
+``mj_kinematics`` gives these poses again.
+"""
+
+import math
+
+import mujoco
+import numpy as np
+
+from ravemj.core.transforms import Floats, inverse, pose_of
+from ravemj.engine.kinematics import BodyKinematics
+from ravemj.model.joints import measured_values
+from ravemj.model.scene import Joint
+
+ROUNDING = 1e-10
+"""A link this far [m or in its matrix] from where its joint places it is where its joint places it."""
+
+
+def place_links(kinematics: BodyKinematics, T_world_links: Floats, last_values: Floats) -> None:
+    """Put every link at a pose; joints get the values that the poses show.
+
+    Args:
+        kinematics: The body.
+        T_world_links: Shape (links, 4, 4).
+        last_values: Joint values whose full turns are kept [rad or m], shape (dof,).
+    """
+    for link in kinematics.roots:
+        kinematics.write_root(link, T_world_links[link])
+    kinematics.set_values(_shown_values(kinematics, T_world_links, last_values), limit_followers=False)
+    placed = kinematics.link_transforms()
+    if placed.size and np.abs(placed - T_world_links).max() > ROUNDING:
+        _displace(kinematics, placed, T_world_links)
+        mujoco.mj_kinematics(kinematics.model, kinematics.data)
+
+
+def _shown_values(kinematics: BodyKinematics, T_world_links: Floats, last_values: Floats) -> Floats:
+    values = last_values.copy()
+    poses = [pose_of(transform) for transform in T_world_links]
+    for joint, first in zip(kinematics.body.joints, kinematics.first_dofs, strict=True):
+        dofs = slice(first, first + len(joint.axes))
+        shown = measured_values(joint, poses[joint.parent].inverse() @ poses[joint.child])
+        values[dofs] = [_in_turn(joint, *pair) for pair in zip(shown, last_values[dofs].tolist(), strict=True)]
+    return values
+
+
+def _in_turn(joint: Joint, shown: float, last: float) -> float:
+    """Return the value of a hinge in the full turn that its last value was in."""
+    if joint.kind != "hinge" or joint.static:
+        return shown
+    return shown + math.tau * (round(last / math.tau) - round(shown / math.tau))
+
+
+def _displace(kinematics: BodyKinematics, placed: Floats, wanted: Floats) -> None:
+    """Change the fixed part of links' poses so that they come where they are wanted."""
+    model = kinematics.model
+    link_of = {body_id: link for link, body_id in enumerate(kinematics.body_ids.tolist())}
+    for body_id, link in link_of.items():
+        if link in kinematics.roots:
+            continue
+        parent = link_of[int(model.body_parentid[body_id])]
+        fixed = np.eye(4)
+        fixed[:3, 3] = model.body_pos[body_id]
+        mujoco.mju_quat2Mat(rotation := np.zeros(9), model.body_quat[body_id])
+        fixed[:3, :3] = rotation.reshape(3, 3)
+        by_joint: Floats = inverse(placed[parent] @ fixed) @ placed[link]
+        kinematics.write_root(link, inverse(wanted[parent]) @ wanted[link] @ inverse(by_joint))
+    kinematics.displaced = True

@@ -1,0 +1,393 @@
+"""A body and its state."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, Pose, inverse, pose_of
+from ravemj.engine.kinematics import BodyKinematics, Configuration
+from ravemj.engine.placement import place_links
+from ravemj.engine.simulation.compiled import write_inertial
+from ravemj.errors import ErrorCode, RavemjError
+from ravemj.model.scene import Axis, Geometry, Inertial, KinBody, Link
+
+if TYPE_CHECKING:
+    from ravemj.engine.batch import Batch
+    from ravemj.engine.dynamics import BodyDynamics, Inertias
+    from ravemj.engine.simulation.world import Simulation
+
+_LOOKS = {"name", "diffuse", "ambient", "transparency"}
+
+
+class GrabbedBody(NamedTuple):
+    """One body held by a link of another.
+
+    Attributes:
+        body: The held body.
+        link: Index of the link that holds it.
+        T_link_body: Its pose in the link.
+        ignored: Indices of the holder's links that it does not collide with.
+    """
+
+    body: "BodyState"
+    link: int
+    T_link_body: Floats
+    ignored: frozenset[int] = frozenset()
+
+
+class SavedConfiguration(NamedTuple):
+    """State of joints and links.
+
+    Attributes:
+        last_placed: How joints placed the links, if ever they did.
+        poses: Where the links are, shape (links, 4, 4).
+        is_moved: Whether links were moved since then, while there was no model.
+    """
+
+    last_placed: Configuration | None
+    poses: Floats
+    is_moved: bool
+
+
+class BodyState:
+    """A body and its state; what the API objects of one body share.
+
+    A body in the world has kinematics in the compiled model. Before that, and after it was taken out, it has poses
+    only.
+
+    Attributes:
+        scene: What it consists of; what files say, and what setters of the API changed since.
+        simulation: The world that it was made for.
+        index: Its index in the world, from 1; 0 while it is not in the world.
+        stamp: Grows with every change of pose.
+        rest_poses: The pose in which links that touch never count as colliding, shape (links, 4, 4): that in which the
+            body was added.
+        api_object: The object that users have for it; the layer above keeps it here.
+    """
+
+    def __init__(self, scene: KinBody, simulation: "Simulation") -> None:
+        self.simulation = simulation
+        self.index = 0
+        self.stamp = 0
+        self._grabs: tuple[GrabbedBody, ...] = ()
+        self.rest_poses: Floats | None = None
+        self.api_object: object | None = None
+        self._kinematics: BodyKinematics | None = None
+        self._dynamics: BodyDynamics | None = None
+        self._batch: Batch | None = None
+        self._inertias: tuple[tuple[Link, ...], Inertias] | None = None
+        self.rebuild(scene)
+
+    def rebuild(self, scene: KinBody) -> None:
+        """Make the body anew of other links and joints, in the configuration that the scene has.
+
+        Raises:
+            RavemjError: the body is in the world.
+        """
+        if self.index:
+            raise RavemjError(f"'{self.scene.name}' is in an environment; remove it first", ErrorCode.InvalidState)
+        self.scene = scene
+        self.link_enabled = [link.enabled for link in scene.links]
+        self.rest_poses = None
+        self.stamp += 1
+        self._velocities = np.zeros((len(scene.links), 6))
+        self._poses: Floats | None = None
+        self._configuration: Configuration | None = None
+        self._is_moved = False
+
+    @property
+    def link_enabled(self) -> tuple[bool, ...]:
+        """For each link, whether collision checking looks at it."""
+        return self._link_enabled
+
+    @link_enabled.setter
+    def link_enabled(self, enabled: Iterable[bool]) -> None:
+        with self.simulation.lock:
+            self._link_enabled = tuple(enabled)
+            self.simulation.collision_stamp += 1
+
+    @property
+    def grabs(self) -> tuple[GrabbedBody, ...]:
+        """What it holds, in the order of grabbing."""
+        return self._grabs
+
+    @grabs.setter
+    def grabs(self, grabs: Iterable[GrabbedBody]) -> None:
+        self._grabs = tuple(grabs)
+        self.simulation.collision_stamp += 1
+
+    @property
+    def kinematics(self) -> BodyKinematics:
+        """Joint values and link poses in the present model, which is compiled if need be.
+
+        Raises:
+            RavemjError: the body is not in the world.
+        """
+        if self._kinematics is None:
+            if not self.index:
+                message = f"'{self.scene.name}' is not in an environment and has no joint values; add it first"
+                raise RavemjError(message, ErrorCode.NotInitialized)
+            self.simulation.compile()
+            assert self._kinematics is not None
+        return self._kinematics
+
+    @property
+    def dynamics(self) -> "BodyDynamics":
+        """Jacobians and inverse dynamics in the present model."""
+        if self._dynamics is None:
+            from ravemj.engine.dynamics import BodyDynamics  # noqa: PLC0415 - slow to import
+
+            self._dynamics = BodyDynamics(self.kinematics)
+        return self._dynamics
+
+    @property
+    def batch(self) -> "Batch":
+        """The chain of links, ready for many configurations."""
+        if self._batch is None:
+            from ravemj.engine.batch import Batch  # noqa: PLC0415 - slow to import
+
+            self._batch = Batch(self.kinematics, self.dynamics)
+        return self._batch
+
+    @property
+    def inertias(self) -> "Inertias":
+        """Mass properties of the links, as the scene has them now."""
+        if self._inertias is None or self._inertias[0] is not self.scene.links:
+            from ravemj.engine.dynamics import Inertias  # noqa: PLC0415 - slow to import
+
+            self._inertias = (self.scene.links, Inertias.of(self.scene.links))
+        return self._inertias[1]
+
+    def enter_model(self, kinematics: BodyKinematics) -> None:
+        """Take the body's place in a new model, as far as joints and roots tell; ``settle`` does the rest."""
+        if self._configuration is None:
+            kinematics.write_values(np.array([axis.value for axis in self.scene.dof_axes]))
+        elif not kinematics.restore(self._configuration):
+            self._is_moved = True
+        self._kinematics = kinematics
+
+    def settle(self) -> None:
+        """Put the links where they were moved while there was no model."""
+        if self._is_moved and self._poses is not None:
+            kinematics = self.kinematics
+            place_links(kinematics, self._poses, kinematics.values())
+        self._poses, self._is_moved = None, False
+
+    def leave_model(self) -> None:
+        """Keep the state; the model is about to go."""
+        if self._kinematics is not None:
+            self._poses = self._kinematics.link_transforms()
+            self._configuration = self._kinematics.configuration()
+            self._kinematics = None
+        self._dynamics = self._batch = None
+
+    def link_transforms(self) -> Floats:
+        """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy. This never compiles."""
+        if self._kinematics is not None:
+            return self._kinematics.link_transforms()
+        return self._kept_poses().copy()
+
+    def link_transform(self, link: int) -> Floats:
+        """Return ``T_world_link`` of one link, shape (4, 4); a copy. This never compiles."""
+        if self._kinematics is not None:
+            return self._kinematics.link_transform(link)
+        return self._kept_poses()[link].copy()
+
+    def _kept_poses(self) -> Floats:
+        """Return the poses of the links while there is no model."""
+        if self._poses is None:
+            self._poses = np.array([link.T_world_link.matrix() for link in self.scene.links]).reshape(-1, 4, 4)
+        return self._poses
+
+    def set_values(self, values: Floats, *, limit_followers: bool = True) -> None:
+        """Set the joint values [rad or m], shape (dof,), and place all links by them."""
+        self.kinematics.set_values(values, limit_followers=limit_followers)
+        self.moved()
+
+    def set_transform(self, T_world_link0: Floats) -> None:
+        """Move the body rigidly, with the joint values as they are. This never compiles.
+
+        Args:
+            T_world_link0: Pose of the first link, shape (4, 4).
+        """
+        if self._kinematics is not None:
+            self._kinematics.set_transform(T_world_link0)
+        elif len(poses := self._kept_poses()):
+            self._poses = (T_world_link0 @ inverse(poses[0])) @ poses
+            self._poses[0] = T_world_link0
+            self._is_moved = True
+        self.moved()
+
+    def pose(self) -> Pose:
+        """Return the pose of the first link."""
+        if self._kinematics is not None:
+            return self._kinematics.link_pose(0)
+        return pose_of(self.link_transform(0)) if self.scene.links else Pose()
+
+    def set_pose(self, T_world_link0: Pose) -> None:
+        """Move the body rigidly, as ``set_transform``; ``pose()`` gives back this quaternion, not its negative."""
+        self.set_transform(T_world_link0.matrix())
+        if self._kinematics is not None:
+            self._kinematics.set_root_wxyz(T_world_link0.wxyz)
+
+    def place_links(self, T_world_links: Floats, last_values: Floats | None = None) -> None:
+        """Put every link at a pose; joints get the values that the poses show. This never compiles.
+
+        Args:
+            T_world_links: Shape (links, 4, 4).
+            last_values: Joint values whose full turns are kept [rad or m], shape (dof,); None: the present ones.
+        """
+        if self._kinematics is not None:
+            last = self._kinematics.values() if last_values is None else last_values
+            place_links(self._kinematics, T_world_links, last)
+        else:
+            self._poses, self._is_moved = T_world_links.copy(), True
+        self.moved()
+
+    def moved(self) -> None:
+        """Take note that links were moved: what they hold follows."""
+        self.stamp += 1
+        for grab in self._grabs:
+            grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
+
+    def link_velocities(self) -> Floats:
+        """Return the velocities of the links, in world axes: of the origin [m/s] and angular [rad/s]; a copy.
+
+        Moving links does not change them, as in OpenRAVE.
+
+        Returns:
+            Shape (links, 6).
+        """
+        return self._velocities.copy()
+
+    def set_link_velocities(self, velocities: Floats) -> None:
+        """Set the velocities of the links, shape (links, 6); what they hold moves with them."""
+        self._velocities = velocities.copy()
+        for grab in self.grabs:
+            self._carry(grab)
+
+    def _carry(self, grab: GrabbedBody) -> None:
+        """Give a held body the velocity of the link that holds it."""
+        carrier = self._velocities[grab.link]
+        arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
+        grab.body.set_velocity(carrier[:3] + np.cross(carrier[3:], arm), carrier[3:])
+
+    def set_velocity(self, linear: Floats, angular: Floats) -> None:
+        """Let all links move as one.
+
+        Args:
+            linear: Velocity of the first link's origin [m/s], shape (3,).
+            angular: Angular velocity [rad/s], shape (3,).
+        """
+        origins = self.link_transforms()[:, :3, 3]
+        moved = linear + np.cross(angular, origins - origins[:1])
+        self.set_link_velocities(np.column_stack((moved, np.tile(angular, (len(origins), 1)))))
+
+    def grab(self, grab: GrabbedBody) -> None:
+        """Hold a body; one that is held already, anew."""
+        if any(old.body is grab.body for old in self.grabs):
+            self.grabs = [grab if old.body is grab.body else old for old in self.grabs]
+        else:
+            self.grabs = (*self.grabs, grab)
+        self._carry(grab)
+
+    def carries(self, body: "BodyState") -> bool:
+        """Return whether a body is this one, or held by it or by what it holds."""
+        return body is self or any(grab.body.carries(body) for grab in self.grabs)
+
+    def release(self, body: "BodyState") -> None:
+        """Let go of a body; nothing happens if it is not held."""
+        self.grabs = [grab for grab in self.grabs if grab.body is not body]
+
+    def configuration(self) -> SavedConfiguration:
+        """Return the state of joints and links, for ``restore``."""
+        if self._kinematics is not None:
+            return SavedConfiguration(self._kinematics.configuration(), self._kinematics.link_transforms(), False)
+        is_moved = self._is_moved or self._configuration is None
+        return SavedConfiguration(self._configuration, self._kept_poses().copy(), is_moved)
+
+    def restore(self, saved: SavedConfiguration) -> None:
+        """Bring joints and links back to a state that ``configuration`` returned, of this body or one like it."""
+        kinematics = self._kinematics
+        if kinematics is None:
+            self._configuration, self._poses, self._is_moved = saved.last_placed, saved.poses.copy(), True
+        else:
+            is_placed = saved.last_placed is not None and kinematics.restore(saved.last_placed)
+            if is_placed:
+                kinematics.update()
+            if saved.is_moved or not is_placed:
+                place_links(kinematics, saved.poses, kinematics.values())
+        self.moved()
+
+    def copy(self, other: "BodyState", name: str | None = None) -> None:
+        """Become like another body, its configuration and flags included; what it holds is left out.
+
+        Raises:
+            RavemjError: this body is in the world.
+        """
+        self.rebuild(other.scene if name is None else replace(other.scene, name=name))
+        self.link_enabled = other.link_enabled
+        self._configuration, self._poses, self._is_moved = other.configuration()
+        self._velocities = other.link_velocities()
+
+    def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
+        """Change the description of the body where links and joints stay the same: names, limits, manipulators."""
+        self.scene = replace(self.scene, **changes)
+        if self._kinematics is not None:
+            self._kinematics.describe(self.scene)
+
+    def edit_link(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Link
+        """Change the description of a link."""
+        links = list(self.scene.links)
+        links[index] = replace(links[index], **changes)
+        self.edit(links=tuple(links))
+
+    def set_inertial(self, link: int, inertial: Inertial) -> None:
+        """Give a link other mass properties, without compiling."""
+        self.edit_link(link, inertial=inertial)
+        if self._kinematics is not None:
+            write_inertial(self._kinematics.model, int(self._kinematics.body_ids[link]), inertial)
+            self._kinematics.update()
+
+    def set_geometries(self, link: int, geometries: "Sequence[Geometry]") -> None:
+        """Give a link other shapes; the model is compiled anew when it is next asked for."""
+        if self._kinematics is not None:
+            self.simulation.forget_model()
+        self.edit_link(link, geometries=tuple(geometries))
+
+    def edit_geometry(self, link: int, index: int, **changes: Any) -> None:  # noqa: ANN401 - of a scene.Geometry
+        """Change the description of a shape; colours do not make the model compile anew."""
+        geometries = list(self.scene.links[link].geometries)
+        geometries[index] = replace(geometries[index], **changes)
+        if changes.keys() <= _LOOKS:
+            self.edit_link(link, geometries=tuple(geometries))
+            self._paint(link, index)
+        else:
+            self.set_geometries(link, geometries)
+
+    def _paint(self, link: int, index: int) -> None:
+        """Give the geoms of a shape its colour; what is drawn in its place keeps its own."""
+        geometry = self.scene.links[link].geometries[index]
+        if self._kinematics is None or geometry.display is not None:
+            return
+        from ravemj.formats.mjcf import rgba  # noqa: PLC0415 - slow to import
+
+        model, counts = self._kinematics.model, self._kinematics.names.geoms[link]
+        first = model.body_geomadr[self._kinematics.body_ids[link]] + sum(counts[:index])
+        model.geom_rgba[first : first + counts[index]] = rgba(geometry.diffuse, geometry.transparency)
+
+    def edit_joint(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Joint
+        """Change the description of a joint; the index counts active joints and then passive ones."""
+        joints = [*self.scene.joints, *self.scene.passive_joints]
+        joints[index] = replace(joints[index], **changes)
+        count = len(self.scene.joints)
+        self.edit(joints=tuple(joints[:count]), passive_joints=tuple(joints[count:]))
+
+    def edit_axes(self, axes: "list[Axis]") -> None:
+        """Replace the axes of all active joints, in DOF order."""
+        rest: Iterator[Axis] = iter(axes)
+        self.edit(
+            joints=tuple(replace(joint, axes=tuple(next(rest) for _ in joint.axes)) for joint in self.scene.joints)
+        )

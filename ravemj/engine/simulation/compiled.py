@@ -1,0 +1,117 @@
+"""A scene compiled by MuJoCo."""
+
+import re
+import warnings
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+
+from ravemj.errors import CompileError, Diagnostics, Source
+from ravemj.model.inertia import principal_frame, principal_moments
+from ravemj.model.scene import Inertial, Scene
+
+if TYPE_CHECKING:
+    from ravemj.formats import mjcf
+
+_DOF = re.compile(r"DOF (\d+)")
+_LINE = re.compile(r"line (?:number=)?(\d+)", re.IGNORECASE)
+_TOO_DEEP = "XML_ELEMENT_DEPTH_EXCEEDED"
+_LONGEST_CHAIN = 496  # links; MuJoCo's reader of XML takes 500 elements inside one another
+
+
+class Compiled:
+    """A scene in MuJoCo.
+
+    Attributes:
+        mjcf: The text that was compiled.
+        spec: MuJoCo's editable form of it.
+        model: The compiled model; masses and inertias that MuJoCo refuses are the nearest legal ones there.
+        data: Its state.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        diagnostics: Diagnostics,
+        options: "mjcf.Options | None" = None,
+        edit: "Callable[[mujoco.MjSpec, mjcf.Mjcf], None] | None" = None,
+    ) -> None:
+        """Compile a scene.
+
+        Args:
+            scene: What to compile.
+            diagnostics: Takes what the translation finds.
+            options: What to add to the model.
+            edit: Changes the model before it is compiled.
+
+        Raises:
+            CompileError: MuJoCo refuses the model.
+        """
+        from ravemj.formats import mjcf  # noqa: PLC0415 - slow to import
+
+        self.mjcf = mjcf.write(scene, diagnostics, options)
+        try:
+            with mujoco.MjVfs() as files:
+                for name, content in self.mjcf.assets.items():
+                    files[f"{mjcf.ASSETS}/{name}"] = content.encode()
+                self.spec = mujoco.MjSpec.from_string(self.mjcf.text, vfs=files)
+                if edit is not None:
+                    edit(self.spec, self.mjcf)
+                with warnings.catch_warnings(record=True) as complaints:
+                    warnings.simplefilter("always")
+                    self.model = self.spec.compile(vfs=files)
+        except ValueError as error:
+            raise _compile_error(str(error), self.mjcf) from None
+        for complaint in complaints:
+            self._report(str(complaint.message), scene, diagnostics)
+        self.data = mujoco.MjData(self.model)
+
+    def _report(self, complaint: str, scene: Scene, diagnostics: Diagnostics) -> None:
+        """Record a warning of MuJoCo's, with the link that it is about where it names a DOF."""
+        source, about = Source("the translated model", 0), ""
+        match = _DOF.search(complaint)
+        if match:
+            name = self.model.body(self.model.dof_bodyid[int(match[1])]).name
+            for body, names in zip(scene.bodies, self.mjcf.names, strict=True):
+                if name in names.links:
+                    source, about = body.links[names.links.index(name)].source, f" of '{name}'"
+        hint = "positions are exact; before time runs, give the link more mass or inertia"
+        diagnostics.warn("near-singular", f"MuJoCo warns{about}: {complaint}", source, hint)
+
+    def write_true_inertias(self, scene: Scene) -> None:
+        """Give the links that MuJoCo's compiler refuses their true values back; inverse dynamics needs them."""
+        for body_index, link_index in self.mjcf.altered:
+            inertial = scene.bodies[body_index].links[link_index].inertial
+            name = self.mjcf.names[body_index].links[link_index]
+            body_id = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, name)
+            if np.isfinite(inertial.mass) and np.isfinite(inertial.inertia).all():
+                write_inertial(self.model, body_id, inertial)
+
+
+def write_inertial(model: mujoco.MjModel, body_id: int, inertial: Inertial) -> None:
+    """Give a body of a model other mass properties."""
+    frame = principal_frame(inertial)
+    added = inertial.mass - model.body_mass[body_id]
+    model.body_mass[body_id] = inertial.mass
+    model.body_inertia[body_id] = principal_moments(inertial)
+    model.body_ipos[body_id] = frame.position
+    model.body_iquat[body_id] = frame.wxyz
+    model.body_sameframe[body_id] = 0  # the frame of its inertia is not that of the body
+    model.body_subtreemass[0] += added
+    while body_id:
+        model.body_subtreemass[body_id] += added
+        body_id = model.body_parentid[body_id]
+
+
+def _compile_error(message: str, text: "mjcf.Mjcf") -> CompileError:
+    """Return MuJoCo's complaint with the place in the user's file that it is about."""
+    match = _LINE.search(message)
+    line = int(match[1]) if match else 0
+    source = text.source_of_line(line) or Source("the translated model", line)
+    if _TOO_DEEP in message:
+        reason = f"this link hangs on a chain of {_LONGEST_CHAIN} links, and MuJoCo takes no longer ones"
+        return CompileError(reason, source, "split the chain into several bodies")
+    reason = " ".join(message.split())
+    return CompileError(f"MuJoCo refuses the translated model: {reason}", source)

@@ -1,0 +1,77 @@
+"""COLLADA 1.5: files with kinematics, ``.dae`` and ``.zae``, become bodies.
+
+A document names one scene of nodes that are seen, one of kinematics, and one of physics, and binds them to each other.
+``scenes`` walks over it and fills a ``BodyBuilder`` for each robot; the other modules each read one kind of element.
+What a file refers to may stand in other files. Whatever leads nowhere is reported and left out, as OpenRAVE does it.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.formats.collada.library import Library
+from ravemj.formats.collada.scenes import Content, read_document
+from ravemj.formats.meshes.collada.document import ColladaDocument
+
+SUFFIXES = (".dae", ".zae")
+"""Ends of the names of the files, in lower case."""
+
+
+def read_file(
+    uri: str,
+    diagnostics: Diagnostics,
+    files: list[str],
+    included_from: Source | None = None,
+    scale: float = 1.0,
+) -> Content:
+    """Read a ``.dae`` or ``.zae`` file.
+
+    Args:
+        uri: Where it lies; behind ``#``, the id of the only articulated system or model that is wanted.
+        diagnostics: Takes every finding.
+        files: Takes the paths of the files that are read.
+        included_from: The element that names the file, or None.
+        scale: What all lengths are multiplied by.
+
+    Raises:
+        SourceError: The file is broken, or something in it is impossible.
+    """
+    path, wanted = split_uri(uri)
+    library = Library(diagnostics, files, included_from, scale)
+    return _read(library, path, lambda: library.open_file(path), wanted)
+
+
+def is_collada(uri: str) -> bool:
+    """Tell whether a URI names a COLLADA file, or something in one."""
+    return split_uri(uri)[0].lower().endswith(SUFFIXES)
+
+
+def split_uri(uri: str) -> tuple[str, str]:
+    """Return the path of a COLLADA file, and the id behind it, which is empty where there is none."""
+    path, _, name = uri.rpartition("#")
+    return (path, name) if path.lower().endswith(SUFFIXES) else (uri, "")
+
+
+def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str]) -> Content:
+    """Read a document that is no file, as ``read_file`` reads a file.
+
+    Args:
+        data: The document; files that it names are looked for in the working folder.
+        name: What to call it in messages.
+        diagnostics: Takes every finding.
+        files: Takes the paths of the files that are read.
+    """
+    library = Library(diagnostics, files, None)
+    return _read(library, name, lambda: library.open_text(data, name))
+
+
+def _read(library: Library, path: str, opened: Callable[[], ColladaDocument], wanted: str = "") -> Content:
+    try:
+        with np.errstate(all="ignore"):  # what is not finite in the end is refused
+            return read_document(library, opened(), wanted)
+    except (RecursionError, MemoryError, OverflowError) as error:
+        message = f"the file is too large or nested too deep ({type(error).__name__})"
+        raise SourceError(message, Source(path)) from error
+    except ArithmeticError as error:
+        raise SourceError("a number in the file is too large to compute with", Source(path)) from error

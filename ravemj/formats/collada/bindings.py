@@ -1,0 +1,141 @@
+"""What ``<scene>`` binds: models to the nodes that show them, and axes to nodes and values."""
+
+from dataclasses import dataclass
+
+from ravemj.formats.collada.library import Library
+from ravemj.formats.collada.references import References
+from ravemj.formats.collada.visual import Node
+from ravemj.formats.meshes.collada.document import Element, child, children, local_name, words
+
+_OWNERS = {"instance_articulated_system", "instance_kinematics_model"}
+
+
+@dataclass(frozen=True, slots=True)
+class ModelBinding:
+    """The node that shows a kinematics model.
+
+    Attributes:
+        owner: The instance in the kinematics scene whose parameter names the model, or None.
+        instance: The ``<instance_kinematics_model>``.
+        node: The node.
+    """
+
+    owner: Element | None
+    instance: Element
+    node: Node
+
+
+@dataclass(frozen=True, slots=True)
+class AxisBinding:
+    """The node that an axis moves, and the value of the axis.
+
+    Attributes:
+        owner: The instance in the kinematics scene whose parameter names the axis, or None.
+        through: The instances that the reference goes through.
+        axis: The ``<revolute>`` or ``<prismatic>``.
+        node: The node, or None where it is missing.
+        value: The value as written.
+    """
+
+    owner: Element | None
+    through: tuple[Element, ...]
+    axis: Element
+    node: Node | None
+    value: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Bindings:
+    """All bindings of a kinematics scene; of several for one thing the first counts."""
+
+    models: tuple[ModelBinding, ...]
+    axes: tuple[AxisBinding, ...]
+
+    def node_of(self, owner: Element, instance: Element, model: Element) -> Node | None:
+        """Return the node that shows a model.
+
+        Args:
+            owner: The instance in the kinematics scene that it belongs to.
+            instance: The ``<instance_kinematics_model>``.
+            model: The ``<kinematics_model>``.
+        """
+        found = [binding for binding in self.models if binding.instance is instance or binding.instance is model]
+        own = [binding for binding in found if binding.owner is owner]
+        return (own or found)[0].node if found else None
+
+    def of_axis(self, owner: Element, instance: Element, axis: Element, holder: Element) -> AxisBinding | None:
+        """Return the first binding of an axis.
+
+        Args:
+            owner: The instance in the kinematics scene that it belongs to.
+            instance: The ``<instance_kinematics_model>``.
+            axis: The axis.
+            holder: The ``<joint>`` or ``<instance_joint>`` that stands in the model.
+        """
+        found = [binding for binding in self.axes if binding.axis is axis and _is_through(binding, instance, holder)]
+        own = [binding for binding in found if binding.owner is owner]
+        return next(iter(own or found), None)
+
+
+def _is_through(binding: AxisBinding, instance: Element, holder: Element) -> bool:
+    """Tell whether a binding may mean this instance of a model and of a joint."""
+    for item in binding.through:
+        kind = local_name(item)
+        if kind == "instance_kinematics_model" and item is not instance:
+            return False
+        if kind == "instance_joint" and item is not holder:
+            return False
+    return True
+
+
+def read_bindings(
+    library: Library, references: References, instance: Element, scene: Element, root: Node | None
+) -> Bindings:
+    """Read the bindings of a kinematics scene.
+
+    Args:
+        library: The documents.
+        references: Resolves parameters.
+        instance: The ``<instance_kinematics_scene>``.
+        scene: The ``<kinematics_scene>``.
+        root: The visual scene, or None.
+    """
+    models: list[ModelBinding] = []
+    axes: list[AxisBinding] = []
+    for element in children(instance, "bind_kinematics_model"):
+        name = "".join(words(child(element, "param"))) or (element.get("param") or "")
+        found = references.parameter(name, instance, scene) if name else None
+        node = _node(library, root, element, "node")
+        if found is None:
+            library.warn("broken-reference", f"there is no model behind the parameter '{name}'", element)
+        elif node is not None:
+            models.append(ModelBinding(_owner(references, name, instance, scene), found.element, node))
+    for element in children(instance, "bind_joint_axis"):
+        param = child(element, "axis", "param")
+        name = "".join(words(param))
+        found = references.parameter(name, instance, scene) if name else None
+        if found is None or local_name(found.element) not in {"revolute", "prismatic"}:
+            library.warn("broken-reference", f"there is no axis behind the parameter '{name}'", element)
+            continue
+        owner = _owner(references, name, instance, scene)
+        value = references.number(child(element, "value"), instance, scene)
+        node = _node(library, root, element, "target")
+        axes.append(AxisBinding(owner, found.through, found.element, node, value))
+    return Bindings(tuple(models), tuple(axes))
+
+
+def _node(library: Library, root: Node | None, element: Element, attribute: str) -> Node | None:
+    path = element.get(attribute) or ""
+    node = None if root is None or not path else root.find(path)
+    if node is None:
+        library.warn("broken-reference", f"there is no node '{path}' in the visual scene", element)
+    return node
+
+
+def _owner(references: References, name: str, *scopes: Element) -> Element | None:
+    """Return the instance in the kinematics scene whose parameter has a name."""
+    found = next((item for scope in scopes if (item := references.resolve(name, scope)) is not None), None)
+    around = None if found is None else found.element
+    while around is not None and local_name(around) not in _OWNERS:
+        around = around.getparent()
+    return around

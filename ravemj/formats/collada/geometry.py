@@ -1,0 +1,183 @@
+"""Shapes of links: the triangles of nodes, and the primitives that OpenRAVE writes beside them."""
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from ravemj.core.transforms import ZERO, Floats, Pose, Vec3, wxyz_from_axis_angle
+from ravemj.formats.collada.library import Library
+from ravemj.formats.collada.placing import rigid, split
+from ravemj.formats.collada.visual import Node, transform_of
+from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
+from ravemj.formats.meshes.collada.geometry import triangle_meshes
+from ravemj.formats.meshes.collada.materials import bindings, read_material
+from ravemj.formats.meshes.obj import transparency
+from ravemj.formats.meshes.parts import check_finite, check_size
+from ravemj.model.scene import Box, CalibrationBoard, Container, Cylinder, Geometry, Mesh, Rgb, Shape, Sphere, TriMesh
+
+_DIFFUSE: Rgb = (1.0, 0.5, 0.5)
+_AMBIENT: Rgb = (float(np.float32(0.1)), 0.0, 0.0)
+
+_NO_MESH = Mesh(np.zeros((0, 3)), np.zeros((0, 3), np.int_))
+_Z_TO_Y = Pose(wxyz=wxyz_from_axis_angle((1.0, 0.0, 0.0), -math.pi / 2))
+
+
+class GeometryReader:
+    """Reads the shapes of nodes; remembers the triangles of each ``<geometry>``."""
+
+    def __init__(self, library: Library) -> None:
+        self._library = library
+        self._meshes: dict[Element, list[tuple[str, Mesh]]] = {}
+        self._triangles = 0
+
+    def read(
+        self, node: Node, T_link_node: Callable[[Node], Floats], is_other_link: Callable[[Node], bool]
+    ) -> list[Geometry]:
+        """Return the shapes that a node gives to its link, with those of the nodes in it.
+
+        Args:
+            node: The node.
+            T_link_node: Gives the pose of a node in the link as OpenRAVE computes it, shape (4, 4).
+            is_other_link: Tells which nodes in it belong to other links.
+        """
+        found: list[Geometry] = []
+        for inner in node.nodes:
+            if not is_other_link(inner):
+                found += self.read(inner, T_link_node, is_other_link)
+        for instance in children(node.element, "instance_geometry"):
+            geometry = self._library.follow(instance)
+            if geometry is not None:
+                found += self._shapes(instance, geometry, T_link_node(node))
+        return found
+
+    def _shapes(self, instance: Element, geometry: Element, T_link_node: Floats) -> Iterator[Geometry]:
+        info = _info(geometry)
+        source = self._library.source(instance)
+        T_link_frame, scaling = split(T_link_node, source)
+        visible = True
+        if info is not None:
+            T_link_frame = T_link_frame @ rigid(transform_of(self._library, info), source)
+            visible = words(child(info, "visible", "bool"))[:1] != ["false"]
+        primitive = None if info is None else self._primitive(info)
+        groups = self._groups(geometry)
+        for symbol, mesh in [("", _NO_MESH)] if primitive is not None and not groups else groups:
+            diffuse, ambient, opacity = self._colours(instance, symbol)
+            shape, T = primitive or (self._mesh(mesh, scaling, T_link_frame, geometry), Pose())
+            yield Geometry(
+                shape=shape,
+                T_link_geometry=T_link_frame @ T,
+                name=geometry.get("name", ""),
+                diffuse=diffuse,
+                ambient=ambient,
+                transparency=opacity,
+                visible=visible,
+                source=source,
+            )
+            if primitive is not None:
+                return
+
+    def _mesh(self, mesh: Mesh, scaling: Floats | None, T_link_frame: Pose, geometry: Element) -> TriMesh:
+        """Return triangles in the frame of their geometry; OpenRAVE takes the file's for those of the link."""
+        self._triangles += len(mesh.triangles)
+        source = self._library.source(geometry)
+        check_size(self._triangles, source)
+        inverse = T_link_frame.inverse()
+        if scaling is None and inverse == Pose():
+            return TriMesh(mesh)
+        matrix = inverse.matrix()
+        linear = matrix[:3, :3] if scaling is None else matrix[:3, :3] @ scaling
+        vertices = mesh.vertices @ linear.T + matrix[:3, 3]
+        check_finite(vertices, source)
+        return TriMesh(Mesh(vertices, mesh.triangles))
+
+    def _groups(self, geometry: Element) -> list[tuple[str, Mesh]]:
+        """Return for each primitive element its material's symbol and its triangles [m]."""
+        if geometry not in self._meshes:
+            document = self._library.document_of(geometry)
+            self._meshes[geometry] = triangle_meshes(document, geometry, self._library.metres(geometry))
+        return self._meshes[geometry]
+
+    def _colours(self, instance: Element, symbol: str) -> tuple[Rgb, Rgb, float]:
+        """Return the diffuse and the ambient colour and the transparency of a group."""
+        bound = bindings(instance)
+        url = bound.get(symbol, next(iter(bound.values())) if bound and not symbol else "")
+        document = self._library.document_of(instance)
+        element = document.find("material", url)
+        material = None if element is None else read_material(document, element)
+        if material is None:
+            if url:
+                self._library.warn("broken-reference", f"there is no material '{url}' with an effect", instance)
+            return _DIFFUSE, _AMBIENT, 0.0
+        opacity = 1.0 if material.transparency is None else material.transparency
+        return material.diffuse or _DIFFUSE, material.ambient or _AMBIENT, transparency(opacity)
+
+    def _primitive(self, info: Element) -> tuple[Shape, Pose] | None:
+        """Return the shape that replaces the triangles, and its pose in the geometry's frame."""
+        for element in children(info, *_PRIMITIVES):
+            shape = _PRIMITIVES[local_name(element)](element, self._library.metres(element))
+            if shape is not None:
+                return shape
+            self._library.warn("bad-number", "a size is missing or not finite; the triangles count", element)
+        for element in children(info):
+            if local_name(element) not in _KNOWN:
+                message = "ravemj knows no such shape; the triangles count"
+                self._library.warn("unknown-type", message, element)
+        return None
+
+
+def _info(geometry: Element) -> Element | None:
+    """Return what OpenRAVE says of a ``<geometry>``."""
+    for extra in children(geometry, "extra"):
+        if extra.get("type") == "geometry_info":
+            techniques = children(extra, "technique")
+            return next((item for item in techniques if item.get("profile") == "OpenRAVE"), None)
+    return None
+
+
+def _sizes(element: Element, name: str, count: int, metres: float) -> list[float] | None:
+    values = (numbers(child(element, name))[:count] * metres).tolist()
+    return values if len(values) == count and all(map(math.isfinite, values)) else None
+
+
+def _vector(element: Element, name: str, metres: float) -> Vec3 | None:
+    values = _sizes(element, name, 3, metres)
+    return None if values is None else (values[0], values[1], values[2])
+
+
+def _box(element: Element, metres: float) -> tuple[Shape, Pose] | None:
+    sizes = _vector(element, "half_extents", metres)
+    kind = CalibrationBoard if local_name(element) == "calibration_board" else Box
+    return None if sizes is None else (kind(sizes), Pose())
+
+
+def _sphere(element: Element, metres: float) -> tuple[Shape, Pose] | None:
+    radius = _sizes(element, "radius", 1, metres)
+    return None if radius is None else (Sphere(radius[0]), Pose())
+
+
+def _cylinder(element: Element, metres: float) -> tuple[Shape, Pose] | None:
+    """Read a cylinder along y, or along z."""
+    radius, height = (_sizes(element, name, 1, metres) for name in ("radius", "height"))
+    if radius is None or height is None:
+        return None
+    return Cylinder(radius[0], height[0]), Pose() if local_name(element) == "cylinderz" else _Z_TO_Y
+
+
+def _container(element: Element, metres: float) -> tuple[Shape, Pose] | None:
+    outer, inner = (_vector(element, name, metres) for name in ("outer_extents", "inner_extents"))
+    if outer is None or inner is None:
+        return None
+    cross, bottom = (_vector(element, name, metres) or ZERO for name in ("bottom_cross", "bottom"))
+    return Container(outer, inner, cross, bottom), Pose()
+
+
+_PRIMITIVES: dict[str, Callable[[Element, float], tuple[Shape, Pose] | None]] = {
+    "box": _box,
+    "calibration_board": _box,
+    "sphere": _sphere,
+    "cylinder": _cylinder,
+    "cylinderz": _cylinder,
+    "container": _container,
+}
+_KNOWN = {*_PRIMITIVES, "translate", "rotate", "matrix", "scale", "lookat", "visible", "trimesh"}

@@ -1,0 +1,178 @@
+"""The documents of one reading, and the references between their elements."""
+
+import os
+import posixpath
+from collections.abc import Iterator
+from urllib.parse import unquote
+
+from lxml import etree
+
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.formats.collada.archive import Archive
+from ravemj.formats.meshes.collada.document import ColladaDocument, Element, attribute_number, child, local_name
+from ravemj.formats.meshes.files import read_bytes
+
+ARCHIVE_SUFFIX = ".zae"
+_MOST_DOCUMENTS = 1000
+
+
+class Library:
+    """The documents that one reading has opened.
+
+    Attributes:
+        diagnostics: Takes every finding.
+        files: Paths of the files that were read, in their order.
+    """
+
+    def __init__(
+        self, diagnostics: Diagnostics, files: list[str], included_from: Source | None, scale: float = 1.0
+    ) -> None:
+        self.diagnostics = diagnostics
+        self._scale = scale
+        self._included_from = included_from
+        self.files = files
+        self._archives: dict[str, Archive] = {}
+        self._documents: dict[str, ColladaDocument] = {}
+        self._places: dict[str, tuple[Archive | None, str]] = {}
+        self._of_root: dict[Element, ColladaDocument] = {}
+        self._units: dict[Element, float] = {}
+        self._reported: set[tuple[Element, str]] = set()
+
+    def open_file(self, path: str) -> ColladaDocument:
+        """Return the document of a ``.dae`` file, or the first one of a ``.zae`` archive.
+
+        Raises:
+            SourceError: It cannot be read, or is no COLLADA.
+        """
+        if not path.lower().endswith(ARCHIVE_SUFFIX):
+            return self._opened(path, None, path)
+        archive = self._archives.get(path)
+        if archive is None:
+            self.files.append(path)
+            archive = self._archives[path] = Archive(path)
+        return self._member(archive, archive.root())
+
+    def open_text(self, data: bytes, name: str) -> ColladaDocument:
+        """Return the document of a text; files that it names are looked for in the working folder."""
+        return self._parsed(data, name, None, name)
+
+    def document_of(self, element: Element) -> ColladaDocument:
+        """Return the document that an element stands in."""
+        return self._of_root[element.getroottree().getroot()]
+
+    def source(self, element: Element) -> Source:
+        """Return the place of an element, for messages."""
+        return self.document_of(element).source(element)._replace(included_from=self._included_from)
+
+    def warn(self, code: str, message: str, element: Element, hint: str = "") -> None:
+        """Report a finding about an element, which its nearest id names; the same one only once."""
+        if (element, message) not in self._reported:
+            self._reported.add((element, message))
+            self.diagnostics.warn(code, f"{label(element)}: {message}", self.source(element), hint)
+
+    def error(self, message: str, element: Element, hint: str = "") -> SourceError:
+        """Return an error about an element, which its nearest id names."""
+        return SourceError(f"{label(element)}: {message}", self.source(element), hint)
+
+    def follow(self, element: Element, *kinds: str, attribute: str = "url") -> Element | None:
+        """Return the element that a URL in an attribute names.
+
+        Args:
+            element: The element with the attribute.
+            kinds: What it may name; by default what the element is an instance of.
+            attribute: The attribute.
+
+        Returns:
+            The element; None, with a warning, where there is none.
+        """
+        kinds = kinds or (local_name(element).removeprefix("instance_"),)
+        url = (element.get(attribute) or "").strip()
+        found = self._find(element, url, kinds) if url else None
+        if found is None:
+            self.warn("broken-reference", f"there is no {' or '.join(kinds)} '{url}'", element)
+        return found
+
+    def _find(self, element: Element, url: str, kinds: tuple[str, ...]) -> Element | None:
+        file, _, name = url.partition("#")
+        document = self._document(self.document_of(element), file, element) if file else self.document_of(element)
+        if document is None:
+            return None
+        found = (document.find(kind, name or None) for kind in kinds)
+        return next((item for item in found if item is not None), None)
+
+    def _document(self, here: ColladaDocument, uri: str, element: Element) -> ColladaDocument | None:
+        """Return the document that a URI names in another one; a file that is missing or broken is reported."""
+        archive, name = self._places[here.path]
+        plain = unquote(uri.partition(":")[2].lstrip("/") if uri.startswith("openrave:") else uri.removeprefix("file:"))
+        plain = plain.removeprefix("./")  # so that a file has one name
+        try:
+            if archive is not None and not uri.startswith(("openrave:", "file:")):
+                member = archive.member(plain, posixpath.dirname(name))
+                if member is not None:
+                    return self._member(archive, member)
+            folder = os.path.dirname(name if archive is None else archive.path)
+            path = find_file(plain, *([] if uri.startswith("openrave:") else [folder]))
+            if path is not None:
+                return self.open_file(path)
+            self.warn("missing-file", f"there is no file {uri}", element, "put it there, or set OPENRAVE_DATA")
+        except SourceError as error:
+            self.warn("broken-file", f"{error.source}: {error.message}", element)
+        return None
+
+    def _member(self, archive: Archive, name: str) -> ColladaDocument:
+        return self._opened(archive.place(name), archive, name)
+
+    def _opened(self, path: str, archive: Archive | None, name: str) -> ColladaDocument:
+        if path not in self._documents:
+            if len(self._documents) >= _MOST_DOCUMENTS:
+                raise SourceError(f"the model has more than {_MOST_DOCUMENTS} files", Source(path))
+            if archive is None:
+                self.files.append(path)
+            return self._parsed(read_bytes(path) if archive is None else archive.read(name), path, archive, name)
+        return self._documents[path]
+
+    def _parsed(self, data: bytes, path: str, archive: Archive | None, name: str) -> ColladaDocument:
+        document = ColladaDocument(data, path)
+        self._documents[path] = document
+        self._places[path] = (archive, name)
+        self._of_root[document.root] = document
+        return document
+
+    def metres(self, element: Element) -> float:
+        """Return the length of the unit that holds for an element, scaled [m]."""
+        return self._scale * self._unit(element)
+
+    def _unit(self, element: Element) -> float:
+        """Return the length of the unit that the nearest ``<asset>`` around an element gives [m]."""
+        found = self._units.get(element)
+        if found is None:
+            asset = child(element, "asset", "unit")
+            unit = child(element, "extra", "asset", "unit") if asset is None else asset
+            parent = element.getparent()
+            outer = 1.0 if parent is None else self._unit(parent)
+            found = self._units[element] = attribute_number(unit, "meter", outer) if unit is not None else outer
+        return found
+
+
+def find_file(name: str, *folders: str) -> str | None:
+    """Return the path of a file in one of some folders or those of ``OPENRAVE_DATA``, or None."""
+    data_folders = filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep))
+    candidates = (os.path.join(folder, name) for folder in (*folders, *data_folders))
+    return next((path for path in candidates if "\0" not in path and os.path.isfile(path)), None)
+
+
+def ancestors(element: Element) -> Iterator[Element]:
+    """Yield an element and those around it, the innermost first."""
+    yield element
+    yield from element.iterancestors(etree.Element)
+
+
+def label(element: Element) -> str:
+    """Return what an element is called in messages: its tag, and the nearest id, sid or name of it and around it."""
+    tag = f"<{local_name(element)}>"
+    for around in ancestors(element):
+        for attribute in ("id", "sid", "name"):
+            name = around.get(attribute)
+            if name:
+                return f"{tag} '{name}'" if around is element else f"{tag} in <{local_name(around)}> '{name}'"
+    return tag

@@ -1,0 +1,289 @@
+"""``<kinematics_model>``: links and joints, filled into a body."""
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import (
+    UNIT_WXYZ,
+    Floats,
+    Pose,
+    Vec3,
+    Wxyz,
+    conjugate,
+    multiply,
+    rotate,
+    wxyz_from_axis_angle,
+)
+from ravemj.formats.collada.axis import AxisInfo, AxisReader
+from ravemj.formats.collada.bindings import Bindings
+from ravemj.formats.collada.formulas import read_formulas
+from ravemj.formats.collada.geometry import GeometryReader
+from ravemj.formats.collada.library import Library
+from ravemj.formats.collada.physics import NO_MASS, Physics
+from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.references import References
+from ravemj.formats.collada.visual import Node, transform_of
+from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers
+from ravemj.model.builder import BodyBuilder, JointBuilder, LinkBuilder
+from ravemj.model.scene import Axis, JointKind
+
+_MAX_LINKS = 20_000
+_SHIFT = 1e-6  # of nodes, below which nobody sees it
+_NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.:/-]")
+
+
+def valid_name(name: str | None) -> str:
+    """Return a name with ``_`` in place of what names cannot have in OpenRAVE."""
+    return _NOT_IN_NAMES.sub("_", name or "")
+
+
+@dataclass(slots=True)
+class Scene:
+    """What all bodies of a kinematics scene share."""
+
+    library: Library
+    references: References
+    bindings: Bindings
+    physics: Physics
+    geometry: GeometryReader
+    moved: set[Node] = field(default_factory=set[Node])
+
+    def __post_init__(self) -> None:
+        self.moved = {binding.node for binding in self.bindings.axes if binding.node is not None}
+        self.moved |= {binding.node for binding in self.bindings.models}
+
+    @property
+    def axes(self) -> AxisReader:
+        """A reader of axes."""
+        return AxisReader(self.library, self.references)
+
+
+class _Names:
+    """Names that are taken, each with the number to try next behind it."""
+
+    def __init__(self, taken: Iterable[str]) -> None:
+        self._next = dict.fromkeys(taken, 1)
+
+    def give(self, name: str) -> str:
+        """Return a name, with a number behind it where it is taken, and take it."""
+        unused = name
+        while unused in self._next:
+            unused = f"{name}_{self._next[name]}"
+            self._next[name] += 1
+        self._next[unused] = 1
+        return unused
+
+
+class _FoundJoint(NamedTuple):
+    """A joint that an attachment names.
+
+    Attributes:
+        keys: All elements that stand for the joint.
+        built: The joint.
+        values: The bound values of its axes.
+        place: Its first DOF as the file says it.
+    """
+
+    keys: tuple[Element, ...]
+    built: JointBuilder
+    values: list[float]
+    place: float
+
+
+class ModelReader:
+    """Reads one instance of a kinematics model into a body.
+
+    Attributes:
+        body: The body.
+        links: Indices of links, by ``<link>``.
+        joints: Indices of joints, by ``<joint>`` or ``<instance_joint>``, and by axis.
+        values: Values of the axes of each joint as the scene binds them.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        body: BodyBuilder,
+        owner: Element,
+        instance: Element,
+        model: Element,
+        infos: dict[Element, AxisInfo],
+    ) -> None:
+        self._scene = scene
+        self._library = scene.library
+        self.body = body
+        self._owner = owner
+        self._instance = instance
+        self.model = model
+        self._infos = infos
+        self._axes = scene.axes
+        self._root = scene.bindings.node_of(owner, instance, model)
+        self._T_world_root = Pose()
+        self.links: dict[Element, int] = {}
+        self.joints: dict[Element, int] = {}
+        self.values: dict[int, list[float]] = {}
+        self._found: list[_FoundJoint] = []
+        self._link_names = _Names(link.name for link in body.links)
+        self._joint_names = _Names(joint.name for joint in body.joints)
+
+    def read(self) -> None:
+        """Read all links, each with those that its joints carry."""
+        common = child(self.model, "technique_common")
+        for link in children(common, "link"):
+            parent = None if self._root is None else self._root.parent
+            T_world_parent = Pose() if parent is None else rigid(parent.world, self._library.source(link))
+            self._T_world_root = T_world_parent @ self._pose(link)
+            self._read_link(link, self._root, self._T_world_root)
+        self._settle_joints()
+        read_formulas(self._library, self._scene.references, self.model, self.joints, self.body)
+
+    def _settle_joints(self) -> None:
+        """Give the joints to the body, those with an index of OpenRAVE's in its order."""
+        for found in sorted(self._found, key=lambda found: found.place):
+            index = len(self.body.joints)
+            self.joints |= dict.fromkeys(found.keys, index)
+            self.values[index] = found.values
+            self.body.joints.append(found.built)
+
+    def _pose(self, element: Element) -> Pose:
+        return rigid(transform_of(self._library, element), self._library.source(element))
+
+    def _read_link(self, element: Element, node: Node | None, T_world_link: Pose) -> None:
+        if len(self.body.links) >= _MAX_LINKS:
+            raise self._library.error(f"the body has more than {_MAX_LINKS} links", element)
+        name = element.get("name") or element.get("id") or (node.name if node else "") or element.get("sid")
+        link = LinkBuilder(self._link_name(name), self._library.source(element), T_world_link, inertial=NO_MASS)
+        index = len(self.body.links)
+        self.body.links.append(link)
+        self.links[element] = index
+        rigid_body = self._scene.physics.of(node)
+        if rigid_body is not None:
+            link.inertial = rigid_body.inertial(self._library, T_world_link, self._T_world_root)
+            link.static = rigid_body.static
+        if node is not None:
+            self._read_shapes(link, node, T_world_link)
+        for attachment in children(element, "attachment_full", "attachment_start", "attachment_end"):
+            if local_name(attachment) == "attachment_full":
+                self._read_attachment(attachment, index, T_world_link)
+            else:
+                message = "OpenRAVE does not close the loop of this attachment, and neither does ravemj"
+                self._library.warn("ignored-tag", message, attachment)
+
+    def _link_name(self, name: str | None) -> str:
+        return self._link_names.give(valid_name(name) or f"link{len(self.body.links)}")
+
+    def _read_shapes(self, link: LinkBuilder, node: Node, T_world_link: Pose) -> None:
+        T_link_world = T_world_link.inverse().matrix()
+
+        def pose_in_link(inner: Node) -> Floats:
+            if np.abs(T_link_world @ inner.world - np.eye(4)).max() > _SHIFT:
+                message = "OpenRAVE draws the triangles of this node as if it had no pose of its own in its link"
+                self._library.warn("openrave-bug", message, inner.element, "put the transforms into the vertices")
+            return T_link_world @ self._world(inner)
+
+        link.geometries += self._scene.geometry.read(node, pose_in_link, lambda inner: inner in self._scene.moved)
+
+    def _world(self, node: Node) -> Floats:
+        """Return the pose of a node as OpenRAVE composes it: in the first link, from below that link's node on.
+
+        That node's own transform counts for its own shapes only, once more than it should.
+        """
+        path = [*node.around()]
+        if self._root not in path:
+            return node.world
+        below = path[: path.index(self._root)] or [node]
+        world = self._T_world_root.matrix()
+        for inner in reversed(below):
+            world = world @ inner.transform
+        return world
+
+    def _read_attachment(self, element: Element, parent: int, T_world_parent: Pose) -> None:
+        inner = child(element, "link")
+        if inner is None:
+            self._library.warn("no-link", "there is no link in it; it is left out", element)
+            return
+        T_parent_frame = self._pose(element)
+        holder, joint = self._joint(element)
+        axes = [*children(joint, "revolute", "prismatic")]
+        bound = [self._scene.bindings.of_axis(self._owner, self._instance, axis, holder) for axis in axes]
+        node = next((item.node for item in bound if item is not None and item.node is not None), None)
+        T_parent_child = T_parent_frame @ self._pose(inner)
+        links = (parent, len(self.body.links))
+        built = self._built_joint(joint, axes, links, T_parent_frame, T_parent_child)
+        written = [None if item is None else item.value for item in bound]
+        values = [self._axes.value(axis, value) for axis, value in zip(axes, written, strict=True)]
+        place = min(self._axes.dof_index(self._infos.get(axis, AxisInfo())) for axis in axes)
+        self._found.append(_FoundJoint((holder, joint, *axes), built, values[: len(built.axes)], place))
+        self._read_link(inner, node, T_world_parent @ T_parent_child)
+
+    def _joint(self, attachment: Element) -> tuple[Element, Element]:
+        """Return what an attachment names, and the ``<joint>`` behind it."""
+        path = attachment.get("joint") or ""
+        found = self._scene.references.resolve(path, self.model)
+        joint = None if found is None else found.element
+        if joint is not None and local_name(joint) == "instance_joint":
+            joint = self._library.follow(joint)
+        if found is None or joint is None or local_name(joint) != "joint":
+            raise self._library.error(f"there is no joint '{path}'", attachment)
+        if next(children(joint, "revolute", "prismatic"), None) is None:
+            raise self._library.error("the joint has no axis", joint)
+        return found.element, joint
+
+    def _built_joint(
+        self, joint: Element, axes: list[Element], links: tuple[int, int], T_parent_frame: Pose, T_parent_child: Pose
+    ) -> JointBuilder:
+        kind = self._kind(joint, axes)
+        infos = [self._infos.get(axis, AxisInfo()) for axis in axes]
+        name = valid_name(joint.get("name") or joint.get("id") or joint.get("sid"))
+        return JointBuilder(
+            name=self._joint_names.give(name or f"joint{len(self.body.joints) + len(self._found)}"),
+            kind=kind,
+            links=links,
+            T_first_second=T_parent_child,
+            anchor=T_parent_frame.position,
+            axes=tuple(
+                self._axis(axis, info, T_parent_frame)
+                for axis, info in zip(axes[: 2 if kind == "hinge2" else 1], infos, strict=False)
+            ),
+            weld_turn=self._weld_turn(kind, axes[0], infos[0], T_parent_frame, T_parent_child),
+            enabled=all(self._axes.is_active(info) for info in infos),
+            source=self._library.source(joint),
+        )
+
+    def _kind(self, joint: Element, axes: list[Element]) -> JointKind:
+        kinds = [local_name(axis) for axis in axes]
+        if kinds == ["revolute", "revolute"]:
+            return "hinge2"
+        if len(kinds) > 1:
+            message = f"a joint with the axes {', '.join(kinds)} is more than ravemj can move; the first counts"
+            self._library.warn("unknown-type", message, joint)
+        return "hinge" if kinds[0] == "revolute" else "slider"
+
+    def _axis(self, element: Element, info: AxisInfo, T_parent_frame: Pose) -> Axis:
+        return self._axes.read(element, rotate(T_parent_frame.wxyz, _direction(element)), info)
+
+    def _weld_turn(
+        self, kind: JointKind, axis: Element, info: AxisInfo, T_parent_frame: Pose, T_parent_child: Pose
+    ) -> Wxyz:
+        """Return what OpenRAVE turns the axis of a joint by when its limits leave it no room."""
+        if kind == "slider":
+            return UNIT_WXYZ
+        T_frame_child = T_parent_frame.inverse() @ T_parent_child
+        turn = wxyz_from_axis_angle(_direction(axis), self._axes.wrap(axis, info))
+        turned = multiply(multiply(turn, T_frame_child.wxyz), conjugate(T_parent_frame.wxyz))
+        return multiply(T_parent_frame.wxyz, turned)
+
+
+def _direction(element: Element) -> Vec3:
+    """Return the unit vector of an axis; z where the file has none."""
+    values = numbers(child(element, "axis"))[:3]
+    length = float(np.linalg.norm(values))
+    if len(values) < 3 or not 0 < length < math.inf:
+        return (0.0, 0.0, 1.0)
+    x, y, z = (values / length).tolist()
+    return x, y, z

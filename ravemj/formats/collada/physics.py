@@ -1,0 +1,106 @@
+"""Masses: the rigid bodies of the physics scenes, by the nodes that they target."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ravemj.core.transforms import ZERO, Pose, Vec3
+from ravemj.formats.collada.library import Library
+from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.references import References
+from ravemj.formats.collada.visual import Node, transform_of
+from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
+from ravemj.model.inertia import inertial_about
+from ravemj.model.scene import Inertial
+
+NO_MASS = Inertial(1e-10, ZERO, ((1e-7, 0.0, 0.0), (0.0, 1e-7, 0.0), (0.0, 0.0, 1e-7)))
+"""What a link weighs that no rigid body belongs to."""
+
+
+@dataclass(frozen=True, slots=True)
+class RigidBody:
+    """The rigid body of a node.
+
+    Attributes:
+        element: The ``<rigid_body>``.
+        parent: The node in whose frame its mass is given, or None for that of the body's first link.
+    """
+
+    element: Element
+    parent: Node | None
+
+    @property
+    def static(self) -> bool:
+        """True for what does not move."""
+        return words(child(self.element, "technique_common", "dynamic"))[:1] == ["false"]
+
+    def inertial(self, library: Library, T_world_link: Pose, T_world_root: Pose) -> Inertial:
+        """Return the mass properties in the frame of a link.
+
+        Args:
+            library: The documents.
+            T_world_link: Pose of the link where all joints are at 0.
+            T_world_root: Pose of the first link of the body.
+
+        Raises:
+            SourceError: A number is not finite.
+        """
+        common = child(self.element, "technique_common")
+        mass, moments = numbers(child(common, "mass")), numbers(child(common, "inertia"))
+        weight = float(mass[0]) if len(mass) else NO_MASS.mass
+        moments = moments[:3] if len(moments) >= 3 else np.full(3, 1e-7)
+        if not math.isfinite(weight) or not np.isfinite(moments).all():
+            raise library.error("the mass properties are not finite", self.element)
+        frame = child(common, "mass_frame")
+        source = library.source(self.element if frame is None else frame)
+        T_world_parent = T_world_root if self.parent is None else rigid(self.parent.world, source)
+        T_parent_mass = Pose() if frame is None else rigid(transform_of(library, frame), source)
+        T_link_mass = T_world_link.inverse() @ T_world_parent @ T_parent_mass
+        return inertial_about(weight, T_link_mass, moments)
+
+
+class Physics:
+    """The physics scenes of a document.
+
+    Attributes:
+        gravity: Acceleration of free fall [m/s^2], or None.
+    """
+
+    def __init__(self, library: Library, references: References, scene: Element | None, root: Node | None) -> None:
+        """Read what the ``<instance_physics_scene>`` elements of a ``<scene>`` name."""
+        self._library = library
+        self._references = references
+        self._root = root
+        self._bodies: dict[Node, RigidBody] = {}
+        self.gravity: Vec3 | None = None
+        for instance in children(scene, "instance_physics_scene"):
+            physics = library.follow(instance)
+            gravity = numbers(child(physics, "technique_common", "gravity")).tolist()
+            if len(gravity) == 3 and all(map(math.isfinite, gravity)):
+                self.gravity = (gravity[0], gravity[1], gravity[2])
+            for model in children(physics, "instance_physics_model"):
+                self._read_model(model)
+
+    def of(self, node: Node | None) -> RigidBody | None:
+        """Return the rigid body of a node, or None."""
+        return None if node is None else self._bodies.get(node)
+
+    def _read_model(self, instance: Element) -> None:
+        model = self._library.follow(instance)
+        if model is None:
+            return
+        parent = self._node(instance, instance.get("parent") or "")
+        for body in children(instance, "instance_rigid_body"):
+            node = self._node(body, body.get("target") or "")
+            found = self._references.resolve(body.get("body") or "", model)
+            if found is None or local_name(found.element) != "rigid_body":
+                self._library.warn("broken-reference", f"there is no rigid body '{body.get('body')}'", body)
+            elif node is not None:
+                self._bodies.setdefault(node, RigidBody(found.element, parent))
+
+    def _node(self, element: Element, url: str) -> Node | None:
+        node = self._root.find(url.rpartition("#")[2]) if url and self._root is not None else None
+        if url and node is None:
+            self._library.warn("broken-reference", f"there is no node '{url}' in the visual scene", element)
+        return node

@@ -1,0 +1,166 @@
+"""``<scene>``: the bodies of a document."""
+
+from typing import NamedTuple
+
+from ravemj.core.transforms import Vec3, inverse
+from ravemj.formats.collada.axis import AxisInfo
+from ravemj.formats.collada.bindings import read_bindings
+from ravemj.formats.collada.geometry import GeometryReader
+from ravemj.formats.collada.library import Library
+from ravemj.formats.collada.model import ModelReader, Scene, valid_name
+from ravemj.formats.collada.physics import NO_MASS, Physics
+from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.references import References
+from ravemj.formats.collada.robot import ExtraReader, interface_kind
+from ravemj.formats.collada.visual import Node, expand
+from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children
+from ravemj.model.builder import BodyBuilder, LinkBuilder
+
+_MAX_DEPTH = 20
+
+
+class Content(NamedTuple):
+    """What a document holds.
+
+    Attributes:
+        bodies: Bodies with kinematics, articulated systems first.
+        others: Bodies that are only a node of the visual scene.
+        gravity: Acceleration of free fall [m/s^2], or None.
+    """
+
+    bodies: list[BodyBuilder]
+    others: list[BodyBuilder]
+    gravity: Vec3 | None
+
+
+def read_document(library: Library, document: ColladaDocument, wanted: str = "") -> Content:
+    """Read all bodies of a document.
+
+    Args:
+        library: The documents.
+        document: The one to read.
+        wanted: The id of the articulated system or model of the only body that is wanted; empty for all bodies.
+
+    Raises:
+        SourceError: Something in it is impossible, or what is wanted is not there.
+    """
+    references = References(library)
+    scene = child(document.root, "scene")
+    instance = child(scene, "instance_visual_scene")
+    visual = None if instance is None else library.follow(instance)
+    root = None if visual is None else expand(library, visual)
+    physics = Physics(library, references, scene, root)
+    geometry = GeometryReader(library)
+    bodies: list[BodyBuilder] = []
+    shown: set[Node] = set()
+    for kinematics in children(scene, "instance_kinematics_scene"):
+        element = library.follow(kinematics)
+        if element is not None:
+            bindings = read_bindings(library, references, kinematics, element, root)
+            shared = Scene(library, references, bindings, physics, geometry)
+            shown |= shared.moved
+            bodies += _bodies(shared, element, wanted)
+    if wanted:
+        if not bodies:
+            raise library.error(f"there is no articulated system '{wanted}' in the scene", document.root)
+        return Content(bodies, [], physics.gravity)
+    taken = {node for inner in shown for node in inner.around()}
+    nodes = [] if root is None else [node for node in root.nodes if node not in taken]
+    others = [body for node in nodes if (body := _node_body(library, geometry, node)) is not None]
+    return Content(bodies, others, physics.gravity)
+
+
+def _bodies(scene: Scene, element: Element, wanted: str) -> list[BodyBuilder]:
+    systems = [_system_body(scene, item, wanted) for item in children(element, "instance_articulated_system")]
+    models = [_model_body(scene, item, wanted) for item in children(element, "instance_kinematics_model")]
+    return [body for body in (*systems, *models) if body is not None]
+
+
+class _System(NamedTuple):
+    """An articulated system taken apart, the outermost part first."""
+
+    systems: list[Element]
+    models: list[Element]
+    infos: dict[Element, AxisInfo]
+
+    def has(self, name: str) -> bool:
+        """Tell whether a name is that of a part, or that of an instance of one."""
+        parts = (*self.systems, *self.models)
+        return any(name in (part.get("id"), part.get("sid"), (part.get("url") or "").lstrip("#")) for part in parts)
+
+
+def _system_body(scene: Scene, instance: Element, wanted: str) -> BodyBuilder | None:
+    parts = _System([], [], {})
+    _take_apart(scene, instance, parts, {}, 0)
+    if wanted and not parts.has(wanted) and wanted != instance.get("sid"):
+        return None
+    is_robot = interface_kind(instance, *parts.systems) != "kinbody"
+    body = BodyBuilder(is_robot, scene.library.source(instance))
+    return _filled(scene, body, instance, parts)
+
+
+def _model_body(scene: Scene, instance: Element, wanted: str) -> BodyBuilder | None:
+    body = BodyBuilder(is_robot=False, source=scene.library.source(instance))
+    parts = _System([], [instance], {})
+    return None if wanted and not parts.has(wanted) else _filled(scene, body, instance, parts)
+
+
+def _filled(scene: Scene, body: BodyBuilder, instance: Element, parts: _System) -> BodyBuilder | None:
+    """Fill a body from its kinematics models; None where there is none."""
+    readers: list[ModelReader] = []
+    for item in parts.models:
+        model = scene.library.follow(item)
+        if model is not None:
+            readers.append(ModelReader(scene, body, instance, item, model, parts.infos))
+            readers[-1].read()
+    if not readers:
+        return None
+    body.name = valid_name(instance.get("name") or readers[0].model.get("name") or readers[0].model.get("id"))
+    ExtraReader(scene.library, scene.references, readers).read(parts.systems)
+    values = {index: values for reader in readers for index, values in reader.values.items()}
+    chosen = [value for index, joint in enumerate(body.joints) if joint.active for value in values[index]]
+    body.joint_values = chosen if any(chosen) else None
+    return body
+
+
+def _take_apart(scene: Scene, instance: Element, parts: _System, motions: dict[Element, Element], depth: int) -> None:
+    """Descend from an instance of a system to the models; what is met on the way goes into ``parts``."""
+    system = scene.library.follow(instance)
+    if system is None or depth > _MAX_DEPTH:
+        return
+    parts.systems.append(system)
+    motion, kinematics = child(system, "motion"), child(system, "kinematics")
+    if motion is not None:
+        inner = {**motions, **_axis_infos(scene, motion)}
+        for item in children(motion, "instance_articulated_system"):
+            _take_apart(scene, item, parts, inner, depth + 1)
+    if kinematics is not None:
+        for axis, info in _axis_infos(scene, kinematics).items():
+            parts.infos[axis] = AxisInfo(info, motions.get(info, motions.get(axis)))
+        parts.models.extend(children(kinematics, "instance_kinematics_model"))
+
+
+def _axis_infos(scene: Scene, part: Element) -> dict[Element, Element]:
+    """Return the ``<axis_info>`` elements of a part of a system, by what they say something about."""
+    infos: dict[Element, Element] = {}
+    for info in children(child(part, "technique_common"), "axis_info"):
+        found = scene.references.resolve(info.get("axis") or "", part)
+        if found is None:
+            scene.library.warn("broken-reference", f"there is no axis '{info.get('axis')}'", info)
+        else:
+            infos[found.element] = info
+    return infos
+
+
+def _node_body(library: Library, geometry: GeometryReader, node: Node) -> BodyBuilder | None:
+    """Return the body of one link that OpenRAVE makes of a node, or None where it shows nothing."""
+    source = library.source(node.element)
+    name = valid_name(node.name)
+    T_world_link = rigid(node.world, source)
+    T_link_world = inverse(T_world_link.matrix())
+    shapes = geometry.read(node, lambda inner: T_link_world @ inner.world, lambda inner: False)
+    if not shapes:
+        return None
+    body = BodyBuilder(is_robot=False, source=source, name=name)
+    body.links.append(LinkBuilder(name, source, T_world_link, shapes, inertial=NO_MASS))
+    return body

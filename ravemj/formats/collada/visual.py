@@ -1,0 +1,131 @@
+"""The visual scene with all instances of nodes expanded: which node has which pose."""
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.formats.collada.library import Library
+from ravemj.formats.meshes.collada.document import Element, children, local_name
+from ravemj.formats.meshes.collada.placement import local_transform
+
+_MAX_DEPTH = 150
+_MAX_NODES = 100_000
+_TRANSFORMS = ("translate", "rotate", "matrix", "scale", "lookat", "skew")
+
+
+@dataclass(eq=False, slots=True)
+class Node:
+    """A node of the expanded scene.
+
+    Attributes:
+        element: The ``<node>``; of the scene itself the ``<visual_scene>``.
+        parent: The node around it.
+        names: Its id and sid, and those of the instances that it comes through.
+        transform: Its pose in its parent [m], scale included, shape (4, 4).
+        nodes: The nodes in it.
+        named: The nodes below it by their names, once they were asked for.
+    """
+
+    element: Element
+    parent: "Node | None" = None
+    names: set[str] = field(default_factory=set[str])
+    transform: Floats = field(default_factory=lambda: np.eye(4))
+    nodes: list["Node"] = field(default_factory=list["Node"])
+    named: dict[str, "Node"] | None = None
+
+    @property
+    def name(self) -> str:
+        """What people call it."""
+        return self.element.get("name") or self.element.get("id") or self.element.get("sid") or ""
+
+    @property
+    def world(self) -> Floats:
+        """Its pose in the scene, shape (4, 4)."""
+        return self.transform if self.parent is None else self.parent.world @ self.transform
+
+    def around(self) -> Iterator["Node"]:
+        """Yield this node and those around it, the innermost first."""
+        node: Node | None = self
+        while node is not None:
+            yield node
+            node = node.parent
+
+    def find(self, path: str) -> "Node | None":
+        """Return the node that a path of names leads to; the last name may be that of a transform in it."""
+        node: Node | None = self
+        for name in path.strip().removeprefix("#").split("/"):
+            node = None if node is None else node._below().get(name)
+        return node
+
+    def _below(self) -> dict[str, "Node"]:
+        """Return this node and those in it by their names and by those of their transforms; the nearest ones count."""
+        if self.named is None:
+            self.named = {}
+            queue: deque[Node] = deque([self])
+            while queue:
+                node = queue.popleft()
+                transforms = children(node.element, *_TRANSFORMS) if node.parent else ()
+                for name in (*node.names, *(item.get("sid") for item in transforms)):
+                    if name is not None:
+                        self.named.setdefault(name, node)
+                queue.extend(node.nodes)
+        return self.named
+
+
+def transform_of(library: Library, element: Element) -> Floats:
+    """Return the product of the transforms in an element, in their order, with lengths in metres, shape (4, 4)."""
+    product = np.eye(4)
+    for item in children(element):
+        step = local_transform(item)
+        if step is not None:
+            metres = library.metres(item)
+            if metres != 1.0:
+                step[:3, 3] *= metres
+            product = product @ step
+    return product
+
+
+def expand(library: Library, scene: Element) -> Node:
+    """Return the tree of a visual scene, in which every instance of a node is a copy of its own.
+
+    Raises:
+        SourceError: The nodes are nested too deep or repeated too often.
+    """
+    root = Node(scene)
+    count = 0
+
+    def fill(node: Node, depth: int, suffix: str) -> None:
+        nonlocal count
+        count += 1
+        if depth > _MAX_DEPTH or count > _MAX_NODES:
+            raise library.error("the nodes are nested too deep or repeated too often", node.element)
+        for element in children(node.element, "node", "instance_node"):
+            aliases: set[str] = set()
+            target: Element | None = element
+            ending = suffix
+            if local_name(element) == "instance_node":
+                aliases = {name for name in (element.get("sid"), element.get("id")) if name}
+                ending = _suffix(element) or suffix
+                target = library.follow(element)
+            if target is None:
+                continue
+            names = aliases | {name for name in (target.get("sid"), _suffixed(target.get("id"), ending)) if name}
+            inner = Node(target, node, names, transform_of(library, target))
+            node.nodes.append(inner)
+            fill(inner, depth + 1, ending)
+
+    fill(root, 0, "")
+    return root
+
+
+def _suffix(instance: Element) -> str:
+    extras = (item for item in children(instance, "extra") if item.get("type") == "idsuffix")
+    extra = next(extras, None)
+    return "" if extra is None else extra.get("name", "")
+
+
+def _suffixed(name: str | None, suffix: str) -> str | None:
+    return name + suffix if name else None

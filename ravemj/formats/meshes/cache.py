@@ -1,0 +1,229 @@
+"""Parsed meshes kept on disk, by the content of their files.
+
+An entry (``.mesh``) is named after the hash of the file, the end of its name and the source of the readers, so that
+no entry outlives a change of them. It lists the files that the mesh refers to with their hashes, and counts only while
+they are the same.
+
+A shortcut (``.path``) saves reading and hashing a file to find its entry, as the index of git does: it is named after
+the file's path and the stamps of the readers' source, holds the stamps of the file and of those that it refers to, and
+counts while they are the same. A file that was changed just now may be changed again within the same tick of the
+clock, so it gets none.
+
+Whatever goes wrong here is logged at debug level and never stops a mesh from being read.
+
+``RAVEMJ_CACHE`` names the folder, or ``off`` for none; otherwise it is ``$XDG_CACHE_HOME/ravemj`` or
+``~/.cache/ravemj``. Meshes are in ``meshes`` below it.
+"""
+
+import contextlib
+import functools
+import hashlib
+import logging
+import os
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TypeVar
+
+from ravemj.formats.meshes.entries import Parts, follow_shortcut, pack_entry, pack_shortcut, unpack_entry
+from ravemj.formats.meshes.files import References, changed_at, digest_of, read_bytes, stamp_of
+from ravemj.model.scene import shapes
+
+_log = logging.getLogger(__name__)
+
+MAX_BYTES = 1 << 30
+"""The cache is pruned to this size, those files first that were used least recently."""
+
+_PRUNE_EVERY = 64  # files written by this process between two looks at the size
+_TICK = 2 * 10**9  # ns; the coarsest clock of a file system
+_RECENT = 24 * 3600  # s; a file that was used that recently is not marked again
+_READ = os.O_RDONLY | getattr(os, "O_BINARY", 0)
+
+_written = 0
+
+_T = TypeVar("_T")
+
+
+def remembered_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, References]]) -> Parts:
+    """Return what ``read`` makes of a file, from the cache if it is there.
+
+    Args:
+        path: The file.
+        kind: What else the result depends on, such as the end of the file's name.
+        read: Gets the file's content; returns the parts, and the other files that were read.
+
+    Raises:
+        SourceError: The file cannot be read.
+    """
+    folder = cache_folder()
+    if folder is None:
+        return read(read_bytes(path))[0]
+    began, stamp = time.time_ns(), stamp_of(path)
+    place = os.path.join(os.getcwd(), path) if stamp else ""  # as it is: behind a link, ".." leads elsewhere
+    shortcut = f"{folder}/{_name(_readers_unread(), kind.encode(), os.fsencode(place))}.path"
+    entry = _loaded(shortcut, follow_shortcut) if stamp else None
+    found = _loaded(f"{folder}/{entry}", unpack_entry) if entry else None
+    if found:
+        return found[0]
+    content, home = read_bytes(path), os.path.dirname(os.path.abspath(place))
+    parts, entry, references = _by_content(folder, content, kind, home, read)
+    stamps = {**references.stamps, place: stamp}
+    if stamp and all(stamp_of(name) == known and changed_at(known) + _TICK < began for name, known in stamps.items()):
+        _store(Path(shortcut), pack_shortcut(entry, stamps))
+    return parts
+
+
+def remembered(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
+    """Return what ``read`` gives, from the cache if it is there.
+
+    Args:
+        content: What the result is made from.
+        kind: What else it depends on.
+        read: Returns the parts.
+    """
+    folder = cache_folder()
+    return read() if folder is None else _by_content(folder, content, kind, "", lambda _: (read(), References()))[0]
+
+
+def cache_folder() -> Path | None:
+    """Return the folder of the meshes, or None if it is switched off."""
+    chosen = os.environ.get("RAVEMJ_CACHE", "")
+    if chosen.lower() == "off":
+        return None
+    if chosen:
+        return Path(chosen, "meshes")
+    base = os.environ.get("XDG_CACHE_HOME", "")
+    if os.path.isabs(base):
+        return Path(base, "ravemj", "meshes")
+    try:
+        return Path.home() / ".cache" / "ravemj" / "meshes"
+    except RuntimeError:  # a user without a home
+        return None
+
+
+def _by_content(
+    folder: Path, content: bytes, kind: str, home: str, read: Callable[[bytes], tuple[Parts, References]]
+) -> tuple[Parts, str, References]:
+    """Return the parts, the name of their entry, and the files that they come from besides this one.
+
+    Where there are such files, the entry belongs to the folder ``home``: elsewhere the same names are other files.
+    """
+    alone = f"{_name(_readers(), kind.encode(), content)}.mesh"
+    at_home = f"{_name(_readers(), kind.encode(), content, os.fsencode(home))}.mesh"
+    for entry in (alone, at_home):
+        found = _loaded(f"{folder}/{entry}", unpack_entry)
+        if found:
+            parts, digests = found
+            references = References(digests, {path: stamp_of(path) for path in digests})
+            if all(digest_of(path) == digest for path, digest in digests.items()):
+                return parts, entry, references
+    parts, references = read(content)
+    entry = at_home if references.digests else alone
+    _store(folder / entry, pack_entry(parts, references.digests))
+    return parts, entry, references
+
+
+def _name(readers: bytes, *parts: bytes) -> str:
+    """Return a name for what the readers make of something."""
+    key = hashlib.sha256(readers)
+    for part in parts:
+        key.update(b"%d\0" % len(part))
+        key.update(part)
+    return key.hexdigest()
+
+
+@functools.cache
+def _readers() -> bytes:
+    """Return a hash of the source that makes what is kept."""
+    digest = hashlib.sha256()
+    with contextlib.suppress(OSError):
+        for path in _sources():
+            with open(path, "rb") as file:
+                digest.update(file.read())
+    return digest.digest()
+
+
+@functools.cache
+def _readers_unread() -> bytes:
+    """Return a hash that changes with the source, though it is not read."""
+    with contextlib.suppress(OSError):
+        return hashlib.sha256("\n".join(f"{path} {stamp_of(path)}" for path in _sources()).encode()).digest()
+    return b""
+
+
+def _sources() -> list[str]:
+    """Return the paths of the modules beside this one, and of that with class ``Mesh``."""
+    return [*sorted(_modules(os.path.dirname(__file__))), shapes.__file__]
+
+
+def _modules(folder: str) -> Iterator[str]:
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.name.endswith(".py"):
+                yield entry.path
+            elif entry.is_dir() and entry.name != "__pycache__":
+                yield from _modules(entry.path)
+
+
+def _loaded(file: str, unpack: Callable[[bytes], _T]) -> _T | None:
+    """Return what a file of the cache holds, or None if it is not there or damaged."""
+    try:
+        descriptor = os.open(file, _READ)  # a model has many meshes, and ``open`` takes twice the time
+        try:
+            status = os.fstat(descriptor)
+            unpacked = unpack(os.read(descriptor, status.st_size))
+        finally:
+            os.close(descriptor)
+    except FileNotFoundError:
+        return None
+    except Exception as error:  # a damaged file never stops anything
+        _log.debug("%s cannot be used: %s", file, error)
+        return None
+    if time.time() - status.st_mtime > _RECENT:
+        with contextlib.suppress(OSError):  # a file of someone else
+            os.utime(file)
+    return unpacked
+
+
+def _store(file: Path, content: bytes) -> None:
+    """Write a file under another name first, so that no reader ever sees half of it."""
+    global _written  # noqa: PLW0603 - a counter
+    name = None
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=file.parent, suffix=".tmp", delete=False) as opened:
+            name = opened.name
+            opened.write(content)
+        os.replace(name, file)
+        _written += 1
+        if _written % _PRUNE_EVERY == 1:
+            prune(file.parent)
+    except OSError as error:
+        _log.debug("cannot write to the cache: %s", error)
+        if name is not None:
+            with contextlib.suppress(OSError):
+                os.unlink(name)
+
+
+def prune(folder: Path, max_bytes: int = MAX_BYTES) -> None:
+    """Delete files that were not used for the longest time, until the rest fits.
+
+    Args:
+        folder: The folder of the cache.
+        max_bytes: How much may stay.
+    """
+    sizes: list[tuple[float, int, str]] = []
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            with contextlib.suppress(OSError):  # another process was faster
+                if entry.name.endswith((".mesh", ".path", ".tmp")):
+                    status = entry.stat()
+                    sizes.append((status.st_mtime, status.st_size, entry.path))
+    total = sum(size for _, size, _ in sizes)
+    for _, size, path in sorted(sizes):
+        if total <= max_bytes:
+            return
+        with contextlib.suppress(OSError):
+            os.unlink(path)
+        total -= size

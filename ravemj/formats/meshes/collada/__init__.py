@@ -1,0 +1,139 @@
+"""COLLADA files as plain meshes: the visual scene flattened, one part for each material.
+
+As OpenRAVE's importer does it, the file is scaled by its unit and turned to y up. The arrays of one ``<geometry>``
+(``geometry``), colours (``materials``) and transforms (``placement``) are read by functions of their own, for the
+reader of robots, which does neither.
+"""
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import SourceError
+from ravemj.formats.meshes.collada.document import (
+    ColladaDocument,
+    Element,
+    attribute_number,
+    child,
+    children,
+    local_name,
+)
+from ravemj.formats.meshes.collada.geometry import PrimitiveGroup, primitive_groups
+from ravemj.formats.meshes.collada.materials import ColladaMaterial, bindings, read_material
+from ravemj.formats.meshes.collada.placement import local_transform
+from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.obj import GRAY, transparency
+from ravemj.formats.meshes.parts import WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
+
+_AMBIENT = rgb((0.1, 0.1, 0.1))  # where the file gives none, in OpenRAVE's importer
+_MAX_DEPTH = 150
+_MAX_NODES = 100_000
+
+_Y_UP_FROM = {
+    "X_UP": np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
+    "Z_UP": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
+}
+
+
+def read_collada(file: MeshFile) -> tuple[MeshPart, ...]:
+    """Read a COLLADA file: one part for each material that is used, in the order of the materials' ids.
+
+    Raises:
+        SourceError: The file is not well-formed XML, not COLLADA, or too large to be meant.
+    """
+    document = ColladaDocument(file.data, file.path)
+    flattening = _Flattening(document)
+    instance = child(document.root, "scene", "instance_visual_scene")
+    scene = None if instance is None else document.find("visual_scene", instance.get("url"))
+    if scene is not None:
+        flattening.nodes(scene, _root_transform(document), 0)
+    parts: list[MeshPart] = []
+    for material, pieces in sorted(flattening.pieces.items()):
+        corners = np.concatenate(pieces)
+        check_finite(corners, file.source)
+        corners = without_degenerate(corners)
+        if len(corners):
+            parts.append(_part(corners, flattening.material(material)))
+    return tuple(parts)
+
+
+def _part(corners: Floats, material: ColladaMaterial) -> MeshPart:
+    diffuse = WHITE if material.textured else material.diffuse or GRAY
+    ambient = material.ambient or _AMBIENT
+    return MeshPart(weld(corners), diffuse, ambient, transparency(material.opacity))
+
+
+def _root_transform(document: ColladaDocument) -> Floats:
+    """Return the matrix from the file's units and axes to metres and y up."""
+    asset = child(document.root, "asset")
+    metres = attribute_number(child(asset, "unit"), "meter", 1.0)
+    up = child(asset, "up_axis")
+    name = "" if up is None else up.text or ""  # with blanks around it OpenRAVE's importer does not know it
+    matrix = np.eye(4)
+    matrix[:3, :3] = metres * _Y_UP_FROM.get(name, np.eye(3))
+    return matrix
+
+
+class _Flattening:
+    """Triangles collected from a visual scene, by the id of their material."""
+
+    def __init__(self, document: ColladaDocument) -> None:
+        self._document = document
+        self._nodes_left = _MAX_NODES
+        self._count = 0
+        self._groups: dict[Element, list[PrimitiveGroup]] = {}
+        library = (item for each in children(document.root, "library_materials") for item in children(each, "material"))
+        found = {item.get("id", ""): read_material(document, item) for item in library}
+        self._materials = {name: material for name, material in found.items() if material is not None}
+        self.pieces: dict[str, list[Floats]] = {}
+
+    def material(self, name: str) -> ColladaMaterial:
+        """Return a material; a plain one for a name that is not in the file."""
+        return self._materials.get(name, ColladaMaterial())
+
+    def nodes(self, parent: Element, matrix: Floats, depth: int) -> None:
+        """Collect from the nodes of a scene or node."""
+        self._nodes_left -= 1
+        if depth > _MAX_DEPTH or self._nodes_left < 0:
+            raise SourceError("the nodes are nested too deep or repeated too often", self._document.source(parent))
+        for element in children(parent):
+            kind = local_name(element)
+            step = local_transform(element)
+            if step is not None:
+                matrix = matrix @ step
+            elif kind in ("instance_geometry", "instance_controller"):
+                self._instance(element, matrix)
+            elif kind in ("node", "instance_node"):
+                node = element if kind == "node" else self._document.find("node", element.get("url"))
+                if node is not None:
+                    self.nodes(node, matrix, depth + 1)
+
+    def _instance(self, instance: Element, matrix: Floats) -> None:
+        geometry = self._geometry(instance)
+        if geometry is None:
+            return
+        if geometry not in self._groups:
+            self._groups[geometry] = primitive_groups(self._document, geometry)
+        bound = bindings(instance)
+        for group in self._groups[geometry]:
+            self._count += len(group.corners)
+            check_size(self._count, self._document.source(instance))
+            placed = group.corners @ matrix[:3, :3].T + matrix[:3, 3]
+            self.pieces.setdefault(self._material_of(group.symbol, bound), []).append(placed)
+
+    def _geometry(self, instance: Element) -> Element | None:
+        """Return the geometry of an instance; that of a controller is the shape that it deforms."""
+        url = instance.get("url")
+        for _ in range(10):  # controllers of controllers
+            geometry = self._document.find("geometry", url)
+            controller = self._document.find("controller", url)
+            if geometry is not None or controller is None:
+                return geometry
+            deformer = next(children(controller, "skin", "morph"), None)
+            url = None if deformer is None else deformer.get("source")
+        return None
+
+    def _material_of(self, symbol: str, bound: dict[str, str]) -> str:
+        """Return the id of a group's material: that bound to its symbol, else any that is bound, else the first."""
+        url = bound.get(symbol, bound[min(bound)] if bound else symbol)
+        name = url.strip().removeprefix("#")
+        return name if name in self._materials else min(self._materials, default="")

@@ -1,0 +1,125 @@
+"""A COLLADA file as a tree in which elements are found by their kind and id."""
+
+import functools
+import hashlib
+import math
+import re
+from collections.abc import Iterator
+
+import numpy as np
+from lxml import etree
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import Source, SourceError
+
+Element = etree._Element  # pyright: ignore[reportPrivateUsage] - lxml's name for the type
+
+
+class ColladaDocument:
+    """A parsed file; namespaces do not count.
+
+    Attributes:
+        path: Where the file lies.
+        root: The outermost element.
+        digest: A name for the content: the same for the same bytes.
+    """
+
+    def __init__(self, data: bytes, path: str) -> None:
+        """Parse a file.
+
+        Raises:
+            SourceError: It is not well-formed XML, or its root is not COLLADA.
+        """
+        self.path = path
+        self.digest = hashlib.sha256(data).hexdigest()
+        parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
+        try:
+            root = etree.fromstring(data, parser)
+        except etree.XMLSyntaxError as error:
+            raise SourceError(f"not well-formed XML: {error.msg}", Source(path, error.lineno or 0)) from error
+        if root is None or local_name(root) != "COLLADA":
+            raise SourceError("the root element is not COLLADA", Source(path, 1))
+        self.root = root
+        self._by_id: dict[tuple[str, str], Element] = {}
+        for element in root.iter(etree.Element):
+            name = element.get("id")
+            if name is not None:
+                self._by_id.setdefault((local_name(element), name), element)
+        self._of_any_kind: dict[str, list[Element]] = {}
+        self._places: dict[Element, int] = {}
+
+    def source(self, element: Element) -> Source:
+        """Return the place of an element, for messages."""
+        return Source(self.path, element.sourceline or 0)
+
+    def place(self, geometry: Element) -> int:
+        """Return which ``<geometry>`` of the file an element is, counted from 0."""
+        if not self._places:
+            self._places = {element: number for number, element in enumerate(self.root.iter("{*}geometry"))}
+        return self._places[geometry]
+
+    def find(self, kind: str, url: str | None) -> Element | None:
+        """Return the element of a kind that a URL such as ``#id`` names.
+
+        One id may belong to elements of several kinds: some writers give a geometry and an effect the same one.
+        """
+        return self._by_id.get((kind, (url or "").strip().removeprefix("#")))
+
+    def identified(self, name: str) -> list[Element]:
+        """Return the elements with an id, one of each kind at most."""
+        if not self._of_any_kind:
+            for (_, known), element in self._by_id.items():
+                self._of_any_kind.setdefault(known, []).append(element)
+        return self._of_any_kind.get(name, [])
+
+
+def local_name(element: Element) -> str:
+    """Return an element's tag without its namespace."""
+    return element.tag.rpartition("}")[2]
+
+
+def children(element: Element | None, *kinds: str) -> Iterator[Element]:
+    """Yield the children of some kinds, or all elements if none is named; nothing for no element."""
+    if element is None:
+        return iter(())
+    return element.iterchildren(*_patterns(kinds)) if kinds else element.iterchildren(etree.Element)
+
+
+@functools.cache
+def _patterns(kinds: tuple[str, ...]) -> tuple[str, ...]:
+    """Return what lxml knows elements of some kinds by, in any namespace."""
+    return tuple(f"{{*}}{kind}" for kind in kinds)
+
+
+def child(element: Element | None, *path: str) -> Element | None:
+    """Return the first child, grandchild, … along a path of kinds, or None."""
+    for kind in path:
+        element = next(children(element, kind), None)
+    return element
+
+
+def words(element: Element | None) -> list[str]:
+    """Return the words of an element's text."""
+    return [] if element is None else (element.text or "").split()
+
+
+_LEADING_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+
+
+def numbers(element: Element | None) -> Floats:
+    """Return the numbers in an element's text; what is no number is 0, as OpenRAVE's reader has it."""
+    text = words(element)
+    try:
+        return np.array(list(map(float, text)))
+    except ValueError:
+        found = (_LEADING_NUMBER.match(word) for word in text)
+        return np.array([float(match[0]) if match else 0.0 for match in found])
+
+
+def attribute_number(element: Element | None, name: str, default: float) -> float:
+    """Return a number in an attribute, or ``default`` where there is none."""
+    try:
+        value = float((None if element is None else element.get(name)) or default)
+    except ValueError:
+        return default
+    return value if math.isfinite(value) else default

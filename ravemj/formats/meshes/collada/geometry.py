@@ -1,0 +1,183 @@
+"""The triangles of one COLLADA ``<geometry>``; shared by mesh files and robots."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints
+from ravemj.errors import SourceError
+from ravemj.formats.meshes import faces
+from ravemj.formats.meshes.cache import remembered
+from ravemj.formats.meshes.collada.document import (
+    ColladaDocument,
+    Element,
+    attribute_number,
+    child,
+    children,
+    local_name,
+    words,
+)
+from ravemj.formats.meshes.collada.document import numbers as numbers_of
+from ravemj.formats.meshes.parts import MAX_TRIANGLES, MeshPart, check_finite, weld
+from ravemj.model.scene import Mesh
+
+_OF_ROBOTS = ("triangles", "trifans", "tristrips", "polylist")
+_KINDS = (*_OF_ROBOTS, "polygons")
+
+
+@dataclass(frozen=True, slots=True)
+class PrimitiveGroup:
+    """The triangles of one primitive element.
+
+    Attributes:
+        symbol: The name that an ``<instance_material>`` binds to a material; empty if there is none.
+        corners: Three points for each triangle, in the units of the file, shape (n, 3, 3).
+    """
+
+    symbol: str
+    corners: Floats
+
+
+def primitive_groups(
+    document: ColladaDocument, geometry: Element, concave: bool = True, kinds: tuple[str, ...] = _KINDS
+) -> list[PrimitiveGroup]:
+    """Read a ``<geometry>``: its ``<mesh>`` or ``<convex_mesh>``, without units or transforms.
+
+    Indices that point nowhere and elements that refer to missing ones are tolerated: their polygons are left out.
+
+    Args:
+        document: The file.
+        geometry: The element.
+        concave: Whether to cut polygons ear by ear; otherwise they become fans, as in OpenRAVE's robots.
+        kinds: Which primitive elements count.
+
+    Returns:
+        One group for each primitive element, in document order, also where it has no triangles.
+
+    Raises:
+        SourceError: There are too many triangles.
+    """
+    mesh = _mesh(geometry)
+    if mesh is None:
+        return []
+    points = _positions(document, mesh)
+    groups: list[PrimitiveGroup] = []
+    for element in children(mesh, *kinds):
+        kind = local_name(element)
+        sizes, index = _polygons(element, kind)
+        if int(np.maximum(sizes - 2, 0).sum()) > MAX_TRIANGLES:
+            raise SourceError(f"the mesh has more than {MAX_TRIANGLES} triangles", document.source(element))
+        groups.append(PrimitiveGroup(element.get("material", ""), _corners(points, sizes, index, concave)))
+    return groups
+
+
+def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float) -> list[tuple[str, Mesh]]:
+    """Return the triangles of a ``<geometry>`` as OpenRAVE's robots have them, from the cache if they are there.
+
+    Args:
+        document: The file.
+        geometry: The element.
+        metres: The length of its unit [m].
+
+    Returns:
+        The symbol and the triangles [m] of each primitive element that has any; polygons do not count.
+
+    Raises:
+        SourceError: There are too many triangles, or a coordinate is not finite.
+    """
+
+    def read() -> tuple[MeshPart, ...]:
+        corners = [group.corners * metres for group in primitive_groups(document, geometry, False, _OF_ROBOTS)]
+        for item in corners:
+            check_finite(item, document.source(geometry))
+        return tuple(MeshPart(weld(item)) for item in corners)
+
+    key = f"{document.digest} {document.place(geometry)} {metres!r}"
+    parts = remembered(key.encode(), "geometry", read)
+    symbols = [element.get("material", "") for element in children(_mesh(geometry), *_OF_ROBOTS)]
+    return [(symbol, part.mesh) for symbol, part in zip(symbols, parts, strict=True) if len(part.mesh.triangles)]
+
+
+def _mesh(geometry: Element) -> Element | None:
+    mesh = child(geometry, "mesh")
+    return child(geometry, "convex_mesh") if mesh is None else mesh
+
+
+def _positions(document: ColladaDocument, mesh: Element) -> Floats:
+    """Return the points that VERTEX inputs mean: those of the mesh's own ``<vertices>``, whatever its id."""
+    inputs = children(child(mesh, "vertices"), "input")
+    url = next((item.get("source", "") for item in inputs if item.get("semantic") == "POSITION"), "")
+    wanted = url.strip().removeprefix("#")
+    source = next((item for item in children(mesh, "source") if item.get("id") == wanted), None)
+    return np.zeros((0, 3)) if source is None else _source_rows(document, source)
+
+
+def _source_rows(document: ColladaDocument, source: Element) -> Floats:
+    """Return the first three numbers of each row of a ``<source>``."""
+    accessor = child(source, "technique_common", "accessor")
+    array = None if accessor is None else document.find("float_array", accessor.get("source"))
+    own = child(source, "float_array")
+    data = numbers_of(own if own is not None else array)
+    stride = int(min(max(attribute_number(accessor, "stride", 3), 1), 1000))
+    data = data[int(max(attribute_number(accessor, "offset", 0), 0)) :]
+    columns = _columns(accessor, stride)
+    rows = data[: len(data) // stride * stride].reshape(-1, stride)
+    return rows[:, columns] if stride >= 3 else np.zeros((0, 3))
+
+
+def _columns(accessor: Element | None, stride: int) -> list[int]:
+    """Return where x, y and z stand in a row; a ``<param>`` without a name is skipped."""
+    names = [param.get("name", "") for param in children(accessor, "param")]
+    if {"X", "Y", "Z"} <= set(names[:stride]):
+        return [names.index(axis) for axis in "XYZ"]
+    return [0, 1, 2]
+
+
+def _polygons(element: Element, kind: str) -> tuple[Ints, Ints]:
+    """Return the number of corners of each polygon, and the position index of each corner."""
+    offsets = [
+        (item.get("semantic"), int(max(attribute_number(item, "offset", 0), 0))) for item in children(element, "input")
+    ]
+    offset = next((number for semantic, number in offsets if semantic in ("VERTEX", "POSITION")), 0)
+    width = min(max((number for _, number in offsets), default=0), 1000) + 1
+    lists = [_indices(item, width, offset) for item in _index_lists(element)]
+    index = np.concatenate([np.zeros(0, np.int_), *lists])
+    lengths = np.array([len(item) for item in lists], np.int_)
+    match kind:
+        case "triangles":
+            return np.full(len(index) // 3, 3), index
+        case "polylist":
+            counts = np.nan_to_num(numbers_of(child(element, "vcount"))).clip(0, len(index) + 1).astype(np.int_)
+            return counts[np.cumsum(counts) <= len(index)], index
+        case "tristrips":
+            triangles = faces.strips(lengths, index)
+            return np.full(len(triangles), 3), triangles.ravel()
+        case _:
+            return lengths, index
+
+
+def _index_lists(element: Element) -> list[Element]:
+    """Return the ``<p>`` of a primitive; also those with holes, of which only the outline counts."""
+    lists = list(children(element, "p"))
+    return lists + [item for holed in children(element, "ph") for item in children(holed, "p")]
+
+
+def _indices(element: Element, width: int, offset: int) -> Ints:
+    try:
+        every = np.array(list(map(int, words(element))), np.int_)
+    except (ValueError, OverflowError):
+        every = np.nan_to_num(numbers_of(element), nan=-1).clip(-1, 2**53).astype(np.int_)
+    return every[: len(every) // width * width][offset::width]
+
+
+def _corners(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats:
+    ends = np.cumsum(sizes)
+    starts = ends - sizes
+    wrong = (index < 0) | (index >= len(points))
+    before = np.concatenate([[0], np.cumsum(wrong)])
+    good = (sizes >= 3) & (before[ends] == before[starts])
+    if not good.any():
+        return np.zeros((0, 3, 3))
+    corners = points[np.where(wrong, 0, index)]
+    cut = faces.clipped(corners, starts[good], sizes[good]) if concave else faces.fans(starts[good], sizes[good])
+    return corners[cut]

@@ -1,0 +1,93 @@
+"""The colours of COLLADA materials; shared by mesh files and robots."""
+
+from dataclasses import dataclass
+
+from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, numbers
+from ravemj.formats.meshes.parts import rgb
+from ravemj.model.scene import Rgb
+
+_SHADERS = ("phong", "blinn", "lambert", "constant")
+_LUMINANCE = (0.212671, 0.71516, 0.072169)  # of red, green and blue, as COLLADA says for transparency by colour
+
+
+@dataclass(frozen=True, slots=True)
+class ColladaMaterial:
+    """A material's colours as far as the file gives them.
+
+    Attributes:
+        diffuse: Colour; None where the file has none.
+        ambient: Colour in the shade; None where the file has none.
+        textured: True where the diffuse colour comes from a picture.
+        transparency: The number in ``<transparency>``, which writers mean in opposite ways; None without one.
+        transparent: The red, green, blue and alpha that it multiplies; None where the file has none.
+        opaque: Which of them counts, and in which sense: ``A_ONE`` unless the file says otherwise.
+    """
+
+    diffuse: Rgb | None = None
+    ambient: Rgb | None = None
+    textured: bool = False
+    transparency: float | None = None
+    transparent: tuple[float, ...] | None = None
+    opaque: str = "A_ONE"
+
+    @property
+    def opacity(self) -> float:
+        """How opaque the material is, by the letter of the standard; 1 where nothing sensible is said."""
+        amount = 1.0 if self.transparency is None else self.transparency
+        red, green, blue, alpha = self.transparent or (1.0, 1.0, 1.0, 1.0)
+        by_colour = self.opaque.startswith("RGB")
+        brightness = sum(weight * part for weight, part in zip(_LUMINANCE, (red, green, blue), strict=True))
+        amount *= brightness if by_colour else alpha
+        return 1.0 - amount if self.opaque.endswith("ZERO") else amount
+
+
+def read_material(document: ColladaDocument, material: Element) -> ColladaMaterial | None:
+    """Read a ``<material>`` and its effect.
+
+    Returns:
+        Its colours, or None if the effect is missing.
+    """
+    instance = child(material, "instance_effect")
+    effect = None if instance is None else document.find("effect", instance.get("url"))
+    if effect is None:
+        return None
+    technique = child(effect, "profile_COMMON", "technique")
+    shader = next(children(technique, *_SHADERS), None)
+    if shader is None:
+        return ColladaMaterial()
+    transparent = child(shader, "transparent")
+    return ColladaMaterial(
+        _rgb(shader, "diffuse"),
+        _rgb(shader, "ambient"),
+        child(shader, "diffuse", "texture") is not None,
+        _float(effect, child(shader, "transparency")),
+        _rgba(child(transparent, "color")),
+        "A_ONE" if transparent is None else transparent.get("opaque", "A_ONE"),
+    )
+
+
+def bindings(instance: Element) -> dict[str, str]:
+    """Return the URLs of the materials that an ``<instance_geometry>`` binds, by symbol."""
+    common = child(instance, "bind_material", "technique_common")
+    return {item.get("symbol", ""): item.get("target", "") for item in children(common, "instance_material")}
+
+
+def _rgb(shader: Element, name: str) -> Rgb | None:
+    colour = _rgba(child(shader, name, "color"))
+    return None if colour is None else rgb(colour)
+
+
+def _rgba(element: Element | None) -> tuple[float, ...] | None:
+    values = numbers(element).tolist()
+    return (*values[:3], values[3] if len(values) > 3 else 1.0) if len(values) >= 3 else None
+
+
+def _float(effect: Element, element: Element | None) -> float | None:
+    """Return a number, given directly or by the name of a ``<newparam>`` of the effect."""
+    values = numbers(child(element, "float"))
+    reference = child(element, "param")
+    if not len(values) and reference is not None:
+        sid = reference.get("ref")
+        found = (item for item in effect.iter("{*}newparam") if item.get("sid") == sid)
+        values = numbers(child(next(found, None), "float"))
+    return float(values[0]) if len(values) else None

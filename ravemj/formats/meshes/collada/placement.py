@@ -1,0 +1,51 @@
+"""Transforms of COLLADA nodes; shared by mesh files and robots."""
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.formats.meshes.collada.document import Element, local_name, numbers
+from ravemj.formats.meshes.matrices import rotation, translation
+
+_LENGTHS = {"translate": 3, "rotate": 4, "scale": 3, "matrix": 16, "lookat": 9}
+
+
+def local_transform(element: Element) -> Floats | None:
+    """Return the 4x4 matrix of one child of a node, or None if it is no transform that counts.
+
+    Angles are in degrees in the file, matrices are written row by row. A transform with too few numbers does not
+    count, and neither does ``<skew>``.
+    """
+    kind = local_name(element)
+    values = numbers(element)
+    if kind not in _LENGTHS or len(values) < _LENGTHS[kind]:
+        return None
+    match kind:
+        case "translate":
+            return translation(values[:3])
+        case "rotate":
+            return rotation(np.append(values[:3], np.deg2rad(values[3])))
+        case "scale":
+            return np.diag([*values[:3], 1.0])
+        case "matrix":
+            return values[:16].reshape(4, 4)
+        case _:
+            return _look_at(values[:9].reshape(3, 3))
+
+
+def _look_at(rows: Floats) -> Floats:
+    """Return the frame at the first point that looks along -z at the second, with y near the third vector."""
+    eye, interest, up = rows
+    back = _unit(eye - interest)
+    right = _unit(_cross(up, back))
+    matrix = np.eye(4)
+    matrix[:3] = np.stack([right, _cross(back, right), back, eye], axis=1)
+    return matrix
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    return np.asarray(np.cross(a, b), np.float64)
+
+
+def _unit(vector: Floats) -> Floats:
+    length = float(np.linalg.norm(vector))
+    return vector / length if length > 0 else vector

@@ -1,0 +1,100 @@
+"""What the files of the cache hold: numbers as they lie in memory, behind a check sum and a short header.
+
+An entry is the parts of a mesh, with what takes time to find out about them. A shortcut says which entry belongs to
+files as long as their stamps stay. Both begin with ``_MAGIC`` and the CRC-32 of the rest.
+"""
+
+import json
+import zlib
+
+import numpy as np
+
+from ravemj.formats.meshes.files import stamp_of
+from ravemj.formats.meshes.hulls import collision_form, remember_form
+from ravemj.formats.meshes.parts import MeshPart
+from ravemj.model.scene import Mesh
+
+Parts = tuple[MeshPart, ...]
+
+_MAGIC = b"ravemj\x00\x01"
+_START = len(_MAGIC) + 4
+_ARRAYS = 8  # at multiples of this
+_SINGLE, _DOUBLE, _TRIANGLE = np.dtype("<f4"), np.dtype("<f8"), np.dtype("<i4")
+
+
+def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
+    """Return the content of an entry.
+
+    Args:
+        parts: The parts of the mesh.
+        digests: The files that they come from besides the mesh file, as in ``References``.
+    """
+    about: list[object] = []
+    arrays: list[bytes] = []
+    for part in parts:
+        mesh = part.mesh
+        with np.errstate(over="ignore"):
+            points = mesh.vertices.astype(_SINGLE)  # the readers round to it, and scaling leads away from it
+        is_single = np.array_equal(points, mesh.vertices)
+        counts = len(mesh.vertices), len(mesh.triangles), is_single
+        about.append((counts, part.diffuse, part.ambient, part.transparency, collision_form(mesh), mesh.digest))
+        arrays += [points.tobytes() if is_single else mesh.vertices.astype(_DOUBLE).tobytes()]
+        arrays += [mesh.triangles.astype(_TRIANGLE).tobytes()]
+    header = json.dumps((digests, about)).encode()
+    header += b" " * (-(_START + 4 + len(header)) % _ARRAYS)
+    return _sealed(b"".join([len(header).to_bytes(4, "little"), header, *arrays]))
+
+
+def unpack_entry(content: bytes) -> tuple[Parts, dict[str, str]]:
+    """Return what was given to ``pack_entry``.
+
+    Raises:
+        ValueError: The content is damaged.
+    """
+    _check(content)
+    position = _START + 4 + int.from_bytes(content[_START : _START + 4], "little")
+    digests, about = json.loads(content[_START + 4 : position].decode())
+    parts: list[MeshPart] = []
+    for (vertices, triangles, is_single), diffuse, ambient, transparency, form, digest in about:
+        kind = _SINGLE if is_single else _DOUBLE
+        middle = position + 3 * kind.itemsize * vertices
+        points = np.ndarray((vertices, 3), kind, content, position).astype(np.float64)
+        corners = np.ndarray((triangles, 3), _TRIANGLE, content, middle).astype(np.int_)
+        position = middle + 3 * _TRIANGLE.itemsize * triangles
+        for numbers in (points, corners):
+            numbers.flags.writeable = False  # so that the mesh takes them as they are
+        mesh = Mesh(points, corners)
+        mesh.__dict__["digest"] = digest  # where the cached property keeps it
+        remember_form(mesh, form)
+        parts.append(MeshPart(mesh, tuple(diffuse), tuple(ambient), transparency))
+    return tuple(parts), digests
+
+
+def pack_shortcut(entry: str, stamps: dict[str, str]) -> bytes:
+    """Return the content of a shortcut.
+
+    Args:
+        entry: The name of an entry.
+        stamps: The files that it comes from, as ``stamp_of`` describes them.
+    """
+    return _sealed(json.dumps((entry, stamps)).encode())
+
+
+def follow_shortcut(content: bytes) -> str | None:
+    """Return the name of the entry that a shortcut leads to, or None if one of its files has changed since.
+
+    Raises:
+        ValueError: The content is damaged.
+    """
+    _check(content)
+    entry, stamps = json.loads(content[_START:].decode())
+    return entry if all([stamp_of(path) == stamp for path, stamp in stamps.items()]) else None
+
+
+def _sealed(content: bytes) -> bytes:
+    return _MAGIC + zlib.crc32(content).to_bytes(4, "little") + content
+
+
+def _check(content: bytes) -> None:
+    if content[:_START] != _MAGIC + zlib.crc32(memoryview(content)[_START:]).to_bytes(4, "little"):
+        raise ValueError("the check sum is wrong")

@@ -1,0 +1,86 @@
+"""Formats that are rare with OpenRAVE, through trimesh: PLY, OFF, GLB and glTF."""
+
+import importlib
+import io
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import SourceError
+from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.obj import GRAY, transparency
+from ravemj.formats.meshes.parts import BLACK, WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
+from ravemj.model.scene import Rgb
+
+_COLOURS: dict[str, tuple[Rgb, Rgb]] = {
+    "off": (GRAY, BLACK),
+    "ply": (WHITE, WHITE),
+    "glb": (WHITE, BLACK),
+    "gltf": (WHITE, BLACK),
+}
+"""Diffuse and ambient colours that OpenRAVE's importer gives to files without materials."""
+
+
+def read_exchange(file: MeshFile) -> tuple[MeshPart, ...]:
+    """Read a PLY, OFF, GLB or glTF file: one part for each colour, in the order of the file.
+
+    Raises:
+        SourceError: The file is malformed.
+    """
+    kind = file.path.lower().rpartition(".")[2]
+    pieces: dict[tuple[Rgb, float], list[Floats]] = {}
+    for corners, rgba in _geometries(file, kind):
+        colour = (_COLOURS[kind][0], 0.0) if rgba is None else (rgb(rgba), transparency(float(rgba[3])))
+        pieces.setdefault(colour, []).append(corners)
+    parts: list[MeshPart] = []
+    for (diffuse, clear), some in pieces.items():
+        corners = np.concatenate(some)
+        check_size(len(corners), file.source)
+        check_finite(corners, file.source)
+        corners = without_degenerate(corners)
+        if len(corners):
+            parts.append(MeshPart(weld(corners), diffuse, _COLOURS[kind][1], clear))
+    return tuple(parts)
+
+
+class _References(Mapping[str, bytes]):
+    """Gives trimesh the files that a file names."""
+
+    def __init__(self, file: MeshFile) -> None:
+        self._file = file
+
+    def __getitem__(self, name: str) -> bytes:
+        found = self._file.refer(name)
+        if found is None:
+            raise KeyError(name)
+        return found.data
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(())
+
+    def __len__(self) -> int:
+        return 0
+
+
+def _geometries(file: MeshFile, kind: str) -> list[tuple[Floats, Floats | None]]:
+    """Return corners and, where there is a material, its red, green, blue and opacity."""
+    trimesh: Any = importlib.import_module("trimesh")  # slow to import, and without types
+    try:
+        scene: Any = trimesh.load_scene(
+            io.BytesIO(file.data), file_type=kind, resolver=_References(file), process=False
+        )
+        order = {name: number for number, name in enumerate(scene.geometry)}
+        nodes: list[Any] = sorted(map(scene.graph.get, scene.graph.nodes_geometry), key=lambda node: order[node[1]])
+        placed = [(scene.geometry[name], matrix) for matrix, name in nodes]
+        return [_placed(geometry, matrix) for geometry, matrix in placed if hasattr(geometry, "faces")]
+    except Exception as error:  # trimesh raises all kinds at malformed files
+        raise SourceError(f"trimesh cannot read it: {type(error).__name__}: {error}", file.source) from error
+
+
+def _placed(geometry: Any, matrix: Floats) -> tuple[Floats, Floats | None]:  # noqa: ANN401 - trimesh has no types
+    placed = np.asarray(geometry.vertices, np.float64).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+    corners = placed[np.asarray(geometry.faces, np.int_).reshape(-1, 3)]
+    factor = getattr(getattr(geometry.visual, "material", None), "baseColorFactor", None)
+    return corners, None if factor is None else np.asarray(factor, np.float64).reshape(4) / 255

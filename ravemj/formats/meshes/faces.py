@@ -1,0 +1,132 @@
+"""Polygons to triangles."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats, Ints
+
+_MAX_CLIPPED = 500  # corners of a polygon; larger ones become fans, whatever their shape
+_TESTS_PER_CORNER = 10  # so that the work stays proportional to the size of the file
+_STRAIGHT = 1e-7
+
+
+def fans(starts: Ints, sizes: Ints) -> Ints:
+    """Cut polygons into fans about their first corners, as is right for convex ones.
+
+    Args:
+        starts: For each polygon the position of its first corner in a list of corners.
+        sizes: For each polygon the number of its corners; those with fewer than three vanish.
+
+    Returns:
+        Positions in the list of corners, shape (n, 3).
+    """
+    counts = np.maximum(sizes - 2, 0)
+    first = np.repeat(starts, counts)
+    step = np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return np.stack([first, first + step + 1, first + step + 2], axis=1)
+
+
+def clipped(points: Floats, starts: Ints, sizes: Ints) -> Ints:
+    """Cut polygons that may be concave into triangles.
+
+    Args:
+        points: The list of corners, shape (n, 3).
+        starts: As for ``fans``.
+        sizes: As for ``fans``.
+
+    Returns:
+        As ``fans``.
+    """
+    concave = _concave(points, starts, sizes)
+    pieces = [fans(starts[~concave], sizes[~concave])]
+    for start, size in zip(starts[concave].tolist(), sizes[concave].tolist(), strict=True):
+        pieces.append(start + clip_ears(points[start : start + size]))
+    return np.concatenate(pieces)
+
+
+def clip_ears(polygon: Floats) -> Ints:
+    """Cut one polygon into triangles, ear by ear; a corner that repeats the one before it is left out.
+
+    Args:
+        polygon: Its corners in order, shape (n, 3).
+
+    Returns:
+        Positions of corners, shape (m, 3), in the polygon's direction of turning.
+    """
+    left: list[int] = np.flatnonzero((polygon != np.roll(polygon, 1, axis=0)).any(1)).tolist()
+    flat = _flattened(polygon)
+    tests = _TESTS_PER_CORNER * len(left)
+    triangles: list[tuple[int, int, int]] = []
+    while len(left) > 3 and tests > 0:
+        position, needed = _ear(flat[left])
+        tests -= needed
+        triangles.append((left[position - 1], left[position], left[(position + 1) % len(left)]))
+        del left[position]
+    triangles += [(left[0], left[i], left[i + 1]) for i in range(1, len(left) - 1)]
+    return np.array(triangles, np.int_).reshape(-1, 3)
+
+
+def split(index: Ints) -> tuple[Ints, Ints]:
+    """Cut a list of indices at its negative ones.
+
+    Returns:
+        The lengths of the pieces, and the indices without the negative ones.
+    """
+    ends = np.append(np.flatnonzero(index < 0), len(index))
+    sizes = np.diff(ends, prepend=-1) - 1
+    return sizes, index[index >= 0]
+
+
+def strips(sizes: Ints, index: Ints) -> Ints:
+    """Return the triangles of strips, every second one turned round so that all have the same side outside."""
+    starts = np.cumsum(sizes) - sizes
+    counts = np.maximum(sizes - 2, 0)
+    step = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
+    first = np.repeat(starts, counts) + step
+    odd = step % 2
+    return index[np.stack([first, first + 1 + odd, first + 2 - odd], axis=1)]
+
+
+def _concave(points: Floats, starts: Ints, sizes: Ints) -> NDArray[np.bool_]:
+    """Return for each polygon whether it turns the wrong way at some corner, and is small enough to be clipped."""
+    found = np.zeros(len(sizes), np.bool_)
+    for size in np.unique(sizes[(sizes > 3) & (sizes <= _MAX_CLIPPED)]).tolist():
+        same = np.flatnonzero(sizes == size)
+        corners = points[starts[same, np.newaxis] + np.arange(size)]
+        corners = corners - corners[:, :1]
+        normals = np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1)
+        edges = np.roll(corners, -1, axis=1) - corners
+        turns = np.einsum("ijk,ik->ij", np.cross(edges, np.roll(edges, -1, axis=1)), normals)
+        found[same] = turns.min(axis=1) < -_STRAIGHT * (normals**2).sum(axis=1)
+    return found
+
+
+def _flattened(polygon: Floats) -> Floats:
+    """Return the corners in the polygon's plane, turning counter-clockwise."""
+    corners = polygon - polygon[0]
+    normal = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
+    drop = int(np.argmax(np.abs(normal)))
+    keep = [(drop + 1) % 3, (drop + 2) % 3]
+    return corners[:, keep] * np.array([1.0, -1.0 if normal[drop] < 0 else 1.0])
+
+
+def _ear(points: Floats) -> tuple[int, int]:
+    """Find a corner that can be cut off: convex, and no other corner inside its triangle.
+
+    Returns:
+        Its position, and how many corners had to be looked at; some position if there is none.
+    """
+    before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
+    convex: list[int] = np.flatnonzero(_turn(before, points, after) > 0).tolist()
+    for count, position in enumerate(convex, start=1):
+        a, b, c = before[position], points[position], after[position]
+        inside = (_turn(a, b, points) >= 0) & (_turn(b, c, points) >= 0) & (_turn(c, a, points) >= 0)
+        own = (points == a).all(1) | (points == b).all(1) | (points == c).all(1)
+        if not (inside & ~own).any():
+            return position, count
+    return 1, max(len(convex), 1)
+
+
+def _turn(a: Floats, b: Floats, c: Floats) -> Floats:
+    """Return twice the signed areas of triangles, positive where they turn counter-clockwise."""
+    return (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])

@@ -1,0 +1,92 @@
+"""What MuJoCo can do with a mesh: it collides with convex hulls, and makes none of flat ones."""
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.formats.meshes.parts import corners_of
+from ravemj.model.scene import Mesh
+
+CollisionForm = Literal["hull", "visual", "none"]
+
+_FLAT = 1e-6  # thickness by width; paper is 100 times thicker
+_ROUNDING = 4 * float(np.finfo(np.float32).eps)
+_MIN_AREA = 1e-12  # m^2
+_MAX_REACH = 1e15  # m; MuJoCo computes areas in single precision
+_SAMPLE = 64  # triangles
+_MEMO = "_collision_form"
+
+
+def collision_form(mesh: Mesh) -> CollisionForm:
+    """Say what MuJoCo can make of a mesh.
+
+    Returns:
+        ``hull`` if the mesh has a convex hull with volume, and so can collide; ``visual`` if it is flat, so that it
+        can only be seen; ``none`` if it has no area either or is enormous, and MuJoCo would not load it. With
+        ``inertia="shell"`` MuJoCo loads the first two, with other settings not all of them.
+    """
+    form = mesh.__dict__.get(_MEMO)
+    if form is None:
+        form = _form(mesh)
+        remember_form(mesh, form)
+    return form
+
+
+def remember_form(mesh: Mesh, form: CollisionForm) -> None:
+    """Say what ``collision_form`` will return for a mesh, where that is known already."""
+    mesh.__dict__[_MEMO] = form  # a mesh never changes
+
+
+def _form(mesh: Mesh) -> CollisionForm:
+    if len(mesh.vertices) and max(mesh.vertices.max(), -mesh.vertices.min()) > _MAX_REACH:
+        return "none"
+    if _is_plainly_solid(mesh):
+        return "hull"
+    if area(mesh) <= _MIN_AREA:
+        return "none"
+    used = np.zeros(len(mesh.vertices), bool)
+    used[mesh.triangles] = True
+    points = mesh.vertices[used]
+    _, axes = np.linalg.eigh(_covariance(points))
+    extents = np.ptp(points @ axes, axis=0)
+    noise = _ROUNDING * float(np.abs(points).max())
+    return "hull" if len(points) >= 4 and extents.min() > max(_FLAT * extents.max(), noise) else "visual"
+
+
+def _is_plainly_solid(mesh: Mesh) -> bool:
+    """Tell from some of the triangles whether the mesh has a volume; False where it takes all of them.
+
+    In no direction is a mesh thinner than twice the standard deviation of some of its points, nor is it longer
+    anywhere than the diagonal of a box around it and the origin.
+    """
+    corners = mesh.vertices[mesh.triangles[:: len(mesh.triangles) // _SAMPLE + 1]]
+    if not len(corners) or _area(corners) <= _MIN_AREA:
+        return False
+    reach = float(max(mesh.vertices.max(), -mesh.vertices.min()))
+    thickness = 2 * math.sqrt(max(np.linalg.eigvalsh(_covariance(corners.reshape(-1, 3)))[0], 0.0))
+    return thickness > max(_FLAT * 2 * math.sqrt(3), _ROUNDING) * reach
+
+
+def _covariance(points: Floats) -> Floats:
+    centred = points - points[0]
+    centred -= centred.sum(axis=0) / len(points)
+    return centred.T @ centred / len(points)
+
+
+def volume(mesh: Mesh) -> float:
+    """Return the volume inside a closed mesh [m^3]; negative if its triangles are turned inside out."""
+    a, b, c = np.moveaxis(corners_of(mesh), 1, 0)
+    return float((a * np.cross(b - a, c - a)).sum() / 6)
+
+
+def area(mesh: Mesh) -> float:
+    """Return the area of a mesh's triangles [m^2]."""
+    return _area(corners_of(mesh))
+
+
+def _area(corners: Floats) -> float:
+    ux, uy, uz = (corners[:, 1] - corners[:, 0]).T
+    vx, vy, vz = (corners[:, 2] - corners[:, 0]).T  # np.cross takes thrice the time
+    return float(np.sqrt((uy * vz - uz * vy) ** 2 + (uz * vx - ux * vz) ** 2 + (ux * vy - uy * vx) ** 2).sum() / 2)

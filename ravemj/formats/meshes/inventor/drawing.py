@@ -1,0 +1,192 @@
+"""Nodes to triangles: what all dialects of Inventor and VRML share."""
+
+import logging
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints
+from ravemj.errors import SourceError
+from ravemj.formats.meshes import faces
+from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.inventor import primitives
+from ravemj.formats.meshes.inventor.nodes import MAX_NODES, Node
+from ravemj.formats.meshes.matrices import rotation, translation
+from ravemj.formats.meshes.parts import MAX_TRIANGLES
+from ravemj.model.scene import Rgb
+
+_log = logging.getLogger(__name__)
+
+_MAX_LEVELS = 200  # of nodes and of files that files include
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """What nodes before a shape have set.
+
+    Attributes:
+        matrix: From the shape's frame to the file's, 4x4.
+        points: Coordinates that shapes refer to.
+        metres: Length of the unit in force, as Units says.
+        concave: True where faces may be concave.
+        complexity: Fineness of round shapes.
+    """
+
+    matrix: Floats = field(default_factory=lambda: np.eye(4))
+    points: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+    metres: float = 1.0
+    concave: bool = False
+    complexity: float = primitives.DEFAULT_COMPLEXITY
+
+
+@dataclass(frozen=True, slots=True)
+class Finish:
+    """A material; several values for several faces are reduced to their first, as OpenRAVE does it."""
+
+    diffuse: Rgb
+    ambient: Rgb
+    transparency: float
+
+
+Handler = Callable[["Drawing", Node, State], State]
+"""Draws a node; the state that it returns is that of the nodes after it."""
+
+Opener = Callable[["Drawing", MeshFile, State], State]
+"""Draws a file that another one includes; returns the state at its end."""
+
+
+class Drawing:
+    """Triangles collected from a file and those that it includes.
+
+    Attributes:
+        file: The file being drawn.
+        finish: The last material so far.
+    """
+
+    def __init__(self, file: MeshFile, opener: Opener) -> None:
+        self.file: MeshFile = file
+        self.finish: Finish | None = None
+        self._opener = opener
+        self._handlers: dict[str, Handler] = {}
+        self._pieces: list[Floats] = []
+        self._count = 0
+        self._corners_left = 5 * MAX_TRIANGLES
+        self._visits = 0
+        self._levels = 0
+        self._painting = True
+        self._showing = True
+
+    def corners(self) -> Floats:
+        """Return all triangles, shape (n, 3, 3)."""
+        return np.concatenate([np.zeros((0, 3, 3)), *self._pieces])
+
+    def nodes(self, nodes: Iterable[Node], handlers: dict[str, Handler], state: State) -> State:
+        """Draw the nodes of a file, in the dialect of ``handlers``."""
+        self._handlers = handlers
+        return self.visit(nodes, state)
+
+    def visit(self, nodes: Iterable[Node], state: State) -> State:
+        """Draw nodes one after the other; what is unknown is passed over, but not its children."""
+        self._levels += 1
+        for node in nodes:
+            self._visits += 1
+            if self._levels > _MAX_LEVELS or self._visits > MAX_NODES:
+                node.fail("the nodes are nested too deep or repeated too often")
+            handler = self._handlers.get(node.kind)
+            state = handler(self, node, state) if handler else self.visit(node.children, state)
+        self._levels -= 1
+        return state
+
+    def look(self, nodes: Iterable[Node], state: State) -> None:
+        """Go through nodes for their materials alone: those of hidden levels of detail count in OpenRAVE."""
+        before, self._showing = self._showing, False
+        self.visit(nodes, state)
+        self._showing = before
+
+    def add(self, corners: Floats, node: Node, state: State) -> State:
+        """Keep triangles given in the shape's frame."""
+        if not self._showing:
+            return state
+        self._count += len(corners)
+        if self._count > MAX_TRIANGLES:
+            node.fail(f"the mesh has more than {MAX_TRIANGLES} triangles")
+        self._pieces.append(corners @ state.matrix[:3, :3].T + state.matrix[:3, 3])
+        return state
+
+    def add_polygons(self, sizes: Ints, index: Ints, node: Node, state: State) -> State:
+        """Keep polygons.
+
+        Args:
+            sizes: The number of corners of each polygon; those with fewer than three vanish.
+            index: Of each corner the number of its point in ``state.points``; polygons with others vanish.
+            node: The shape.
+            state: What is in force.
+        """
+        self._corners_left -= len(index)
+        if self._corners_left < 0:
+            node.fail("the mesh has too many corners of polygons")
+        ends = np.cumsum(sizes)
+        starts = ends - sizes
+        bad = np.concatenate([[0], np.cumsum((index < 0) | (index >= len(state.points)))])
+        good = (sizes >= 3) & (bad[ends] == bad[starts])
+        starts, sizes = starts[good], sizes[good]
+        if state.concave and (sizes > 3).any():
+            index = np.where((index < 0) | (index >= len(state.points)), 0, index)
+            triangles = faces.clipped(state.points[index], starts, sizes)
+        else:
+            triangles = faces.fans(starts, sizes)
+        return self.add(state.points[index[triangles]], node, state)
+
+    def include(self, names: Iterable[str], node: Node, state: State, painting: bool) -> State:
+        """Draw the first of the named files that can be read; none is no error, as in OpenRAVE.
+
+        Args:
+            names: The files.
+            node: The node that names them.
+            state: What is in force.
+            painting: Whether the materials of the file count.
+
+        Returns:
+            The state at the end of the file.
+        """
+        found = (self.file.refer(name) for name in names)
+        file = next((candidate for candidate in found if candidate is not None), None)
+        if file is None:
+            _log.warning("%s: %s: nothing to include", node.document.path, node.kind)
+            return state
+        before = self.file, self._handlers, self._painting, self._showing, self._levels
+        self.file, self._painting, self._levels = file, self._painting and painting, self._levels + 1
+        try:
+            state = self._opener(self, file, state)
+        except SourceError as error:
+            _log.warning("%s", error)
+        self.file, self._handlers, self._painting, self._showing, self._levels = before
+        return state
+
+    def paint(self, finish: Finish) -> None:
+        """Remember the last material."""
+        if self._painting:
+            self.finish = finish
+
+
+def moved(state: State, step: Floats) -> State:
+    """Return the state below one more transform, a 4x4 matrix."""
+    return replace(state, matrix=state.matrix @ step)
+
+
+def transform(node: Node, scale_field: str) -> Floats:
+    """Return the matrix of a Transform: translation, centre, rotation, scale along its own axes.
+
+    Args:
+        node: The node.
+        scale_field: ``scale`` in VRML97, ``scaleFactor`` before.
+    """
+    still = (0.0, 0.0, 1.0, 0.0)
+    zero = (0.0, 0.0, 0.0)
+    center = node.floats("center", 3, zero)
+    turn = rotation(node.floats("rotation", 4, still))
+    slant = rotation(node.floats("scaleOrientation", 4, still))
+    stretch = np.diag([*node.floats(scale_field, 3, (1.0, 1.0, 1.0)), 1.0])
+    start = translation(node.floats("translation", 3, zero) + center)
+    return start @ turn @ slant @ stretch @ slant.T @ translation(-center)

@@ -1,0 +1,171 @@
+"""The syntax tree that the ASCII and binary readers of Inventor and VRML make."""
+
+from dataclasses import dataclass, field
+from typing import NoReturn, Union
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints
+from ravemj.errors import Source, SourceError
+
+MAX_DEPTH = 100
+"""Nodes nested deeper are refused."""
+
+MAX_NODES = 200_000
+"""More nodes, counting those that USE repeats, are refused."""
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """The file that nodes come from.
+
+    Attributes:
+        path: Where it lies.
+        text: Its content, one character a byte; empty for a binary file.
+    """
+
+    path: str
+    text: str = ""
+
+    def source(self, offset: int) -> Source:
+        """Return the line of a character, for messages."""
+        return Source(self.path, self.text.count("\n", 0, offset) + 1 if self.text else 0)
+
+    def fail(self, message: str, offset: int, hint: str = "") -> NoReturn:
+        """Raise a ``SourceError`` about a place in the file."""
+        raise SourceError(message, self.source(offset), hint)
+
+
+@dataclass(frozen=True, slots=True)
+class Numbers:
+    """Numbers that nobody has needed yet: their text, separated by commas or white space. Normals stay so."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Is:
+    """A field inside a PROTO whose value is that of the prototype's field ``name``."""
+
+    name: str
+
+
+Value = Union[Numbers, Floats, str, "Node", Is, None, list["Value"]]
+
+
+@dataclass(slots=True, eq=False)
+class Node:
+    """A node with its fields, of which values are read when they are asked for.
+
+    Attributes:
+        kind: Its class, for instance ``Separator``.
+        document: The file that it comes from.
+        offset: Where in the file it begins.
+        fields: Values by field name.
+        children: Nodes that it holds without a field, as Inventor's groups do.
+    """
+
+    kind: str
+    document: Document
+    offset: int
+    fields: dict[str, Value] = field(default_factory=dict[str, Value])
+    children: list["Node"] = field(default_factory=list["Node"])
+
+    def floats(self, name: str, width: int, default: tuple[float, ...]) -> Floats:
+        """Return a field of ``width`` numbers; of several such values the first.
+
+        Args:
+            name: The field.
+            width: How many numbers make a value.
+            default: What the standard says for a field that is not written.
+
+        Raises:
+            SourceError: There are fewer numbers, or something else stands there.
+        """
+        value = self.fields.get(name)
+        numbers = np.array(default) if value is None else self._numbers(name, value)[:width]
+        if len(numbers) < width or not np.isfinite(numbers).all():
+            self.fail(f"{self.kind}.{name} needs {width} numbers")
+        return numbers
+
+    def number(self, name: str, default: float) -> float:
+        """Return a field of one number."""
+        return float(self.floats(name, 1, (default,))[0])
+
+    def integer(self, name: str, default: int) -> int:
+        """Return a field of one integer."""
+        return int(self.integers(name, (default,))[:1].sum())
+
+    def vectors(self, name: str) -> Floats:
+        """Return a field of many points, shape (n, 3); an incomplete last one is left out."""
+        value = self.fields.get(name)
+        if value is None:
+            return np.zeros((0, 3))
+        numbers = self._numbers(name, value)
+        return numbers[: len(numbers) // 3 * 3].reshape(-1, 3)
+
+    def integers(self, name: str, default: tuple[int, ...] = ()) -> Ints:
+        """Return a field of many integers."""
+        value = self.fields.get(name)
+        numbers = np.array(default, np.float64) if value is None else self._numbers(name, value)
+        if not (np.abs(numbers) < 2.0**53).all():
+            self.fail(f"{self.kind}.{name} holds a number that is no index")
+        return numbers.astype(np.int_)
+
+    def words(self, name: str, default: tuple[str, ...]) -> list[str]:
+        """Return a field of words or strings: one, or several in parentheses or brackets."""
+        value = self.fields.get(name)
+        if value is None:
+            return list(default)
+        return [word for word in (value if isinstance(value, list) else [value]) if isinstance(word, str)]
+
+    def word(self, name: str, default: str) -> str:
+        """Return a field of one word or string, the first if there are several."""
+        return next(iter(self.words(name, (default,))), default)
+
+    def flag(self, name: str, default: bool) -> bool:
+        """Return a field that is TRUE or FALSE; Inventor also lets 1 and 0 stand for them."""
+        value = self.fields.get(name)
+        if isinstance(value, (Numbers, np.ndarray)):
+            return bool(self.number(name, float(default)))
+        return self.word(name, "TRUE" if default else "FALSE") == "TRUE"
+
+    def node(self, name: str) -> "Node | None":
+        """Return a field of one node, or None where there is none."""
+        return next(iter(self.nodes(name)), None)
+
+    def nodes(self, name: str) -> list["Node"]:
+        """Return a field of nodes."""
+        value = self.fields.get(name)
+        return [node for node in (value if isinstance(value, list) else [value]) if isinstance(node, Node)]
+
+    def fail(self, message: str) -> NoReturn:
+        """Raise a ``SourceError`` about this node."""
+        self.document.fail(message, self.offset)
+
+    def _numbers(self, name: str, value: Value) -> Floats:
+        if isinstance(value, Numbers):
+            try:
+                value = self.fields[name] = parse_numbers(value.text)  # a node may be used many times
+            except ValueError:
+                self.fail(f"{self.kind}.{name} holds something that is no number")
+        if isinstance(value, np.ndarray):
+            return value
+        if value != []:
+            self.fail(f"{self.kind}.{name} holds something that is no number")
+        return np.zeros(0)
+
+
+def parse_numbers(text: str) -> Floats:
+    """Read numbers separated by white space, commas and comments.
+
+    Raises:
+        ValueError: Something there is no number.
+    """
+    if "#" in text:
+        text = "\n".join(line.partition("#")[0] for line in text.splitlines())
+    words = text.replace(",", " ").split()
+    try:
+        return np.array(list(map(float, words)))
+    except ValueError:
+        return np.array([float(int(word, 0)) if "x" in word.lower() else float(word) for word in words])

@@ -1,0 +1,102 @@
+"""Boxes, spheres, cylinders and cones as triangles, in the tessellation of Coin, which OpenRAVE loads Inventor with.
+
+Directions of the round ones start at -z; their axis is y.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+
+DEFAULT_COMPLEXITY = 0.5
+"""Fineness where no Complexity node says otherwise: 20 sides for cylinders and cones, 15 for spheres."""
+
+
+def box(size: Floats) -> Floats:
+    """Return a centred box with full edge lengths ``size``, shape (12, 3, 3)."""
+    signs = np.array([[x, y, z] for z in (-1.0, 1.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0)])
+    quads = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
+    return (signs * size / 2)[quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)]
+
+
+def cylinder(radius: float, height: float, parts: set[str], complexity: float = DEFAULT_COMPLEXITY) -> Floats:
+    """Return a centred cylinder.
+
+    Args:
+        radius: Its radius.
+        height: Its full height.
+        parts: Which of ``SIDES``, ``TOP`` and ``BOTTOM`` there are.
+        complexity: Fineness from 0 to 1.
+    """
+    low = _circle(_sides(complexity)) * [radius, 0.0, radius] - [0.0, height / 2, 0.0]
+    high = low + np.array([0.0, height, 0.0])
+    pieces = [np.zeros((0, 3, 3))]
+    if "SIDES" in parts:
+        pieces.append(_band(high, low))
+    if "TOP" in parts:
+        pieces.append(_disc(high))
+    if "BOTTOM" in parts:
+        pieces.append(_disc(low[::-1]))
+    return np.concatenate(pieces)
+
+
+def cone(radius: float, height: float, parts: set[str], complexity: float = DEFAULT_COMPLEXITY) -> Floats:
+    """Return a cone whose tip is at ``height / 2``.
+
+    Args:
+        radius: Its radius at the bottom.
+        height: Its full height.
+        parts: Which of ``SIDES`` and ``BOTTOM`` there are.
+        complexity: Fineness from 0 to 1.
+    """
+    low = _circle(_sides(complexity)) * [radius, 0.0, radius] - [0.0, height / 2, 0.0]
+    pieces = [np.zeros((0, 3, 3))]
+    if "SIDES" in parts:
+        tip = np.broadcast_to([0.0, height / 2, 0.0], low.shape)
+        pieces.append(np.stack([tip, low, np.roll(low, -1, axis=0)], axis=1))
+    if "BOTTOM" in parts:
+        pieces.append(_disc(low[::-1]))
+    return np.concatenate(pieces)
+
+
+def sphere(radius: float, complexity: float = DEFAULT_COMPLEXITY) -> Floats:
+    """Return a sphere.
+
+    Args:
+        radius: Its radius.
+        complexity: Fineness from 0 to 1.
+    """
+    slices = max(int(30 * complexity), 4)
+    stacks = max(int(30 * complexity), 3) - 1
+    circle = _circle(slices)
+    angles = np.pi * np.arange(1, stacks) / stacks
+    rings = [radius * (np.sin(angle) * circle + [0.0, np.cos(angle), 0.0]) for angle in angles]
+    top, bottom = (np.broadcast_to([0.0, y, 0.0], circle.shape) for y in (radius, -radius))
+    caps = [
+        np.stack([top, rings[0], np.roll(rings[0], -1, axis=0)], axis=1),
+        np.stack([bottom, np.roll(rings[-1], -1, axis=0), rings[-1]], axis=1),
+    ]
+    bands = [_band(high, low) for high, low in pairwise(rings)]
+    return np.concatenate(caps + bands)
+
+
+def _sides(complexity: float) -> int:
+    return max(int(40 * complexity), 4)
+
+
+def _circle(count: int) -> Floats:
+    """Return points of the unit circle about y, counter-clockwise seen from above (+y)."""
+    angles = 2 * np.pi * np.arange(count) / count
+    return np.stack([-np.sin(angles), np.zeros(count), -np.cos(angles)], axis=1)
+
+
+def _band(high: Floats, low: Floats) -> Floats:
+    """Join two rings, seen from outside."""
+    high_next, low_next = np.roll(high, -1, axis=0), np.roll(low, -1, axis=0)
+    return np.concatenate([np.stack([high, low, low_next], axis=1), np.stack([high, low_next, high_next], axis=1)])
+
+
+def _disc(ring: Floats) -> Floats:
+    first = np.broadcast_to(ring[0], (len(ring) - 2, 3))
+    return np.stack([first, ring[1:-1], ring[2:]], axis=1)

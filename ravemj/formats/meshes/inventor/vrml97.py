@@ -1,0 +1,106 @@
+"""VRML97: shapes below groups that move them."""
+
+import numpy as np
+
+from ravemj.formats.meshes import faces
+from ravemj.formats.meshes.inventor import primitives
+from ravemj.formats.meshes.inventor.drawing import Drawing, Finish, Handler, State, moved, transform
+from ravemj.formats.meshes.inventor.nodes import Node
+from ravemj.formats.meshes.parts import rgb
+
+
+def _group(drawing: Drawing, node: Node, state: State) -> State:
+    drawing.visit([*node.nodes("children"), *node.children], state)
+    return state
+
+
+def _transform(drawing: Drawing, node: Node, state: State) -> State:
+    _group(drawing, node, moved(state, transform(node, "scale")))
+    return state
+
+
+def _switch(drawing: Drawing, node: Node, state: State) -> State:
+    which = node.integer("whichChoice", -1)
+    choice = node.nodes("choice") or node.nodes("children")  # the latter is X3D's name
+    drawing.visit(choice[which : which + 1] if which >= 0 else [], state)
+    return state
+
+
+def _level_of_detail(drawing: Drawing, node: Node, state: State) -> State:
+    levels = node.nodes("level") or node.nodes("children")
+    drawing.visit(levels[:1], state)
+    drawing.look(levels[1:], state)
+    return state
+
+
+def _inline(drawing: Drawing, node: Node, state: State) -> State:
+    drawing.include(node.words("url", ()), node, state, painting=True)
+    return state
+
+
+def _shape(drawing: Drawing, node: Node, state: State) -> State:
+    drawing.visit(node.nodes("appearance"), state)
+    drawing.visit(node.nodes("geometry"), state)
+    return state
+
+
+def _appearance(drawing: Drawing, node: Node, state: State) -> State:
+    drawing.visit(node.nodes("material"), state)
+    return state
+
+
+def _material(drawing: Drawing, node: Node, state: State) -> State:
+    diffuse = node.floats("diffuseColor", 3, (0.8, 0.8, 0.8))
+    ambient = np.repeat(node.number("ambientIntensity", 0.2), 3)
+    drawing.paint(Finish(rgb(diffuse), rgb(ambient), node.number("transparency", 0.0)))
+    return state
+
+
+def _indexed_face_set(drawing: Drawing, node: Node, state: State) -> State:
+    coordinates = node.node("coord")
+    if coordinates is None:
+        return state
+    shape = State(state.matrix, coordinates.vectors("point"), concave=not node.flag("convex", True))
+    drawing.add_polygons(*faces.split(node.integers("coordIndex")), node, shape)
+    return state
+
+
+def _box(drawing: Drawing, node: Node, state: State) -> State:
+    return drawing.add(primitives.box(node.floats("size", 3, (2.0, 2.0, 2.0))), node, state)
+
+
+def _sphere(drawing: Drawing, node: Node, state: State) -> State:
+    return drawing.add(primitives.sphere(node.number("radius", 1.0)), node, state)
+
+
+def _cylinder(drawing: Drawing, node: Node, state: State) -> State:
+    parts = {name.upper() + "S" * (name == "side") for name in ("side", "top", "bottom") if node.flag(name, True)}
+    radius, height = node.number("radius", 1.0), node.number("height", 2.0)
+    return drawing.add(primitives.cylinder(radius, height, parts), node, state)
+
+
+def _cone(drawing: Drawing, node: Node, state: State) -> State:
+    parts = {name.upper() + "S" * (name == "side") for name in ("side", "bottom") if node.flag(name, True)}
+    radius, height = node.number("bottomRadius", 1.0), node.number("height", 2.0)
+    return drawing.add(primitives.cone(radius, height, parts), node, state)
+
+
+HANDLERS: dict[str, Handler] = {
+    "Group": _group,
+    "Anchor": _group,
+    "Billboard": _group,
+    "Collision": _group,
+    "Transform": _transform,
+    "Switch": _switch,
+    "LOD": _level_of_detail,
+    "Inline": _inline,
+    "Shape": _shape,
+    "Appearance": _appearance,
+    "Material": _material,
+    "IndexedFaceSet": _indexed_face_set,
+    "Box": _box,
+    "Sphere": _sphere,
+    "Cylinder": _cylinder,
+    "Cone": _cone,
+}
+"""What to do at each kind of node; lights, sensors, lines, points and text draw nothing here."""

@@ -1,0 +1,144 @@
+"""Wavefront OBJ: read with its materials, and written for MuJoCo."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import Source, SourceError
+from ravemj.formats.meshes import faces
+from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.parts import BLACK, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
+from ravemj.model.scene import Mesh, Rgb
+
+GRAY = rgb((0.6, 0.6, 0.6))
+"""What OpenRAVE's importer gives where there is no material or no colour in it."""
+
+
+@dataclass(slots=True)
+class _Material:
+    diffuse: Rgb = GRAY
+    ambient: Rgb = BLACK
+    opacity: float = 1.0
+    sizes: list[int] = field(default_factory=list[int])
+    index: list[int] = field(default_factory=list[int])
+
+
+class _Reading:
+    """What the lines of the file so far have said."""
+
+    def __init__(self, file: MeshFile) -> None:
+        self.file = file
+        self.points: list[tuple[float, ...]] = []
+        self.materials = {"": _Material()}
+        self.current = self.materials[""]
+
+    def line(self, words: list[str]) -> None:
+        match words:
+            case ["v", *numbers] if len(numbers) >= 3:
+                self.points.append(_point([float(word) for word in numbers]))
+            case ["f", *corners] if len(corners) >= 3:
+                self._face(corners)
+            case ["usemtl", *rest]:
+                self.current = self.materials.setdefault(" ".join(rest), _Material())
+            case ["mtllib", *names]:
+                self._library(" ".join(names))
+            case ["v", *_]:
+                raise ValueError("a vertex needs three coordinates")
+            case _:
+                pass
+
+    def _face(self, corners: list[str]) -> None:
+        count = len(self.points)
+        numbers = [int(corner.partition("/")[0]) for corner in corners]
+        index = [number - 1 if number > 0 else count + number for number in numbers]
+        if 0 in numbers or min(index) < 0 or max(index) >= count:
+            raise ValueError("a face with a vertex that is not there")
+        self.current.sizes.append(len(index))
+        self.current.index.extend(index)
+
+    def _library(self, name: str) -> None:
+        """Read materials; the last one is in force until the first ``usemtl``, as in OpenRAVE's importer."""
+        file = self.file.refer(name)
+        for line in [] if file is None else file.data.decode("latin-1").splitlines():
+            words = line.split()
+            if words[:1] == ["newmtl"]:
+                self.current = self.materials.setdefault(" ".join(words[1:]), _Material())
+            else:
+                _colour(self.current, words)
+
+
+def read_obj(file: MeshFile) -> tuple[MeshPart, ...]:
+    """Read an OBJ file: one part for each material that is used, in the order of the material file.
+
+    Objects and groups do not count, as OpenRAVE joins them. Lines and points are left out.
+
+    Raises:
+        SourceError: A line is malformed, or a face has a vertex that is not there.
+    """
+    reading = _Reading(file)
+    lines = file.data.decode("latin-1").replace("\\\n", " ").splitlines()
+    for number, line in enumerate(lines, start=1):
+        try:
+            reading.line(line.split())
+        except ValueError as error:
+            raise SourceError(f"malformed line: {error}", Source(file.path, number)) from error
+    points = np.array(reading.points, np.float64).reshape(-1, 3)
+    parts = (_part(material, points, file) for material in reading.materials.values())
+    return tuple(part for part in parts if part is not None)
+
+
+def write_obj(mesh: Mesh) -> str:
+    """Return a mesh as OBJ text for MuJoCo.
+
+    OBJ, not STL, because it keeps vertices shared, may have as many faces as one likes and can be read by people;
+    nine digits keep every single-precision coordinate, and MuJoCo stores no finer ones.
+    """
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.vertices.tolist()]
+    lines += lines[-1:] * (4 - len(lines))  # MuJoCo wants four vertices, used or not
+    lines += [f"f {a} {b} {c}" for a, b, c in (mesh.triangles + 1).tolist()]
+    return "\n".join(lines) + "\n"
+
+
+def _point(numbers: list[float]) -> tuple[float, ...]:
+    """Return the coordinates; a fourth number is a weight that divides them, six or more end in a colour."""
+    x, y, z = numbers[:3]
+    weight = numbers[3] if len(numbers) == 4 and numbers[3] else 1.0
+    return (x / weight, y / weight, z / weight)
+
+
+def _colour(material: _Material, words: list[str]) -> None:
+    try:
+        match words:
+            case ["Kd", red, green, blue, *_]:
+                material.diffuse = rgb([float(red), float(green), float(blue)])
+            case ["Ka", red, green, blue, *_]:
+                material.ambient = rgb([float(red), float(green), float(blue)])
+            case ["d", opacity]:
+                material.opacity = float(opacity)
+            case ["Tr", transparency]:
+                material.opacity = 1.0 - float(transparency)
+            case _:
+                pass
+    except ValueError:
+        pass  # a colour that is no number: as if it were not there
+
+
+def _part(material: _Material, points: Floats, file: MeshFile) -> MeshPart | None:
+    sizes, index = np.array(material.sizes, np.int_), np.array(material.index, np.int_)
+    check_size(int((sizes - 2).sum()), file.source)
+    corners = points[index]
+    check_finite(corners, file.source)
+    triangles = corners[faces.clipped(corners, np.cumsum(sizes) - sizes, sizes)]
+    triangles = without_degenerate(triangles)
+    if not len(triangles):
+        return None
+    return MeshPart(weld(triangles), material.diffuse, material.ambient, transparency(material.opacity))
+
+
+def transparency(opacity: float) -> float:
+    """Return the transparency of a material whose opacity a file gives.
+
+    An opacity of 0 counts as 1: nobody models what cannot be seen, but many exporters mix the two up.
+    """
+    return float(np.float32(1.0 - opacity)) if 0.0 < opacity <= 1.0 else 0.0

@@ -1,0 +1,92 @@
+"""What a mesh file becomes: parts, each of one colour, and the bounds that keep hostile files harmless."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import Source, SourceError
+from ravemj.model.scene import Mesh, Rgb
+
+MESH_SUFFIXES = (".iv", ".wrl", ".vrml", ".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf")
+"""Ends of the names of files that can be read, in lower case."""
+
+MAX_TRIANGLES = 5_000_000
+"""More triangles than this in one file are refused; a few hundred bytes of USE or instances can ask for billions."""
+
+WHITE: Rgb = (1.0, 1.0, 1.0)
+BLACK: Rgb = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class MeshPart:
+    """Triangles of one colour.
+
+    Attributes:
+        mesh: The triangles, in the frame of the file [m].
+        diffuse: Colour, each part from 0 to 1.
+        ambient: Colour in the shade, each part from 0 to 1.
+        transparency: 0 is opaque, 1 invisible.
+    """
+
+    mesh: Mesh
+    diffuse: Rgb = WHITE
+    ambient: Rgb = BLACK
+    transparency: float = 0.0
+
+
+def weld(corners: ArrayLike) -> Mesh:
+    """Join the equal corners of separate triangles, in order of their first appearance.
+
+    Coordinates are rounded to single precision first: OpenRAVE's importers and MuJoCo know no finer ones, so
+    corners that OpenRAVE takes for the same are the same here too.
+
+    Args:
+        corners: Three points for each triangle, shape (n, 3, 3).
+    """
+    points = np.asarray(corners, np.float32).reshape(-1, 3) + np.float32(0)  # -0 becomes 0
+    rows = np.ascontiguousarray(points).view(np.dtype((np.void, 12))).ravel()
+    _, first, number = np.unique(rows, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return Mesh(points[first[order]].astype(np.float64), rank[number].reshape(-1, 3))
+
+
+def corners_of(mesh: Mesh) -> Floats:
+    """Return the three points of each triangle, shape (n, 3, 3)."""
+    return mesh.vertices[mesh.triangles]
+
+
+def without_degenerate(corners: Floats) -> Floats:
+    """Leave out triangles with two equal corners, as OpenRAVE's importer of everything but Inventor does."""
+    a, b, c = (np.asarray(corners[:, i], np.float32) for i in range(3))
+    degenerate = (a == b).all(1) | (b == c).all(1) | (c == a).all(1)
+    return corners[~degenerate]
+
+
+def rgb(numbers: ArrayLike) -> Rgb:
+    """Return a colour in the single precision that OpenRAVE's importers work in."""
+    red, green, blue = (float(part) for part in np.nan_to_num(np.asarray(numbers, np.float32)[:3]))
+    return red, green, blue
+
+
+def check_size(triangles: int, source: Source) -> None:
+    """Refuse more triangles than anyone can mean.
+
+    Raises:
+        SourceError: There are more than ``MAX_TRIANGLES``.
+    """
+    if triangles > MAX_TRIANGLES:
+        raise SourceError(f"the mesh has more than {MAX_TRIANGLES} triangles", source)
+
+
+def check_finite(corners: Floats, source: Source) -> None:
+    """Refuse coordinates that no engine can use.
+
+    Raises:
+        SourceError: A coordinate is not a finite number in single precision.
+    """
+    if not (np.abs(corners) <= np.finfo(np.float32).max).all():
+        raise SourceError("the mesh has a coordinate that is not a finite number", source)

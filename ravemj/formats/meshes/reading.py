@@ -1,0 +1,101 @@
+"""A mesh file to its parts: the reader is chosen by the file's name, as OpenRAVE does it."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ravemj.core.transforms import UNSCALED, Vec3
+from ravemj.errors import Source, SourceError
+from ravemj.formats.meshes import cache
+from ravemj.formats.meshes.files import MeshFile, References, unpacked
+from ravemj.formats.meshes.parts import MESH_SUFFIXES, MeshPart
+from ravemj.model.scene import Mesh
+
+_Reader = Callable[[MeshFile], tuple[MeshPart, ...]]
+
+
+def _inventor(file: MeshFile) -> tuple[MeshPart, ...]:
+    from ravemj.formats.meshes.inventor import read_inventor  # noqa: PLC0415 - most meshes come from the cache
+
+    return read_inventor(file)
+
+
+def _stl(file: MeshFile) -> tuple[MeshPart, ...]:
+    from ravemj.formats.meshes.stl import read_stl  # noqa: PLC0415
+
+    return read_stl(file)
+
+
+def _obj(file: MeshFile) -> tuple[MeshPart, ...]:
+    from ravemj.formats.meshes.obj import read_obj  # noqa: PLC0415
+
+    return read_obj(file)
+
+
+def _collada(file: MeshFile) -> tuple[MeshPart, ...]:
+    from ravemj.formats.meshes.collada import read_collada  # noqa: PLC0415
+
+    return read_collada(file)
+
+
+def _exchange(file: MeshFile) -> tuple[MeshPart, ...]:
+    from ravemj.formats.meshes.exchange import read_exchange  # noqa: PLC0415
+
+    return read_exchange(file)
+
+
+_READERS: dict[str, _Reader] = {
+    ".iv": _inventor,
+    ".wrl": _inventor,
+    ".vrml": _inventor,
+    ".stl": _stl,
+    ".obj": _obj,
+    ".dae": _collada,
+    ".ply": _exchange,
+    ".off": _exchange,
+    ".glb": _exchange,
+    ".gltf": _exchange,
+}
+
+
+def read_mesh(path: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
+    """Read a mesh file as OpenRAVE does it for the ``<data>`` of a trimesh.
+
+    Vertices are in metres, in the frame of the file; a COLLADA file is scaled by its unit and turned to y up.
+    Inventor and VRML give one part for the whole file, the other formats one for each material.
+
+    Args:
+        path: The file; the end of its name decides how it is read, in upper or lower case.
+        scale: Factors along x, y and z.
+
+    Returns:
+        Its parts, none of them without triangles.
+
+    Raises:
+        SourceError: The file is missing, empty, malformed, too large, or of an unknown kind.
+    """
+    suffix = next((suffix for suffix in MESH_SUFFIXES if path.lower().endswith(suffix)), None)
+    if suffix is None:
+        known = " ".join(MESH_SUFFIXES)
+        raise SourceError("no mesh format that ravemj knows", Source(path), hint=f"it reads {known}")
+    kind = suffix if scale == UNSCALED else f"{suffix} {scale}"
+
+    def read(raw: bytes) -> tuple[tuple[MeshPart, ...], References]:
+        parts, references = _read(MeshFile(path, unpacked(raw, path)), _READERS[suffix])
+        return parts if scale == UNSCALED else tuple(_scaled(part, scale) for part in parts), references
+
+    return cache.remembered_file(path, kind, read)
+
+
+def _read(file: MeshFile, reader: _Reader) -> tuple[tuple[MeshPart, ...], References]:
+    """Return the parts, and the files that they come from besides ``file``."""
+    try:
+        with np.errstate(all="ignore"):  # what is not finite in the end is refused
+            return reader(file), file.references
+    except (RecursionError, MemoryError, OverflowError) as error:
+        raise SourceError(f"the file is too large or nested too deep ({type(error).__name__})", file.source) from error
+
+
+def _scaled(part: MeshPart, scale: Vec3) -> MeshPart:
+    return replace(part, mesh=Mesh(part.mesh.vertices * scale, part.mesh.triangles))

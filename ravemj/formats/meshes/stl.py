@@ -1,0 +1,55 @@
+"""STL, binary and text."""
+
+import re
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import SourceError
+from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.parts import WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
+
+AMBIENT = rgb((0.05, 0.05, 0.05))
+"""What OpenRAVE's importer gives to every STL file."""
+
+_HEADER = 84
+_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
+
+
+def read_stl(file: MeshFile) -> tuple[MeshPart, ...]:
+    """Read an STL file; solids are joined, as OpenRAVE does it.
+
+    A colour ``COLOR=rgba`` in the header of a binary file is that of the part, as some writers mean it; else it is
+    white.
+
+    Raises:
+        SourceError: It is neither binary nor text STL, or is cut short.
+    """
+    diffuse = WHITE
+    count = int.from_bytes(file.data[80:_HEADER], "little")
+    size = _HEADER + count * _FACET.itemsize
+    text = file.data.lstrip()[:5].lower() == b"solid" and b"facet" in file.data
+    if len(file.data) == size or (_HEADER <= size < len(file.data) and not text):
+        corners = np.frombuffer(file.data, _FACET, count, _HEADER)["corners"].astype(np.float64)
+        at = file.data.find(b"COLOR=", 0, 80)
+        if 0 <= at <= 80 - 10:
+            diffuse = rgb(np.frombuffer(file.data, np.uint8, 3, at + 6) / 255)
+    elif b"facet" in file.data:
+        corners = _text_corners(file)
+    else:
+        raise SourceError("neither text nor binary STL, or cut short", file.source)
+    check_size(len(corners), file.source)
+    check_finite(corners, file.source)
+    corners = without_degenerate(corners)
+    return (MeshPart(weld(corners), diffuse, AMBIENT),) if len(corners) else ()
+
+
+def _text_corners(file: MeshFile) -> Floats:
+    words = _VERTEX.findall(file.data)
+    if not words or len(words) % 3:
+        raise SourceError("a facet without three vertices", file.source)
+    try:
+        return np.array([[float(word) for word in vertex] for vertex in words]).reshape(-1, 3, 3)
+    except ValueError as error:
+        raise SourceError(f"a coordinate that is no number: {error}", file.source) from error

@@ -1,0 +1,299 @@
+"""The whole MJCF document."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+from ravemj.core.transforms import ZERO, conjugate, rotate
+from ravemj.errors import Diagnostics, Source
+from ravemj.formats.mjcf.equality import EqualityWriter
+from ravemj.formats.mjcf.excludes import WeldGroups, excluded_pairs
+from ravemj.formats.mjcf.geometry import GeometryWriter
+from ravemj.formats.mjcf.inertia import inertia_attributes, is_rounding, legal_inertial
+from ravemj.formats.mjcf.lines import Attribute, Lines, pose_attributes
+from ravemj.model.joints import relative_pose
+from ravemj.model.making import MASSLESS
+from ravemj.model.scene import Axis, Joint, KinBody, Link, Mesh, Scene, View
+
+ASSETS = "assets"
+"""Folder of the meshes, beside the MJCF file."""
+
+Actuators = Literal["position", "velocity", "torque"]
+
+
+class Options(NamedTuple):
+    """What a translation adds that the file does not say.
+
+    Attributes:
+        free_bases: Whether bodies without a static link can fall, as OpenRAVE's physics engines have it; else every
+            root is fixed to the world.
+        actuators: The kind of actuator for each DOF, or None.
+        decomposed: Whether meshes collide as several convex parts (with CoACD) in place of one hull.
+        excludes: Whether pairs of links that OpenRAVE never tests are excluded by name.
+    """
+
+    free_bases: bool = False
+    actuators: Actuators | None = None
+    decomposed: bool = False
+    excludes: bool = True
+
+
+class BodyNames(NamedTuple):
+    """What a body's parts are called in the MJCF.
+
+    Attributes:
+        links: Name of the MuJoCo body of each link.
+        joints: For each joint, active ones and then passive ones, the names of the MuJoCo joints that it became; none
+            for one that moves no link: a weld, a passive one that follows nothing, and one that closes a loop.
+        geoms: For each link, how many geoms each of its geometries became; they stand in this order.
+    """
+
+    links: tuple[str, ...]
+    joints: tuple[tuple[str, ...], ...]
+    geoms: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True)
+class Mjcf:
+    """A translated scene.
+
+    Attributes:
+        text: The MJCF document.
+        meshes: The meshes, by the name of their files in the folder ``assets``.
+        sources: For each line of the text, the place that it comes from, or None.
+        names: Names of the parts of each body of the scene, in the order of the bodies.
+        altered: Links, as (body, link) indices, whose inertia MuJoCo would refuse; the text has the nearest legal one.
+    """
+
+    text: str
+    meshes: dict[str, Mesh]
+    sources: tuple[Source | None, ...]
+    names: tuple[BodyNames, ...]
+    altered: tuple[tuple[int, int], ...]
+
+    @cached_property
+    def assets(self) -> dict[str, str]:
+        """The content of the mesh files, by name."""
+        from ravemj.formats.meshes.obj import write_obj  # noqa: PLC0415 - most models have no meshes
+
+        return {name: write_obj(mesh) for name, mesh in self.meshes.items()}
+
+    def source_of_line(self, line: int) -> Source | None:
+        """Return where a line of the text comes from; lines count from 1."""
+        return self.sources[line - 1] if 0 < line <= len(self.sources) else None
+
+
+def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None) -> Mjcf:
+    """Translate a scene.
+
+    Args:
+        scene: What to translate.
+        diagnostics: Takes a warning for every value that MuJoCo would refuse and every name that clashes.
+        options: What to add; None: nothing.
+    """
+    writer = _Writer(diagnostics, options or Options())
+    for index, body in enumerate(scene.bodies):
+        writer.write_body(index, body)
+    out = Lines()
+    out.open("mujoco")
+    out.element("compiler", angle="radian", autolimits=True, fusestatic=False, meshdir=ASSETS)
+    if scene.gravity is not None:
+        out.element("option", gravity=scene.gravity)
+    _write_look(out, scene.view or View(), writer.geometries.lines)
+    out.section("worldbody", writer.bodies)
+    out.section("contact", writer.excludes)
+    out.section("tendon", writer.equalities.tendons)
+    out.section("equality", writer.equalities.equalities)
+    out.section("actuator", writer.actuators)
+    out.close("mujoco")
+    text = "\n".join(out.text) + "\n"
+    return Mjcf(text, writer.geometries.meshes, tuple(out.sources), tuple(writer.names), tuple(writer.altered))
+
+
+def _write_look(out: Lines, view: View, meshes: Lines) -> None:
+    """Write lights, the classes of geoms, the background and the meshes."""
+    out.open("visual")
+    out.element("headlight", active=1, ambient=(0.35, 0.35, 0.35), diffuse=(0.4, 0.4, 0.4), specular=(0.05, 0.05, 0.05))
+    out.close("visual")
+    out.open("default")
+    out.open("default", **{"class": "visual"})
+    out.element("geom", contype=0, conaffinity=0, group=2)
+    out.close("default")
+    out.open("default", **{"class": "collision"})
+    out.element("geom", group=3)
+    out.close("default")
+    out.close("default")
+    colour: dict[str, Attribute] = {"rgb1": view.background, "rgb2": view.background}
+    out.open("asset")
+    out.element("texture", name="background", type="skybox", builtin="flat", width=8, height=48, **colour)
+    out.text += meshes.text
+    out.sources += meshes.sources
+    out.close("asset")
+
+
+@dataclass(slots=True)
+class _Names:
+    """Names that are taken, so that each is given once."""
+
+    diagnostics: Diagnostics
+    taken: dict[str, set[str]] = field(default_factory=lambda: {"body": {"world"}, "joint": set[str]()})
+
+    def give(self, kind: str, body: KinBody, name: str) -> str:
+        """Return a name that no other part of this kind has: the part's own if that is free."""
+        unique = name
+        while unique in self.taken[kind]:
+            unique = f"{body.name}/{unique}"
+        if unique != name:
+            message = f"the {kind} '{name}' of '{body.name}' is called '{unique}' in the MJCF, where names are unique"
+            self.diagnostics.warn("renamed", message, body.source)
+        self.taken[kind].add(unique)
+        return unique
+
+
+class _Writer:
+    """The parts of the document, filled body by body."""
+
+    def __init__(self, diagnostics: Diagnostics, options: Options) -> None:
+        self.diagnostics = diagnostics
+        self.options = options
+        self.bodies = Lines(2)
+        self.bodies.element("light", type="directional", dir=(-0.4, 0.4, -1.0), diffuse=(0.4, 0.4, 0.4), specular=ZERO)
+        self.excludes = Lines(2)
+        self.actuators = Lines(2)
+        self.geometries = GeometryWriter(diagnostics, decomposed=options.decomposed)
+        self.equalities = EqualityWriter(diagnostics, Lines(2), Lines(2))
+        self.names: list[BodyNames] = []
+        self.altered: list[tuple[int, int]] = []
+        self._given = _Names(diagnostics)
+
+    def write_body(self, index: int, body: KinBody) -> None:
+        """Write the tree of links of a body, root links first, and what belongs to it in other sections."""
+        joints = (*body.joints, *body.passive_joints)
+        names = BodyNames(
+            links=tuple(self._given.give("body", body, link.name or f"link{i}") for i, link in enumerate(body.links)),
+            joints=tuple(
+                self._joint_names(body, joint, i < len(body.joints), joint.name or f"joint{i}")
+                for i, joint in enumerate(joints)
+            ),
+            geoms=(),
+        )
+        welds = WeldGroups()
+        self.names.append(names._replace(geoms=self._write_tree(index, body, names, joints, welds)))
+        if self.options.excludes:
+            for first, second in excluded_pairs(body, welds):
+                self.excludes.element("exclude", body1=names.links[first], body2=names.links[second])
+        self.equalities.write(joints, names.joints)
+        if self.options.actuators is not None:
+            for joint, joint_names in zip(body.joints, names.joints, strict=False):
+                self._write_actuators(joint, joint_names, self.options.actuators)
+
+    def _joint_names(self, body: KinBody, joint: Joint, active: bool, name: str) -> tuple[str, ...]:
+        follows = joint.mimic is not None and joint.mimic.expression is not None and len(body.joints) > 0
+        if not joint.places_child or joint.static or not (active or follows) or joint.axes[0].direction == ZERO:
+            return ()
+        first = self._given.give("joint", body, name)
+        return (first, self._given.give("joint", body, f"{name}_1")) if joint.kind == "hinge2" else (first,)
+
+    def _write_tree(
+        self, index: int, body: KinBody, names: BodyNames, joints: tuple[Joint, ...], welds: WeldGroups
+    ) -> tuple[tuple[int, ...], ...]:
+        """Write the links; return for each how many geoms its geometries became."""
+        geoms: list[tuple[int, ...]] = [()] * len(body.links)
+        placing = {joint.child: number for number, joint in enumerate(joints) if joint.places_child}
+        children: dict[int, list[int]] = {}
+        for child, number in placing.items():
+            children.setdefault(joints[number].parent, []).append(child)
+        free = self.options.free_bases and not any(link.static for link in body.links)
+        pending = [(link, False) for link in reversed(range(len(body.links))) if link not in placing]
+        while pending:
+            link, is_done = pending.pop()
+            if is_done:
+                self.bodies.close("body")
+                continue
+            number = placing.get(link)
+            joint = None if number is None else joints[number]
+            joint_names = () if number is None else names.joints[number]
+            self._open_link(body, link, names.links[link], joint, bool(joint_names))
+            is_free = joint is None and free
+            if is_free:
+                self.bodies.element("freejoint", body.links[link].source)
+            self._write_inertial(index, link, body.links[link])
+            if joint is not None:
+                self._write_joint(joint, joint_names)
+            written = [self.geometries.write(geometry, self.bodies) for geometry in body.links[link].geometries]
+            geoms[link] = tuple(count for count, _ in written)
+            parent = None if joint is None else joint.parent
+            solid = any(collides for _, collides in written)
+            welds.add(link, parent, moves=is_free or bool(joint_names), solid=solid)
+            pending.append((link, True))
+            if link in children:
+                pending.extend((child, False) for child in sorted(children[link], reverse=True))
+        return tuple(geoms)
+
+    def _open_link(self, body: KinBody, index: int, name: str, joint: Joint | None, moves: bool) -> None:
+        link = body.links[index]
+        if joint is None:
+            pose = link.T_world_link
+        elif moves:
+            pose = joint.T_parent_child
+        elif body.joints:
+            pose = relative_pose(joint, [axis.value for axis in joint.axes])
+        else:  # nothing was placed by joints
+            pose = body.links[joint.parent].T_world_link.inverse() @ link.T_world_link
+        self.bodies.comment(str(link.source), link.source)
+        self.bodies.open("body", link.source, name=name, **pose_attributes(pose))
+
+    def _write_inertial(self, body_index: int, link_index: int, link: Link) -> None:
+        inertial = legal_inertial(link.inertial)
+        if inertial is not link.inertial:
+            self.altered.append((body_index, link_index))
+            if link.inertial != MASSLESS and not is_rounding(inertial, link.inertial):
+                message = f"MuJoCo refuses the mass or inertia of '{link.name}'; the MJCF has the nearest legal one"
+                self.diagnostics.warn("raised-inertia", message, link.source)
+        self.bodies.element("inertial", link.source, **inertia_attributes(inertial))
+
+    def _write_joint(self, joint: Joint, names: tuple[str, ...]) -> None:
+        position = joint.T_parent_child.inverse().apply(joint.anchor)
+        if joint.kind == "spherical" and names:
+            self.bodies.element("joint", joint.source, name=names[0], type="ball", pos=position)
+            return
+        for name, axis in zip(names, joint.axes, strict=False):
+            self.bodies.element(
+                "joint",
+                joint.source,
+                name=name,
+                type="slide" if joint.kind == "slider" else "hinge",
+                pos=position,
+                axis=rotate(conjugate(joint.T_parent_child.wxyz), axis.direction),
+                **_range(axis),
+                ref=axis.reference or None,
+                armature=axis.armature if self.options.actuators and axis.armature else None,
+                actuatorfrcrange=(-axis.max_torque, axis.max_torque) if axis.max_torque else None,
+            )
+
+    def _write_actuators(self, joint: Joint, names: tuple[str, ...], kind: Actuators) -> None:
+        if joint.kind == "spherical" and names:
+            message = f"joint '{joint.name}' is spherical, and gets no actuator"
+            self.diagnostics.warn("no-actuator", message, joint.source)
+            return
+        for name, axis in zip(names, joint.axes, strict=False):
+            torque = (-axis.max_torque, axis.max_torque) if axis.max_torque else None
+            limits = None if axis.circular else (axis.lower, axis.upper)
+            speed = (-axis.max_velocity, axis.max_velocity)
+            if kind == "torque":
+                self.actuators.element("motor", joint.source, name=name, joint=name, ctrlrange=torque)
+            elif kind == "velocity":
+                self.actuators.element(
+                    "velocity", joint.source, name=name, joint=name, kv=10.0, ctrlrange=speed, forcerange=torque
+                )
+            else:
+                gains: dict[str, Attribute] = {"kp": 100.0, "kv": 10.0}
+                self.actuators.element(
+                    "position", joint.source, name=name, joint=name, **gains, ctrlrange=limits, forcerange=torque
+                )
+
+
+def _range(axis: Axis) -> dict[str, Attribute | None]:
+    if axis.circular or not axis.lower < axis.upper:
+        return {"limited": False}
+    return {"range": (axis.lower, axis.upper)}

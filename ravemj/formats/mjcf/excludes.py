@@ -1,0 +1,103 @@
+"""``<exclude>``: the pairs of links that MuJoCo would test against each other and OpenRAVE never does.
+
+By itself MuJoCo leaves out the links of one weld group, between which it has no joint, and those of a group and the one
+that it hangs on, unless that is the world's. Naming only the others keeps the text small: for a robot or a room of
+furniture it grows with the number of links. Where links that no joints connect can move, each pair of them is named.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import combinations, product
+
+from ravemj.model.adjacency import Pair, components, ordered
+from ravemj.model.scene import KinBody
+
+_WORLD = -1
+
+_Cells = dict[int, list[int]]
+"""Links by their weld group."""
+
+
+@dataclass(slots=True)
+class WeldGroups:
+    """The links of a body as MuJoCo's collision detection sees them.
+
+    Attributes:
+        group: For each link the link that leads its weld group, or a negative number for those fixed to the world.
+        carrier: For each moving group the one that it hangs on.
+        solid: Links with shapes that collide.
+    """
+
+    group: dict[int, int] = field(default_factory=lambda: {})
+    carrier: dict[int, int] = field(default_factory=lambda: {})
+    solid: list[int] = field(default_factory=lambda: [])
+
+    def add(self, link: int, parent: int | None, *, moves: bool, solid: bool) -> None:
+        """Add a link behind its parent.
+
+        Args:
+            link: Its index.
+            parent: That of the link that it hangs on, or None for the world.
+            moves: Whether a MuJoCo joint is between the two.
+            solid: Whether it has shapes that collide.
+        """
+        carrier = _WORLD if parent is None else self.group[parent]
+        self.group[link] = link if moves else carrier
+        if moves:
+            self.carrier[link] = carrier
+        if solid:
+            self.solid.append(link)
+
+    def are_tested(self, first: int, second: int) -> bool:
+        """Return whether MuJoCo tests the links of two groups against each other."""
+        if first == second:
+            return False
+        if _WORLD in (first, second):
+            return True
+        return self.carrier[first] != second and self.carrier[second] != first
+
+    def tested_pairs(self, first: Mapping[int, list[int]], second: Mapping[int, list[int]]) -> Iterator[Pair]:
+        """Yield the pairs of one link each that MuJoCo tests, of links sorted by group."""
+        for one, other in product(first, second):
+            if self.are_tested(one, other):
+                for link, partner in product(first[one], second[other]):
+                    yield ordered(link, partner)
+
+
+def excluded_pairs(body: KinBody, welds: WeldGroups) -> list[Pair]:
+    """Return the pairs of links that MuJoCo has to be told not to test.
+
+    Args:
+        body: The body.
+        welds: Where its links are in MuJoCo's tree.
+
+    Returns:
+        Pairs of link indices, the smaller one first, sorted.
+    """
+    if len(welds.solid) < 2:
+        return []
+    joints = (*body.joints, *body.passive_joints)
+    count = len(body.links)
+    solid = set(welds.solid)
+    named = [(one, other) for one, other in body.adjacent if one in solid and other in solid]
+    pairs = {(one, other) for one, other in named if welds.are_tested(welds.group[one], welds.group[other])}
+    if body.joined_links_adjacent:
+        rigid = components(count, ((joint.parent, joint.child) for joint in joints if joint.static))
+        parts = _cells(rigid, welds)
+        joined = {ordered(rigid[joint.parent], rigid[joint.child]) for joint in joints}
+        for one, other in joined | {(part, part) for part in parts}:
+            pairs.update(welds.tested_pairs(parts.get(one, {}), parts.get(other, {})))
+    trees = _cells(components(count, ((joint.parent, joint.child) for joint in joints)), welds).values()
+    moving = [tree for tree in trees if tree.keys() != {_WORLD}]
+    fixed = {_WORLD: [link for tree in trees if tree.keys() == {_WORLD} for link in tree[_WORLD]]}
+    for one, other in (*combinations(moving, 2), *product(moving, [fixed])):
+        pairs.update(welds.tested_pairs(one, other))
+    return sorted(pairs)
+
+
+def _cells(labels: list[int], welds: WeldGroups) -> dict[int, _Cells]:
+    """Return the solid links by label and weld group."""
+    cells: dict[int, _Cells] = {}
+    for link in welds.solid:
+        cells.setdefault(labels[link], {}).setdefault(welds.group[link], []).append(link)
+    return cells

@@ -1,0 +1,177 @@
+"""Shapes: which geoms and meshes a geometry becomes."""
+
+from ravemj.core.transforms import Pose, Vec3, add, scale
+from ravemj.errors import Diagnostics
+from ravemj.formats.meshes import collision_form
+from ravemj.formats.mjcf.lines import Attribute, Lines, attribute_text, pose_attributes
+from ravemj.model.scene import (
+    Box,
+    Capsule,
+    Container,
+    Cylinder,
+    Geometry,
+    Mesh,
+    NoShape,
+    Prism,
+    Rgb,
+    Shape,
+    Sphere,
+    Surface,
+    TriMesh,
+)
+
+SMALLEST_SIZE = 1e-10
+"""The least size [m] that is written; MuJoCo wants it positive."""
+
+Solid = tuple[str, tuple[float, ...], Vec3]
+"""MuJoCo's type and size of a solid, and where its centre is in the geometry."""
+
+
+class GeometryWriter:
+    """Writes geoms and collects the meshes that they need.
+
+    Attributes:
+        meshes: The meshes, by the name of their files.
+        lines: The elements that declare them.
+    """
+
+    def __init__(self, diagnostics: Diagnostics, *, decomposed: bool) -> None:
+        self.diagnostics = diagnostics
+        self.meshes: dict[str, Mesh] = {}
+        self.lines = Lines(2)
+        self._decomposed = decomposed
+        self._written = 0
+
+    def write(self, geometry: Geometry, out: Lines) -> tuple[int, bool]:
+        """Write the geoms of a geometry; return how many there are, and whether one of them collides."""
+        before = self._written
+        seen = geometry.visible and geometry.display is None
+        if isinstance(geometry.shape, TriMesh):
+            collides = self._write_mesh(geometry, geometry.shape.mesh, out, seen=seen)
+        elif isinstance(geometry.shape, Prism):
+            collides = self._write_mesh(geometry, geometry.shape.walls(), out, seen=seen)
+        else:
+            parts = solids(geometry.shape)
+            collides = bool(parts)
+            for solid in parts:
+                self._write_solid(geometry, solid, out, seen=seen)
+        for surface in geometry.display or () if geometry.visible else ():
+            self._write_surface(geometry, surface, out)
+        return self._written - before, collides
+
+    def _write_solid(self, geometry: Geometry, solid: Solid, out: Lines, *, seen: bool) -> None:
+        kind, size, centre = solid
+        legal = size
+        if min(size) < SMALLEST_SIZE:
+            legal = tuple(max(part, SMALLEST_SIZE) for part in size)
+            message = f"MuJoCo refuses a {kind} of size {attribute_text(size)}; the MJCF has {attribute_text(legal)}"
+            self.diagnostics.warn("raised-size", message, geometry.source)
+        pose = geometry.T_link_geometry @ Pose(centre) if any(centre) else geometry.T_link_geometry
+        self._written += 1
+        out.element(
+            "geom",
+            geometry.source,
+            **{"class": None if seen else "collision"},
+            type=kind,
+            size=legal,
+            **pose_attributes(pose),
+            rgba=rgba(geometry.diffuse, geometry.transparency),
+        )
+
+    def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: Lines, *, seen: bool) -> bool:
+        """Write a mesh that is seen and collides: once for both, where one geom can do both."""
+        hulls = self._hulls(geometry, mesh)
+        both = seen and hulls == (mesh,)
+        if seen:
+            self._write_mesh_geom(geometry, mesh, None if both else "visual", out)
+        if not both:
+            for hull in hulls:
+                self._write_mesh_geom(geometry, hull, "collision", out)
+        return bool(hulls)
+
+    def _hulls(self, geometry: Geometry, mesh: Mesh) -> tuple[Mesh, ...]:
+        """Return the meshes whose convex hulls collide in place of a mesh."""
+        form = collision_form(mesh)
+        if form == "visual":
+            message = "the mesh is flat and has no convex hull; it is drawn and does not collide"
+            self.diagnostics.warn("flat-mesh", message, geometry.source)
+        elif form == "none" and len(mesh.triangles):
+            message = "the mesh has no area, or is too large for MuJoCo; it is left out"
+            self.diagnostics.warn("flat-mesh", message, geometry.source)
+        if form != "hull":
+            return ()
+        if not self._decomposed:
+            return (mesh,)
+        from ravemj.formats.meshes.decomposition import decompose  # noqa: PLC0415 - rarely wanted
+
+        return decompose(mesh)
+
+    def _write_surface(self, geometry: Geometry, surface: Surface, out: Lines) -> None:
+        name = self._mesh_name(surface.mesh)
+        if name is not None:
+            colour = rgba(surface.diffuse, surface.transparency)
+            self._write_geom(geometry, name, "visual", colour, out)
+
+    def _write_mesh_geom(self, geometry: Geometry, mesh: Mesh, role: str | None, out: Lines) -> None:
+        name = self._mesh_name(mesh)
+        if name is not None:
+            self._write_geom(geometry, name, role, rgba(geometry.diffuse, geometry.transparency), out)
+
+    def _write_geom(
+        self, geometry: Geometry, mesh_name: str, role: str | None, colour: tuple[float, ...], out: Lines
+    ) -> None:
+        self._written += 1
+        attributes: dict[str, Attribute | None] = {"class": role, "type": "mesh", "mesh": mesh_name}
+        out.element("geom", geometry.source, **attributes, **pose_attributes(geometry.T_link_geometry), rgba=colour)
+
+    def _mesh_name(self, mesh: Mesh) -> str | None:
+        """Return the name of a mesh, declared when it is met first; None for one that MuJoCo cannot load."""
+        if collision_form(mesh) == "none":
+            return None
+        name = f"mesh-{mesh.digest[:16]}"
+        file = f"{name}.obj"
+        if file not in self.meshes:
+            self.meshes[file] = mesh
+            self.lines.element("mesh", name=name, file=file, inertia="shell")
+        return name
+
+
+def solids(shape: Shape) -> list[Solid]:
+    """Return the solids that a shape consists of."""
+    match shape:
+        case Box(half_extents):
+            return [("box", half_extents, (0.0, 0.0, 0.0))]
+        case Sphere(radius):
+            return [("sphere", (radius,), (0.0, 0.0, 0.0))]
+        case Cylinder(radius, height):
+            return [("cylinder", (radius, height / 2), (0.0, 0.0, 0.0))]
+        case Capsule(radius, height):
+            return [("capsule", (radius, height / 2), (0.0, 0.0, 0.0))]
+        case Container():
+            return _container(shape)
+        case Prism() | TriMesh() | NoShape():
+            return []
+
+
+def _container(shape: Container) -> list[Solid]:
+    """Return floor, four walls, and what stands on the floor; the origin is the middle of the outer bottom."""
+    outer, inner = shape.outer_extents, shape.inner_extents
+    wall_x, wall_y, floor = ((o - i) / 2 for o, i in zip(outer, inner, strict=True))
+    floor *= 2
+    solids: list[Solid] = [("box", (outer[0] / 2, outer[1] / 2, floor / 2), (0.0, 0.0, floor / 2))]
+    middle: Vec3 = (0.0, 0.0, outer[2] / 2)
+    for sign in (-1.0, 1.0):
+        across: Vec3 = ((outer[0] - wall_x) / 2, 0.0, 0.0)
+        along: Vec3 = (0.0, (outer[1] - wall_y) / 2, 0.0)
+        solids.append(("box", (wall_x / 2, outer[1] / 2, outer[2] / 2), add(middle, scale(across, sign))))
+        solids.append(("box", (outer[0] / 2, wall_y / 2, outer[2] / 2), add(middle, scale(along, sign))))
+    for size in (shape.bottom_cross, shape.bottom):
+        if all(size):
+            solids.append(("box", scale(size, 0.5), (0.0, 0.0, floor + size[2] / 2)))
+    return solids
+
+
+def rgba(colour: Rgb, transparency: float) -> tuple[float, ...]:
+    """Return colour and opacity in the range from 0 to 1, beyond which nothing looks different."""
+    rgba = (*colour, 1.0 - transparency)
+    return rgba if min(rgba) >= 0.0 and max(rgba) <= 1.0 else tuple(min(max(part, 0.0), 1.0) for part in rgba)

@@ -1,0 +1,60 @@
+"""Mass properties that MuJoCo takes."""
+
+import math
+
+import numpy as np
+
+from ravemj.formats.mjcf.lines import Attribute
+from ravemj.model.scene import Inertial
+
+SMALLEST = 1e-10
+"""The least mass [kg] and moment of inertia [kg m^2] that is written; MuJoCo wants them positive."""
+
+
+_ROUNDING = 1e-11
+"""How far, relative to the largest, moments stay from the edge: MuJoCo computes them anew from the tensor."""
+
+
+def is_rounding(legal: Inertial, given: Inertial) -> bool:
+    """Tell whether mass properties were changed by no more than rounding."""
+    inertia = np.array(given.inertia)
+    if not np.isfinite(inertia).all():
+        return False
+    close = np.allclose(legal.inertia, inertia, rtol=0, atol=10 * _ROUNDING * float(np.abs(inertia).max()))
+    return close and (legal.mass, legal.com) == (given.mass, given.com)
+
+
+def legal_inertial(inertial: Inertial) -> Inertial:
+    """Return the nearest mass properties that MuJoCo takes: positive, and no moment above the sum of the others."""
+    if _is_legal_diagonal(inertial):
+        return inertial
+    mass = max(inertial.mass, SMALLEST) if math.isfinite(inertial.mass) else SMALLEST
+    finite = np.nan_to_num(np.array(inertial.inertia), nan=0.0, posinf=0.0, neginf=0.0)
+    moments, axes = np.linalg.eigh(finite)
+    small, middle, large = (max(float(moment), SMALLEST) for moment in moments)
+    legal = np.array([max(small, large - middle), middle, large])
+    com = inertial.com if all(map(math.isfinite, inertial.com)) else (0.0, 0.0, 0.0)
+    positive = np.array_equal((small, middle, large), moments)
+    if mass == inertial.mass and com == inertial.com and positive and small + middle - large >= _ROUNDING * large:
+        return inertial
+    legal += _ROUNDING * large
+    xx, xy, xz, _, yy, yz, _, _, zz = ((axes * legal) @ axes.T).ravel().tolist()
+    return Inertial(mass, com, ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+
+
+def _is_legal_diagonal(inertial: Inertial) -> bool:
+    """Return True for the usual case, without numpy: a legal mass and a legal diagonal tensor."""
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertial.inertia
+    if xy or xz or yz or not SMALLEST <= inertial.mass < math.inf:
+        return False
+    small, middle, large = sorted((xx, yy, zz))
+    return small >= SMALLEST and large <= small + middle and math.isfinite(large + sum(inertial.com))
+
+
+def inertia_attributes(inertial: Inertial) -> dict[str, Attribute]:
+    """Return the attributes of an ``<inertial>``."""
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertial.inertia
+    tensor: dict[str, Attribute] = {"fullinertia": (xx, yy, zz, xy, xz, yz)}
+    if xy == xz == yz == 0.0:
+        tensor = {"diaginertia": (xx, yy, zz)}
+    return {"pos": inertial.com, "mass": inertial.mass, **tensor}

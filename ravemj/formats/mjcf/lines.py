@@ -1,0 +1,98 @@
+"""Lines of XML, each with the place in the user's file that it comes from."""
+
+import functools
+import re
+
+from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose
+from ravemj.errors import Source
+
+Attribute = str | float | bool | tuple[float, ...]
+
+_INDENTS = ["  " * depth for depth in range(20)]
+_ESCAPES = str.maketrans(
+    {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+)
+_ESCAPED = frozenset(map(chr, _ESCAPES))
+
+
+class Lines:
+    """XML in the making, one element a line.
+
+    Attributes:
+        text: The lines.
+        sources: For each line where it comes from, or None.
+    """
+
+    def __init__(self, indent: int = 0) -> None:
+        self.text: list[str] = []
+        self.sources: list[Source | None] = []
+        self._indent = indent
+
+    def element(self, tag: str, source: Source | None = None, /, **attributes: Attribute | None) -> None:
+        """Write an element without children; attributes that are None are left out."""
+        self._line(f"<{tag}{_attributes(attributes)}/>", source)
+
+    def open(self, tag: str, source: Source | None = None, /, **attributes: Attribute | None) -> None:
+        """Write a start tag."""
+        self._line(f"<{tag}{_attributes(attributes)}>", source)
+        self._indent += 1
+
+    def close(self, tag: str) -> None:
+        """Write an end tag."""
+        self._indent -= 1
+        self._line(f"</{tag}>", None)
+
+    def comment(self, text: str, source: Source | None) -> None:
+        """Write a comment."""
+        self._line(f"<!-- {comment_text(text)} -->", source)
+
+    def section(self, tag: str, content: "Lines") -> None:
+        """Write a section with lines that were made apart, unless there are none."""
+        if content.text:
+            self.open(tag)
+            self.text += content.text
+            self.sources += content.sources
+            self.close(tag)
+
+    def _line(self, text: str, source: Source | None) -> None:
+        self.text.append(f"{_INDENTS[self._indent] if self._indent < len(_INDENTS) else '  ' * self._indent}{text}")
+        self.sources.append(source)
+
+
+def comment_text(text: str) -> str:
+    """Return a text as it may stand in a comment: in one line, without two dashes in a row."""
+    if not text.isprintable():
+        text = "".join(character if character.isprintable() else "?" for character in text)
+    return re.sub("-(?=-)", "- ", text) if "--" in text else text
+
+
+def pose_attributes(pose: Pose) -> dict[str, Attribute]:
+    """Return ``pos`` and ``quat`` of a pose; a part that does nothing is left out."""
+    attributes: dict[str, Attribute] = {}
+    position, wxyz = pose
+    if position != ZERO:
+        attributes["pos"] = position
+    if wxyz != UNIT_WXYZ and any(wxyz[1:]):
+        attributes["quat"] = wxyz
+    return attributes
+
+
+def attribute_text(value: Attribute) -> str:
+    """Return an attribute's text; numbers keep all their digits."""
+    if isinstance(value, tuple):
+        return _numbers_text(value)
+    if isinstance(value, str):
+        return value if _ESCAPED.isdisjoint(value) else value.translate(_ESCAPES)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return _numbers_text((value,))
+
+
+@functools.lru_cache(maxsize=10_000)  # models repeat sizes, colours and axes, and digits take time
+def _numbers_text(values: tuple[float, ...]) -> str:
+    """Return numbers separated by spaces, whole ones without a point and none with a minus before zero."""
+    return f"{' '.join(map(repr, values))} ".replace(".0 ", " ").replace("-0 ", "0 ")[:-1]
+
+
+def _attributes(attributes: dict[str, Attribute | None]) -> str:
+    return "".join([f' {name}="{attribute_text(value)}"' for name, value in attributes.items() if value is not None])

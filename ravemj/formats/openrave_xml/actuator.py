@@ -1,0 +1,79 @@
+"""``<actuator>``: the motor of a joint, of which the torque limit comes."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from ravemj.errors import SourceError
+from ravemj.formats.openrave_xml.context import Context, reasons
+from ravemj.formats.openrave_xml.tree import Element
+from ravemj.formats.openrave_xml.values import number
+
+
+@dataclass(slots=True)
+class _Data:
+    """Numbers by tag."""
+
+    context: Context
+    numbers: dict[str, float] = field(default_factory=dict[str, float])
+
+    def read(self, element: Element) -> None:
+        self.numbers[element.tag] = number(element, self.context.diagnostics)
+
+
+_READ = ("gear_ratio", "nominal_torque", "max_instantaneous_torque", "rotor_inertia")
+ACTUATOR_TAGS: dict[str, Callable[[_Data, Element], None]] = dict.fromkeys(_READ, _Data.read)
+ACTUATOR_IGNORED = reasons(
+    "no getter or simulation of ravemj uses it",
+    "assigned_power_rating",
+    "max_speed",
+    "no_load_speed",
+    "stall_torque",
+    "nominal_speed_torque_point",
+    "max_speed_torque_point",
+    "nominal_voltage",
+    "torque_constant",
+    "speed_constant",
+    "terminal_resistance",
+    "starting_current",
+    "coloumb_friction",
+    "viscous_friction",
+    "max_velocity",
+    "max_acceleration",
+)
+
+
+class Motor(NamedTuple):
+    """A motor behind its gear.
+
+    Attributes:
+        torque: Torque limit [N m], or None where the data say nothing.
+        inertia: Inertia of the rotor [kg m^2].
+    """
+
+    torque: float | None
+    inertia: float
+
+
+def read_motor(element: Element, context: Context) -> Motor:
+    """Read the motor of a joint.
+
+    Raises:
+        SourceError: it is no electric motor.
+    """
+    kind = element.attributes.get("type", "electric_motor")
+    if kind.lower() != "electric_motor":
+        raise SourceError(f"OpenRAVE knows no actuator of type '{kind}'", element.source, "write electric_motor")
+    motor = _Data(context)
+    context.walk(element, ACTUATOR_TAGS, ACTUATOR_IGNORED, motor)
+    return motor_of(motor.numbers)
+
+
+def motor_of(numbers: Mapping[str, float]) -> Motor:
+    """Return the motor behind its gear; what the numbers leave out is 0."""
+    gear_ratio = numbers.get("gear_ratio", 0.0)
+    inertia = numbers.get("rotor_inertia", 0.0) * gear_ratio**2
+    for name in ("max_instantaneous_torque", "nominal_torque"):
+        if numbers.get(name, 0.0) > 0:
+            return Motor(numbers[name] * gear_ratio, inertia)
+    return Motor(None, inertia)

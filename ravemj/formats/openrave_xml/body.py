@@ -1,0 +1,315 @@
+"""``<Robot>``, ``<KinBody>`` and ``<Body>``: scopes that fill one body, in document order.
+
+A nested ``<KinBody>`` or ``<Robot>`` and an included file add to the body of the outermost element. The transform
+of an element acts at its end, once, on the links that were made inside it.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+from ravemj.core.transforms import Vec3
+from ravemj.errors import SourceError
+from ravemj.formats.collada import is_collada
+from ravemj.formats.openrave_xml.collada_body import add_collada
+from ravemj.formats.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
+from ravemj.formats.openrave_xml.geometry import GeometryScope
+from ravemj.formats.openrave_xml.joint import read_joint
+from ravemj.formats.openrave_xml.link import read_link
+from ravemj.formats.openrave_xml.mass import DefaultMassReader
+from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
+from ravemj.formats.openrave_xml.robot import read_attached_sensor, read_manipulator
+from ravemj.formats.openrave_xml.tree import Element
+from ravemj.formats.openrave_xml.values import (
+    ROTATIONS,
+    Placement,
+    hadamard,
+    is_true,
+    leading_numbers,
+    number,
+    scale_attribute,
+)
+from ravemj.model.builder import BodyBuilder
+from ravemj.model.following import Equations
+from ravemj.model.manipulators import ManipulatorBuilder
+from ravemj.model.scene import KinBody
+
+
+class _Marks(NamedTuple):
+    """How many parts a body had at some moment; manipulators change their order, so they are kept themselves."""
+
+    links: int
+    joints: int
+    sensors: int
+    manipulators: tuple[ManipulatorBuilder, ...]
+
+    @classmethod
+    def of(cls, body: BodyBuilder) -> "_Marks":
+        return cls(len(body.links), len(body.joints), len(body.sensors), tuple(body.manipulators))
+
+
+class _Scope:
+    """An open ``<Robot>`` or ``<KinBody>``.
+
+    Attributes:
+        depth: 0 for the outermost element.
+    """
+
+    def __init__(self, body: BodyBuilder, context: Context, scale: Vec3, depth: int, *, skip_geometry: bool) -> None:
+        self.body = body
+        self.context = context
+        self.scale = scale
+        self.depth = depth
+        self.skip_geometry = skip_geometry
+        self.placement = Placement(scale=scale)
+        self.default_mass = DefaultMassReader(context)
+        self.geometry_scope = GeometryScope(None, scale)
+        self.joint_values: list[float] | None = None
+        self.own_manipulators: list[ManipulatorBuilder] = []
+        self.own_sensors: list[int] = []
+        self.transparency: float | None = None
+
+    def read(self, element: Element) -> None:
+        """Read a whole element: its file, its children, and what its end tag does."""
+        first_link = len(self.body.links)
+        if "file" in element.attributes:
+            self._include(element)
+        marks = _Marks.of(self.body)
+        tags, ignored = (ROBOT_TAGS, ROBOT_IGNORED) if element.tag == "robot" else (KINBODY_TAGS, KINBODY_IGNORED)
+        self.context.walk(element, tags, ignored, self)
+        self.body.name = element.attributes.get("name", "") or self.body.name
+        prefix = element.attributes.get("prefix", "")
+        if prefix:
+            self._prefix(prefix, marks, whole=element.tag == "robot")
+        if self.transparency is not None:
+            for link in self.body.links:
+                link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
+        self._own_first(marks)
+        if self.placement.moves:
+            T_outer_scope = self.placement.pose
+            for link in self.body.links[first_link:]:
+                link.pose = T_outer_scope @ link.pose
+
+    def _include(self, element: Element) -> None:
+        """Read the file of an element as if it stood inside an element like it."""
+        name = element.attributes["file"]
+        if is_mesh(name):
+            path = self.context.find(name, element.source)
+            if path is not None:
+                add_mesh(self.body, path, self.scale, element.source, self.context)
+            return
+        if is_collada(name):
+            marks = _Marks.of(self.body)
+            add_collada(self.body, name, element.source, self.context, self.scale, skip_geometry=self.skip_geometry)
+            self._prefix(element.attributes.get("prefix", ""), marks, whole=True)
+            return
+        root = self.context.include(element)
+        if root is None:
+            return
+        attributes = {key: value for key, value in element.attributes.items() if key != "file"}
+        wrapper = Element(element.tag, element.spelled, attributes, root.source, children=[root], complete=True)
+        inner = _Scope(self.body, self.context, self.scale, self.depth + 1, skip_geometry=self.skip_geometry)
+        inner.read(wrapper)
+
+    def _prefix(self, prefix: str, marks: _Marks, *, whole: bool) -> None:
+        """Rename the parts made inside the element; OpenRAVE renames less in a KinBody than in a Robot."""
+        joints = self.body.joints[marks.joints :]
+        renamed = {joint.name: prefix + joint.name for joint in joints if joint.name}
+        for part in (*self.body.links[marks.links :], *joints):
+            part.name = prefix + part.name
+        if not whole:
+            return
+        for joint in joints:
+            if joint.equations is not None:
+                from ravemj.model.expressions import substitute  # noqa: PLC0415 - rarely wanted
+
+                equations = joint.equations
+                texts = (equations.position, equations.velocity, equations.acceleration)
+                joint.equations = Equations(*(substitute(text, renamed) for text in texts))
+        for built in self.body.manipulators:
+            if any(built is older for older in marks.manipulators):
+                continue
+            built.name = prefix + built.name
+            built.base = prefix + built.base
+            built.effector = prefix + built.effector
+            built.gripper_joints = [prefix + name for name in built.gripper_joints]
+        for index, sensor in enumerate(self.body.sensors[marks.sensors :], marks.sensors):
+            self.body.sensors[index] = replace(sensor, name=prefix + sensor.name)
+
+    def _own_first(self, marks: _Marks) -> None:
+        """Move manipulators and sensors of this very element before those that were there, the youngest first."""
+        if marks.manipulators:
+            mine = self.own_manipulators
+            others = [built for built in self.body.manipulators if all(built is not own for own in mine)]
+            self.body.manipulators = [*reversed(mine), *others]
+        if marks.sensors:
+            order = [index for index in range(len(self.body.sensors)) if index not in self.own_sensors]
+            self.body.sensors = [self.body.sensors[index] for index in (*reversed(self.own_sensors), *order)]
+
+    def nest(self, element: Element) -> None:
+        """Read a nested ``<Robot>`` or ``<KinBody>`` into the same body."""
+        check_scope_attributes(element, self.context)
+        scale = hadamard(self.scale, scale_attribute(element))
+        inner = _Scope(self.body, self.context, scale, self.depth + 1, skip_geometry=self.skip_geometry)
+        inner.read(element)
+        if self.depth == 0 and element.tag == "kinbody" and self.body.is_robot and self.joint_values is None:
+            self.joint_values = inner.joint_values
+
+    def translate(self, element: Element) -> None:
+        """Read a ``<Translation>`` of the whole element."""
+        self.placement.translate(element, self.context.diagnostics)
+
+    def turn(self, element: Element) -> None:
+        """Read a rotation of the whole element."""
+        self.placement.turn(element, self.context.diagnostics)
+
+    def read_default_mass(self, element: Element) -> None:
+        """Read the ``<Mass>`` that the following Bodies share."""
+        self.default_mass.read(element)
+
+    def read_link(self, element: Element) -> None:
+        """Read a ``<Body>``."""
+        default_mass, geometry_scope = self.default_mass.rule, self.geometry_scope
+        read_link(self.body, element, self.context, default_mass, geometry_scope, skip_geometry=self.skip_geometry)
+
+    def read_joint(self, element: Element) -> None:
+        """Read a ``<Joint>``."""
+        read_joint(self.body, element, self.context)
+
+    def read_adjacent(self, element: Element) -> None:
+        """Read a pair of links that never collide."""
+        names = element.text.split()[:2]
+        links = [link for name in names if (link := self.body.find_link(name)) is not None]
+        if len(links) == 2:
+            self.body.adjacent.append((min(links), max(links)))
+        else:
+            message = f"<{element.spelled}> needs the names of two Bodies above it, and holds '{element.text.strip()}'"
+            self.context.diagnostics.warn("unknown-body", message, element.source)
+
+    def read_models_folder(self, element: Element) -> None:
+        """Read where the meshes of the following Bodies are looked for first."""
+        self.geometry_scope = self.geometry_scope._replace(models_folder=element.text.strip())
+
+    def read_transparency(self, element: Element) -> None:
+        """Read the transparency that everything the body has gets at the end of the element."""
+        self.transparency = number(element, self.context.diagnostics)
+
+    def read_joint_values(self, element: Element) -> None:
+        """Read the values of all DOFs."""
+        self.joint_values = leading_numbers(element.text).values
+
+    def read_manipulator(self, element: Element) -> None:
+        """Read a ``<Manipulator>``."""
+        built = read_manipulator(self.body, element, self.context)
+        self.body.manipulators.append(built)
+        self.own_manipulators.append(built)
+
+    def read_controller(self, element: Element) -> None:
+        """Report a ``<Controller>``; OpenRAVE refuses one that comes behind joints."""
+        if self.body.joints:
+            hint = "leave it out: robots have a controller without asking"
+            raise SourceError("OpenRAVE cannot attach a controller while it reads a robot", element.source, hint)
+        message = f"<{element.spelled}> is left out: {NO_EFFECT_HERE}"
+        self.context.diagnostics.warn("ignored-tag", message, element.source)
+
+    def read_sensor(self, element: Element) -> None:
+        """Read an ``<AttachedSensor>``."""
+        read_attached_sensor(self.body, element, self.context)
+        self.own_sensors.append(len(self.body.sensors) - 1)
+
+
+_PLACEMENT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
+    "translation": _Scope.translate,
+    **dict.fromkeys(ROTATIONS, _Scope.turn),
+    "jointvalues": _Scope.read_joint_values,
+}
+ROBOT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
+    **_PLACEMENT_TAGS,
+    "robot": _Scope.nest,
+    "kinbody": _Scope.nest,
+    "manipulator": _Scope.read_manipulator,
+    "attachedsensor": _Scope.read_sensor,
+    "controller": _Scope.read_controller,
+}
+ROBOT_IGNORED = {
+    **reasons(NO_EFFECT_HERE, "sendcommand"),
+    "conveyorjoint": "a plugin of OpenRAVE's makes links of it that ride along a trajectory; MuJoCo has no such joint",
+}
+KINBODY_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
+    **_PLACEMENT_TAGS,
+    "kinbody": _Scope.nest,
+    "body": _Scope.read_link,
+    "joint": _Scope.read_joint,
+    "mass": _Scope.read_default_mass,
+    "adjacent": _Scope.read_adjacent,
+    "modelsdir": _Scope.read_models_folder,
+    "transparency": _Scope.read_transparency,
+}
+KINBODY_IGNORED = {
+    **reasons("OpenRAVE overlooks it here; write it in each Geom", "diffusecolor", "ambientcolor"),
+    **reasons(NO_EFFECT_HERE, "sendcommand"),
+}
+SCOPE_ATTRIBUTES = {"name", "prefix", "file", "type", "scalegeometry", "skipgeometry", "makejoinedlinksadjacent"}
+
+
+_PLUGIN_CLASSES = {"collisionmaprobot", "conveyor"}
+"""Classes of bodies that every installation of OpenRAVE has, and that are plain bodies here."""
+
+
+def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError | None]:
+    """Read an outermost ``<Robot>`` or ``<KinBody>``.
+
+    Returns:
+        The body, and what OpenRAVE refuses about it when it is already in the environment, if anything.
+
+    Raises:
+        SourceError: OpenRAVE refuses the body before it is in the environment.
+    """
+    check_scope_attributes(element, context)
+    body = BodyBuilder(element.tag == "robot", element.source)
+    if "makejoinedlinksadjacent" in element.attributes:
+        joined = leading_numbers(element.attributes["makejoinedlinksadjacent"]).values
+        body.joined_links_adjacent = bool(joined and joined[0])
+    skip_geometry = is_true(element.attributes.get("skipgeometry", "false"))
+    scope = _Scope(body, context, scale_attribute(element), 0, skip_geometry=skip_geometry)
+    scope.read(element)
+    body.joint_values = scope.joint_values
+    _check_type(element, body, context)
+    _check_joint_names(body)
+    return body.freeze(context.diagnostics), body.refusal
+
+
+def _check_joint_names(body: BodyBuilder) -> None:
+    """Refuse two joints of one name, unless both have no DOF."""
+    seen: dict[str, bool] = {}
+    for joint in body.joints:
+        if joint.name in seen and (joint.active or seen[joint.name]):
+            message = f"there are two joints '{joint.name}'" if joint.name else "there are two joints without a name"
+            body.refusal = body.refusal or SourceError(message, joint.source, "give each a name of its own")
+        seen[joint.name] = seen.get(joint.name, False) or joint.active
+
+
+def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
+    """Take the kinds that every OpenRAVE has for plain bodies, and report the others."""
+    kind = element.attributes.get("type")
+    if kind is None:
+        return
+    if "file" in element.attributes:
+        message = "OpenRAVE throws away what it read from the file of an element that also has a type"
+        context.diagnostics.warn("openrave-bug", message, element.source, "leave out the type")
+        body.links.clear()
+        body.joints.clear()
+        body.manipulators.clear()
+        body.sensors.clear()
+        body.adjacent.clear()
+    if kind.lower() in _PLUGIN_CLASSES:
+        message = f"what the class '{kind}' adds to a body is left out"
+        context.diagnostics.warn("ignored-type", message, element.source)
+    elif kind.lower() not in {"genericrobot", "kinbody", ""}:
+        message = f"there is no class '{kind}' for bodies here; read as a plain one"
+        context.diagnostics.error("unknown-interface", message, element.source)
+
+
+def check_scope_attributes(element: Element, context: Context) -> None:
+    """Report the attributes of a ``<Robot>`` or ``<KinBody>`` that nothing reads."""
+    context.check_attributes(element, SCOPE_ATTRIBUTES, {})

@@ -1,0 +1,72 @@
+"""A COLLADA file in place of a body: its first body joins the one that is open."""
+
+from dataclasses import replace
+
+from ravemj.core.transforms import Pose, Vec3
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.formats import collada
+from ravemj.formats.openrave_xml.context import Context
+from ravemj.model.builder import BodyBuilder
+
+
+def add_collada(
+    body: BodyBuilder, uri: str, source: Source, context: Context, scale: Vec3, *, skip_geometry: bool
+) -> None:
+    """Fill a body with the first one of a COLLADA file, as its values place it; a broken file is reported.
+
+    Args:
+        body: The body.
+        uri: The file, and behind ``#`` the id of what is wanted of it.
+        source: Where the file is named.
+        context: Takes findings.
+        scale: Factors of lengths along x, y and z.
+        skip_geometry: Whether the shapes are left out.
+    """
+    path, wanted = collada.split_uri(uri)
+    found_path = context.find(path, source)
+    if found_path is None:
+        return
+    if len(set(scale)) > 1:
+        message = f"scalegeometry scales a COLLADA file by {scale[0]:g} in all directions"
+        context.diagnostics.warn("ignored-attribute", message, source)
+    path = f"{found_path}#{wanted}" if wanted else found_path
+    try:
+        content = collada.read_file(path, context.diagnostics, context.files, source, scale[0])
+        found = next(iter((*content.bodies, *content.others)), None)
+        if found is None:
+            raise SourceError("there is no body in it", Source(found_path, included_from=source))
+        placed = found.freeze(Diagnostics())
+    except SourceError as error:
+        context.diagnostics.error("broken-file", error.message, error.source)
+        return
+    body.name = found.name
+    for link, at_values in zip(found.links, placed.links, strict=True):
+        link.pose = at_values.T_world_link
+        if skip_geometry:
+            link.geometries = []
+    _join(body, found)
+
+
+def _join(body: BodyBuilder, other: BodyBuilder) -> None:
+    """Add one body to another; links of one name become one, and the first such link says where the body goes."""
+    places = [body.find_link(link.name) for link in other.links]
+    T_body_other = Pose()
+    if places[0] is not None:
+        T_body_other = body.links[places[0]].pose @ other.links[0].pose.inverse()
+    indices: list[int] = []
+    for link, place in zip(other.links, places, strict=True):
+        link.pose = T_body_other @ link.pose
+        indices.append(len(body.links) if place is None else place)
+        if place is None:
+            body.links.append(link)
+        else:
+            link.geometries = [*body.links[place].geometries, *link.geometries]
+            body.links[place] = link
+    for joint in other.joints:
+        joint.links = (indices[joint.links[0]], indices[joint.links[1]])
+    body.joints += other.joints
+    body.adjacent += [(indices[one], indices[two]) for one, two in other.adjacent]
+    body.manipulators += other.manipulators
+    body.sensors += [
+        replace(sensor, link=None if sensor.link is None else indices[sensor.link]) for sensor in other.sensors
+    ]

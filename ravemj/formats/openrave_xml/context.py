@@ -1,0 +1,227 @@
+"""What every part of the reader needs: where to report, where files are, and how to walk over an element."""
+
+import functools
+import os
+from collections.abc import Callable, Collection, Mapping, Set
+from typing import TypeVar
+
+from ravemj.core.transforms import UNSCALED, Vec3
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.formats.collada import SUFFIXES as COLLADA_SUFFIXES
+from ravemj.formats.meshes import MeshPart
+from ravemj.formats.openrave_xml.tree import Element, parse_file
+
+Target = TypeVar("Target")
+
+IGNORED = "OpenRAVE reads it and makes nothing of it"
+MOST_FILES = 10_000
+"""Files that include others twice, which include others twice, would keep the reader busy for years."""
+_LONGEST_NAME = 80
+"""No known name is anywhere near as long."""
+NO_EFFECT_HERE = "it has no effect on the model"
+
+
+def reasons(reason: str, *names: str) -> dict[str, str]:
+    """Return a table that gives one reason for each name."""
+    return dict.fromkeys(names, reason)
+
+
+def uncomputable(element: Element) -> SourceError:
+    """Return the error for an element with numbers that arithmetic cannot cope with."""
+    return SourceError(f"a number in this <{element.spelled}> is too large to compute with", element.source)
+
+
+class Context:
+    """One reading of one file, with the files that it includes.
+
+    Attributes:
+        diagnostics: Takes every finding.
+        files: The files that were read, with their paths, in the order of reading.
+    """
+
+    def __init__(self) -> None:
+        self.diagnostics = Diagnostics()
+        self.files: list[str] = []
+        self._found: dict[tuple[str, str, tuple[str, ...]], str] = {}
+        self._meshes: dict[tuple[str, Vec3], tuple[MeshPart, ...]] = {}
+
+    def walk(
+        self,
+        element: Element,
+        handlers: Mapping[str, Callable[[Target, Element], None]],
+        ignored: Mapping[str, str],
+        target: Target,
+    ) -> None:
+        """Hand each child element to its handler, in document order; report the others.
+
+        Args:
+            element: The parent of the children.
+            handlers: What to do with a child, by tag.
+            ignored: Known tags without effect, and the reason.
+            target: First argument of the handlers.
+        """
+        for child in element.children:
+            handler = handlers.get(child.tag)
+            if handler is not None:
+                if child.complete:
+                    try:
+                        handler(target, child)
+                    except ArithmeticError as error:
+                        raise uncomputable(child) from error
+            elif child.tag in ignored:
+                self.leave_out(child, ignored[child.tag])
+            else:
+                self.diagnostics.warn(
+                    "unknown-tag",
+                    f"OpenRAVE knows no <{child.spelled}> in <{element.spelled}> and skips it with all that it holds",
+                    child.source,
+                    _belongs(child) or did_you_mean(child.tag, handlers),
+                )
+
+    def leave_out(self, element: Element, reason: str) -> None:
+        """Report an element that has no effect here."""
+        self.diagnostics.warn("ignored-tag", f"<{element.spelled}> is left out: {reason}", element.source)
+
+    def check_attributes(self, element: Element, known: Set[str], ignored: Mapping[str, str]) -> None:
+        """Report the attributes of an element that nothing reads."""
+        if element.attributes.keys() <= known:
+            return
+        for name in element.attributes:
+            if name in known:
+                continue
+            if name in ignored:
+                message = f"the attribute '{name}' of <{element.spelled}> is left out: {ignored[name]}"
+                self.diagnostics.warn("ignored-attribute", message, element.source)
+            elif not name.startswith("xmlns"):
+                message = f"OpenRAVE knows no attribute '{name}' of <{element.spelled}> and skips it"
+                self.diagnostics.warn("unknown-attribute", message, element.source, did_you_mean(name, known))
+
+    def include(self, element: Element) -> Element | None:
+        """Return the root of the file that an element's ``file`` attribute names.
+
+        A file that is missing is passed over, as in OpenRAVE, with a warning; one that cannot be parsed is an error,
+        and what stands before the mistake is read.
+
+        Raises:
+            SourceError: the file includes itself, or very many files are included.
+        """
+        name = element.attributes.get("file")
+        if name is None:
+            return None
+        path = self.find(name, element.source)
+        if path is None:
+            return None
+        if path.lower().endswith(COLLADA_SUFFIXES):
+            message = f"{name} is left out: COLLADA files stand for a Robot or a KinBody only"
+            self.diagnostics.error("unsupported-file", message, element.source)
+            return None
+        chain: Source | None = element.source
+        while chain is not None:
+            if _is_same_file(chain.file, path):
+                raise SourceError(f"the file includes itself through {name}", element.source)
+            chain = chain.included_from
+        return self._included(path, element.source)
+
+    def _included(self, path: str, source: Source) -> Element | None:
+        if len(self.files) >= MOST_FILES:
+            raise SourceError(f"the model has more than {MOST_FILES} files", source)
+        self.files.append(path)
+        try:
+            document = parse_file(path, source)
+        except SourceError as error:
+            self.diagnostics.error("broken-file", error.message, error.source)
+            return None
+        if document.error is not None:
+            self.diagnostics.error("broken-file", document.error.message, document.error.source)
+        return document.root
+
+    def find(self, name: str, source: Source, *folders: str) -> str | None:
+        """Look a file up in some folders, beside the file that names it, then in those of ``OPENRAVE_DATA``.
+
+        Args:
+            name: The file.
+            source: Where it is named.
+            folders: Where to look first.
+
+        Returns:
+            Its path, or None, with a warning, where it is in none of them.
+        """
+        question = (name, source.file, folders)
+        found = self._found.get(question)
+        if found is not None:
+            return found
+        data_folders = list(filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep)))
+        places = [*folders, os.path.dirname(source.file), *data_folders]
+        looked_at: list[str] = []
+        for folder in places:
+            candidate = os.path.join(folder, name)
+            if os.path.isfile(candidate):
+                self._found[question] = candidate
+                return candidate
+            looked_at.append(candidate)
+        hint = "" if data_folders else "put it there, or set OPENRAVE_DATA to the folder that it is in"
+        message = f"there is no file {name}; looked at {', '.join(dict.fromkeys(looked_at))}"
+        self.diagnostics.warn("missing-file", message, source, hint)
+        return None
+
+    def mesh(self, name: str, source: Source, *folders: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
+        """Return the triangles of a mesh file; none, with a warning, where it is missing or broken.
+
+        The parts are the same objects at every use with the same scale.
+        """
+        path = self.find(name, source, *folders)
+        if path is None:
+            return ()
+        parts = self._meshes.get((path, scale))
+        if parts is None:
+            parts = self._meshes[path, scale] = self._read_mesh(path, source, scale)
+        return parts
+
+    def _read_mesh(self, path: str, source: Source, scale: Vec3) -> tuple[MeshPart, ...]:
+        if path not in self.files:
+            self.files.append(path)
+        from ravemj.formats.meshes.reading import read_mesh  # noqa: PLC0415 - most models have no meshes
+
+        try:
+            return read_mesh(path, scale)
+        except SourceError as error:
+            self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
+            return ()
+
+
+def _is_same_file(first: str, second: str) -> bool:
+    try:
+        return os.path.samefile(first, second)
+    except OSError:  # one is gone, or was never a file
+        return first == second
+
+
+_HOMES = {
+    **dict.fromkeys(("body", "joint", "adjacent", "mass"), "KinBody"),
+    **dict.fromkeys(("geom", "offsetfrom"), "Body"),
+    **dict.fromkeys(("extents", "radius", "height", "diffusecolor", "ambientcolor", "transparency"), "Geom"),
+    **dict.fromkeys(("axis", "anchor", "limits", "limitsdeg", "maxvel", "weight"), "Joint"),
+    **dict.fromkeys(("manipulator", "attachedsensor", "controller"), "Robot"),
+    **dict.fromkeys(("base", "effector"), "Manipulator"),
+    **dict.fromkeys(("density", "total", "com", "inertia"), "Mass"),
+    **dict.fromkeys(("robot", "kinbody", "bkgndcolor", "camtrans", "camrotationaxis", "physicsengine"), "Environment"),
+}
+
+
+def _belongs(element: Element) -> str:
+    """Return a hint for an element that stands in the wrong place, or nothing."""
+    home = _HOMES.get(element.tag)
+    return "" if home is None else f"<{element.spelled}> belongs in a <{home}>"
+
+
+def did_you_mean(name: str, known: Collection[str]) -> str:
+    """Return a hint with the known name that looks most like the one given, or nothing."""
+    return _closest(name, tuple(known)) if len(name) < _LONGEST_NAME else ""
+
+
+@functools.lru_cache(maxsize=1000)  # slow, and who spells a tag wrongly does so many times
+def _closest(name: str, known: tuple[str, ...]) -> str:
+    import difflib  # noqa: PLC0415 - slow to import
+
+    similar = difflib.get_close_matches(name, known, n=1)
+    return f"did you mean '{similar[0]}'?" if similar else ""

@@ -1,0 +1,248 @@
+"""``<Environment>`` and the other roots: bodies in document order, background and camera."""
+
+import math
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from ravemj.core.transforms import ZERO, Pose, Vec3, Wxyz, multiply, wxyz_from_axis_angle
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.formats.openrave_xml.body import read_body
+from ravemj.formats.openrave_xml.context import IGNORED, NO_EFFECT_HERE, Context, uncomputable
+from ravemj.formats.openrave_xml.tree import Document, Element, parse, parse_file
+from ravemj.formats.openrave_xml.values import ROTATIONS, axis_angle, vector
+from ravemj.model.scene import KinBody, Scene, View
+
+_DEFAULT_CAMERA_POSITION: Vec3 = (0.0, 1.5, 0.8)
+_DEFAULT_CAMERA_WXYZ: Wxyz = wxyz_from_axis_angle((1.0, 0.0, 0.0), -0.5)
+
+_HALF_TURN_X: Wxyz = wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi)
+
+INTERFACES = (
+    "collisionchecker",
+    "sensor",
+    "module",
+    "controller",
+    "planner",
+    "iksolver",
+    "sensorsystem",
+    "trajectory",
+    "viewer",
+    "spacesampler",
+)
+
+NO_PHYSICS = "of a physics engine, only the gravity means something to MuJoCo"
+
+_KNOWN_CLASSES = {
+    "ode", "bullet", "pqp", "fcl_", "fcl", "genericcollisionchecker",
+    "idealcontroller", "idealvelocitycontroller", "redirectcontroller", "odevelocity",
+    "basecamera", "baselaser2d", "basespinninglaser2d", "baseflashlidar3d", "baseforce6d",
+    "qtcoin", "qtosg", "generictrajectory", "mt19937", "halton", "robotconfiguration",
+    "basemanipulation", "taskmanipulation", "taskcaging", "visualfeedback", "logging", "ikfast", "grasper",
+    "birrt", "basicrrt", "rastar", "workspacetrajectorytracker", "linearsmoother", "parabolicsmoother",
+}  # fmt: skip
+"""Classes of interfaces, other than bodies, that every installation of OpenRAVE has."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What became of a file.
+
+    Attributes:
+        scene: What was read; with a failure, what was read before it.
+        diagnostics: Every finding.
+        failure: What ended the reading, or None.
+        files: The files that were read, meshes included.
+    """
+
+    scene: Scene
+    diagnostics: Diagnostics
+    failure: SourceError | None
+    files: tuple[str, ...] = ()
+
+
+def read(path: str | os.PathLike[str]) -> Reading:
+    """Read an OpenRAVE XML file whose root is an environment, a robot or a kinbody."""
+    return _read(os.fspath(path), parse_file)
+
+
+def read_text(text: str | bytes, name: str) -> Reading:
+    """Read an OpenRAVE XML document that is no file.
+
+    Args:
+        text: The document; files that it names are looked for in the working folder.
+        name: What to call it in messages.
+    """
+    content = text.encode() if isinstance(text, str) else text
+    reading = _read(name, lambda path: parse(content, path))
+    return replace(reading, files=reading.files[1:])
+
+
+def _read(path: str, parsed_file: Callable[[str], Document]) -> Reading:
+    context = Context()
+    document = _Document(context)
+    failure = None
+    try:
+        parsed = parsed_file(path)
+        failure = parsed.error
+        document.read(parsed.root)
+    except SourceError as error:
+        failure = error
+    except RecursionError:
+        failure = SourceError("the elements are nested too deeply", Source(path))
+    scene = Scene(tuple(document.bodies), document.view, document.gravity)
+    return Reading(scene, context.diagnostics, failure, (path, *context.files))
+
+
+class _Document:
+    """The bodies and the view of a file, as far as it is read."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+        self.bodies: list[KinBody] = []
+        self._names: set[str] = set()
+        self.view: View | None = None
+        self.gravity: Vec3 | None = None
+
+    def read(self, root: Element) -> None:
+        """Read a root element."""
+        if root.tag == "environment":
+            self.read_environment(root)
+        elif root.tag in {"robot", "kinbody"}:
+            if root.complete:
+                self.read_body(root)
+        elif root.tag not in INTERFACES:
+            raise SourceError(
+                f"the root element is <{root.spelled}>, and OpenRAVE expects <Environment>, <Robot> or <KinBody>",
+                root.source,
+            )
+
+    def read_environment(self, element: Element) -> None:
+        """Read an ``<Environment>``: first its file, then its children."""
+        self.context.check_attributes(element, ENVIRONMENT_ATTRIBUTES, {})
+        root = self.context.include(element)
+        if root is not None:
+            self.read(root)
+        environment = _EnvironmentScope(self)
+        self.context.walk(element, ENVIRONMENT_TAGS, ENVIRONMENT_IGNORED, environment)
+        self.view = environment.view
+        for child in element.children:
+            if not child.complete and child.tag == "environment":
+                self.read_environment(child)
+
+    def read_body(self, element: Element) -> None:
+        """Read a body and give it its place among the others."""
+        try:
+            body, refusal = read_body(element, self.context)
+        except ArithmeticError as error:
+            raise uncomputable(element) from error
+        check_name(body.name, element)
+        if body.name in self._names:
+            raise SourceError(f"there already is a body '{body.name}'", element.source, "give it another name")
+        self._names.add(body.name)
+        self.bodies.append(body)
+        if refusal is not None:
+            raise refusal
+
+
+class _EnvironmentScope:
+    """An open ``<Environment>``."""
+
+    def __init__(self, document: _Document) -> None:
+        self.document = document
+        self.view = View()
+
+    @property
+    def _diagnostics(self) -> Diagnostics:
+        return self.document.context.diagnostics
+
+    def read_environment(self, element: Element) -> None:
+        self.document.read_environment(element)
+
+    def read_body(self, element: Element) -> None:
+        self.document.read_body(element)
+
+    def read_background(self, element: Element) -> None:
+        self.view = replace(self.view, background=vector(element, self._diagnostics))
+
+    def read_camera_position(self, element: Element) -> None:
+        camera = self._camera()._replace(position=vector(element, self._diagnostics))
+        self.view = replace(self.view, T_world_camera=camera)
+
+    def read_camera_rotation(self, element: Element) -> None:
+        """Read an axis and an angle [deg]; it replaces what stood before."""
+        camera = self._camera()._replace(wxyz=axis_angle(element, self._diagnostics))
+        self.view = replace(self.view, T_world_camera=camera)
+
+    def read_camera_matrix(self, element: Element) -> None:
+        camera = self._camera()._replace(wxyz=ROTATIONS["rotationmat"](element, self._diagnostics))
+        self.view = replace(self.view, T_world_camera=camera)
+
+    def read_old_camera_rotation(self, element: Element) -> None:
+        """Read the deprecated spelling: a half turn about x comes first."""
+        turned = multiply(axis_angle(element, self._diagnostics), _HALF_TURN_X)
+        self.view = replace(self.view, T_world_camera=self._camera()._replace(wxyz=turned))
+
+    def read_physics(self, element: Element) -> None:
+        """Read the gravity of a physics engine; ODE without one has none."""
+        kind = element.attributes.get("type", "").lower()
+        if kind not in {"ode", "bullet", "genericphysicsengine", ""}:
+            message = f"there is no physics engine '{kind}' here"
+            self._diagnostics.error("unknown-interface", message, element.source)
+            return
+        if kind == "ode":
+            self.document.gravity = ZERO
+        for properties in element.children:
+            if properties.tag != "odeproperties":
+                self.document.context.leave_out(properties, NO_PHYSICS)
+                continue
+            for child in properties.children:
+                if child.tag == "gravity":
+                    self.document.gravity = vector(child, self._diagnostics)
+                else:
+                    self.document.context.leave_out(child, NO_PHYSICS)
+
+    def read_interface(self, element: Element) -> None:
+        """Report an interface that belongs to no model; of an unknown class OpenRAVE makes an error."""
+        kind = element.attributes.get("type", "")
+        name = kind.split()[0].lower() if kind.split() else ""
+        if name and name not in _KNOWN_CLASSES:
+            message = f"there is no {element.tag} of type '{kind}' here"
+            self._diagnostics.error("unknown-interface", message, element.source)
+        else:
+            self._diagnostics.warn("ignored-tag", f"<{element.spelled}> is left out: {NO_EFFECT_HERE}", element.source)
+
+    def _camera(self) -> Pose:
+        return self.view.T_world_camera or Pose(_DEFAULT_CAMERA_POSITION, _DEFAULT_CAMERA_WXYZ)
+
+
+ENVIRONMENT_TAGS: dict[str, Callable[[_EnvironmentScope, Element], None]] = {
+    "environment": _EnvironmentScope.read_environment,
+    "robot": _EnvironmentScope.read_body,
+    "kinbody": _EnvironmentScope.read_body,
+    "bkgndcolor": _EnvironmentScope.read_background,
+    "camtrans": _EnvironmentScope.read_camera_position,
+    "camrotationaxis": _EnvironmentScope.read_camera_rotation,
+    "camrotmat": _EnvironmentScope.read_camera_matrix,
+    "camrotaxis": _EnvironmentScope.read_old_camera_rotation,
+    "physicsengine": _EnvironmentScope.read_physics,
+    **dict.fromkeys(INTERFACES, _EnvironmentScope.read_interface),
+}
+ENVIRONMENT_ATTRIBUTES = {"file"}
+ENVIRONMENT_IGNORED = {
+    "plugin": "plugins are not loaded",
+    "unit": IGNORED,
+    "camfocal": "no viewer turns about a point yet",
+}
+
+
+def check_name(name: str, element: Element) -> None:
+    """Check that a body can be found by its name.
+
+    Raises:
+        SourceError: the name is empty, or has spaces or control characters.
+    """
+    if not name:
+        raise SourceError(f"<{element.spelled}> has no name", element.source, 'write name="…"')
+    if " " in name or not name.isprintable():  # other spaces than this one are not printable
+        raise SourceError(f"the name '{name}' has spaces or control characters", element.source)

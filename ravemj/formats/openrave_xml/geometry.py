@@ -1,0 +1,290 @@
+"""``<Geom>``: a shape of a link, its pose and its colours."""
+
+import math
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import ZERO, Floats, Pose, Vec3, rows_from_wxyz, scale, wxyz_from_axis_angle
+from ravemj.formats.meshes import MeshPart
+from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tree import Element
+from ravemj.formats.openrave_xml.values import (
+    ROTATIONS,
+    Placement,
+    hadamard,
+    is_false,
+    leading_numbers,
+    number,
+    vector,
+)
+from ravemj.model.scene import (
+    Box,
+    Capsule,
+    Container,
+    Cylinder,
+    Geometry,
+    Mesh,
+    MeshFile,
+    NoShape,
+    Prism,
+    Rgb,
+    Shape,
+    Sphere,
+    Surface,
+    TriMesh,
+)
+
+_CYLINDER_TURN = Pose(ZERO, wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi / 2))
+"""In XML a cylinder lies along y, in memory along z."""
+
+_NO_PART = MeshPart(Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)))
+
+
+class GeometryScope(NamedTuple):
+    """What a Geom takes over from the elements around it.
+
+    Attributes:
+        models_folder: Where meshes are looked for first, or None.
+        scale: Accumulated ``scalegeometry``; it acts on meshes alone, in the axes of the link.
+    """
+
+    models_folder: str | None = None
+    scale: Vec3 = (1.0, 1.0, 1.0)
+
+
+@dataclass(slots=True)
+class _Geom:
+    """What the children of a ``<Geom>`` have said so far."""
+
+    context: Context
+    name: str = ""
+    placement: Placement = field(default_factory=Placement)
+    half_extents: Vec3 = ZERO
+    radius: float = 0.0
+    height: float = 0.0
+    container: dict[str, Vec3] = field(default_factory=lambda: {})
+    cross_section: Sequence[float] = ()
+    vertices: Sequence[float] = ()
+    collision: MeshFile | None = None
+    render: MeshFile | None = None
+    diffuse: Rgb | None = None
+    ambient: Rgb | None = None
+    transparency: float | None = None
+
+    def translate(self, element: Element) -> None:
+        self.placement.translate(element, self.context.diagnostics)
+
+    def turn(self, element: Element) -> None:
+        self.placement.turn(element, self.context.diagnostics)
+
+    def read_half_extents(self, element: Element) -> None:
+        self.half_extents = vector(element, self.context.diagnostics)
+
+    def read_full_extents(self, element: Element) -> None:
+        self.half_extents = scale(vector(element, self.context.diagnostics), 0.5)
+
+    def read_radius(self, element: Element) -> None:
+        self.radius = number(element, self.context.diagnostics)
+
+    def read_height(self, element: Element) -> None:
+        self.height = number(element, self.context.diagnostics)
+
+    def read_container(self, element: Element) -> None:
+        self.container[element.tag] = vector(element, self.context.diagnostics)
+
+    def read_cross_section(self, element: Element) -> None:
+        self.cross_section, rest = leading_numbers(element.text)
+        if rest or len(self.cross_section) % 2:
+            message = f"<{element.spelled}> needs x and y of each corner, and holds {len(self.cross_section)} numbers"
+            self.context.diagnostics.warn("number-count", message, element.source)
+
+    def read_vertices(self, element: Element) -> None:
+        self.vertices, rest = leading_numbers(element.text)
+        if rest or len(self.vertices) % 9:
+            message = f"<{element.spelled}> needs nine numbers for each triangle, and holds {len(self.vertices)}"
+            self.context.diagnostics.warn("number-count", message, element.source)
+        if len(self.vertices) % 9:
+            self.vertices = ()
+
+    def read_collision(self, element: Element) -> None:
+        self.collision = self.collision or _mesh_file(element)
+
+    def read_render(self, element: Element) -> None:
+        self.render = self.render or _mesh_file(element)
+
+    def read_diffuse(self, element: Element) -> None:
+        self.diffuse = vector(element, self.context.diagnostics)
+
+    def read_ambient(self, element: Element) -> None:
+        self.ambient = vector(element, self.context.diagnostics)
+
+    def read_transparency(self, element: Element) -> None:
+        self.transparency = number(element, self.context.diagnostics)
+
+    def read_name(self, element: Element) -> None:
+        self.name = element.text.strip()
+
+
+GEOM_TAGS: dict[str, Callable[[_Geom, Element], None]] = {
+    "translation": _Geom.translate,
+    **dict.fromkeys(ROTATIONS, _Geom.turn),
+    "extents": _Geom.read_half_extents,
+    "halfextents": _Geom.read_half_extents,
+    "fullextents": _Geom.read_full_extents,
+    "radius": _Geom.read_radius,
+    "height": _Geom.read_height,
+    **dict.fromkeys(("outer_extents", "inner_extents", "bottom_cross", "bottom"), _Geom.read_container),
+    "crosssection": _Geom.read_cross_section,
+    "vertices": _Geom.read_vertices,
+    "data": _Geom.read_collision,
+    "collision": _Geom.read_collision,
+    "render": _Geom.read_render,
+    "diffusecolor": _Geom.read_diffuse,
+    "ambientcolor": _Geom.read_ambient,
+    "transparency": _Geom.read_transparency,
+    "name": _Geom.read_name,
+}
+GEOM_IGNORED = {"sidewall": "OpenRAVE itself cannot make a cage from XML"}
+GEOM_ATTRIBUTES = {"type", "name", "render", "modifiable", "group"}
+
+_SHAPES: dict[str, Callable[[_Geom], Shape]] = {
+    "box": lambda geom: Box(geom.half_extents),
+    "sphere": lambda geom: Sphere(geom.radius),
+    "cylinder": lambda geom: Cylinder(geom.radius, geom.height),
+    "capsule": lambda geom: Capsule(geom.radius, geom.height),
+    "container": lambda geom: Container(
+        *(geom.container.get(name, ZERO) for name in ("outer_extents", "inner_extents", "bottom_cross", "bottom"))
+    ),
+    "prism": lambda geom: Prism(
+        tuple(zip(geom.cross_section[::2], geom.cross_section[1::2], strict=False)), geom.height
+    ),
+    "none": lambda geom: NoShape(),
+}
+
+
+def read_geometries(element: Element, scope: GeometryScope, context: Context) -> list[Geometry]:
+    """Read a ``<Geom>``: one geometry, or one for each part of its mesh file."""
+    context.check_attributes(element, GEOM_ATTRIBUTES, {})
+    kind = element.attributes.get("type", "box").lower()
+    geom = _Geom(context, name=element.attributes.get("name", ""))
+    context.walk(element, GEOM_TAGS, GEOM_IGNORED, geom)
+    if element.attributes.get("group", "self") != "self":
+        message = f"the geometries of group '{element.attributes['group']}' are no part of the link; left out"
+        context.diagnostics.warn("ignored-group", message, element.source)
+        return []
+    if kind == "trimesh":
+        return _trimesh(geom, element, scope)
+    shape = _SHAPES.get(kind)
+    if shape is None:
+        message = f"a geometry of type '{kind}' has no shape here"
+        context.diagnostics.warn("unsupported-geometry", message, element.source)
+    display = _surfaces(geom, geom.render, element, scope)
+    return [_geometry(geom, element, shape(geom) if shape else NoShape(), scope, _NO_PART, display)]
+
+
+def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geometry]:
+    """Return the geometries of a trimesh: of the collision file, else of the render file, else of its vertices."""
+    for file in (geom.collision, geom.render):
+        parts = _parts(geom, file, element, scope)
+        if parts:
+            drawn = geom.render if file is geom.collision and geom.collision is not None else None
+            surfaces = _surfaces(geom, drawn, element, scope)
+            displays = [surfaces, *[None if surfaces is None else ()] * (len(parts) - 1)]
+            return [
+                _geometry(geom, element, TriMesh(_scaled(part.mesh, geom, scope)), scope, part, display)
+                for part, display in zip(parts, displays, strict=True)
+            ]
+    corners = np.array(geom.vertices).reshape(-1, 3)
+    mesh = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
+    return [_geometry(geom, element, TriMesh(_scaled(mesh, geom, scope)), scope, MeshPart(mesh), None)]
+
+
+def _geometry(
+    geom: _Geom,
+    element: Element,
+    shape: Shape,
+    scope: GeometryScope,
+    part: MeshPart,
+    display: tuple[Surface, ...] | None,
+) -> Geometry:
+    pose = geom.placement.pose
+    if isinstance(shape, Cylinder):
+        pose = pose @ _CYLINDER_TURN
+    elif isinstance(shape, TriMesh):
+        pose = pose._replace(position=hadamard(scope.scale, pose.position))
+    return Geometry(
+        shape=shape,
+        T_link_geometry=pose,
+        name=geom.name,
+        diffuse=geom.diffuse or part.diffuse,
+        ambient=geom.ambient or part.ambient,
+        transparency=part.transparency if geom.transparency is None else geom.transparency,
+        visible=not is_false(element.attributes.get("render", "true")),
+        modifiable=not is_false(element.attributes.get("modifiable", "true")),
+        display=display,
+        render_file=_found(geom, geom.render, element, scope),
+        collision_file=_found(geom, geom.collision, element, scope),
+        source=element.source,
+    )
+
+
+def _surfaces(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> tuple[Surface, ...] | None:
+    """Return what a render file draws in place of the shape; None without one that can be drawn."""
+    parts = _parts(geom, file, element, scope)
+    if not parts:
+        return None
+    return tuple(
+        Surface(
+            _scaled(part.mesh, geom, scope),
+            geom.diffuse or part.diffuse,
+            part.transparency if geom.transparency is None else geom.transparency,
+        )
+        for part in parts
+    )
+
+
+def _parts(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> tuple[MeshPart, ...]:
+    """Return the parts of a mesh file, with the file's own scale."""
+    if file is None or not file.name:
+        return ()
+    return geom.context.mesh(file.name, element.source, *_folders(element, scope), scale=file.scale)
+
+
+def _found(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> MeshFile | None:
+    """Return a mesh file with its path; None where it has no part."""
+    if not _parts(geom, file, element, scope) or file is None:
+        return None
+    return file._replace(name=geom.context.find(file.name, element.source, *_folders(element, scope)) or file.name)
+
+
+def _folders(element: Element, scope: GeometryScope) -> list[str]:
+    """Return where meshes are looked for first."""
+    folder = scope.models_folder
+    return [] if folder is None else [os.path.join(os.path.dirname(element.source.file), folder)]
+
+
+def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
+    """Scale a mesh in the axes of its link."""
+    if scope.scale == (1.0, 1.0, 1.0):
+        return mesh
+    R_link_geometry: Floats = np.array(rows_from_wxyz(geom.placement.pose.wxyz))
+    in_geometry = R_link_geometry.T @ np.diag(scope.scale) @ R_link_geometry
+    return Mesh(mesh.vertices @ in_geometry.T, mesh.triangles)
+
+
+def _mesh_file(element: Element) -> MeshFile:
+    """Read ``file [sx [sy [sz]]]``: one number is a uniform scale, a missing sz is sx."""
+    words = element.text.split(maxsplit=1)
+    name, numbers = (words[0] if words else ""), (words[1] if len(words) > 1 else "")
+    if element.tag != "data":
+        name = element.attributes.get("file", name)
+        numbers = element.attributes.get("scale", numbers)
+    values, _ = leading_numbers(numbers)
+    if len(values) < 2:
+        uniform = values[0] if values else 1.0
+        return MeshFile(name, (uniform, uniform, uniform))
+    return MeshFile(name, (values[0], values[1], values[2] if len(values) > 2 else values[0]))

@@ -1,0 +1,274 @@
+"""``<Joint>``: two links, a frame, and the numbers of its axes."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from ravemj.core.transforms import ZERO, Pose, Vec3, rotate, scale
+from ravemj.errors import SourceError
+from ravemj.formats.openrave_xml.actuator import Motor, read_motor
+from ravemj.formats.openrave_xml.context import IGNORED, Context, reasons
+from ravemj.formats.openrave_xml.tree import Element
+from ravemj.formats.openrave_xml.values import (
+    hadamard,
+    is_false,
+    leading_numbers,
+    numbers,
+    scale_attribute,
+    vector,
+    word,
+)
+from ravemj.model.builder import BodyBuilder, JointBuilder
+from ravemj.model.following import Equations
+from ravemj.model.scene import UNLIMITED, Axis, JointKind
+
+_KINDS: dict[str, JointKind] = {"hinge": "hinge", "slider": "slider", "hinge2": "hinge2", "spherical": "spherical"}
+_DEFAULT_LIMIT: dict[JointKind, float] = {"hinge": math.pi, "slider": 10.0, "hinge2": math.pi, "spherical": 100.0}
+_AXES: dict[JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "spherical": 3}
+_UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(slots=True)
+class _JointReader:
+    """What the children of a ``<Joint>`` have said so far."""
+
+    context: Context
+    body: BodyBuilder
+    kind: JointKind
+    scale: Vec3
+    circular: bool
+    axes: list[dict[str, float]]
+    links: list[int] = field(default_factory=list[int])
+    T_scope_frame: Pose = field(default_factory=Pose)
+    anchor: Vec3 = ZERO
+    directions: dict[int, Vec3] = field(default_factory=dict[int, Vec3])
+    stops: bool = False
+    motor: Motor | None = None
+
+    def read_body(self, element: Element) -> None:
+        """Take the first name for the first link and every later one for the second."""
+        name = word(element)
+        link = self.body.find_link_any_case(name)
+        if link is None:
+            known = ", ".join(link.name for link in self.body.links) or "none"
+            raise SourceError(f"there is no Body '{name}' before this joint", element.source, f"there are: {known}")
+        self.links = [*self.links[:1], link]
+
+    def read_frame(self, element: Element) -> None:
+        self.T_scope_frame = frame_of_link(self.body, element, self.context)
+
+    def read_anchor(self, element: Element) -> None:
+        self.anchor = hadamard(self.scale, vector(element, self.context.diagnostics))
+
+    def read_direction(self, element: Element) -> None:
+        """Read an axis; ``axis1`` and ``axis2`` are those of a joint with two, ``axis`` that of one with one."""
+        index = {"axis2": 1}.get(element.tag, 0)
+        if (element.tag == "axis") != (self.kind in {"hinge", "slider"}):
+            message = f"<{element.spelled}> has no effect on a joint of type {self.kind}"
+            self.context.diagnostics.warn("ignored-tag", message, element.source)
+            return
+        x, y, z = vector(element, self.context.diagnostics)
+        length = math.hypot(x, y, z)
+        if length == 0.0:
+            raise SourceError("the axis of a joint cannot be 0 0 0", element.source)
+        self.directions[index] = scale((x, y, z), 1 / length)
+
+    def read_limits(self, element: Element) -> None:
+        """Read a pair of numbers for each axis; ``limitsdeg`` is in degrees but for sliders."""
+        if self.stops:
+            raise SourceError(f"<{element.spelled}> cannot be mixed with <lostop> and <histop>", element.source)
+        values = leading_numbers(element.text).values
+        wanted = 2 * len(self.axes)
+        if len(values) != wanted:
+            message = f"<{element.spelled}> holds {len(values)} numbers where {wanted} should stand; it has no effect"
+            self.context.diagnostics.warn("number-count", message, element.source)
+            return
+        factor = math.pi / 180 if element.tag == "limitsdeg" and self.kind != "slider" else 1.0
+        for index, axis in enumerate(self.axes):
+            lower, upper = sorted(value * factor for value in values[2 * index : 2 * index + 2])
+            if not self.circular:
+                axis.update(lower=lower, upper=upper)
+            elif (lower, upper) != (0.0, 0.0):
+                message = f"<{element.spelled}> has no effect on a circular joint"
+                self.context.diagnostics.warn("ignored-tag", message, element.source)
+
+    def read_stop(self, element: Element) -> None:
+        """Read one of the deprecated limits, in degrees but for sliders; they also turn every axis round."""
+        factor = 1.0 if self.kind == "slider" else math.pi / 180
+        for index, value in enumerate(numbers(element, len(self.axes), self.context.diagnostics)):
+            if not self.circular:
+                self.axes[index]["lower" if element.tag == "lostop" else "upper"] = value * factor
+        self.stops = True
+
+    def read_initial(self, element: Element) -> None:
+        self._set(numbers(element, len(self.axes), self.context.diagnostics), "reference", 1.0)
+
+    def read_weight(self, element: Element) -> None:
+        self._set_all(element, "weight", 1.0, 1.0)
+
+    def read_resolution(self, element: Element) -> None:
+        self._set_all(element, "resolution", 0.0, 1.0 if self.kind == "slider" else math.pi / 180)
+
+    def read_max_velocity(self, element: Element) -> None:
+        self._set_all(element, "max_velocity", 0.0, self._degrees(element), not_negative=True)
+
+    def read_max_acceleration(self, element: Element) -> None:
+        self._set_all(element, "max_acceleration", 0.0, self._degrees(element), not_negative=True)
+
+    def read_max_torque(self, element: Element) -> None:
+        self._set_all(element, "max_torque", 0.0, 1.0, not_negative=True)
+
+    def read_actuator(self, element: Element) -> None:
+        self.motor = read_motor(element, self.context)
+
+    def _degrees(self, element: Element) -> float:
+        return math.pi / 180 if element.tag.endswith("deg") else 1.0
+
+    def _set_all(
+        self, element: Element, name: str, default: float, factor: float, *, not_negative: bool = False
+    ) -> None:
+        """Read a number for each axis; where there are fewer, the first stands for the rest."""
+        found = leading_numbers(element.text).values
+        count = 1 if len(found) == 1 else len(self.axes)
+        values = numbers(element, count, self.context.diagnostics, default)
+        if not_negative and min(values) < 0:
+            raise SourceError(f"<{element.spelled}> is {min(values):g}, and cannot be negative", element.source)
+        self._set(values if len(values) == len(self.axes) else values * len(self.axes), name, factor)
+
+    def _set(self, values: list[float], name: str, factor: float) -> None:
+        for axis, value in zip(self.axes, values, strict=True):
+            axis[name] = value * factor
+
+
+JOINT_TAGS: dict[str, Callable[[_JointReader, Element], None]] = {
+    "body": _JointReader.read_body,
+    "offsetfrom": _JointReader.read_frame,
+    "anchor": _JointReader.read_anchor,
+    **dict.fromkeys(("axis", "axis1", "axis2"), _JointReader.read_direction),
+    **dict.fromkeys(("limits", "limitsrad", "limitsdeg"), _JointReader.read_limits),
+    **dict.fromkeys(("lostop", "histop"), _JointReader.read_stop),
+    "initial": _JointReader.read_initial,
+    "weight": _JointReader.read_weight,
+    "resolution": _JointReader.read_resolution,
+    **dict.fromkeys(("maxvel", "maxveldeg"), _JointReader.read_max_velocity),
+    **dict.fromkeys(("maxaccel", "maxacceldeg"), _JointReader.read_max_acceleration),
+    "maxtorque": _JointReader.read_max_torque,
+    "actuator": _JointReader.read_actuator,
+}
+JOINT_IGNORED = {
+    **reasons(IGNORED, "maxforce", "mode", "axis3"),
+    **reasons("no getter or simulation of ravemj uses it", "hardmaxvel", "maxinertia"),
+}
+JOINT_ATTRIBUTES = {
+    "name", "type", "enable", "circular", "scalegeometry", "mimic_pos", "mimic_vel", "mimic_accel", "mimic",
+}  # fmt: skip
+
+
+def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
+    """Read a ``<Joint>`` and append it to the body.
+
+    Raises:
+        SourceError: it names bodies that are not there, or has impossible numbers.
+    """
+    context.check_attributes(element, JOINT_ATTRIBUTES, {})
+    if element.attributes.get("type", "").lower() == "universal":
+        body.refusal = SourceError("OpenRAVE refuses joints of type 'universal'", element.source, "write two hinges")
+        return
+    kind = _read_kind(element, context)
+    circular = not is_false(element.attributes.get("circular", "false"))
+    limit = UNLIMITED if circular else _DEFAULT_LIMIT[kind]
+    limits: list[dict[str, float]] = [{"lower": -limit, "upper": limit} for _ in range(_AXES[kind])]
+    reader = _JointReader(context, body, kind, scale_attribute(element), circular, limits)
+    context.walk(element, JOINT_TAGS, JOINT_IGNORED, reader)
+    if len(reader.links) != 2:
+        raise SourceError(
+            f"the joint names {len(reader.links)} bodies; a joint needs two", element.source, "add <Body> elements"
+        )
+    if reader.links[0] == reader.links[1]:
+        body.refusal = SourceError("the joint names the same body twice", element.source)
+        return
+    first, second = (body.links[index].pose for index in reader.links)
+    T_first_frame = first.inverse() @ reader.T_scope_frame
+    axes = tuple(
+        Axis(_direction(reader, index, T_first_frame), circular=circular, **numbers)
+        for index, numbers in enumerate(reader.axes)
+    )
+    if reader.motor is not None:
+        axes = tuple(_driven(axis, reader.motor) for axis in axes)
+    body.joints.append(
+        JointBuilder(
+            name=element.attributes.get("name", ""),
+            kind=kind,
+            links=(reader.links[0], reader.links[1]),
+            T_first_second=first.inverse() @ second,
+            anchor=T_first_frame.apply(ZERO if kind == "slider" else reader.anchor),  # OpenRAVE drops a slider's
+            axes=_fixed_at_zero(axes, element, context),
+            enabled=not is_false(element.attributes.get("enable", "true")),
+            equations=_equations(element, context),
+            source=element.source,
+        )
+    )
+
+
+def _direction(reader: _JointReader, index: int, frame: Pose) -> Vec3:
+    """Return an axis in the first link's frame; where it is not given, what OpenRAVE takes."""
+    if reader.kind == "spherical":
+        return _UNIT[index]
+    if index in reader.directions:
+        turned = rotate(frame.wxyz, reader.directions[index])
+        return scale(turned, -1.0) if reader.stops else turned
+    if reader.kind == "slider":
+        return ZERO
+    return _UNIT[index] if reader.kind == "hinge2" else _UNIT[2]
+
+
+def _driven(axis: Axis, motor: Motor) -> Axis:
+    """Return an axis with the data of its motor, which win over ``<maxtorque>``."""
+    torque = axis.max_torque if motor.torque is None else motor.torque
+    return replace(axis, max_torque=torque, armature=motor.inertia)
+
+
+def _fixed_at_zero(axes: tuple[Axis, ...], element: Element, context: Context) -> tuple[Axis, ...]:
+    """Return the axes with the limits of a weld moved to 0, as OpenRAVE does it."""
+    if not all(axis.lower == axis.upper and not axis.circular for axis in axes):
+        return axes
+    if any(axis.lower for axis in axes):
+        message = "a joint with equal limits does not move; OpenRAVE moves the limits to 0"
+        context.diagnostics.warn("openrave-bug", message, element.source)
+    return tuple(replace(axis, lower=0.0, upper=0.0) for axis in axes)
+
+
+def frame_of_link(body: BodyBuilder, element: Element, context: Context) -> Pose:
+    """Return the pose of the link that an ``<offsetfrom>`` names; an unknown one counts as absent."""
+    name = word(element)
+    link = body.find_link(name)
+    if link is None:
+        message = f"there is no Body '{name}' to take an offset from; read as if the tag were not there"
+        context.diagnostics.error("unknown-body", message, element.source)
+        return Pose()
+    return body.links[link].pose
+
+
+def _read_kind(element: Element, context: Context) -> JointKind:
+    kind = element.attributes.get("type", "hinge").lower()
+    if kind not in _KINDS:
+        message = f"there is no joint of type '{kind}'; OpenRAVE takes a hinge"
+        context.diagnostics.warn("unknown-type", message, element.source)
+    return _KINDS.get(kind, "hinge")
+
+
+def _equations(element: Element, context: Context) -> Equations | None:
+    """Return the equations of a mimic joint, or None."""
+    attributes = element.attributes
+    texts = {name: text for name, text in attributes.items() if name.startswith("mimic_")}
+    if texts:
+        return Equations(*(attributes.get(f"mimic_{part}", "") for part in ("pos", "vel", "accel")))
+    if "mimic" not in attributes:
+        return None
+    from ravemj.model.expressions import ExpressionError, linear_mimic  # noqa: PLC0415 - deprecated, so rarely wanted
+
+    try:
+        return Equations(*linear_mimic(attributes["mimic"]))
+    except ExpressionError as error:
+        context.diagnostics.warn("bad-mimic", error.message, element.source)
+        return Equations()

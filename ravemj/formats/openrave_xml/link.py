@@ -1,0 +1,138 @@
+"""``<Body>``: a link, new or re-opened by its name."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from ravemj.core.transforms import Pose
+from ravemj.formats.openrave_xml.context import IGNORED, Context
+from ravemj.formats.openrave_xml.geometry import GeometryScope, read_geometries
+from ravemj.formats.openrave_xml.joint import frame_of_link
+from ravemj.formats.openrave_xml.mass import MassReader, MassRule, link_inertial
+from ravemj.formats.openrave_xml.tree import Element
+from ravemj.formats.openrave_xml.values import ROTATIONS, Placement, hadamard, is_false, scale_attribute
+from ravemj.model.builder import BodyBuilder, LinkBuilder
+
+
+class _LinkScope:
+    """An open ``<Body>``."""
+
+    def __init__(
+        self, body: BodyBuilder, link: LinkBuilder, mass: MassReader, context: Context, geometry_scope: GeometryScope
+    ) -> None:
+        self.body = body
+        self.link = link
+        self.mass = mass
+        self.context = context
+        self.geometry_scope = geometry_scope
+        self.placement = Placement(link.pose, geometry_scope.scale)
+        self.T_scope_offset: Pose | None = None
+        self.skip_geometry = False
+
+    def read(self, element: Element) -> None:
+        """Read the attributes, the file that they name, and the children."""
+        self.context.check_attributes(element, LINK_ATTRIBUTES, LINK_IGNORED_ATTRIBUTES)
+        if "file" in element.attributes:
+            self._include(element)
+        self.context.walk(element, LINK_TAGS, {}, self)
+
+    def _include(self, element: Element) -> None:
+        """Read the file of a Body as a Body in this one."""
+        root = self.context.include(element)
+        if root is not None and root.tag == "body":
+            self.read_nested(root)
+        elif root is not None:
+            message = f"the file of a Body has to hold a <Body>, and holds a <{root.spelled}>; it is skipped"
+            self.context.diagnostics.warn("unknown-tag", message, root.source)
+
+    @property
+    def pose(self) -> Pose:
+        """The pose that the elements so far make."""
+        pose = self.placement.pose
+        return pose if self.T_scope_offset is None else self.T_scope_offset @ pose
+
+    def read_nested(self, element: Element) -> None:
+        """Read a ``<Body>`` in this one: the same link, all of whose shapes so far its transform moves."""
+        older = len(self.link.geometries)
+        geometry_scope = _scaled(self.geometry_scope, element)
+        mass = MassReader(self.context, None, geometry_scope.scale)
+        inner = _LinkScope(self.body, self.link, mass, self.context, geometry_scope)
+        inner.placement = Placement(Pose(), geometry_scope.scale)
+        inner.skip_geometry = self.skip_geometry
+        inner.read(element)
+        self.link.geometries = [
+            replace(geometry, T_link_geometry=inner.pose @ geometry.T_link_geometry)
+            for geometry in self.link.geometries
+        ]
+        if older and inner.pose != Pose():
+            message = "the transform of a Body in a Body moves the shapes before it too"
+            self.context.diagnostics.warn("openrave-bug", message, element.source, "put the inner Body first")
+        if mass.rule is not None:
+            message = "OpenRAVE discards the Mass of a Body in a Body"
+            self.context.diagnostics.warn("openrave-bug", message, element.source, "put it into the outer Body")
+
+    def translate(self, element: Element) -> None:
+        """Read a ``<Translation>``."""
+        self.placement.translate(element, self.context.diagnostics)
+
+    def turn(self, element: Element) -> None:
+        """Read a rotation."""
+        self.placement.turn(element, self.context.diagnostics)
+
+    def read_offset(self, element: Element) -> None:
+        """Read the name of the link that the pose is relative to."""
+        self.T_scope_offset = frame_of_link(self.body, element, self.context)
+
+    def read_geometry(self, element: Element) -> None:
+        """Read a ``<Geom>``."""
+        if not self.skip_geometry:
+            self.link.geometries.extend(read_geometries(element, self.geometry_scope, self.context))
+
+    def read_mass(self, element: Element) -> None:
+        """Read a ``<Mass>``."""
+        self.mass.read(element)
+
+
+LINK_TAGS: dict[str, Callable[[_LinkScope, Element], None]] = {
+    "translation": _LinkScope.translate,
+    **dict.fromkeys(ROTATIONS, _LinkScope.turn),
+    "offsetfrom": _LinkScope.read_offset,
+    "geom": _LinkScope.read_geometry,
+    "geometry": _LinkScope.read_geometry,
+    "mass": _LinkScope.read_mass,
+    "body": _LinkScope.read_nested,
+}
+LINK_ATTRIBUTES = {"name", "type", "enable", "scalegeometry", "file"}
+LINK_IGNORED_ATTRIBUTES = {"skipgeometry": IGNORED}
+
+
+def read_link(
+    body: BodyBuilder,
+    element: Element,
+    context: Context,
+    default_mass: MassRule | None,
+    geometry_scope: GeometryScope,
+    *,
+    skip_geometry: bool,
+) -> None:
+    """Read a ``<Body>``: a new link, or one more piece of the link of that name."""
+    name = element.attributes.get("name")
+    existing = None if name is None else body.find_link(name)
+    link = LinkBuilder(name or "", element.source) if existing is None else body.links[existing]
+    geometry_scope = _scaled(geometry_scope, element)
+    mass = MassReader(context, default_mass, geometry_scope.scale)
+    scope = _LinkScope(body, link, mass, context, geometry_scope)
+    scope.skip_geometry = skip_geometry
+    scope.read(element)
+    link.pose = scope.pose
+    link.inertial = link_inertial(mass.rule or default_mass, link.geometries)
+    link.enabled = not is_false(element.attributes.get("enable", "true"))
+    if "type" in element.attributes:
+        link.static = element.attributes["type"].lower() == "static"
+    if existing is None:
+        body.links.append(link)
+
+
+def _scaled(scope: GeometryScope, element: Element) -> GeometryScope:
+    if "scalegeometry" not in element.attributes:
+        return scope
+    return scope._replace(scale=hadamard(scope.scale, scale_attribute(element)))

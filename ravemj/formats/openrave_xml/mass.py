@@ -1,0 +1,283 @@
+"""``<Mass>`` in a Body and in a KinBody: from densities, totals and shapes to the inertia of a link.
+
+OpenRAVE's rules, quirks included: old models were tuned on them. Densities and totals are kept in single precision
+there, so they are rounded to it here.
+"""
+
+import math
+import struct
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from ravemj.core.transforms import ZERO, Rows, Vec3, Wxyz, add, dot, rows_from_wxyz, scale
+from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tree import Element
+from ravemj.formats.openrave_xml.values import hadamard, number, numbers, vector
+from ravemj.model.builder import DEFAULT_INERTIAL
+from ravemj.model.scene import Box, Container, Cylinder, Geometry, Inertial, Shape, Sphere
+
+NO_INERTIA: Rows = (ZERO, ZERO, ZERO)
+TOTAL_DENSITY = 1000.0  # OpenRAVE's density for shapes whose total mass is given
+
+
+class MassRule(NamedTuple):
+    """How the mass of a link is found.
+
+    Attributes:
+        kind: ``mimicgeom``, ``sphere``, ``box`` or ``custom``.
+        density: Density [kg/m^3], where that came last.
+        total: Total mass [kg], where that came last.
+        half_extents: Half sizes of the box; the first is the radius of the sphere.
+        com: Centre of mass of a ``custom`` mass.
+        inertia: Inertia about the centre of mass of a ``custom`` mass.
+    """
+
+    kind: str = "sphere"
+    density: float | None = None
+    total: float | None = None
+    half_extents: Vec3 = (1.0, 1.0, 1.0)
+    com: Vec3 = ZERO
+    inertia: Rows = DEFAULT_INERTIAL.inertia
+
+
+_SPHERE = MassRule()
+
+
+class MassReader:
+    """Reads ``<Mass>`` elements one after the other; what one leaves out keeps its value.
+
+    Attributes:
+        rule: The rule so far, or None before the first ``<Mass>``.
+    """
+
+    def __init__(self, context: Context, default: MassRule | None, scale: Vec3) -> None:
+        self._context = context
+        self._scale = scale
+        self._start = default or _SPHERE
+        self._said: dict[str, object] = {}
+        self.rule: MassRule | None = None
+
+    def read(self, element: Element) -> None:
+        """Read a ``<Mass>`` of a Body."""
+        self._context.check_attributes(element, MASS_ATTRIBUTES, {})
+        kind = element.attributes.get("type", "sphere").lower()
+        if kind not in {"mimicgeom", "sphere", "box", "custom"}:
+            self._context.diagnostics.warn(
+                "unknown-type", f"there is no mass of type '{kind}'; OpenRAVE takes a sphere", element.source
+            )
+            kind = "sphere"
+        before = self.rule or self._start
+        self._said = {"kind": kind}
+        if kind == "custom" and before.total == self._start.total:
+            self._said["total"] = None  # it takes no total from the KinBody
+        self._context.walk(element, MASS_TAGS, {}, self)
+        self.rule = before._replace(**self._said)
+        if kind == "box" and any(child.tag == "extents" for child in element.children):
+            self._context.diagnostics.warn(
+                "openrave-bug",
+                "<extents> of a box mass in a Body has no effect in OpenRAVE; "
+                f"the half sizes are {self._start.half_extents}",
+                element.source,
+                "write the mass as type custom",
+            )
+
+    def density(self, element: Element) -> None:
+        """Read a ``<density>``."""
+        self._said.update(density=_single(number(element, self._context.diagnostics)), total=None)
+
+    def total(self, element: Element) -> None:
+        """Read a ``<total>`` mass."""
+        self._said.update(total=_single(number(element, self._context.diagnostics)), density=None)
+
+    def radius(self, element: Element) -> None:
+        """Read the ``<radius>`` of a sphere."""
+        extents = (self.rule or self._start).half_extents
+        radius = number(element, self._context.diagnostics) * self._scale[0]
+        self._said.update(half_extents=(radius, *extents[1:]))
+
+    def com(self, element: Element) -> None:
+        """Read the centre of mass of a custom mass."""
+        self._said.update(com=hadamard(self._scale, vector(element, self._context.diagnostics)))
+
+    def inertia(self, element: Element) -> None:
+        """Read the inertia of a custom mass; only its upper triangle counts."""
+        xx, xy, xz, _, yy, yz, _, _, zz = numbers(element, 9, self._context.diagnostics)
+        self._said.update(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+
+    def extents(self, element: Element) -> None:
+        """Accept ``<extents>``, which OpenRAVE does not read in a Body."""
+
+
+MASS_ATTRIBUTES = {"type"}
+MASS_TAGS = {
+    "density": MassReader.density,
+    "total": MassReader.total,
+    "radius": MassReader.radius,
+    "extents": MassReader.extents,
+    "com": MassReader.com,
+    "inertia": MassReader.inertia,
+}
+
+
+class DefaultMassReader:
+    """Reads ``<Mass>`` of a KinBody: the default of the Bodies that follow it.
+
+    Attributes:
+        rule: The default so far, or None before the first ``<Mass>``.
+    """
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self.rule: MassRule | None = None
+        self._number = 1.0
+        self._half_extents: Vec3 = (1.0, 1.0, 1.0)
+        self._is_total = False
+
+    def read(self, element: Element) -> None:
+        """Read a ``<Mass>`` of a KinBody."""
+        self._context.check_attributes(element, MASS_ATTRIBUTES, {})
+        kind = element.attributes.get("type", "sphere").lower()
+        if kind not in {"mimicgeom", "sphere", "box"}:
+            message = f"OpenRAVE takes a mass of type '{kind}' in a KinBody for a sphere"
+            self._context.diagnostics.warn("openrave-bug", message, element.source, "give each Body its own Mass")
+            kind = "sphere"
+        self._is_total = False
+        self._context.walk(element, DEFAULT_MASS_TAGS, {}, self)
+        if self._is_total and kind == "mimicgeom":
+            message = f"OpenRAVE takes the total {self._number:g} of a KinBody's mimicgeom mass for a density"
+            self._context.diagnostics.warn("openrave-bug", message, element.source, "write <density>")
+        is_total = self._is_total and kind != "mimicgeom"
+        self.rule = MassRule(
+            kind,
+            density=None if is_total else self._number,
+            total=self._number if is_total else None,
+            half_extents=self._half_extents,
+        )
+
+    def density(self, element: Element) -> None:
+        """Read a ``<density>``."""
+        self._number, self._is_total = _single(number(element, self._context.diagnostics)), False
+
+    def total(self, element: Element) -> None:
+        """Read a ``<total>``; it lands in the same place as a density."""
+        self._number, self._is_total = _single(number(element, self._context.diagnostics)), True
+
+    def radius(self, element: Element) -> None:
+        """Read the ``<radius>`` of a sphere."""
+        radius = number(element, self._context.diagnostics)
+        self._half_extents = (radius, *self._half_extents[1:])
+
+    def extents(self, element: Element) -> None:
+        """Read the half sizes of a box; behind a total they have no effect."""
+        half_extents = vector(element, self._context.diagnostics)
+        if not self._is_total:
+            self._half_extents = half_extents
+
+
+DEFAULT_MASS_TAGS = {
+    "density": DefaultMassReader.density,
+    "total": DefaultMassReader.total,
+    "radius": DefaultMassReader.radius,
+    "extents": DefaultMassReader.extents,
+}
+
+
+def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Inertial:
+    """Return the mass properties of a link with the given shapes."""
+    if rule is None:
+        return DEFAULT_INERTIAL
+    if rule.kind == "custom":
+        return Inertial(1.0 if rule.total is None else rule.total, rule.com, rule.inertia)
+    if rule.kind == "mimicgeom":
+        return _sum_of_shapes(rule, geometries)
+    shape = Box(rule.half_extents) if rule.kind == "box" else Sphere(rule.half_extents[0])
+    mass, moments = _solid(shape, 1.0 if rule.density is None else rule.density)
+    if rule.total is not None:
+        moments = scale(moments, rule.total / mass if mass else 0.0)
+        mass = rule.total
+    return Inertial(mass, ZERO, ((moments[0], 0.0, 0.0), (0.0, moments[1], 0.0), (0.0, 0.0, moments[2])))
+
+
+def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
+    """Combine the solids of all shapes by the parallel axis theorem.
+
+    With a total mass, OpenRAVE scales the masses of the parts and not their own inertias.
+    """
+    density = TOTAL_DENSITY if rule.total is not None else (1.0 if rule.density is None else rule.density)
+    solids = [_solid(geometry.shape, density) for geometry in geometries]
+    mass = sum(part for part, _ in solids)
+    if mass == 0.0:
+        return Inertial(0.0 if rule.total is None else math.nan, ZERO, NO_INERTIA)
+    factor = 1.0 if rule.total is None else rule.total / mass
+    if len(geometries) == 1:
+        position, wxyz = geometries[0].T_link_geometry
+        return Inertial(mass * factor, position, _rotated(solids[0][1], wxyz))
+    com = ZERO
+    for geometry, (part, _) in zip(geometries, solids, strict=True):
+        com = add(com, scale(geometry.T_link_geometry.position, part / mass))
+    inertia = NO_INERTIA
+    for geometry, (part, moments) in zip(geometries, solids, strict=True):
+        position, wxyz = geometry.T_link_geometry
+        arm = add(position, scale(com, -1.0))
+        inertia = _add_rows(inertia, _rotated(moments, wxyz), _point_inertia(part * factor, arm))
+    return Inertial(mass * factor, com, inertia)
+
+
+def _solid(shape: Shape, density: float) -> tuple[float, Vec3]:
+    """Return mass and principal moments about the centre; other shapes have no mass in OpenRAVE."""
+    match shape:
+        case Box((a, b, c)):
+            mass = 8 * a * b * c * density
+            return mass, (mass / 3 * (b * b + c * c), mass / 3 * (a * a + c * c), mass / 3 * (a * a + b * b))
+        case Sphere(radius):
+            mass = 4 / 3 * math.pi * radius**3 * density
+            moment = 0.4 * mass * radius**2
+            return mass, (moment, moment, moment)
+        case Cylinder(radius, height):
+            mass = math.pi * radius**2 * height * density
+            across = mass * (radius**2 / 4 + height**2 / 12)
+            return mass, (across, across, mass * radius**2 / 2)
+        case Container((x, y, z)):  # as if it were solid, about its origin
+            return _solid(Box((x / 2, y / 2, z / 2)), density)
+        case _:
+            return 0.0, ZERO
+
+
+def _rotated(moments: Vec3, wxyz: Wxyz) -> Rows:
+    """Return R diag(moments) R^T."""
+    if moments[0] == moments[1] == moments[2] or not any(wxyz[1:]):
+        return ((moments[0], 0.0, 0.0), (0.0, moments[1], 0.0), (0.0, 0.0, moments[2]))
+    rows = rows_from_wxyz(wxyz)
+    weighted = [(row[0] * moments[0], row[1] * moments[1], row[2] * moments[2]) for row in rows]
+    xy, xz, yz = dot(weighted[0], rows[1]), dot(weighted[0], rows[2]), dot(weighted[1], rows[2])
+    return (
+        (dot(weighted[0], rows[0]), xy, xz),
+        (xy, dot(weighted[1], rows[1]), yz),
+        (xz, yz, dot(weighted[2], rows[2])),
+    )
+
+
+def _point_inertia(mass: float, arm: Vec3) -> Rows:
+    """Return the inertia of a point mass at the end of an arm."""
+    x, y, z = arm
+    square = dot(arm, arm)
+    return (
+        (mass * (square - x * x), -mass * x * y, -mass * x * z),
+        (-mass * x * y, mass * (square - y * y), -mass * y * z),
+        (-mass * x * z, -mass * y * z, mass * (square - z * z)),
+    )
+
+
+def _add_rows(*matrices: Rows) -> Rows:
+    first, second, third = ZERO, ZERO, ZERO
+    for matrix in matrices:
+        first, second, third = add(first, matrix[0]), add(second, matrix[1]), add(third, matrix[2])
+    return first, second, third
+
+
+def _single(value: float) -> float:
+    """Round to single precision."""
+    try:
+        return struct.unpack("f", struct.pack("f", value))[0]
+    except OverflowError:
+        return math.copysign(math.inf, value)

@@ -1,0 +1,149 @@
+"""What only robots have: ``<Manipulator>`` and ``<AttachedSensor>``."""
+
+from collections.abc import Callable
+
+from ravemj.formats.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
+from ravemj.formats.openrave_xml.sensor import Device, read_device
+from ravemj.formats.openrave_xml.tree import Element
+from ravemj.formats.openrave_xml.values import ROTATIONS, Placement, leading_numbers, vector, word
+from ravemj.model.builder import BodyBuilder
+from ravemj.model.manipulators import ManipulatorBuilder
+from ravemj.model.scene import AttachedSensor
+
+
+class _ManipulatorScope:
+    """An open ``<Manipulator>``."""
+
+    def __init__(self, body: BodyBuilder, built: ManipulatorBuilder, context: Context) -> None:
+        self.body = body
+        self.built = built
+        self.context = context
+        self.placement = Placement()
+
+    def translate(self, element: Element) -> None:
+        """Read a ``<Translation>`` of the tool."""
+        self.placement.translate(element, self.context.diagnostics)
+
+    def turn(self, element: Element) -> None:
+        """Read a rotation of the tool."""
+        self.placement.turn(element, self.context.diagnostics)
+
+    def read_base(self, element: Element) -> None:
+        """Read the name of the link that the arm starts from."""
+        self.built.base = self._link(element)
+
+    def read_effector(self, element: Element) -> None:
+        """Read the name of the link that carries the tool."""
+        self.built.effector = self._link(element)
+
+    def _link(self, element: Element) -> str:
+        name = word(element)
+        if self.body.find_link(name) is None:
+            message = f"there is no Body '{name}' for the <{element.spelled}> of the manipulator"
+            self.context.diagnostics.error("unknown-body", message, element.source)
+        return name
+
+    def read_gripper(self, element: Element) -> None:
+        """Read the names of the gripper's joints."""
+        self.built.gripper_joints = element.text.split()
+
+    def read_closing(self, element: Element) -> None:
+        """Read the signs of closing."""
+        self.built.closing_direction = leading_numbers(element.text).values
+
+    def read_direction(self, element: Element) -> None:
+        """Read the direction that the tool points along."""
+        self.built.direction = vector(element, self.context.diagnostics)
+
+
+MANIPULATOR_TAGS: dict[str, Callable[[_ManipulatorScope, Element], None]] = {
+    "translation": _ManipulatorScope.translate,
+    **dict.fromkeys(ROTATIONS, _ManipulatorScope.turn),
+    "base": _ManipulatorScope.read_base,
+    "effector": _ManipulatorScope.read_effector,
+    **dict.fromkeys(("joints", "gripperjoints"), _ManipulatorScope.read_gripper),
+    **dict.fromkeys(("closingdirection", "closingdir", "chuckingdirection"), _ManipulatorScope.read_closing),
+    **dict.fromkeys(("direction", "palmdirection"), _ManipulatorScope.read_direction),
+}
+MANIPULATOR_ATTRIBUTES = {"name"}
+MANIPULATOR_IGNORED = {
+    "armjoints": "OpenRAVE finds the arm's joints by itself, between base and effector",
+    "iksolver": NO_EFFECT_HERE,
+}
+
+
+def read_manipulator(body: BodyBuilder, element: Element, context: Context) -> ManipulatorBuilder:
+    """Read a ``<Manipulator>``."""
+    context.check_attributes(element, MANIPULATOR_ATTRIBUTES, {})
+    name = element.attributes.get("name", "")
+    if not name:
+        name = f"manip{len(body.manipulators)}"
+        context.diagnostics.warn("no-name", f"the manipulator has no name; OpenRAVE calls it {name}", element.source)
+    scope = _ManipulatorScope(body, ManipulatorBuilder(name, element.source), context)
+    context.walk(element, MANIPULATOR_TAGS, MANIPULATOR_IGNORED, scope)
+    if not scope.built.effector:
+        message = f"the manipulator '{name}' has no effector"
+        context.diagnostics.error("no-effector", message, element.source, "name its last link")
+    scope.built.T_effector_tool = scope.placement.pose
+    return scope.built
+
+
+class _SensorScope:
+    """An open ``<AttachedSensor>``."""
+
+    def __init__(self, body: BodyBuilder, context: Context) -> None:
+        self.body = body
+        self.context = context
+        self.placement = Placement()
+        self.link: int | None = None
+        self.device = Device()
+
+    def translate(self, element: Element) -> None:
+        """Read a ``<Translation>``."""
+        self.placement.translate(element, self.context.diagnostics)
+
+    def turn(self, element: Element) -> None:
+        """Read a rotation."""
+        self.placement.turn(element, self.context.diagnostics)
+
+    def read_link(self, element: Element) -> None:
+        """Read the name of the link that carries the sensor."""
+        name = word(element)
+        self.link = self.body.find_link(name)
+        if self.link is None:
+            message = f"there is no Body '{name}' to carry the sensor"
+            self.context.diagnostics.error("unknown-body", message, element.source)
+
+    def read_device(self, element: Element) -> None:
+        """Read the ``<Sensor>`` itself."""
+        self.device = read_device(element, self.context)
+
+
+SENSOR_TAGS: dict[str, Callable[[_SensorScope, Element], None]] = {
+    "link": _SensorScope.read_link,
+    "translation": _SensorScope.translate,
+    **dict.fromkeys(ROTATIONS, _SensorScope.turn),
+    "sensor": _SensorScope.read_device,
+}
+SENSOR_ATTRIBUTES = {"name"}
+SENSOR_IGNORED = reasons(NO_EFFECT_HERE, "sendcommand")
+
+
+def read_attached_sensor(body: BodyBuilder, element: Element, context: Context) -> None:
+    """Read an ``<AttachedSensor>`` and append it to the body."""
+    context.check_attributes(element, SENSOR_ATTRIBUTES, {})
+    scope = _SensorScope(body, context)
+    context.walk(element, SENSOR_TAGS, SENSOR_IGNORED, scope)
+    if scope.link is None:
+        message = "the sensor names no link, and is attached to nothing"
+        context.diagnostics.warn("no-link", message, element.source, "add a <link>")
+    body.sensors.append(
+        AttachedSensor(
+            name=element.attributes.get("name", ""),
+            link=scope.link,
+            T_link_sensor=scope.placement.pose,
+            type=scope.device.type,
+            camera=scope.device.camera,
+            source=element.source,
+        )
+    )

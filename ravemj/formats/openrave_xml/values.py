@@ -1,0 +1,197 @@
+"""Numbers and rotations in the text of an element, by OpenRAVE's rules, with a warning where they surprise."""
+
+import math
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+from ravemj.core.transforms import (
+    UNIT_WXYZ,
+    UNMOVED,
+    UNSCALED,
+    ZERO,
+    Pose,
+    Vec3,
+    Wxyz,
+    add,
+    multiply,
+    normalize,
+    wxyz_from_axis_angle,
+    wxyz_from_rows,
+)
+from ravemj.errors import Diagnostics, SourceError
+from ravemj.formats.openrave_xml.tree import Element
+
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))")
+
+_PLAIN = "0123456789.+-eE \t\r\n"
+"""What almost every text with numbers consists of; then Python makes of their words what C++ makes of them."""
+
+
+class Numbers(NamedTuple):
+    """The leading numbers of a text.
+
+    Attributes:
+        values: The numbers, in order.
+        rest: What follows them; empty in a sane file.
+    """
+
+    values: list[float]
+    rest: str
+
+
+def leading_numbers(text: str) -> Numbers:
+    """Return the numbers at the start of a text, as C++ streams would read them."""
+    plain = _plain_numbers(text)
+    if plain is not None:
+        return Numbers(plain, "")
+    values: list[float] = []
+    position = 0
+    while (match := _NUMBER.match(text, position)) and math.isfinite(value := float(match[1])):
+        values.append(value)
+        position = match.end()
+    return Numbers(values, text[position:].strip())
+
+
+def _plain_numbers(text: str) -> list[float] | None:
+    """Return the numbers of a text that holds nothing else, or None."""
+    if text.strip(_PLAIN):
+        return None
+    try:
+        plain = list(map(float, text.split()))
+    except ValueError:  # signs or points in odd places
+        return None
+    return plain if math.isfinite(sum(plain)) else None
+
+
+def numbers(element: Element, count: int, diagnostics: Diagnostics, default: float = 0.0) -> list[float]:
+    """Return exactly ``count`` numbers from an element's text.
+
+    A word that is no number counts as 0 and ends the reading (``bad-number``); numbers that are missing keep
+    the default, and what is too much is left out (``number-count``). OpenRAVE says nothing about either.
+    """
+    plain = _plain_numbers(element.text)
+    if plain is not None and len(plain) == count:
+        return plain
+    values, rest = leading_numbers(element.text)
+    found = len(values)
+    if found < count and rest:
+        values.append(0.0)
+    values = (values + [default] * count)[:count]
+    taken = " ".join(f"{value:g}" for value in values)
+    expected = "a number" if count == 1 else f"{count} numbers separated by spaces"
+    diagnostics.warn(
+        "bad-number" if found < count and rest else "number-count",
+        f"<{element.spelled}> holds '{' '.join(element.text.split())}' where {expected} should stand; "
+        f"OpenRAVE reads {taken}",
+        element.source,
+    )
+    return values
+
+
+def number(element: Element, diagnostics: Diagnostics, default: float = 0.0) -> float:
+    """Return the one number in an element's text."""
+    return numbers(element, 1, diagnostics, default)[0]
+
+
+def vector(element: Element, diagnostics: Diagnostics) -> Vec3:
+    """Return the three numbers in an element's text."""
+    x, y, z = numbers(element, 3, diagnostics)
+    return (x, y, z)
+
+
+def scale_attribute(element: Element) -> Vec3:
+    """Return the ``scalegeometry`` of an element: one number for all axes, or three."""
+    if "scalegeometry" not in element.attributes:
+        return UNSCALED
+    values, _ = leading_numbers(element.attributes["scalegeometry"])
+    if len(values) == 3:
+        return (values[0], values[1], values[2])
+    uniform = values[0] if values else 1.0
+    return (uniform, uniform, uniform)
+
+
+def word(element: Element) -> str:
+    """Return the first word of an element's text; names cannot hold spaces."""
+    return next(iter(element.text.split()), "")
+
+
+def is_true(value: str) -> bool:
+    """Return True for the two spellings that OpenRAVE takes for true, where only those count."""
+    return value.lower() in {"true", "1"}
+
+
+def is_false(value: str) -> bool:
+    """Return True for the two spellings that OpenRAVE takes for false."""
+    return value.lower() in {"false", "0"}
+
+
+def hadamard(a: Vec3, b: Vec3) -> Vec3:
+    """Return the products of the parts of two vectors."""
+    return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
+
+
+class Placement:
+    """The transform elements of one element, applied in document order.
+
+    Translations add up and are never rotated; rotations multiply from the left. The order between the two
+    kinds does not matter.
+    """
+
+    __slots__ = ("_position", "_scale", "_wxyz")
+
+    def __init__(self, start: Pose = UNMOVED, scale: Vec3 = UNSCALED) -> None:
+        self._position, self._wxyz = start
+        self._scale = scale
+
+    @property
+    def pose(self) -> Pose:
+        """The transform that the elements so far amount to."""
+        wxyz = self._wxyz
+        return Pose(self._position, wxyz if wxyz == UNIT_WXYZ else normalize(wxyz))
+
+    @property
+    def moves(self) -> bool:
+        """False where there was no transform element, or none with an effect."""
+        return self._position != ZERO or self._wxyz != UNIT_WXYZ
+
+    def translate(self, element: Element, diagnostics: Diagnostics) -> None:
+        """Apply a ``<Translation>``: x y z [m]."""
+        self._position = add(self._position, hadamard(self._scale, vector(element, diagnostics)))
+
+    def turn(self, element: Element, diagnostics: Diagnostics) -> None:
+        """Apply one of the rotation elements."""
+        self._wxyz = multiply(ROTATIONS[element.tag](element, diagnostics), self._wxyz)
+
+
+def axis_angle(element: Element, diagnostics: Diagnostics) -> Wxyz:
+    """Return the rotation of a ``<RotationAxis>``: an axis of any length, then an angle in degrees."""
+    x, y, z, degrees = numbers(element, 4, diagnostics)
+    return wxyz_from_axis_angle((x, y, z), math.radians(degrees))
+
+
+def _matrix(element: Element, diagnostics: Diagnostics) -> Wxyz:
+    m = numbers(element, 9, diagnostics)
+    try:
+        return wxyz_from_rows((m[0:3], m[3:6], m[6:9]))
+    except ZeroDivisionError:
+        raise SourceError(f"<{element.spelled}> holds no rotation: {element.text.strip()}", element.source) from None
+
+
+def _quaternion(element: Element, diagnostics: Diagnostics) -> Wxyz:
+    w, x, y, z = numbers(element, 4, diagnostics)
+    try:
+        return normalize((w, x, y, z))
+    except ZeroDivisionError:
+        raise SourceError(
+            f"<{element.spelled}> holds no rotation: {element.text.strip()}",
+            element.source,
+            "write a quaternion as w x y z; 1 0 0 0 turns nothing",
+        ) from None
+
+
+ROTATIONS: dict[str, Callable[[Element, Diagnostics], Wxyz]] = {
+    "rotationaxis": axis_angle,
+    "rotationmat": _matrix,
+    "quat": _quaternion,
+}

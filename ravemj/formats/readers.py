@@ -1,0 +1,106 @@
+"""Finds a file and reads it by its kind."""
+
+import os
+from collections.abc import Callable
+from urllib.parse import unquote
+
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.formats import collada
+from ravemj.formats.openrave_xml import Reading, read, read_text
+from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
+from ravemj.model.builder import BodyBuilder
+from ravemj.model.scene import KinBody, Scene
+
+
+def read_file(path: str | os.PathLike[str]) -> Reading:
+    """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
+
+    Args:
+        path: An OpenRAVE XML file, a COLLADA file, or a mesh file, which becomes a static body. ``robot.dae#arm`` is
+            what has the id ``arm`` in a COLLADA file.
+
+    Returns:
+        What was read; its ``failure`` says what ended the reading.
+    """
+    place, wanted = _without_scheme(os.fspath(path)), ""
+    found = find(place)
+    if found is None:
+        place, wanted = collada.split_uri(place)
+        found = find(place)
+    if found is None:
+        failure = SourceError("there is no such file", Source(os.fspath(path)), "check the path, or set OPENRAVE_DATA")
+    elif not os.path.isfile(found):
+        kind = "folder" if os.path.isdir(found) else "device or pipe"
+        failure = SourceError(f"this is a {kind}, not a model file", Source(found))
+    elif found.lower().endswith(collada.SUFFIXES):
+        uri = f"{found}#{wanted}" if wanted else found
+        return _read_collada(found, lambda context: collada.read_file(uri, context.diagnostics, context.files))
+    else:
+        return read_mesh_file(found) if is_mesh(found) else read(found)
+    return Reading(Scene(), Diagnostics(), failure)
+
+
+def read_data(data: str | bytes) -> Reading:
+    """Read the text of an OpenRAVE XML or COLLADA document, as ``read_file`` reads a file."""
+    head = data[:1000] if isinstance(data, bytes) else data[:1000].encode()
+    if b"<COLLADA" in head:
+        text = data if isinstance(data, bytes) else data.encode()
+        return _read_collada(
+            "data", lambda context: collada.read_text(text, "data", context.diagnostics, context.files)
+        )
+    return read_text(data, "data")
+
+
+def _read_collada(path: str, read_content: Callable[[Context], collada.Content]) -> Reading:
+    context = Context()
+    bodies: list[KinBody] = []
+    gravity = failure = None
+    try:
+        content = read_content(context)
+        gravity = content.gravity
+        if not content.bodies and not content.others:
+            raise SourceError("there is no body in it", Source(path))
+        if not content.bodies:
+            message = "without a kinematics scene, OpenRAVE loads no body of it into an environment"
+            context.diagnostics.error("no-kinematics", message, Source(path), "read it with ReadKinBodyURI")
+        for built in (*content.bodies, *content.others):
+            built.name = _unused(built.name or "body", {body.name for body in bodies})
+            bodies.append(built.freeze(context.diagnostics))
+    except SourceError as error:
+        failure = error
+    except ArithmeticError:
+        failure = SourceError("a number in the file is too large to compute with", Source(path))
+    return Reading(Scene(tuple(bodies), None, gravity), context.diagnostics, failure, tuple(context.files))
+
+
+def _unused(name: str, taken: set[str]) -> str:
+    """Return a name, with a number behind it where it is taken."""
+    numbered = (f"{name}{count}" for count in range(len(taken) + 1))
+    return name if name not in taken else next(other for other in numbered if other not in taken)
+
+
+def find(name: str) -> str | None:
+    """Return the path of a file, or None where it is in no known place."""
+    folders = ["", *filter(None, os.environ.get("OPENRAVE_DATA", "").split(os.pathsep))]
+    candidates = (os.path.join(folder, name) for folder in folders)
+    return next((path for path in candidates if os.path.exists(path)), None)
+
+
+def _without_scheme(uri: str) -> str:
+    """Return the path of a URI ``file:`` or ``openrave:``; anything else as it is."""
+    scheme, separator, rest = uri.partition(":")
+    if not separator or scheme.lower() not in {"file", "openrave"}:
+        return uri
+    path = rest.removeprefix("//") if scheme.lower() == "file" else rest.lstrip("/")
+    return unquote(path)
+
+
+def read_mesh_file(path: str) -> Reading:
+    """Read a mesh file as a static body with the file's name."""
+    context = Context()
+    source = Source(path)
+    body = BodyBuilder(is_robot=False, source=source)
+    add_mesh(body, path, (1.0, 1.0, 1.0), source, context)
+    scene = Scene((body.freeze(context.diagnostics),))
+    return Reading(scene, context.diagnostics, None, tuple(context.files))

@@ -1,0 +1,130 @@
+"""Pictures of a MuJoCo model: by OpenGL where it works, by ray casting everywhere.
+
+::
+
+    with open_renderer(model, 640, 480) as renderer:
+        picture = renderer.render(data, Camera.from_matrix(T_world_camera))
+
+This package knows ``MjModel`` and ``MjData`` and nothing of OpenRAVE's scenes; its cameras follow OpenRAVE's
+convention (see :mod:`ravemj.graphics.rendering.camera`).
+"""
+
+import logging
+from typing import Protocol, Self
+
+import mujoco
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ravemj.graphics.rendering.camera import (
+    Camera,
+    CameraIntrinsics,
+    Pinhole,
+    bounding_sphere,
+    geom_corners,
+    three_quarter_view,
+    view_from_above,
+)
+from ravemj.graphics.rendering.frame import WHITE
+from ravemj.graphics.rendering.visibility import drawn_geoms
+from ravemj.model.drawing import NOTHING, Shapes
+
+__all__ = [
+    "Camera",
+    "CameraIntrinsics",
+    "Pinhole",
+    "Renderer",
+    "bounding_sphere",
+    "drawn_geoms",
+    "geom_corners",
+    "open_renderer",
+    "three_quarter_view",
+    "view_from_above",
+]
+
+_LOG = logging.getLogger("ravemj")
+
+
+class Renderer(Protocol):
+    """Draws one model in pictures of one size.
+
+    Attributes:
+        backend: What draws: ``egl``, ``osmesa``, ``glfw`` or ``ray``.
+    """
+
+    backend: str
+
+    def render(
+        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, shapes: Shapes = NOTHING
+    ) -> NDArray[np.uint8]:
+        """Draw a picture.
+
+        Args:
+            data: State of the model with the poses computed (``mj_kinematics`` or ``mj_forward``). Where the
+                model has lights, they are placed (``mj_camlight``).
+            camera: Where the picture is taken from.
+            background: Colour where nothing is: red, green, blue in 0..1.
+            shapes: What is drawn beside the model's geoms.
+
+        Returns:
+            A new array (height, width, 3), top row first.
+
+        Raises:
+            ArgumentError: the data are of another model, or the background is no colour.
+            RenderingError: the renderer is closed.
+        """
+        ...
+
+    def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
+        """Say which geom each pixel centre shows; drawings hide nothing.
+
+        Args:
+            data: State of the model with the poses computed.
+            camera: Where the picture is taken from.
+
+        Returns:
+            A new array (height, width) of geom ids, -1 where nothing is. Transparent geoms count.
+
+        Raises:
+            ArgumentError: the data are of another model.
+            RenderingError: the renderer is closed.
+        """
+        ...
+
+    def close(self) -> None:
+        """Free what the renderer holds. Also done at the end of a ``with`` block."""
+        ...
+
+    def __enter__(self) -> Self: ...
+    def __exit__(self, *_: object) -> None: ...
+
+
+def open_renderer(
+    model: mujoco.MjModel,
+    width: int,
+    height: int,
+    *,
+    shadows: bool = False,
+    samples: int = 4,
+    backend: str | None = None,
+) -> Renderer:
+    """Open a renderer with the first backend that works: EGL, OSMesa, GLFW, else ray casting.
+
+    Args:
+        model: What is drawn; geoms may change their poses and colours later, but not their number.
+        width: Columns of the pictures.
+        height: Rows of the pictures.
+        shadows: Whether the model's lights cast shadows; costly without a graphics card. Rays ignore it.
+        samples: Samples per pixel against jagged edges: 4 for stills, 0 for speed.
+        backend: ``egl``, ``osmesa``, ``glfw`` or ``ray``; by default what ``MUJOCO_GL`` names, or any.
+
+    Raises:
+        ArgumentError: a size that is not positive, or an argument that is not among those named here.
+        RenderingError: the backend that was asked for does not work here; the message says why.
+    """
+    from ravemj.graphics.rendering.opening import opened  # noqa: PLC0415 - slow to import
+    from ravemj.graphics.rendering.stage import Quality  # noqa: PLC0415
+
+    renderer = opened(model, Quality(width, height, shadows, samples), backend)
+    _LOG.info("pictures of %d x %d are drawn by %s", width, height, renderer.backend)
+    return renderer

@@ -1,0 +1,259 @@
+"""Where a picture is taken from, in OpenRAVE's convention, and the pinhole arithmetic that goes with it.
+
+The camera frame has +z into the scene, +x to the right of the image and +y down the image, so the up
+direction of the picture is -y. OpenRAVE's ``SetCamera`` and ``GetCameraTransform``, its camera tags and its
+camera sensors all share this frame. MuJoCo's and OpenGL's cameras look along -z with +y up instead; the
+renderers convert, nobody else needs to.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.transforms import Floats, Ints, normalize, rows_from_wxyz
+from ravemj.errors import ArgumentError
+from ravemj.graphics.rendering.visibility import drawn_geoms
+
+DEFAULT_FOVY = math.radians(45)
+"""Vertical field of view of OpenRAVE's viewers [rad]."""
+
+RIGIDITY_TOLERANCE = 5e-3
+"""Largest error of R^T R that is still taken for a rotation: three printed digits pass, a scaled matrix does not."""
+
+_SHAPES = "a 4x4 matrix, a 3x4 matrix or a pose [w, x, y, z, tx, ty, tz]"
+
+
+class Pinhole(NamedTuple):
+    """How a camera maps directions to pixels; continuous coordinates, (0, 0) is the top left corner of the image.
+
+    Attributes:
+        fx: Focal length along the columns [pixels].
+        fy: Focal length along the rows [pixels].
+        cx: Column of the principal point [pixels].
+        cy: Row of the principal point [pixels].
+    """
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+
+
+@dataclass(eq=False)
+class CameraIntrinsics:
+    """A pinhole camera, as OpenRAVE's scripts know it.
+
+    Attributes:
+        K: Camera matrix [pixels], shape (3, 3).
+    """
+
+    K: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """A pinhole camera; by default its pixels are square and the principal point is in the middle of the image.
+
+    Attributes:
+        T_world_camera: Pose of the camera in the world, (4, 4), read-only. Columns: image right, image down,
+            viewing direction, position of the eye [m]. The numbers are kept exactly as they were given.
+        fovy: Vertical field of view [rad], between 0 and pi.
+        calibration: Focal lengths and principal point for pictures of one size, in place of the field of view.
+
+    Raises:
+        ArgumentError: the matrix is no rigid transform, or the field of view is out of range.
+    """
+
+    T_world_camera: Floats
+    fovy: float = DEFAULT_FOVY
+    calibration: Pinhole | None = None
+
+    def __post_init__(self) -> None:
+        matrix = _numbers(self.T_world_camera) + 0.0  # a copy, and -0. becomes 0.
+        _check_rigid(matrix)
+        matrix.flags.writeable = False
+        object.__setattr__(self, "T_world_camera", matrix)
+        if not 0 < self.fovy < math.pi:
+            raise ArgumentError(f"camera: the vertical field of view is {self.fovy:g} rad, expected between 0 and pi")
+
+    @classmethod
+    def from_matrix(cls, matrix: ArrayLike, fovy: float = DEFAULT_FOVY) -> "Camera":
+        """Make a camera from what people write down.
+
+        Args:
+            matrix: T_world_camera as 4x4 or 3x4 (nested lists or array), or as OpenRAVE's pose
+                [w, x, y, z, tx, ty, tz] with a unit quaternion.
+            fovy: Vertical field of view [rad].
+
+        Raises:
+            ArgumentError: another shape, a number that is not finite, or no rigid transform.
+        """
+        numbers = _numbers(matrix)
+        if numbers.shape == (3, 4):
+            numbers = np.vstack([numbers, [0.0, 0.0, 0.0, 1.0]])
+        elif numbers.shape == (7,):
+            numbers = _matrix_from_pose(numbers)
+        return cls(numbers, fovy)
+
+    @property
+    def position(self) -> Floats:
+        """Eye point in the world, (3,) [m]."""
+        return self.T_world_camera[:3, 3].copy()
+
+    @cached_property
+    def rotation(self) -> Floats:
+        """R_world_camera (3, 3), nearest to the matrix as given: what every picture and projection uses."""
+        u, _, vt = np.linalg.svd(self.T_world_camera[:3, :3])
+        rotation: Floats = u @ vt
+        rotation.flags.writeable = False
+        return rotation
+
+    def pinhole(self, width: int, height: int) -> Pinhole:
+        """Return focal lengths and principal point in an image of that many columns and rows."""
+        focal = 0.5 * height / math.tan(0.5 * self.fovy)
+        return self.calibration or Pinhole(focal, focal, 0.5 * width, 0.5 * height)
+
+    def project(self, points: ArrayLike, width: int, height: int) -> tuple[Floats, Floats]:
+        """Project points of the world into an image.
+
+        Args:
+            points: World coordinates, (N, 3) [m].
+            width: Columns of the image.
+            height: Rows of the image.
+
+        Returns:
+            Pixel coordinates (N, 2), columns first, continuous: (0, 0) is the top left corner of the image and
+            pixel i covers [i, i + 1); NaN for points that are not in front of the camera. And the depth (N,)
+            along the viewing direction [m].
+        """
+        fx, fy, cx, cy = self.pinhole(width, height)
+        camera_points = (np.asarray(points, dtype=np.float64).reshape(-1, 3) - self.position) @ self.rotation
+        depth = camera_points[:, 2]
+        in_front = np.where(depth > 0, depth, np.nan)
+        return camera_points[:, :2] * [fx, fy] / in_front[:, None] + [cx, cy], depth
+
+    def rays(self, width: int, height: int) -> Floats:
+        """Return the directions through the pixel centres, in world coordinates, (height, width, 3).
+
+        They are not unit vectors: each advances by 1 along the viewing direction, so that
+        ``position + depth * ray`` is the point at that depth.
+        """
+        columns, rows = self.ray_parts(width, height)
+        return columns + rows
+
+    def ray_parts(self, width: int, height: int) -> tuple[Floats, Floats]:
+        """Return what :meth:`rays` is the sum of: a part by column (1, width, 3) and one by row (height, 1, 3)."""
+        fx, fy, cx, cy = self.pinhole(width, height)
+        right, down, forward = self.rotation.T
+        columns = (np.arange(width) + 0.5 - cx) / fx
+        rows = (np.arange(height) + 0.5 - cy) / fy
+        return columns[None, :, None] * right, rows[:, None, None] * down + forward
+
+
+def view_from_above(center: ArrayLike, radius: float) -> Camera:
+    """Return the view with which OpenRAVE's window opens: straight down, world +y up in the picture.
+
+    Args:
+        center: Centre of the bounding sphere of what should be seen, world coordinates (3,) [m].
+        radius: Its radius [m]; the sphere just fits into the 45 degrees of the picture's height.
+    """
+    return _looking_at(center, radius, forward=(0.0, 0.0, -1.0), up=(0.0, 1.0, 0.0))
+
+
+def three_quarter_view(center: ArrayLike, radius: float) -> Camera:
+    """Return a pleasant view for stills: from the front left corner and above, world +z up.
+
+    Args:
+        center: Centre of the bounding sphere of what should be seen, world coordinates (3,) [m].
+        radius: Its radius [m]; the sphere just fits into the 45 degrees of the picture's height.
+    """
+    azimuth, elevation = math.radians(40), math.radians(25)
+    forward = (
+        -math.cos(elevation) * math.cos(azimuth),
+        -math.cos(elevation) * math.sin(azimuth),
+        -math.sin(elevation),
+    )
+    return _looking_at(center, radius, forward, up=(0.0, 0.0, 1.0))
+
+
+def bounding_sphere(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Floats, float]:
+    """Return a sphere around everything that the renderers draw, planes apart.
+
+    Args:
+        model: The compiled model.
+        data: Its state, with the poses of the geoms computed (``mj_kinematics`` or ``mj_forward``).
+
+    Returns:
+        Centre in the world (3,) [m] and radius [m]; the unit sphere at the origin where there is nothing to see.
+    """
+    shown = drawn_geoms(model) & (model.geom_type != mujoco.mjtGeom.mjGEOM_PLANE)
+    if not shown.any():
+        return np.zeros(3), 1.0
+    position = data.geom_xpos[shown]
+    corners = geom_corners(model, data, np.flatnonzero(shown))
+    center = 0.5 * (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1)))
+    by_corners = np.linalg.norm(corners - center, axis=2).max(axis=1)
+    by_spheres = np.linalg.norm(position - center, axis=1) + model.geom_rbound[shown]
+    return center, float(np.minimum(by_corners, by_spheres).max())
+
+
+def geom_corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints) -> Floats:
+    """Return the corners of the boxes around geoms, in the world, (N, 8, 3) [m]."""
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
+    boxes = model.geom_aabb[geoms]
+    corners = boxes[:, None, :3] + signs * boxes[:, None, 3:]
+    turned: Floats = np.einsum("gij,gcj->gci", data.geom_xmat[geoms].reshape(-1, 3, 3), corners)
+    return turned + data.geom_xpos[geoms][:, None]
+
+
+def _looking_at(
+    center: ArrayLike, radius: float, forward: tuple[float, float, float], up: tuple[float, float, float]
+) -> Camera:
+    z = np.array(forward)
+    x = np.cross(z, up)
+    x /= np.linalg.norm(x)
+    distance = (radius if radius > 0 else 1.0) / math.sin(0.5 * DEFAULT_FOVY)
+    T_world_camera = np.eye(4)
+    T_world_camera[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
+    T_world_camera[:3, 3] = np.asarray(center, dtype=np.float64) - distance * z
+    return Camera(T_world_camera)
+
+
+def _numbers(matrix: ArrayLike) -> Floats:
+    try:
+        return np.array(matrix, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"camera: expected {_SHAPES}, found something that is no array of numbers") from None
+
+
+def _matrix_from_pose(pose: Floats) -> Floats:
+    w, x, y, z = (float(part) for part in pose[:4])
+    length = math.sqrt(w * w + x * x + y * y + z * z)
+    if not abs(length - 1) <= RIGIDITY_TOLERANCE:
+        raise ArgumentError(f"camera: the pose starts with a quaternion of length {length:g}, expected 1")
+    matrix = np.eye(4)
+    matrix[:3, :3] = rows_from_wxyz(normalize((w, x, y, z)))
+    matrix[:3, 3] = pose[4:]
+    return matrix
+
+
+def _check_rigid(matrix: Floats) -> None:
+    if matrix.shape != (4, 4):
+        raise ArgumentError(f"camera: expected {_SHAPES}, found an array of shape {matrix.shape}")
+    if not np.isfinite(matrix).all():
+        raise ArgumentError(f"camera: expected finite numbers, found {matrix[~np.isfinite(matrix)][0]}")
+    if not np.array_equal(matrix[3], [0, 0, 0, 1]):
+        row = " ".join(f"{number:g}" for number in matrix[3])
+        raise ArgumentError(f"camera: expected 0 0 0 1 as the last row, found {row}")
+    rotation = matrix[:3, :3]
+    error = float(np.abs(rotation.T @ rotation - np.eye(3)).max())
+    if error > RIGIDITY_TOLERANCE:
+        limit = f"at most {RIGIDITY_TOLERANCE:g}"
+        raise ArgumentError(f"camera: the 3x3 part is no rotation: R^T R is off by {error:.3g}, expected {limit}")
+    if np.linalg.det(rotation) < 0:
+        raise ArgumentError("camera: the 3x3 part is a reflection: determinant -1, expected a rotation with +1")

@@ -1,0 +1,237 @@
+"""OpenGL contexts for pictures without a window, made when the first picture is wanted.
+
+Nothing of OpenGL is loaded when this module is imported, no environment variable has to be set, and it does
+not matter who imported mujoco first. A backend counts as working only after a renderer was really made with
+it, because libraries can be present without a driver.
+
+Order of the attempts: EGL (headless, the driver of the graphics card or Mesa), OSMesa (software), GLFW (an
+invisible window, where there is a display). Where all fail, pictures are cast with rays, without OpenGL.
+"""
+
+import atexit
+import contextlib
+import ctypes
+import importlib
+import logging
+import os
+import sys
+import threading
+import warnings
+import weakref
+from collections.abc import Callable, Generator
+from typing import Protocol, TypeVar
+
+from ravemj.errors import RenderingError
+from ravemj.graphics.rendering.egl_check import check_egl
+
+RAY = "ray"
+GL_BACKENDS = ("egl", "osmesa", "glfw")
+INSTALL = {
+    "egl": "apt-get install libegl1 libgl1",
+    "osmesa": "apt-get install libosmesa6",
+    "glfw": "a desktop, or apt-get install xvfb libgl1 and run under xvfb-run",
+}
+"""What makes a backend work on Debian and Ubuntu."""
+
+_BY_ENVIRONMENT = {
+    **{name: None for name in ("", "enable", "enabled", "on", "true", "1")},
+    **{name: RAY for name in ("disable", "disabled", "off", "false", "0")},
+    **{name: name for name in GL_BACKENDS},
+    **{name: "glfw" for name in ("glx", "wgl", "cgl")},
+}
+_LOG = logging.getLogger("ravemj")
+
+_Made = TypeVar("_Made")
+
+
+class _GLContext(Protocol):
+    """What mujoco.egl, mujoco.osmesa and mujoco.glfw have in common."""
+
+    def __init__(self, max_width: int, max_height: int) -> None: ...
+    def make_current(self) -> None: ...
+    def as_current(self) -> contextlib.AbstractContextManager[None]: ...
+    def free(self) -> None: ...
+
+
+class OffscreenContext:
+    """An OpenGL context of this process that no window shows.
+
+    Attributes:
+        backend: ``egl``, ``osmesa`` or ``glfw``.
+
+    Raises:
+        Exception: whatever the platform's libraries raise where they are missing or do not work.
+    """
+
+    def __init__(self, backend: str) -> None:
+        self.backend = backend
+        if {backend, *_used} > {"osmesa"}:
+            raise RenderingError(f"{backend} cannot draw in a process that {' and '.join(_used)} draws in already")
+        if backend not in _used:
+            _CHECKS[backend]()
+        with _pyopengl_platform_restored():
+            context_class: type[_GLContext] = importlib.import_module(f"mujoco.{backend}").GLContext
+            self._context = _make_glfw(context_class) if backend == "glfw" else context_class(64, 64)
+        _used.add(backend)
+
+    @contextlib.contextmanager
+    def current(self) -> Generator[None]:
+        """Make the context current in this thread, then give the thread back the one that it had.
+
+        Raises:
+            RenderingError: the driver refuses, as EGL does in a thread where the context of an X11 window is
+                current; the window has to let go of it first.
+        """
+        with contextlib.ExitStack() as stack:
+            try:
+                stack.enter_context(self._context.as_current())
+            except Exception as error:
+                reason = f"{type(error).__name__}; does a window draw in this thread?"
+                raise RenderingError(f"cannot use the {self.backend} context in this thread: {reason}") from None
+            yield
+
+    def close(self) -> None:
+        """Free the context; what was made in it must be freed before."""
+        self._context.free()
+
+
+class Closeable(Protocol):
+    """Something that holds OpenGL resources."""
+
+    def close(self) -> None:
+        """Free them; a second call does nothing."""
+
+
+def close_at_exit(resource: Closeable) -> None:
+    """Close the resource when Python exits, if it still lives then.
+
+    To be called when a context exists: the platform's own exit handlers are registered by then, and handlers
+    run last in, first out.
+    """
+    if not _open:
+        atexit.register(_close_all)
+    _open.add(resource)
+
+
+def requested_backend() -> str | None:
+    """Return the backend that the user asks for with ``MUJOCO_GL``, None for a free choice.
+
+    Raises:
+        RenderingError: the variable has a value that MuJoCo does not know.
+    """
+    value = os.environ.get("MUJOCO_GL", "").strip().lower()
+    if value not in _BY_ENVIRONMENT:
+        raise RenderingError(f"MUJOCO_GL is {value!r}, expected egl, osmesa, glfw or disable")
+    return _BY_ENVIRONMENT[value]
+
+
+def make_with_backend(backend: str, make: Callable[[OffscreenContext], _Made]) -> _Made:
+    """Make something in a new context of one backend.
+
+    Args:
+        backend: One of ``GL_BACKENDS``.
+        make: Called with the context; takes over the duty to close it.
+
+    Raises:
+        RenderingError: the backend does not work; the message says why and how to install it.
+    """
+    try:
+        return attempt(backend, make)
+    except RenderingError:
+        raise
+    except Exception as error:
+        reason = one_line(error)
+        raise RenderingError(f"cannot draw with {backend}: {reason} (install: {INSTALL[backend]})") from None
+
+
+def make_with_any_backend(make: Callable[[OffscreenContext], _Made]) -> _Made | None:
+    """Make something in a context of the first backend that works; None where none does.
+
+    The one that worked is remembered, and tried first from then on.
+
+    Args:
+        make: Called with the context; takes over the duty to close it.
+    """
+    for backend in _order():
+        try:
+            made = attempt(backend, make)
+        except Exception as error:
+            _LOG.info("no pictures with %s: %s", backend, one_line(error))
+        else:
+            _remembered[:] = [backend]
+            return made
+    return None
+
+
+def attempt(backend: str, make: Callable[[OffscreenContext], _Made]) -> _Made:
+    """Make something in a new context of one backend; :func:`make_with_backend` explains failures.
+
+    Raises:
+        Exception: whatever the platform's libraries raise where they are missing or do not work.
+    """
+    with _lock:
+        context = OffscreenContext(backend)
+        try:
+            return make(context)
+        except BaseException:
+            context.close()
+            raise
+
+
+def one_line(error: BaseException) -> str:
+    """Return an exception's reason as one line; its type where it has none."""
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+def _order() -> tuple[str, ...]:
+    known = GL_BACKENDS if sys.platform == "linux" else ("glfw",)
+    return tuple(dict.fromkeys((*_remembered, *known)))
+
+
+def _close_all() -> None:
+    for resource in list(_open):
+        resource.close()
+
+
+@contextlib.contextmanager
+def _pyopengl_platform_restored() -> Generator[None]:
+    """Undo what mujoco.egl and mujoco.osmesa write into the environment: children inherit it and then fail."""
+    name = "PYOPENGL_PLATFORM"
+    before = os.environ.get(name)
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop(name, None)
+
+
+def _check_osmesa() -> None:
+    for name in ("libOSMesa.so.8", "libOSMesa.so.6"):
+        with contextlib.suppress(OSError):
+            ctypes.CDLL(name)
+            return
+    raise RuntimeError("libOSMesa is not installed")
+
+
+def _check_glfw() -> None:
+    if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise RuntimeError("there is no display (DISPLAY and WAYLAND_DISPLAY are not set)")
+
+
+def _make_glfw(context_class: type[_GLContext]) -> _GLContext:
+    """Make an invisible window; GLFW reports trouble as Python warnings and goes on."""
+    glfw = importlib.import_module("glfw")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        context = context_class(64, 64)
+        with context.as_current():
+            if glfw.get_current_context():
+                return context
+    raise RuntimeError(str(caught[0].message) if caught else "GLFW makes no context")
+
+
+_CHECKS: dict[str, Callable[[], None]] = {"egl": check_egl, "osmesa": _check_osmesa, "glfw": _check_glfw}
+_open: "weakref.WeakSet[Closeable]" = weakref.WeakSet()
+_used: set[str] = set()
+_remembered: list[str] = []
+_lock = threading.RLock()

@@ -1,0 +1,95 @@
+"""Which backends work on this machine, and what to install for the others."""
+
+import importlib
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass
+
+import mujoco
+
+from ravemj.graphics.rendering.contexts import GL_BACKENDS, INSTALL, RAY, OffscreenContext, attempt
+from ravemj.graphics.rendering.gl import GlRenderer
+from ravemj.graphics.rendering.stage import Quality
+
+_TIMEOUT = 60.0
+_CHILD = """\
+import sys
+from ravemj.graphics.rendering.contexts import one_line
+from ravemj.graphics.rendering.doctor import driver_name
+try:
+    sys.stdout.write(driver_name(sys.argv[1]))
+except Exception as error:
+    sys.exit(one_line(error))
+"""
+
+
+@dataclass(frozen=True)
+class BackendReport:
+    """What one backend does on this machine.
+
+    Attributes:
+        name: ``egl``, ``osmesa``, ``glfw`` or ``ray``.
+        works: Whether a picture can be drawn with it.
+        detail: The driver that draws, or why it does not work, in one line.
+        install: What to install where it does not work; else empty.
+    """
+
+    name: str
+    works: bool
+    detail: str
+    install: str
+
+
+def probe_backends() -> list[BackendReport]:
+    """Try every backend, in the order in which they are chosen.
+
+    Each is tried in a process of its own, because a broken driver can end the process that loads it. So this
+    takes a second or two, and never fails.
+    """
+    reports = [_probe(backend) for backend in GL_BACKENDS]
+    return [*reports, BackendReport(RAY, True, "ray casting on the CPU, needs no OpenGL", "")]
+
+
+def driver_name(backend: str) -> str:
+    """Open a small renderer with a backend, in this process, and return the name of the driver behind it.
+
+    Raises:
+        Exception: whatever the backend raises where it does not work.
+    """
+    return attempt(backend, _driver_name)
+
+
+def _driver_name(context: OffscreenContext) -> str:
+    model = mujoco.MjModel.from_xml_string("<mujoco/>")
+    with GlRenderer(model, context, Quality(16, 16, samples=0)), context.current():
+        gl = importlib.import_module("OpenGL.GL")
+        name: bytes | None = gl.glGetString(gl.GL_RENDERER)
+    return name.decode(errors="replace") if name else "an unnamed OpenGL driver"
+
+
+def _probe(backend: str) -> BackendReport:
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path or os.curdir for path in sys.path)}
+    environment.pop("MUJOCO_GL", None)
+    try:
+        child = subprocess.run(
+            [sys.executable, "-c", _CHILD, backend],
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=_TIMEOUT,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return BackendReport(backend, False, f"no answer within {_TIMEOUT:g} s", INSTALL[backend])
+    if child.returncode == 0:
+        return BackendReport(backend, True, child.stdout.strip(), "")
+    return BackendReport(backend, False, _reason(child), INSTALL[backend])
+
+
+def _reason(child: "subprocess.CompletedProcess[str]") -> str:
+    if child.returncode < 0:
+        return f"the driver ended the process ({signal.Signals(-child.returncode).name})"
+    lines = child.stderr.strip().splitlines() or [f"exit code {child.returncode}"]
+    return lines[-1]

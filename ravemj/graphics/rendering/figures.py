@@ -1,0 +1,101 @@
+"""Drawings for MuJoCo's classic renderer: each figure becomes an ``mjvGeom``, many thousands of them at a time."""
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats
+from ravemj.graphics.rendering.camera import Camera
+from ravemj.model.drawing import Batch, Shapes
+
+_NO_VECTOR = np.zeros(3)
+_NO_ROTATION = np.eye(3).reshape(-1)
+_WHITE = np.ones(4, dtype=np.float32)
+
+_Floats32 = NDArray[np.float32]
+
+
+def add_figures(scene: mujoco.MjvScene, shapes: Shapes, camera: Camera, width: int, height: int) -> None:
+    """Append drawings to a scene that has been updated; what does not fit is left out.
+
+    Args:
+        scene: The scene.
+        shapes: The drawings, in the world.
+        camera: Where the picture is taken from.
+        width: Columns of the picture.
+        height: Rows of the picture.
+    """
+    points, spheres, lines, triangles = shapes.batches
+    for kind, batch in (
+        (mujoco.mjtGeom.mjGEOM_SPHERE, spheres),
+        (mujoco.mjtGeom.mjGEOM_TRIANGLE, triangles),
+        (mujoco.mjtGeom.mjGEOM_LINE, lines),
+        (mujoco.mjtGeom.mjGEOM_LINE, _squares(points, camera, width, height)),
+    ):
+        slots = _append(scene, kind, min(len(batch.sizes), scene.maxgeom - scene.ngeom))
+        if slots:
+            _write(slots, kind, Batch(*(array[: len(slots)] for array in batch)), camera.position)
+
+
+def _squares(points: Batch, camera: Camera, width: int, height: int) -> Batch:
+    """Return points as lines that are as long as they are wide, level on the screen."""
+    centers, sizes = points.corners[:, 0], np.maximum(points.sizes, 1)
+    depth = (centers - camera.position) @ camera.rotation[:, 2]
+    half = (0.5 * sizes * depth / camera.pinhole(width, height).fx)[:, None] * camera.rotation[:, 0]
+    return Batch(np.stack([centers - half, centers + half], axis=1), sizes, points.rgba)
+
+
+def _append(scene: mujoco.MjvScene, kind: mujoco.mjtGeom, count: int) -> tuple[mujoco.MjvGeom, ...]:
+    """Take over free slots of the scene, as geoms of a kind that are no parts of the model and cast no shadows."""
+    first = scene.ngeom
+    slots = scene.geoms[first : first + count]
+    for number, slot in enumerate(slots, first):
+        mujoco.mjv_initGeom(slot, kind, _NO_VECTOR, _NO_VECTOR, _NO_ROTATION, _WHITE)
+        slot.category = mujoco.mjtCatBit.mjCAT_DECOR
+        slot.specular = 0.0
+        slot.segid = number
+    scene.ngeom = first + len(slots)
+    return slots
+
+
+def _write(slots: tuple[mujoco.MjvGeom, ...], kind: mujoco.mjtGeom, batch: Batch, eye: Floats) -> None:
+    size, position, frame, rgba = (_column(slots, name) for name in ("size", "pos", "mat", "rgba"))
+    rgba[:] = np.clip(batch.rgba, 0, 1)
+    rgba[:, 3] = 1 - np.sqrt(1 - rgba[:, 3])  # MuJoCo draws what is transparent twice, for its back and its front
+    position[:] = batch.corners[:, 0]
+    if kind == mujoco.mjtGeom.mjGEOM_SPHERE:
+        size[:] = batch.sizes[:, None]
+    elif kind == mujoco.mjtGeom.mjGEOM_LINE:
+        length, frame[:, :, 2] = _length_and_direction(batch.corners[:, 1] - batch.corners[:, 0])
+        size[:, :2] = np.maximum(batch.sizes, 1)[:, None]
+        size[:, 2] = length
+    else:
+        size[:, 0], size[:, 1], frame[:] = _frames_of_triangles(batch.corners, eye)
+
+
+def _column(slots: tuple[mujoco.MjvGeom, ...], name: str) -> _Floats32:
+    """Return one field of neighbouring geoms as one array that writes through: MuJoCo has them in one block."""
+    first: _Floats32 = getattr(slots[0], name)
+    second: _Floats32 = getattr(slots[min(1, len(slots) - 1)], name)
+    stride = second.ctypes.data - first.ctypes.data
+    return np.lib.stride_tricks.as_strided(first, (len(slots), *first.shape), (stride, *first.strides))
+
+
+def _frames_of_triangles(corners: Floats, eye: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return lengths (N,) and (N,) of two sides, and matrices (N, 3, 3) whose columns are those and a normal.
+
+    The light falls on the front, so the side that the eye sees becomes the front.
+    """
+    one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    away = np.einsum("ij,ij->i", np.cross(one, other), corners[:, 0] - eye) > 0
+    one, other = np.where(away[:, None], other, one), np.where(away[:, None], one, other)
+    length, x = _length_and_direction(one)
+    other_length, y = _length_and_direction(other)
+    _, z = _length_and_direction(np.cross(x, y))
+    return length, other_length, np.stack([x, y, z], axis=2)
+
+
+def _length_and_direction(vectors: Floats) -> tuple[Floats, Floats]:
+    """Return the lengths (N,) of vectors (N, 3) and the unit vectors; a vector of no length stays as it is."""
+    lengths = np.linalg.norm(vectors, axis=1)
+    return lengths, vectors / np.where(lengths > 0, lengths, 1)[:, None]

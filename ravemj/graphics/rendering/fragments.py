@@ -1,0 +1,264 @@
+"""Which pixels drawings cover, without OpenGL: what the ray caster lays over its picture.
+
+Each figure is tested against the pixels of a rectangle around it, all figures of a kind at once, so the cost grows
+with the pixels that are covered and not with figures times pixels.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats, Ints
+from ravemj.graphics.rendering.camera import Camera, Pinhole
+from ravemj.graphics.rendering.lights import Lights
+from ravemj.model.drawing import Batch, Shapes
+
+_AT_ONCE = 1 << 20
+"""Pairs of figure and pixel that are tested at once."""
+
+_PIECE = 16.0
+"""Length of the pieces that lines are cut into [pixels], so that their rectangles stay small."""
+
+_NEAREST = 1e-6
+"""Lines are cut off at this depth [m]."""
+
+_SLACK = 1e-9
+"""How far outside a triangle a ray still hits, so that there are no gaps between neighbours."""
+
+
+class Fragments(NamedTuple):
+    """What drawings contribute to rays, in any order.
+
+    Attributes:
+        ray: Index of the ray, (N,).
+        depth: Depth along the viewing direction, (N,) [m].
+        color: Colour and opacity, (N, 4): 0..255 and 0..1.
+    """
+
+    ray: Ints
+    depth: Floats
+    color: Floats
+
+    def select(self, chosen: NDArray[np.bool_]) -> "Fragments":
+        """Return some of the fragments, by a mask (N,)."""
+        return Fragments(self.ray[chosen], self.depth[chosen], self.color[chosen])
+
+    def between(self, start: int, stop: int) -> "Fragments":
+        """Return the fragments of the rays from ``start`` to ``stop - 1``, numbered from 0."""
+        some = self.select((self.ray >= start) & (self.ray < stop))
+        return some._replace(ray=some.ray - start)
+
+    def of_rays(self, rays: Ints, count: int) -> "Fragments":
+        """Return the fragments of some of ``count`` rays, numbered by their places among those."""
+        place = np.full(count, -1)
+        place[rays] = np.arange(len(rays))
+        some = self.select(place[self.ray] >= 0)
+        return some._replace(ray=place[some.ray])
+
+    def over(self, colors: Floats) -> None:
+        """Lay the fragments over the colours of the rays (M, 3) in 0..255, from back to front."""
+        nearest_wall = np.full(len(colors), np.inf)
+        opaque = self.color[:, 3] >= 1
+        np.minimum.at(nearest_wall, self.ray[opaque], self.depth[opaque])
+        seen = self.select(self.depth <= nearest_wall[self.ray])
+        order = np.lexsort((-seen.depth, seen.ray))
+        ray, color = seen.ray[order], seen.color[order]
+        starts = np.flatnonzero(np.diff(ray, prepend=-1))
+        layer = np.arange(len(ray)) - np.repeat(starts, np.diff(starts, append=len(ray)))
+        for number in range(int(layer.max(initial=-1)) + 1):
+            here = np.flatnonzero(layer == number)
+            alpha = color[here, 3:]
+            colors[ray[here]] = alpha * color[here, :3] + (1 - alpha) * colors[ray[here]]
+
+
+NO_FRAGMENTS = Fragments(np.empty(0, dtype=np.int_), np.empty(0), np.empty((0, 4)))
+
+
+@dataclass
+class Raster:
+    """Finds the fragments of drawings in one picture.
+
+    Attributes:
+        camera: Where the picture is taken from.
+        size: Columns and rows.
+        lights: What falls on triangles and spheres.
+        offset: Where rays go through the pixels, from their centres to the right and down [pixels].
+        ray_of_pixel: Index of the ray of each pixel, (H * W,), -1 where none is wanted; None: its own number.
+    """
+
+    camera: Camera
+    size: tuple[int, int]
+    lights: Lights
+    offset: tuple[float, float] = (0.0, 0.0)
+    ray_of_pixel: Ints | None = None
+
+    def fragments(self, shapes: Shapes) -> Fragments:
+        """Return what drawings, given in the world, cover."""
+        T_camera_world = np.eye(4)
+        T_camera_world[:3, :3] = self.camera.rotation.T
+        T_camera_world[:3, 3] = -self.camera.rotation.T @ self.camera.position
+        points, spheres, lines, triangles = shapes.placed(T_camera_world).batches
+        found = [*self._points(points), *self._spheres(spheres), *self._lines(lines), *self._triangles(triangles)]
+        return Fragments(*(np.concatenate(arrays) for arrays in zip(*found, strict=True))) if found else NO_FRAGMENTS
+
+    def _points(self, batch: Batch) -> Iterator[Fragments]:
+        batch = _select(batch, batch.corners[:, 0, 2] > _NEAREST)
+        center, half = self._project(batch.corners[:, 0]), 0.5 * np.maximum(batch.sizes, 1)[:, None]
+        for owner, ray, _ in self._pairs(center - half, center + half):
+            yield _flat(ray, batch.corners[owner, 0, 2], batch.rgba[owner])
+
+    def _lines(self, batch: Batch) -> Iterator[Fragments]:
+        batch = _select(batch, batch.corners[:, :, 2].max(axis=1) > _NEAREST)
+        ends = _cut_off(batch.corners)
+        start, along = self._project(ends[:, 0]), self._project(ends[:, 1]) - self._project(ends[:, 0])
+        length = np.linalg.norm(along, axis=1)
+        half = 0.5 * np.maximum(batch.sizes, 1)
+        line, first, last = self._pieces(start, along, half)
+        at_first, at_last = (start[line] + part[:, None] * along[line] for part in (first, last))
+        reach = half[line, None]
+        low, high = np.minimum(at_first, at_last) - reach, np.maximum(at_first, at_last) + reach
+        for piece, ray, at in self._pairs(low, high):
+            owner = line[piece]
+            x, y = (at - start[owner]).T
+            part = (x * along[owner, 0] + y * along[owner, 1]) / length[owner] ** 2
+            aside = np.abs(x * along[owner, 1] - y * along[owner, 0]) / length[owner]
+            hit = (aside <= half[owner]) & (part >= first[piece]) & (part < last[piece])
+            owner, part = owner[hit], part[hit]
+            depth = 1 / ((1 - part) / ends[owner, 0, 2] + part / ends[owner, 1, 2])
+            yield _flat(ray[hit], depth, batch.rgba[owner])
+
+    def _pieces(self, start: Floats, along: Floats, half: Floats) -> tuple[Ints, Floats, Floats]:
+        """Cut the visible parts of lines on the screen: the line of each piece, and where it begins and ends, 0..1."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            crossings = np.stack([-half[:, None] - start, self.size + half[:, None] - start]) / along
+        first = np.nanmax(np.minimum(*crossings), axis=1, initial=0)
+        last = np.nanmin(np.maximum(*crossings), axis=1, initial=1)
+        length = np.linalg.norm(along, axis=1) * (last - first)
+        count = np.where(length > 0, np.ceil(length / _PIECE), 0).astype(int)
+        line, number = _numbered(count)
+        step = (last - first)[line] / count[line]
+        return line, first[line] + number * step, first[line] + (number + 1) * step
+
+    def _spheres(self, batch: Batch) -> Iterator[Fragments]:
+        center, radius = batch.corners[:, 0], batch.sizes
+        batch = _select(batch, (center[:, 2] > -radius) & (np.linalg.norm(center, axis=1) > radius))
+        center, radius = batch.corners[:, 0], batch.sizes
+        for owner, ray, at in self._pairs(*self._around_spheres(center, radius)):
+            direction = self._directions(at)
+            square = np.einsum("ij,ij->i", direction, direction)
+            middle = np.einsum("ij,ij->i", direction, center[owner]) / square
+            half = (radius[owner] ** 2 - np.einsum("ij,ij->i", center[owner], center[owner])) / square + middle**2
+            hit = (half >= 0) & (middle > 0)
+            sphere = owner[hit]
+            depth = middle[hit] - np.sqrt(half[hit])
+            normals = (depth[:, None] * direction[hit] - center[sphere]) / radius[sphere, None]
+            yield self._lit(ray[hit], depth, direction[hit], normals, batch.rgba[sphere])
+
+    def _around_spheres(self, center: Floats, radius: Floats) -> tuple[Floats, Floats]:
+        """Return the rectangles on the screen; where the plane of the eye cuts a sphere, the whole of it."""
+        x_or_y, depth, r = center[:, :2], center[:, 2:], radius[:, None]
+        in_front = (depth > r)[:, 0]
+        low, high = np.full((2, len(radius), 2), np.inf)
+        low[:] = -np.inf
+        x_or_y, depth, r = x_or_y[in_front], depth[in_front], r[in_front]
+        aside = r * np.sqrt(x_or_y**2 + depth**2 - r**2)
+        focal, principal = np.array(self._pinhole).reshape(2, 2)
+        low[in_front] = (x_or_y * depth - aside) / (depth**2 - r**2) * focal + principal
+        high[in_front] = (x_or_y * depth + aside) / (depth**2 - r**2) * focal + principal
+        return low, high
+
+    def _triangles(self, batch: Batch) -> Iterator[Fragments]:
+        batch = _select(batch, batch.corners[:, :, 2].max(axis=1) > _NEAREST)
+        corners = batch.corners
+        one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        facing, first, second = np.cross(other, one), np.cross(corners[:, 0], other), np.cross(one, corners[:, 0])
+        volume = np.einsum("ij,ij->i", other, second)
+        normals = facing / np.maximum(np.linalg.norm(facing, axis=1), np.finfo(float).tiny)[:, None]
+        for owner, ray, at in self._pairs(*self._around_triangles(corners)):
+            direction = self._directions(at)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                scale = 1 / np.einsum("ij,ij->i", direction, facing[owner])
+                u = np.einsum("ij,ij->i", direction, first[owner]) * scale
+                v = np.einsum("ij,ij->i", direction, second[owner]) * scale
+                depth = volume[owner] * scale
+                hit = (u >= -_SLACK) & (v >= -_SLACK) & (u + v <= 1 + _SLACK) & (depth > 0)
+            yield self._lit(ray[hit], depth[hit], direction[hit], normals[owner[hit]], batch.rgba[owner[hit]])
+
+    def _around_triangles(self, corners: Floats) -> tuple[Floats, Floats]:
+        """Return the rectangles on the screen; where the plane of the eye cuts a triangle, the whole of it."""
+        in_front = (corners[:, :, 2] > _NEAREST).all(axis=1)
+        low, high = np.full((2, len(corners), 2), np.inf)
+        low[:] = -np.inf
+        on_screen = self._project(corners[in_front])
+        low[in_front], high[in_front] = on_screen.min(axis=1), on_screen.max(axis=1)
+        return low, high
+
+    @property
+    def _pinhole(self) -> Pinhole:
+        return self.camera.pinhole(*self.size)
+
+    def _project(self, points: Floats) -> Floats:
+        """Return where points (..., 3) before the camera, in its frame, are on the screen, (..., 2) [pixels]."""
+        focal, principal = np.array(self._pinhole).reshape(2, 2)
+        return points[..., :2] / points[..., 2:] * focal + principal
+
+    def _directions(self, at: Floats) -> Floats:
+        """Return the rays through places on the screen (N, 2), in the frame of the camera, (N, 3) with depth 1."""
+        focal, principal = np.array(self._pinhole).reshape(2, 2)
+        return np.column_stack([(at - principal) / focal, np.ones(len(at))])
+
+    def _lit(self, ray: Ints, depth: Floats, directions: Floats, normals: Floats, rgba: Floats) -> Fragments:
+        to_world = self.camera.rotation.T
+        rays = directions @ to_world
+        light = self.lights.on(self.camera.position + depth[:, None] * rays, rays, normals @ to_world)
+        return _flat(ray, depth, np.column_stack([np.minimum(rgba[:, :3] * light, 1), rgba[:, 3]]))
+
+    def _pairs(self, low: Floats, high: Floats) -> Iterator[tuple[Ints, Ints, Floats]]:
+        """Yield the rays through rectangles (N, 2) and (N, 2) on the screen, many at once.
+
+        Each time: index of the rectangle, index of the ray, and where the ray goes through the screen (M, 2) [pixels].
+        """
+        center = 0.5 + np.array(self.offset)
+        first = np.ceil(np.clip(low - center, 0, self.size)).astype(int)
+        last = np.ceil(np.clip(high - center, 0, self.size)).astype(int)
+        extents = np.maximum(last - first, 0)
+        pixels = extents.prod(axis=1)
+        some = np.flatnonzero(pixels)
+        for chunk in np.split(some, np.flatnonzero(np.diff(np.cumsum(pixels[some]) // _AT_ONCE)) + 1):
+            within, number = _numbered(pixels[chunk])
+            owner = chunk[within]
+            row, column = np.divmod(number, extents[owner, 0])
+            row, column = row + first[owner, 1], column + first[owner, 0]
+            ray = row * self.size[0] + column
+            if self.ray_of_pixel is not None:
+                ray = self.ray_of_pixel[ray]
+                wanted = ray >= 0
+                owner, ray, row, column = owner[wanted], ray[wanted], row[wanted], column[wanted]
+            yield owner, ray, np.stack([column, row], axis=1) + center
+
+
+def _select(batch: Batch, chosen: NDArray[np.bool_]) -> Batch:
+    return Batch(*(array[chosen] for array in batch))
+
+
+def _flat(ray: Ints, depth: Floats, rgba: Floats) -> Fragments:
+    return Fragments(ray, depth, np.clip(rgba, 0, 1) * [255, 255, 255, 1])
+
+
+def _numbered(counts: Ints) -> tuple[Ints, Ints]:
+    """Return each index i ``counts[i]`` times, and numbers from 0 to ``counts[i] - 1`` beside it."""
+    index = np.repeat(np.arange(len(counts)), counts)
+    first = np.cumsum(counts) - counts
+    return index, np.arange(len(index)) - first[index]
+
+
+def _cut_off(ends: Floats) -> Floats:
+    """Return lines (N, 2, 3) without what is nearer than the camera sees."""
+    depth = ends[:, :, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = (_NEAREST - depth[:, 0]) / (depth[:, 1] - depth[:, 0])
+        cut = ends[:, 0] + part[:, None] * (ends[:, 1] - ends[:, 0])
+    return np.where((depth < _NEAREST)[:, :, None], cut[:, None], ends)

@@ -1,0 +1,104 @@
+"""Pictures by OpenGL, without a window."""
+
+from typing import Self
+
+import mujoco
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ravemj.errors import RenderingError
+from ravemj.graphics.rendering.camera import Camera
+from ravemj.graphics.rendering.contexts import OffscreenContext, close_at_exit
+from ravemj.graphics.rendering.frame import WHITE, check_data, color_bytes
+from ravemj.graphics.rendering.stage import Quality, Stage
+from ravemj.model.drawing import NOTHING, Shapes
+
+
+class GlRenderer:
+    """Draws one model with MuJoCo's classic OpenGL renderer.
+
+    A picture may be drawn from any thread, one at a time: the context is current only while one is drawn.
+
+    Attributes:
+        backend: The platform of the context: ``egl``, ``osmesa`` or ``glfw``.
+    """
+
+    def __init__(self, model: mujoco.MjModel, context: OffscreenContext, quality: Quality) -> None:
+        self._stage: Stage | None = None
+        self.backend = context.backend
+        self._model = model
+        self._size = quality.width, quality.height
+        self._viewport = mujoco.MjrRect(0, 0, quality.width, quality.height)
+        self._context = context
+        with context.current():
+            self._stage = _offscreen_stage(model, quality)
+        close_at_exit(self)
+
+    def render(
+        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, shapes: Shapes = NOTHING
+    ) -> NDArray[np.uint8]:
+        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        color = color_bytes(background)
+        stage = self._filled_stage(data, camera, shapes)
+        with self._context.current():
+            stage.draw(self._viewport, color)
+            picture = self._read(stage)
+        if not stage.has_background:
+            picture[~self._codes(stage).any(axis=2)] = color
+        return picture
+
+    def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
+        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        stage = self._filled_stage(data, camera, NOTHING)
+        return stage.geom_ids(self._codes(stage))
+
+    def close(self) -> None:
+        """Free the context and what is in it; a second call does nothing."""
+        stage, self._stage = self._stage, None
+        if stage is not None:
+            try:
+                with self._context.current():
+                    stage.close()
+            except RenderingError:
+                _never_freed.append(stage)  # freeing it here would free what the window in this thread holds
+            self._context.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        self.close()
+
+    def _codes(self, stage: Stage) -> NDArray[np.uint8]:
+        with self._context.current():
+            stage.draw_ids(self._viewport)
+            return self._read(stage)
+
+    def _filled_stage(self, data: mujoco.MjData, camera: Camera, shapes: Shapes) -> Stage:
+        if self._stage is None:
+            raise RenderingError("this renderer is closed")
+        check_data(self._model, data)
+        self._stage.fill(data, camera, *self._size, shapes)
+        return self._stage
+
+    def _read(self, stage: Stage) -> NDArray[np.uint8]:
+        width, height = self._size
+        pixels = np.empty((height, width, 3), dtype=np.uint8)
+        mujoco.mjr_readPixels(pixels, None, self._viewport, stage.context)
+        return pixels[::-1].copy()
+
+
+def _offscreen_stage(model: mujoco.MjModel, quality: Quality) -> Stage:
+    stage = Stage(model, quality)
+    offscreen = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
+    mujoco.mjr_setBuffer(offscreen, stage.context)
+    if stage.context.currentBuffer != offscreen:  # MuJoCo would draw into a window, and there is none
+        stage.close()
+        raise RenderingError("the OpenGL driver has no offscreen framebuffers")
+    return stage
+
+
+_never_freed: list[Stage] = []

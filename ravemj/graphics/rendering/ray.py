@@ -1,0 +1,252 @@
+"""Pictures by ray casting: MuJoCo's collision geometry, no OpenGL library, the same view.
+
+Flat shading with the lights of the model, transparency, no textures and no shadows. The cost is about 0.1
+microseconds per pixel and geom in view.
+"""
+
+import contextlib
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+from typing import Self
+
+import mujoco
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import RenderingError
+from ravemj.graphics.rendering.camera import Camera
+from ravemj.graphics.rendering.fragments import Fragments, Raster
+from ravemj.graphics.rendering.frame import WHITE, check_data, color_bytes
+from ravemj.graphics.rendering.lights import Lights
+from ravemj.graphics.rendering.stage import near_and_far
+from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms, geom_rgba
+from ravemj.model.drawing import NOTHING, Shapes
+
+_BAND = 1 << 16
+"""Rays that are cast at once: a few megabytes, whatever the size of the picture."""
+
+_LAYERS = 6
+"""Transparent surfaces that are looked through, one behind the other."""
+
+_EDGE = 12
+"""Difference between neighbouring pixels, of 255, from which an edge is smoothed."""
+
+_SUBPIXELS = np.array([(-0.125, -0.375), (0.375, -0.125), (0.125, 0.375), (-0.375, 0.125)])
+
+_HIDDEN_GROUP = 5
+_MAX_DEPTH = 1e10
+
+_TWO_WALLS = (
+    mujoco.mjtGeom.mjGEOM_SPHERE,
+    mujoco.mjtGeom.mjGEOM_CAPSULE,
+    mujoco.mjtGeom.mjGEOM_ELLIPSOID,
+    mujoco.mjtGeom.mjGEOM_CYLINDER,
+    mujoco.mjtGeom.mjGEOM_BOX,
+)
+"""Convex shapes: a ray that enters one leaves it once, and one that hits it from behind started inside."""
+
+
+class RayRenderer:
+    """Draws one model by casting a ray through every pixel.
+
+    Attributes:
+        backend: Always ``ray``.
+    """
+
+    backend = "ray"
+
+    def __init__(self, model: mujoco.MjModel, width: int, height: int, samples: int = 4) -> None:
+        self._model = model
+        self._size = width, height
+        self._samples = samples
+        self._lights = Lights(model)
+        self._closed = False
+
+    def render(
+        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, shapes: Shapes = NOTHING
+    ) -> NDArray[np.uint8]:
+        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        width, height = self._size
+        color = color_bytes(background)
+        picture = np.empty((height, width, 3), dtype=np.uint8)
+        with self._scene(data, camera) as scene:
+            drawn = Raster(camera, self._size, self._lights).fragments(shapes)
+            for rows, rays in self._bands(camera):
+                here = drawn.between(rows.start * width, rows.stop * width)
+                picture[rows] = np.rint(scene.colors(rays, color, here)).reshape(-1, width, 3)
+            if self._samples:
+                self._smooth_edges(picture, scene, camera, color, shapes)
+        return picture
+
+    def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
+        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        width, height = self._size
+        geom_ids = np.empty((height, width), dtype=np.int32)
+        with self._scene(data, camera) as scene:
+            for rows, rays in self._bands(camera):
+                geom_ids[rows] = scene.cast(rays)[0].reshape(-1, width)
+        return geom_ids
+
+    def close(self) -> None:
+        """Refuse further pictures; there is nothing to free."""
+        self._closed = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @contextlib.contextmanager
+    def _scene(self, data: mujoco.MjData, camera: Camera) -> "Generator[_RayScene]":
+        """Hide what is not drawn for as long as one picture takes; the model gets its groups back."""
+        if self._closed:
+            raise RenderingError("this renderer is closed")
+        model = self._model
+        check_data(model, data)
+        self._lights.update(data, camera, near_and_far(model, data, camera))
+        groups = model.geom_group.copy()
+        try:
+            model.geom_group[~drawn_geoms(model)] = _HIDDEN_GROUP
+            yield _RayScene(model, data, camera.position, geom_rgba(model), self._lights)
+        finally:
+            model.geom_group[:] = groups
+
+    def _bands(self, camera: Camera) -> Iterator[tuple[slice, Floats]]:
+        width, height = self._size
+        by_column, by_row = camera.ray_parts(width, height)
+        step = max(1, _BAND // width)
+        for start in range(0, height, step):
+            rows = slice(start, min(start + step, height))
+            yield rows, (by_column + by_row[rows]).reshape(-1, 3)
+
+    def _smooth_edges(
+        self,
+        picture: NDArray[np.uint8],
+        scene: "_RayScene",
+        camera: Camera,
+        background: NDArray[np.uint8],
+        shapes: Shapes,
+    ) -> None:
+        """Replace pixels that differ from a neighbour by the mean of four rays."""
+        rows, columns = np.nonzero(_edges(picture))
+        ray_of_pixel = np.full(picture.shape[:2], -1)
+        ray_of_pixel[rows, columns] = np.arange(rows.size)
+        by_column, by_row = camera.ray_parts(*self._size)
+        sums = np.zeros((rows.size, 3))
+        for offset in _SUBPIXELS:
+            aside = offset / camera.pinhole(*self._size)[:2] @ camera.rotation[:, :2].T
+            drawn = Raster(camera, self._size, self._lights, offset, ray_of_pixel.reshape(-1)).fragments(shapes)
+            for start in range(0, rows.size, _BAND):
+                some = slice(start, min(start + _BAND, rows.size))
+                rays = by_column[0, columns[some]] + by_row[rows[some], 0] + aside
+                sums[some] += scene.colors(rays, background, drawn.between(some.start, some.stop))
+        picture[rows, columns] = np.rint(sums / len(_SUBPIXELS))
+
+
+@dataclass
+class _RayScene:
+    """One state of a model, seen from one point.
+
+    Attributes:
+        model: The model; its geom groups say what can be hit.
+        data: Its state.
+        origin: Eye point in the world, (3,) [m].
+        rgba: Colours of the geoms, (ngeom, 4).
+        lights: What lights them.
+    """
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    origin: Floats
+    rgba: Floats
+    lights: Lights
+
+    def colors(self, rays: Floats, background: NDArray[np.uint8], drawn: Fragments, layers: int = _LAYERS) -> Floats:
+        """Return what rays (N, 3) in world coordinates see, as colours (N, 3) in 0..255, not rounded."""
+        colors = np.empty(rays.shape)
+        colors[:] = background
+        geom_ids, depth, normals = self.cast(rays)
+        hit = np.flatnonzero(geom_ids >= 0)
+        ids = geom_ids[hit]
+        light = self.lights.on(self.origin + depth[hit, None] * rays[hit], rays[hit], normals[hit])
+        shaded = 255 * np.minimum(self.rgba[ids, :3] * light, 1)
+        opacity = self._opacity(ids)
+        colors[hit] = shaded
+        hidden = (geom_ids >= 0)[drawn.ray] & (drawn.depth > depth[drawn.ray])
+        behind_surface = drawn.select(hidden)
+        for geom in np.unique(ids[opacity < 1]) if layers else ():
+            seen = np.flatnonzero(ids == geom)
+            with self._without(geom):
+                farther = behind_surface.of_rays(hit[seen], len(rays))
+                behind = self.colors(rays[hit[seen]], background, farther, layers - 1)
+            weight = opacity[seen, None]
+            colors[hit[seen]] = weight * shaded[seen] + (1 - weight) * behind
+        drawn.select(~hidden).over(colors)
+        return colors
+
+    def cast(self, rays: Floats) -> tuple[NDArray[np.int32], Floats, Floats]:
+        """Return what rays (N, 3) hit first: geom (N,), -1 for none; depth (N,); outer unit normal (N, 3).
+
+        Like OpenGL, it does not see a shape from its inside. Meshes are seen from both sides.
+        """
+        count = len(rays)
+        geom_ids = np.empty(count, dtype=np.int32)
+        depth = np.empty(count)
+        normals = np.empty((count, 3))
+        self._multi_ray(rays, geom_ids, depth, normals)
+        inside = (np.einsum("ij,ij->i", normals, rays) > 0) & self._has_two_walls(geom_ids)
+        if inside.any():  # the eye is in these geoms, so no ray can see them
+            again = np.flatnonzero(inside)
+            self.model.geom_group[geom_ids[again]] = _HIDDEN_GROUP
+            geom_ids[again], depth[again], normals[again] = self.cast(rays[again])
+        return geom_ids, depth, normals
+
+    def _multi_ray(self, rays: Floats, geom_ids: NDArray[np.int32], depth: Floats, normals: Floats) -> None:
+        mujoco.mj_multiRay(
+            self.model,
+            self.data,
+            self.origin,
+            rays.reshape(-1),
+            DRAWN_GROUPS,
+            True,
+            -1,
+            geom_ids,
+            depth,
+            normals.reshape(-1),
+            len(rays),
+            _MAX_DEPTH,
+        )
+
+    def _has_two_walls(self, geom_ids: NDArray[np.int32]) -> NDArray[np.bool_]:
+        two_walls = np.isin([*self.model.geom_type, -1], _TWO_WALLS)  # the last stands for no geom, -1
+        return two_walls[geom_ids]
+
+    def _opacity(self, geom_ids: NDArray[np.int32]) -> Floats:
+        """Return how much of what is behind is covered: OpenGL draws the back wall of a shape, then the front."""
+        walls = 1 + self._has_two_walls(geom_ids)
+        return 1 - (1 - self.rgba[geom_ids, 3]) ** walls
+
+    @contextlib.contextmanager
+    def _without(self, geom: int) -> Generator[None]:
+        group = int(self.model.geom_group[geom])
+        self.model.geom_group[geom] = _HIDDEN_GROUP
+        try:
+            yield
+        finally:
+            self.model.geom_group[geom] = group
+
+
+def _edges(picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Return which pixels differ from the one beside or below, or the one before, (H, W)."""
+    edges = np.zeros(picture.shape[:2], dtype=np.bool_)
+    for first, second in (
+        (np.s_[:-1], np.s_[1:]),
+        (np.s_[:, :-1], np.s_[:, 1:]),
+    ):
+        one, other = picture[first], picture[second]
+        differs = (np.maximum(one, other) - np.minimum(one, other) > _EDGE).any(axis=2)
+        edges[first] |= differs
+        edges[second] |= differs
+    return edges

@@ -1,0 +1,268 @@
+"""MuJoCo's classic drawing, wherever it goes: into an offscreen buffer or into a window.
+
+A ``Stage`` belongs to one model and one OpenGL context. Its methods need that context to be current in the
+calling thread; making it current is the caller's business, which is why a window can use the same code.
+"""
+
+import contextlib
+import logging
+import threading
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats
+from ravemj.graphics.rendering.camera import Camera, bounding_sphere
+from ravemj.graphics.rendering.figures import add_figures
+from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms
+from ravemj.model.drawing import NOTHING, Shapes
+
+SHADOW_SIZE = 1024
+"""Texels along one side of the shadow map: a quarter of MuJoCo's default, a seventh of its cost on a CPU."""
+
+_SLICES, _STACKS = 48, 24
+"""Facets around and along round shapes; MuJoCo's 28 and 16 show corners on close views."""
+
+_SPARE_GEOMS = 1000
+_MAX_FIGURES = 300_000
+"""Most figures of drawings in one picture: MuJoCo needs a second to make room for so many."""
+
+_SMALLEST = 1e-3
+"""Radius of what has none, such as a single point [m]."""
+
+_WIDEST = 1e-6
+"""Nearest depth, as a part of the farthest one: with less, MuJoCo loses the background."""
+
+_painting = threading.Lock()
+"""Held while the texture of a model has a background's colour."""
+
+_LOG = logging.getLogger("ravemj")
+
+
+@dataclass(frozen=True)
+class Quality:
+    """What an OpenGL context is made for; it cannot be changed afterwards.
+
+    Attributes:
+        width: Columns of the offscreen buffer.
+        height: Rows of the offscreen buffer.
+        shadows: Whether lights that cast shadows do so. MuJoCo's headlight never does.
+        samples: Samples per pixel against jagged edges, 0 or 4.
+    """
+
+    width: int
+    height: int
+    shadows: bool = False
+    samples: int = 4
+
+
+class Stage:
+    """Draws one model with OpenGL.
+
+    Attributes:
+        scene: MuJoCo's list of what is drawn; filled by :meth:`fill`.
+        context: MuJoCo's resources on the graphics card.
+        has_background: Whether the model has the skybox texture that background colours are painted with.
+    """
+
+    def __init__(self, model: mujoco.MjModel, quality: Quality) -> None:
+        self._model = model
+        with _quality_of(model, quality):
+            self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_150.value)
+        self._shadows = quality.shadows
+        self._has_warned = False
+        self._make_scene(_SPARE_GEOMS)
+        self._option = drawing_option()
+        self._skybox = _find_skybox(model)
+        self._background: bytes | None = None
+
+    @property
+    def has_background(self) -> bool:
+        """Whether the model has the skybox texture that background colours are painted with."""
+        return self._skybox is not None
+
+    def _make_scene(self, room: int) -> None:
+        self.scene = mujoco.MjvScene(self._model, self._model.ngeom + room)
+        self._room = room
+
+    def fill(self, data: mujoco.MjData, camera: Camera, width: int, height: int, shapes: Shapes = NOTHING) -> None:
+        """Take over the poses of the geoms, the drawings and the point of view.
+
+        Args:
+            data: State of the model with the poses computed.
+            camera: Where the picture is taken from.
+            width: Columns of the viewport.
+            height: Rows of the viewport.
+            shapes: What is drawn beside the geoms. With points or lines there are no shadows: MuJoCo would draw these
+                once more for each light that casts some, and add the colours up.
+        """
+        self._make_room(len(shapes))
+        has_lines = bool(shapes.points.sizes.size or shapes.lines.sizes.size)
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._shadows and not has_lines
+        depths = near_and_far(self._model, data, camera, shapes)
+        aim(self.scene, camera, (width, height), depths)
+        if self._model.nlight:
+            mujoco.mj_camlight(self._model, data)
+        user_camera = mujoco.MjvCamera()
+        user_camera.type = mujoco.mjtCamera.mjCAMERA_USER
+        everything = mujoco.mjtCatBit.mjCAT_ALL.value
+        mujoco.mjv_updateScene(self._model, data, self._option, None, user_camera, everything, self.scene)
+        if self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW]:
+            self._cover_with_shadows(data, near=depths[0])
+        add_figures(self.scene, shapes, camera, width, height)
+
+    def _make_room(self, figures: int) -> None:
+        if figures > _MAX_FIGURES and not self._has_warned:
+            self._has_warned = True
+            _LOG.warning("%d figures are drawn, and OpenGL shows %d of them", figures, _MAX_FIGURES)
+        if self._room < min(figures, _MAX_FIGURES):
+            self._make_scene(min(2 * figures, _MAX_FIGURES))
+
+    def draw(self, viewport: mujoco.MjrRect, background: NDArray[np.uint8]) -> None:
+        """Draw into the current framebuffer.
+
+        Args:
+            viewport: Rectangle of the framebuffer, in pixels from its lower left corner.
+            background: Colour where nothing is, (3,) in 0..255; black where the model has no skybox texture.
+        """
+        self._paint_background(background)
+        mujoco.mjr_render(viewport, self.scene, self.context)
+
+    def draw_ids(self, viewport: mujoco.MjrRect) -> None:
+        """Draw geom numbers instead of colours; :meth:`geom_ids` reads them back."""
+        flags = self.scene.flags.copy()
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = True
+        self.scene.flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = True
+        mujoco.mjr_render(viewport, self.scene, self.context)
+        self.scene.flags[:] = flags
+
+    def geom_ids(self, pixels: NDArray[np.uint8]) -> NDArray[np.int32]:
+        """Return the geom that each pixel drawn by :meth:`draw_ids` shows: (..., 3) to (...), -1 for none."""
+        codes = pixels.astype(np.int32) @ np.array([1, 1 << 8, 1 << 16], dtype=np.int32)
+        geom_of_code = np.full(self.scene.ngeom + 1, -1, dtype=np.int32)
+        for drawn in self.scene.geoms[: self.scene.ngeom]:
+            if drawn.objtype == mujoco.mjtObj.mjOBJ_GEOM:
+                geom_of_code[drawn.segid + 1] = drawn.objid
+        return geom_of_code[codes]
+
+    def close(self) -> None:
+        """Free the resources on the graphics card."""
+        self.context.free()
+
+    def _cover_with_shadows(self, data: mujoco.MjData, near: float) -> None:
+        """Move directional lights back until their shadow map covers the scene, and just that.
+
+        Where they stand makes no difference to their light. MuJoCo looks from them with the camera's depths.
+        """
+        center, radius = bounding_sphere(self._model, data)
+        self.context.shadowClip = 1.05 * radius
+        for light in self.scene.lights[: self.scene.nlight]:
+            if light.type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL and light.castshadow:
+                light.pos = center - (near + 1.2 * radius) * light.dir
+
+    def _paint_background(self, background: NDArray[np.uint8]) -> None:
+        """Upload a new skybox where the colour changed; the model keeps its own texture."""
+        if self._skybox is None or self._background == background.tobytes():
+            return
+        model, texture = self._model, self._skybox
+        channels = int(model.tex_nchannel[texture])
+        start = int(model.tex_adr[texture])
+        stop = start + int(model.tex_width[texture]) * int(model.tex_height[texture]) * channels
+        with _painting:
+            original = model.tex_data[start:stop].copy()
+            model.tex_data[start:stop].reshape(-1, channels)[:, :3] = background
+            mujoco.mjr_uploadTexture(model, self.context, texture)
+            model.tex_data[start:stop] = original
+        self._background = background.tobytes()
+
+
+def drawing_option() -> mujoco.MjvOption:
+    """Return what is drawn: the geoms of groups 0 to 2, and no sites, tendons or other aids."""
+    option = mujoco.MjvOption()
+    option.geomgroup[:] = DRAWN_GROUPS
+    option.sitegroup[:] = 0
+    option.tendongroup[:] = 0
+    option.flags[mujoco.mjtVisFlag.mjVIS_RANGEFINDER] = False
+    return option
+
+
+def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: tuple[float, float]) -> None:
+    """Write a camera into a scene; ``mjv_updateScene`` keeps it for a camera of type ``mjCAMERA_USER``.
+
+    Args:
+        scene: The scene.
+        camera: Where the picture is taken from.
+        size: Width and height of the picture [pixels].
+        depths: Nearest and farthest depth that is drawn [m].
+    """
+    near, far = depths
+    right_down_forward = camera.rotation
+    fx, fy, cx, cy = camera.pinhole(*size)
+    left, right = -cx / fx * near, (size[0] - cx) / fx * near
+    for eye in scene.camera:  # two, for stereo; a mono picture takes their mean
+        eye.pos = camera.position
+        eye.forward = right_down_forward[:, 2]
+        eye.up = -right_down_forward[:, 1]
+        eye.frustum_near, eye.frustum_far = near, far
+        eye.frustum_top, eye.frustum_bottom = cy / fy * near, (cy - size[1]) / fy * near
+        eye.frustum_center, eye.frustum_width = (left + right) / 2, (right - left) / 2  # half the width
+        eye.orthographic = 0
+
+
+def near_and_far(
+    model: mujoco.MjModel, data: mujoco.MjData, camera: Camera, shapes: Shapes = NOTHING
+) -> tuple[float, float]:
+    """Return depths [m] between which everything lies that the camera can see, wherever it stands.
+
+    MuJoCo paints the background on the walls of a cube that fits into the farthest depth, so that has to be
+    well behind the scene. Its depth buffer holds floats, 1 for near, so wide ranges cost no precision.
+    """
+    center, radius = bounding_sphere(model, data)
+    near, far = _depths_of_sphere(center, radius, camera)
+    if len(shapes):
+        center_of_drawings, radius_of_drawings = shapes.bounding_sphere()
+        nearer, farther = _depths_of_sphere(center_of_drawings, max(radius_of_drawings, _SMALLEST), camera)
+        far = max(far, farther)
+        near = max(min(near, nearer), _WIDEST * far)
+    if (drawn_geoms(model) & (model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)).any():
+        near = min(near, 1e-2 * radius)
+        far = max(far, 5 * model.vis.map.zfar * model.stat.extent)
+    return near, far
+
+
+def _depths_of_sphere(center: Floats, radius: float, camera: Camera) -> tuple[float, float]:
+    depth = float((center - camera.position) @ camera.rotation[:, 2])
+    near = max(0.9 * (depth - radius), 1e-4 * radius)
+    return near, 5 * max(depth + radius, near)
+
+
+def _find_skybox(model: mujoco.MjModel) -> int | None:
+    """Return the texture that MuJoCo draws behind everything; None without one that can be written."""
+    skyboxes = np.flatnonzero(model.tex_type == mujoco.mjtTexture.mjTEXTURE_SKYBOX)
+    if skyboxes.size == 0 or model.tex_adr[skyboxes[0]] < 0 or model.tex_nchannel[skyboxes[0]] < 3:
+        return None
+    return int(skyboxes[0])
+
+
+@contextlib.contextmanager
+def _quality_of(model: mujoco.MjModel, quality: Quality) -> Generator[None]:
+    """Set what ``MjrContext`` reads from the model, and give the model its own values back."""
+    sizes: Sequence[tuple[object, str, int]] = (
+        (model.vis.global_, "offwidth", quality.width),
+        (model.vis.global_, "offheight", quality.height),
+        (model.vis.quality, "offsamples", quality.samples),
+        (model.vis.quality, "shadowsize", SHADOW_SIZE if quality.shadows else 0),
+        (model.vis.quality, "numslices", _SLICES),
+        (model.vis.quality, "numstacks", _STACKS),
+    )
+    before = [getattr(owner, name) for owner, name, _ in sizes]
+    for owner, name, value in sizes:
+        setattr(owner, name, value)
+    try:
+        yield
+    finally:
+        for (owner, name, _), value in zip(sizes, before, strict=True):
+            setattr(owner, name, value)

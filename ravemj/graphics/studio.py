@@ -1,0 +1,146 @@
+"""Pictures of a simulation: who draws them, from where, on what background."""
+
+import threading
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ravemj.engine.simulation import Simulation
+from ravemj.errors import ArgumentError
+from ravemj.graphics.rendering import (
+    Camera,
+    Renderer,
+    bounding_sphere,
+    open_renderer,
+    three_quarter_view,
+    view_from_above,
+)
+from ravemj.graphics.rendering.contexts import RAY
+from ravemj.model.drawing import NOTHING, Shapes, merge
+
+Frame = NDArray[np.uint8]
+
+
+class Format(NamedTuple):
+    """What a picture costs and how it looks.
+
+    Attributes:
+        width: Columns [pixels].
+        height: Rows [pixels].
+        shadows: Whether lights cast shadows; too slow for videos without a graphics card.
+    """
+
+    width: int = 640
+    height: int = 480
+    shadows: bool = False
+
+
+class Studio:
+    """Draws a simulation; each thread keeps the renderer of its last picture, for the next one.
+
+    The simulation is locked while its state is copied, and free while OpenGL draws.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._kept = threading.local()
+
+    def picture(
+        self, camera: Camera, background: ArrayLike, form: Format, drawings: bool = True, gizmos: Shapes = NOTHING
+    ) -> Frame:
+        """Draw the bodies and the drawings as they are now.
+
+        Args:
+            camera: Where the picture is taken from.
+            background: Colour where nothing is: red, green, blue from 0 to 1.
+            form: Size and quality.
+            drawings: False: without the drawings of scripts.
+            gizmos: What else is drawn.
+
+        Returns:
+            Shape (height, width, 3), top row first.
+
+        Raises:
+            RenderingError: nothing can draw here, or ``MUJOCO_GL`` names what does not work.
+        """
+        with self._simulation.lock:
+            compiled = self._simulation.compile()
+            shapes = self._simulation.drawings.shapes() if drawings else NOTHING
+            shown = merge([shapes, gizmos]) if len(gizmos) else shapes
+            renderer = self._renderer(form)
+            if renderer.backend == RAY:  # it hides geoms of the model while it draws
+                return renderer.render(compiled.data, camera, background, shown)
+            mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
+        return renderer.render(self._kept.data, camera, background, shown)
+
+    def backend(self, form: Format) -> str:
+        """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""
+        with self._simulation.lock:
+            return self._renderer(form).backend
+
+    def _renderer(self, form: Format) -> Renderer:
+        key = (self._simulation.version, form)
+        if getattr(self._kept, "key", None) != key:
+            self.close()
+            model = self._simulation.compile().model
+            self._kept.data = mujoco.MjData(model)
+            self._kept.renderer = open_renderer(model, form.width, form.height, shadows=form.shadows)
+            self._kept.key = (self._simulation.version, form)
+        return self._kept.renderer
+
+    def close(self) -> None:
+        """Free the renderer of this thread."""
+        if getattr(self._kept, "key", None) is not None:
+            self._kept.renderer.close()
+            self._kept.key = None
+
+    def file_camera(self) -> Camera | None:
+        """Return the camera that the loaded file asks for, or None."""
+        T_world_camera = self._simulation.view.T_world_camera
+        return None if T_world_camera is None else Camera(T_world_camera.matrix())
+
+    def camera_from_above(self) -> Camera:
+        """Return OpenRAVE's first view: along -z, with +y up, of the whole scene."""
+        return view_from_above(*self.bounding_sphere())
+
+    def camera_for_stills(self, aspect: float) -> Camera:
+        """Return the file's camera, else a view of the whole scene from the front left and above.
+
+        Args:
+            aspect: Width of the picture divided by its height.
+        """
+        return self.file_camera() or fitting_view(*self.bounding_sphere(), aspect)
+
+    def bounding_sphere(self) -> tuple[NDArray[np.float64], float]:
+        """Return centre (3,) and radius [m] of a sphere around all that is drawn."""
+        with self._simulation.lock:
+            compiled = self._simulation.compile()
+            return bounding_sphere(compiled.model, compiled.data)
+
+
+def fitting_view(center: NDArray[np.float64], radius: float, aspect: float) -> Camera:
+    """Return a view from the front left and above in which a sphere fits.
+
+    Args:
+        center: Centre of the sphere, shape (3,) [m].
+        radius: Its radius [m].
+        aspect: Width of the picture divided by its height.
+    """
+    return three_quarter_view(center, radius / min(1.0, aspect))
+
+
+def checked_colour(colour: ArrayLike) -> tuple[float, float, float]:
+    """Return a colour as three floats.
+
+    Raises:
+        ArgumentError: it is not three numbers from 0 to 1.
+    """
+    try:
+        red, green, blue = (float(part) for part in np.asarray(colour, dtype=np.float64).reshape(-1)[:4])
+    except (TypeError, ValueError):
+        raise ArgumentError(f"a colour is three numbers from 0 to 1, not {colour!r}") from None
+    if not all(0 <= part <= 1 for part in (red, green, blue)):
+        raise ArgumentError(f"a colour is three numbers from 0 to 1, not {colour!r}")
+    return (red, green, blue)

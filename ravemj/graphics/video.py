@@ -1,0 +1,324 @@
+"""Pictures and videos on disk.
+
+A frame is a uint8 array (height, width, 3): sRGB, the top row first. The name of the target says what is written:
+
+======================  =====================================================================================
+``.mp4``                H.264, which every browser plays
+``.gif``                256 colours a frame; delays are multiples of 10 ms, so the frames of a 30 fps video take
+                        30 or 40 ms and the whole keeps its time
+``.webp``               all colours, smaller than GIF; delays are multiples of 1 ms
+no suffix or a final /  a folder of ``frame_00000.png``, ``frame_00001.png``, …
+======================  =====================================================================================
+
+MP4 and PNG take the same memory for any number of frames; GIF and WebP hold all of them.
+
+A target appears whole or not at all; see ``ravemj.core.output``.
+"""
+
+# PyAV and imageio leave some types open.
+# pyright: reportUnknownMemberType=false
+
+import io
+import itertools
+import logging
+import math
+import os
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.output import AnyPath, check_file, check_folder, new_file, new_folder, output_error
+from ravemj.errors import ArgumentError
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+Frame = NDArray[np.uint8]
+
+logger = logging.getLogger("ravemj")
+
+_FRAMES_BETWEEN_THREADS = 4
+_LOWEST_FPS = 0.01
+_FOLDER = ""  # the suffix that stands for a folder of PNG files
+_FILES_OF_FOLDER = "frame_*.png"
+_BT709, _SRGB = 1, 13  # ITU-T H.273
+_LIMITED, _FULL = 1, 2  # FFmpeg's AVColorRange
+_MANY_FRAMES = 300
+_MANY_PIXELS = 100_000_000
+
+
+def check_target(path: AnyPath) -> None:
+    """Check that a video can be written to a path, without touching anything.
+
+    Call it before work that takes long; ``write_frames`` calls it as well.
+
+    Raises:
+        ArgumentError: The suffix is not one of those in the module's text.
+        OutputError: The folder around it is missing or cannot be written, or something is in the way.
+    """
+    if _known_suffix(path, _VIDEO_FORMATS) == _FOLDER:
+        check_folder(path, _FILES_OF_FOLDER)
+    else:
+        check_file(path)
+
+
+def write_frames(
+    path: AnyPath, frames: Iterable[Frame], fps: float, *, on_frame: Callable[[int], None] | None = None
+) -> Path:
+    """Write a video.
+
+    Frames are drawn in the caller's thread, where the GL context lives, while a second thread encodes. Each frame is
+    copied when it arrives, so that one buffer may serve for all of them.
+
+    Args:
+        path: The target; its suffix selects the format.
+        frames: uint8 arrays (height, width, 3) of one size. MP4 repeats the last row or column of an odd size.
+        fps: Frames a second, from 0.01 to 1000; to 50 for GIF and to 90 for WebP, since browsers play shorter delays
+            at 10 frames a second.
+        on_frame: Called in the caller's thread after each frame with the number of frames so far.
+
+    Returns:
+        The path, as it was given.
+
+    Raises:
+        ArgumentError: Unknown suffix, unusable fps, a frame of wrong type or size, or no frames at all.
+        OutputError: The target cannot be written; most causes are found before the first frame is drawn.
+    """
+    suffix = _known_suffix(path, _VIDEO_FORMATS)
+    encoder, highest_fps = _VIDEO_FORMATS[suffix]
+    rate = _rate(fps, highest_fps)
+    with new_folder(path, _FILES_OF_FOLDER) if suffix == _FOLDER else new_file(path) as temporary:
+        _overlap(_checked(frames), lambda arriving: _encode(encoder, arriving, temporary, rate, path), on_frame)
+    return Path(path)
+
+
+def check_picture(path: AnyPath) -> None:
+    """Check that a single picture can be written to a path, without touching anything.
+
+    Raises:
+        ArgumentError: The suffix is none of ``.png``, ``.jpg``, ``.jpeg`` and ``.webp``.
+        OutputError: The folder around it is missing or cannot be written, or something is in the way.
+    """
+    _known_suffix(path, _STILL_FORMATS)
+    check_file(path)
+
+
+def write_picture(path: AnyPath, frame: Frame) -> Path:
+    """Write a single picture as ``.png``, ``.jpg``, ``.jpeg`` or ``.webp``.
+
+    Args:
+        path: The target; its suffix selects the format.
+        frame: uint8 array (height, width, 3).
+
+    Returns:
+        The path, as it was given.
+
+    Raises:
+        ArgumentError: Unknown suffix, or the frame has a wrong type or shape.
+        OutputError: The target cannot be written.
+    """
+    suffix = _known_suffix(path, _STILL_FORMATS)
+    (picture,) = _checked([frame])
+    with new_file(path) as temporary:
+        try:
+            _imwrite(temporary, picture, extension=suffix, **_STILL_FORMATS[suffix])
+        except Exception as error:
+            raise output_error(path, error) from error
+    return Path(path)
+
+
+def png_bytes(frame: Frame) -> bytes:
+    """Return the content of a PNG file with a frame, uint8 of shape (height, width, 3)."""
+    content = io.BytesIO()
+    _imwrite(content, frame, extension=".png")
+    return content.getvalue()
+
+
+def _imwrite(target: Path | io.BytesIO, frame: Frame, **options: Any) -> None:  # noqa: ANN401 - the encoder decides
+    import imageio.v3  # noqa: PLC0415 - slow to import
+
+    imageio.v3.imwrite(target, frame, plugin="pillow", **options)
+
+
+def _write_mp4(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
+    import av  # noqa: PLC0415 - slow to import
+
+    first = next(frames)
+    with av.open(str(temporary), "w", format="mp4", options={"movflags": "+faststart"}) as container:
+        stream = container.add_stream("libx264", rate, {"crf": "20", "preset": "veryfast"})
+        stream.height, stream.width = (size + size % 2 for size in first.shape[:2])
+        stream.pix_fmt = "yuv420p"
+        codec = stream.codec_context
+        codec.thread_count = 1  # more threads would take the processor from drawing
+        codec.color_range, codec.colorspace = _LIMITED, _BT709
+        codec.color_primaries, codec.color_trc = _BT709, _SRGB
+        for number, frame in enumerate(itertools.chain([first], frames)):
+            even = np.pad(frame, [(0, size % 2) for size in frame.shape[:2]] + [(0, 0)], mode="edge")
+            picture = av.VideoFrame.from_ndarray(even, format="rgb24").reformat(
+                format="yuv420p", dst_colorspace=_BT709, src_color_range=_FULL, dst_color_range=_LIMITED
+            )
+            picture.pts = number
+            container.mux(stream.encode(picture))
+        container.mux(stream.encode(None))
+
+
+def _write_gif(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
+    images = _images(frames, rate, 10)
+    next(images).save(temporary, format="GIF", save_all=True, append_images=images, loop=0)
+
+
+def _write_webp(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
+    images = list(_images(frames, rate, 1))
+    delays = [image.info["duration"] for image in images]
+    options = {"duration": delays, "quality": 85, "method": 0}  # 0: the fastest
+    images[0].save(temporary, format="WEBP", save_all=True, append_images=images[1:], loop=0, **options)
+
+
+def _images(frames: Iterator[Frame], rate: Fraction, grain: int) -> "Iterator[Image]":
+    """Yield the frames as images that know their delay, a multiple of the grain [ms]; the sum keeps the time."""
+    from PIL import Image  # noqa: PLC0415 - slow to import
+
+    pixels = 0
+    warned = False
+    for number, frame in enumerate(frames):
+        pixels += frame.shape[0] * frame.shape[1]
+        if not warned and (number >= _MANY_FRAMES or pixels > _MANY_PIXELS):
+            logger.warning("a long GIF or WebP holds all frames in memory and becomes a large file; .mp4 does not")
+            warned = True
+        image = Image.fromarray(frame)
+        begin, end = (round(count * 1000 / rate / grain) for count in (number, number + 1))
+        image.info["duration"] = (end - begin) * grain
+        yield image
+
+
+def _write_png_folder(frames: Iterator[Frame], temporary: Path, _: Fraction) -> None:
+    for number, frame in enumerate(frames):
+        _imwrite(temporary / f"frame_{number:05d}.png", frame, compress_level=1)
+
+
+_Encoder = Callable[[Iterator[Frame], Path, Fraction], None]
+_VIDEO_FORMATS: dict[str, tuple[_Encoder, int]] = {  # with the highest fps
+    ".mp4": (_write_mp4, 1000),
+    ".gif": (_write_gif, 50),
+    ".webp": (_write_webp, 90),
+    _FOLDER: (_write_png_folder, 1000),
+}
+_STILL_FORMATS: dict[str, dict[str, str | int]] = {  # with the encoder's options
+    ".png": {},
+    ".jpg": {"quality": 95},
+    ".jpeg": {"quality": 95},
+    ".webp": {"quality": 95},
+}
+
+
+class _Stopped(Exception):  # noqa: N818 - no error of its own: it ends an encoder that nobody needs any more
+    pass
+
+
+class _Handover:
+    """Frames on their way from the thread that draws to the thread that encodes; few at a time."""
+
+    def __init__(self) -> None:
+        self._frames: deque[Frame] = deque()
+        self._changed = threading.Condition()
+        self._complete = False
+        self._stopped = False
+
+    def put(self, frame: Frame) -> bool:
+        """Hand a frame over as soon as there is room; False if the other side has gone."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._stopped or len(self._frames) < _FRAMES_BETWEEN_THREADS)
+            self._frames.append(frame)
+            self._changed.notify_all()
+            return not self._stopped
+
+    def complete(self) -> None:
+        """Say that no frame follows."""
+        with self._changed:
+            self._complete = True
+            self._changed.notify_all()
+
+    def stop(self) -> None:
+        """Release both sides at once."""
+        with self._changed:
+            self._stopped = True
+            self._changed.notify_all()
+
+    def __iter__(self) -> Iterator[Frame]:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._stopped or self._complete or self._frames)
+                if self._stopped:
+                    raise _Stopped
+                if not self._frames:
+                    return
+                frame = self._frames.popleft()
+                self._changed.notify_all()
+            yield frame
+
+
+def _overlap(
+    frames: Iterable[Frame], encode: Callable[[Iterator[Frame]], None], on_frame: Callable[[int], None] | None
+) -> None:
+    """Encode in a second thread what this thread draws; an exception of either ends both."""
+    handover = _Handover()
+    with ThreadPoolExecutor(1, "ravemj-encoder") as threads:
+        try:
+            encoding = threads.submit(encode, iter(handover))
+            encoding.add_done_callback(lambda _: handover.stop())
+            for number, frame in enumerate(frames, 1):
+                if not handover.put(frame):
+                    break  # the encoder has failed, and result() tells why
+                if on_frame is not None:
+                    on_frame(number)
+            handover.complete()
+            encoding.result()
+        except BaseException:
+            handover.stop()
+            raise
+
+
+def _encode(encoder: _Encoder, frames: Iterator[Frame], temporary: Path, rate: Fraction, path: AnyPath) -> None:
+    try:
+        encoder(frames, temporary, rate)
+    except _Stopped:
+        raise
+    except Exception as error:  # FFmpeg and Pillow raise a dozen kinds, for a full disk as for an impossible size
+        raise output_error(path, error) from error
+
+
+def _checked(frames: Iterable[Frame]) -> Iterator[Frame]:
+    """Yield copies of the frames; all have one size, and there is one at least."""
+    shape: tuple[int, ...] = ()
+    for number, frame in enumerate(frames):
+        copy = np.array(frame, order="C")
+        fits = copy.ndim == 3 and copy.shape[2] == 3 and copy.size and copy.shape == (shape or copy.shape)
+        if copy.dtype != np.uint8 or not fits:
+            expected = f"uint8 of shape {shape or '(height, width, 3)'}"
+            raise ArgumentError(f"frame {number}: expected {expected}, found {copy.dtype} of shape {copy.shape}")
+        shape = copy.shape
+        yield copy
+    if not shape:
+        raise ArgumentError("expected one frame or more, found none")
+
+
+def _known_suffix(path: AnyPath, known: Iterable[str]) -> str:
+    text = os.fspath(path)
+    suffix = _FOLDER if text.endswith(("/", os.sep)) else Path(text).suffix.lower()
+    if suffix not in known:
+        names = ", ".join(name or "a folder (no suffix or a final /)" for name in known)
+        raise ArgumentError(f"cannot write {text}: '{suffix}' is none of {names}")
+    return suffix
+
+
+def _rate(fps: float, highest: int) -> Fraction:
+    if not (math.isfinite(fps) and _LOWEST_FPS <= fps <= highest):
+        raise ArgumentError(f"expected from {_LOWEST_FPS} to {highest} frames a second for this format, found {fps}")
+    return Fraction(fps).limit_denominator(1001)

@@ -1,0 +1,1 @@
+"""Viewers: mouse and keys, windows, pages in a browser."""

@@ -1,0 +1,67 @@
+"""The mouse and the keys, without a window: what the GUI does with pointer and key events.
+
+::
+
+    interaction = Interaction(simulation, camera, (960, 720))
+    interaction.handle(Key("escape"))  # interaction mode
+    interaction.handle(Press(480, 360))
+    interaction.handle(Release(480, 360))  # a click: the body in the middle is selected
+    interaction.overlay().lines
+"""
+
+from ravemj.gui.interaction.board import Board
+from ravemj.gui.interaction.controls import Control, Controls, Wish
+from ravemj.gui.interaction.core import Interaction, Mode, Overlay
+from ravemj.gui.interaction.events import (
+    Button,
+    Event,
+    Fingers,
+    Key,
+    Leave,
+    Move,
+    Operate,
+    Press,
+    Release,
+    Resize,
+    Use,
+    Wheel,
+)
+from ravemj.gui.interaction.layout import Panel, Rect, Tool, tools
+from ravemj.gui.interaction.notices import Notices
+from ravemj.gui.interaction.picking import Hit, pick
+from ravemj.gui.interaction.playback import Playback
+from ravemj.gui.interaction.selecting import Selection
+from ravemj.gui.interaction.view import Ray, View
+
+__all__ = [
+    "Board",
+    "Button",
+    "Control",
+    "Controls",
+    "Event",
+    "Fingers",
+    "Hit",
+    "Interaction",
+    "Key",
+    "Leave",
+    "Mode",
+    "Move",
+    "Notices",
+    "Operate",
+    "Overlay",
+    "Panel",
+    "Playback",
+    "Press",
+    "Ray",
+    "Rect",
+    "Release",
+    "Resize",
+    "Selection",
+    "Tool",
+    "Use",
+    "View",
+    "Wheel",
+    "Wish",
+    "pick",
+    "tools",
+]

@@ -1,0 +1,182 @@
+"""Where a window has the controls, and how it draws them: as rectangles and text.
+
+The motion's are in a slim row at the bottom, between the wheels; it is there only while there is a motion. The others
+are a column of small buttons under those of the modes, and the joints' sliders unfold beside it.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from ravemj.gui.interaction.controls import Control
+from ravemj.gui.interaction.layout import Panel, Rect
+
+_MARGIN, _GAP = 8.0, 4.0
+_LEFT, _RIGHT = 212.0, 62.0
+"""What the wheels and their labels take of the bottom row."""
+
+_COLUMN_TOP, _COLUMN_WIDTH, _COLUMN_HEIGHT = 104.0, 44.0, 22.0
+_BAR, _ICON = 26.0, 28.0
+_CLOCK, _SPEED = 110.0, 44.0
+_SHORTEST_TRACK = 80.0
+_JOINT_ROW, _NAME, _TRACK, _VALUE = 22.0, 150.0, 120.0, 92.0
+_LONGEST_NAME = 17
+_TABLE = _NAME + _TRACK + _VALUE
+_KNOB = 8.0
+_LOWEST_VIEW = 420.0
+"""Height of a view from which on the column ends above the wheel."""
+
+_Rgba = tuple[float, float, float, float]
+_BACK: _Rgba = (0.15, 0.15, 0.17, 0.8)
+_ON: _Rgba = (0.2, 0.42, 0.7, 0.95)
+_RECORDING: _Rgba = (0.75, 0.1, 0.1, 0.95)
+_GROOVE: _Rgba = (0.45, 0.45, 0.48, 1.0)
+_WHITE: _Rgba = (1.0, 1.0, 1.0, 1.0)
+_CLEAR: _Rgba = (0.0, 0.0, 0.0, 0.0)
+_Point = tuple[float, float]
+_PLAYING = ("back", "play", "forward", "seek", "speed")
+
+
+class Board(NamedTuple):
+    """The controls of a view with their places.
+
+    Attributes:
+        places: Where each control is; sliders have their track there. Those that do not fit are left out.
+        backs: What lies under several of them, and catches what misses them.
+        first_joint: Which of the joints' sliders is the first that is seen.
+        last_joint: The greatest number that this can be.
+    """
+
+    places: dict[Control, Rect]
+    backs: tuple[Rect, ...]
+    first_joint: int
+    last_joint: int
+
+    @classmethod
+    def of(cls, controls: tuple[Control, ...], size: tuple[int, int], first_joint: int = 0) -> "Board":
+        """Lay controls out.
+
+        Args:
+            controls: The controls.
+            size: Width and height of the view [points].
+            first_joint: Which of the joints' sliders should be the first one.
+        """
+        playing = [control for control in controls if control.name in _PLAYING]
+        joints = [control for control in controls if control.name.startswith("dof ")]
+        others = [control for control in controls if control not in playing and control not in joints]
+        places = _bar(playing, size)
+        backs = [_around(places)] if places else []
+        if size[1] < _LOWEST_VIEW:
+            return cls(places, tuple(backs), 0, 0)
+        places |= _column(others, size)
+        fitting = int((size[1] - _COLUMN_TOP - 2 * _MARGIN - _BAR) / _JOINT_ROW)
+        last = max(len(joints) - fitting, 0)
+        first = min(max(first_joint, 0), last)
+        table = Rect(size[0] - 2 * _MARGIN - _COLUMN_WIDTH - _TABLE, _COLUMN_TOP, _TABLE, _JOINT_ROW)
+        shown = joints[first : first + fitting]
+        for row, joint in enumerate(shown):
+            places[joint] = Rect(table.x + _NAME, table.y + row * _JOINT_ROW, _TRACK, _JOINT_ROW)
+        if shown:
+            backs.append(table._replace(height=len(shown) * _JOINT_ROW))
+        return cls(places, tuple(backs), first, last)
+
+    def at(self, point: _Point | None) -> Control | None:
+        """Return the control at a point of the view [points], or None."""
+        found = (control for control, rect in self.places.items() if point is not None and rect.contains(*point))
+        return next(found, None)
+
+    def covers(self, point: _Point | None) -> bool:
+        """Return whether a point of the view [points] is on the board, be it between the controls."""
+        if point is None:
+            return False
+        return self.at(point) is not None or any(back.contains(*point) for back in self.backs)
+
+    def value_at(self, slider: Control, x: float) -> float:
+        """Return what a slider stands for when its knob is in some column of the view [points]."""
+        rect = self.places[slider]
+        part = (x - rect.x - _KNOB / 2) / (rect.width - _KNOB)
+        return slider.lower + min(max(part, 0.0), 1.0) * (slider.upper - slider.lower)
+
+    def panels(self) -> tuple[Panel, ...]:
+        """Return what to draw."""
+        drawn = [Panel(back, _BACK) for back in self.backs]
+        if self.last_joint:
+            drawn.append(self._scroll_bar(self.backs[-1]))
+        for control, rect in self.places.items():
+            if control.is_slider:
+                drawn += _slider(control, rect)
+            elif control.name in _PLAYING:
+                drawn += _icon(control, rect)
+            else:
+                colour = _BACK if not control.is_on else _RECORDING if control.name == "video" else _ON
+                drawn.append(Panel(rect, colour, control.text))
+        return tuple(drawn)
+
+    def _scroll_bar(self, table: Rect) -> Panel:
+        """Return a mark that shows which part of the joints is seen."""
+        shown = sum(control.name.startswith("dof ") for control in self.places)
+        part = table.height / (shown + self.last_joint)
+        return Panel(Rect(table.x, table.y + self.first_joint * part, 4, shown * part), _GROOVE)
+
+
+def _bar(playing: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
+    """Return the places of a motion's controls; where there is little room, clock and speed are left out."""
+    room = size[0] - _LEFT - _RIGHT
+    is_wide = room >= 3 * _ICON + _SHORTEST_TRACK + _CLOCK + _SPEED
+    if not playing or room < 3 * _ICON + _SHORTEST_TRACK:
+        return {}
+    back, play, forward, seek, speed = playing
+    y = size[1] - _MARGIN - _BAR
+    icons = {part: Rect(_LEFT + i * _ICON, y, _ICON, _BAR) for i, part in enumerate((back, play, forward))}
+    beside = _CLOCK + _SPEED if is_wide else 0.0
+    track = Rect(_LEFT + 3 * _ICON, y, room - 3 * _ICON - beside, _BAR)
+    if not is_wide:
+        return icons | {replace(seek, text=""): track}
+    return icons | {seek: track, speed: Rect(_LEFT + room - _SPEED, y, _SPEED, _BAR)}
+
+
+def _around(places: dict[Control, Rect]) -> Rect:
+    """Return the rectangle around the controls of a row."""
+    first, *_, last = places.values()
+    return first._replace(width=last.x + last.width - first.x)
+
+
+def _column(others: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
+    x = size[0] - _MARGIN - _COLUMN_WIDTH
+    tops = (_COLUMN_TOP + i * (_COLUMN_HEIGHT + _GAP) for i in range(len(others)))
+    return {control: Rect(x, top, _COLUMN_WIDTH, _COLUMN_HEIGHT) for control, top in zip(others, tops, strict=True)}
+
+
+def _slider(control: Control, rect: Rect) -> list[Panel]:
+    """Return groove, knob and text of a slider; those of joints have their name before them."""
+    x, y, width, height = rect
+    part = (min(max(control.value, control.lower), control.upper) - control.lower) / (control.upper - control.lower)
+    middle, knob = y + height / 2, x + part * (width - _KNOB)
+    groove = Panel(Rect(x + _KNOB / 2, middle - 2, width - _KNOB, 4), _GROOVE)
+    done = Panel(Rect(x + _KNOB / 2, middle - 2, knob - x, 4), _WHITE)
+    drawn = [groove, Panel(Rect(knob, middle - 7, _KNOB, 14), _WHITE)]
+    if control.name == "seek":
+        drawn.insert(1, done)
+        clock = Panel(Rect(x + width, y, _CLOCK, height), _CLEAR, control.text)
+        return [*drawn, clock] if control.text else drawn
+    name = control.label if len(control.label) <= _LONGEST_NAME else f"{control.label[:8]}..{control.label[-7:]}"
+    before = Panel(Rect(x - _NAME, y, _NAME, height), _CLEAR, name)
+    return [before, *drawn, Panel(Rect(x + width, y, _VALUE, height), _CLEAR, control.text)]
+
+
+def _icon(control: Control, rect: Rect) -> list[Panel]:
+    """Return the picture of a button: a triangle for playing, bars for a pause, both for a step."""
+    x, y = rect.x + rect.width / 2, rect.y + rect.height / 2
+    if control.name == "speed":
+        return [Panel(rect, _CLEAR, control.text)]
+    if control.name == "play" and control.is_on:
+        parts = [Rect(x - 5, y - 6, 4, 12), Rect(x + 1, y - 6, 4, 12)]
+    elif control.name == "play":
+        parts = [Rect(x - 5, y - 6 + row, 11 - 2 * abs(row - 5.5), 1) for row in range(12)]
+    else:
+        side = -1 if control.name == "back" else 1
+        lengths = [8 - 1.6 * abs(row - 4.5) for row in range(10)]
+        parts = [
+            Rect(x - 4 if side > 0 else x + 4 - length, y - 5 + row, length, 1) for row, length in enumerate(lengths)
+        ]
+        parts.append(Rect(x + 4 if side > 0 else x - 6, y - 5, 2, 10))
+    return [Panel(part, _WHITE) for part in parts]

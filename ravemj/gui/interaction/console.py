@@ -1,0 +1,57 @@
+"""The pointer over the controls that a window draws."""
+
+from collections.abc import Callable
+
+from ravemj.gui.interaction.board import Board
+from ravemj.gui.interaction.controls import Controls
+from ravemj.gui.interaction.events import Button, Press
+
+_KEYS = {" ": "play", "arrowleft": "back", "arrowright": "forward"}
+
+
+class Console:
+    """The controls of one view, where a window has them.
+
+    Attributes:
+        controls: What there is to press and to slide.
+    """
+
+    def __init__(self, controls: Controls, *, is_drawn: bool = True) -> None:
+        """Begin with the first joints.
+
+        Args:
+            controls: What there is to press and to slide.
+            is_drawn: False where the shell has buttons and sliders of its own: nothing is on the view then.
+        """
+        self.controls = controls
+        self._is_drawn = is_drawn
+        self._first_joint = 0.0
+
+    def board(self, size: tuple[int, int]) -> Board:
+        """Return where everything is now on a view of some size [points]."""
+        return Board.of(self.controls.all() if self._is_drawn else (), size, round(self._first_joint))
+
+    def press(self, press: Press, board: Board) -> Callable[[float, float], None] | None:
+        """Press a button, or take hold of a slider: what is returned lets it follow the pointer."""
+        control = board.at((press.x, press.y))
+        if press.button is not Button.LEFT or control is None:
+            return None
+        if not control.is_slider:
+            self.controls.operate(control.name)
+            return None
+
+        def slide(x: float, y: float) -> None:
+            del y
+            self.controls.operate(control.name, board.value_at(control, x))
+
+        slide(press.x, press.y)
+        return slide
+
+    def scroll(self, board: Board, steps: float) -> None:
+        """Show others of the sliders that have no room all at once."""
+        self._first_joint = min(max(self._first_joint - steps, 0.0), board.last_joint)
+
+    def key(self, name: str) -> None:
+        """Do what a key is for while there is a motion."""
+        if name in _KEYS:
+            self.controls.operate(_KEYS[name])

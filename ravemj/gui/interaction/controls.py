@@ -1,0 +1,186 @@
+"""The buttons and sliders of a view: playing a motion, saving what is seen, and one slider for each joint.
+
+They are plain data, which a window draws (``board``) and a page makes its own buttons and sliders of.
+"""
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.gui.interaction.dragging import set_dof
+from ravemj.gui.interaction.joint_handle import joint_and_axis
+from ravemj.gui.interaction.notices import Notices
+from ravemj.gui.interaction.playback import SPEEDS, Playback
+from ravemj.gui.interaction.selecting import Selector
+
+_WIDEST = {"slider": (1.0, "m"), "other": (math.pi, "rad")}
+"""How far a slider goes to each side where the joint's limits are much wider, and its unit."""
+
+_MUCH = 4.0
+"""How many times wider than that limits are that no slider can cover."""
+
+
+class Wish(Enum):
+    """What only the one who draws the view can do; the values are the names of the controls."""
+
+    PICTURE = "picture"
+    VIDEO = "video"
+    CAMERA = "camera"
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """A button, or a slider if it has a range.
+
+    Attributes:
+        name: What ``Operate`` calls it.
+        label: What it does, for people.
+        text: What stands on a button, or beside a slider.
+        value: Where a slider is.
+        lower: Where its range begins.
+        upper: Where its range ends.
+        is_on: For a button that stays down, whether it is.
+    """
+
+    name: str
+    label: str
+    text: str = ""
+    value: float = 0.0
+    lower: float = 0.0
+    upper: float = 0.0
+    is_on: bool | None = None
+
+    @property
+    def is_slider(self) -> bool:
+        """Whether it has a value, and not only something to do."""
+        return self.lower < self.upper
+
+
+class Controls:
+    """What there is to press and to slide in one view, and what that does.
+
+    Attributes:
+        playback: The motion, which all views share.
+        notices: What the viewer tells; all views share it.
+        shows_joints: Whether the sliders of the joints are unfolded.
+        wishes: What was asked of the one who draws, and is not done yet.
+    """
+
+    def __init__(self, simulation: Simulation, selector: Selector, playback: Playback, notices: Notices) -> None:
+        self._simulation = simulation
+        self._selector = selector
+        self.playback = playback
+        self.notices = notices
+        self.shows_joints = False
+        self.wishes: list[Wish] = []
+
+    def another(self) -> "Controls":
+        """Return the controls of another view."""
+        return Controls(self._simulation, self._selector, self.playback, self.notices)
+
+    @property
+    def changes(self) -> int:
+        """A number that grows with what the views share."""
+        return self.playback.changes + self.notices.changes
+
+    def pass_time(self, now: float) -> None:
+        """Let a motion that plays go on, and old notices go away.
+
+        Args:
+            now: What ``time.monotonic`` says.
+        """
+        self.playback.advance(now)
+        self.notices.pass_time(now)
+
+    def all(self) -> tuple[Control, ...]:
+        """Return the controls as they are now. The simulation is locked by the caller, as for ``operate``."""
+        body = self._body()
+        recording = self.notices.recording
+        video = "Stop recording" if recording else "Record a video (MP4)"
+        controls = [
+            *self._playing(),
+            Control(Wish.PICTURE.value, "Save a picture (PNG)", "PNG"),
+            Control(Wish.VIDEO.value, video, "Stop" if recording else "MP4", is_on=recording),
+            Control(Wish.CAMERA.value, "Copy the camera as a line of Python", "Copy"),
+        ]
+        if body is not None:
+            label = f"DOFs of {body.scene.name}: a slider for each"
+            controls.append(Control("joints", label, "DOFs", is_on=self.shows_joints))
+            if self.shows_joints:
+                sliders = (_joint(body, dof, value) for dof, value in enumerate(body.kinematics.values().tolist()))
+                controls += [slider for slider in sliders if slider.is_slider]
+        return tuple(controls)
+
+    def _playing(self) -> list[Control]:
+        playback = self.playback
+        if not playback.duration > 0:
+            return []
+        clock = f"{playback.time:.2f} / {playback.duration:.2f} s"
+        return [
+            Control("back", "One frame back"),
+            Control("play", "Pause" if playback.playing else "Play", is_on=playback.playing),
+            Control("forward", "One frame forward"),
+            Control("seek", "Time", clock, playback.time, 0.0, playback.duration),
+            Control("speed", "Speed", f"{playback.speed:g}x"),
+        ]
+
+    def _body(self) -> BodyState | None:
+        """Return the body whose joints have sliders: the selected one, else one that plays, else the first robot."""
+        selection, course = self._selector.selection, self.playback.course
+        bodies = [] if selection is None else [selection.body]
+        bodies += [] if course is None else course.bodies
+        bodies += sorted(self._simulation.bodies, key=lambda body: not body.scene.is_robot)
+        return next((body for body in bodies if body.scene.dof_axes), None)
+
+    def operate(self, name: str, value: float = 0.0) -> None:
+        """Press a button, or move a slider to a value; nothing happens where there is no such control."""
+        if name not in {control.name for control in self.all()}:
+            return
+        playback = self.playback
+        if name in {wish.value for wish in Wish}:
+            self.wishes.append(Wish(name))
+        elif name == "play":
+            (playback.pause if playback.playing else playback.play)()
+        elif name in {"back", "forward"}:
+            playback.step(1 if name == "forward" else -1)
+        elif name == "seek":
+            playback.pause()
+            playback.seek(value)
+        elif name == "speed":
+            playback.speed = next((speed for speed in SPEEDS if speed > playback.speed), SPEEDS[0])
+        elif name == "joints":
+            self.shows_joints = not self.shows_joints
+        else:
+            self._move(int(name.removeprefix("dof ")), value)
+
+    def take_wishes(self) -> list[Wish]:
+        """Return what was asked of the one who draws, and forget it."""
+        wishes, self.wishes = self.wishes, []
+        return wishes
+
+    def take(self, body: BodyState) -> None:
+        """Pause a motion of a body, which a hand takes hold of."""
+        course = self.playback.course
+        if course is not None and body in course.bodies:
+            self.playback.pause()
+
+    def _move(self, dof: int, value: float) -> None:
+        body = self._body()
+        if body is not None:
+            self.take(body)
+            set_dof(body, dof, value)
+
+
+def _joint(body: BodyState, dof: int, value: float) -> Control:
+    kinematics = body.kinematics
+    joint, axis = joint_and_axis(body, dof)
+    reach, unit = _WIDEST.get(joint.kind, _WIDEST["other"])
+    shown, lower, upper = value, float(kinematics.lower[dof]), float(kinematics.upper[dof])
+    if kinematics.circular[dof]:
+        lower, upper, shown = -math.pi, math.pi, math.remainder(value, math.tau)
+    elif not upper - lower <= _MUCH * 2 * reach:
+        middle = min(max(0.0, lower + reach), upper - reach)
+        lower, upper = middle - reach, middle + reach
+    name = f"{joint.name}, axis {axis}" if len(joint.axes) > 1 else joint.name
+    return Control(f"dof {dof}", name, f"{round(value, 3) + 0.0:.3f} {unit}", shown, lower, upper)

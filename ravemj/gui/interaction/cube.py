@@ -1,0 +1,142 @@
+"""The cube around a selected body: its faces move the body, its edges turn it."""
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, inverse
+from ravemj.engine.simulation import BodyState
+from ravemj.gui.interaction.picking import visible_box
+from ravemj.gui.interaction.view import Ray, View
+from ravemj.model import drawing
+from ravemj.model.drawing import Shapes
+
+_MARGIN = 0.1
+"""How far the cube stands off, as a part of half its longest side."""
+
+_REACH = 8.0
+"""How near an edge the pointer has to be [points]."""
+
+_FACES = np.array([0.1, 0.6, 0.2, 0.15])
+_EDGES = np.array([[0.1, 0.6, 0.2, 1.0]])
+_EDGE_WIDTH = 3.0
+
+
+class Grip(NamedTuple):
+    """Where the pointer holds a cube.
+
+    Attributes:
+        axis: Number of the cube's axis that the face is across, or that the edge is along.
+        is_edge: Whether this is an edge.
+        point: The place, in the world [m], shape (3,).
+    """
+
+    axis: int
+    is_edge: bool
+    point: Floats
+
+
+class _Edge(NamedTuple):
+    axis: int
+    ends: Floats  # in the cube, (2, 3)
+    faces: tuple[tuple[int, int], tuple[int, int]]  # axis and sign of the two that meet in it
+
+
+@dataclass(frozen=True, eq=False)
+class Cube:
+    """A box along the axes of a body's first link, around all that is seen of the body.
+
+    Attributes:
+        T_world_cube: Its centre and axes, 4x4.
+        half: Half of its sides [m], shape (3,).
+    """
+
+    T_world_cube: Floats
+    half: Floats
+
+    @classmethod
+    def around(cls, body: BodyState) -> "Cube | None":
+        """Return the cube around a body where it is now; None where nothing of it is seen."""
+        T_world_cube = body.link_transform(0)
+        box = visible_box(body, None, T_world_cube)
+        if box is None:
+            return None
+        T_world_cube[:3, 3] += T_world_cube[:3, :3] @ box.center
+        return cls(T_world_cube, box.half + _MARGIN * box.half.max())
+
+    def grip(self, view: View, x: float, y: float) -> Grip | None:
+        """Return what of the cube is under a point of the screen: an edge that is seen, else a face, or None."""
+        ray = view.ray(x, y)
+        T_cube_world = inverse(self.T_world_cube)
+        local = Ray(T_cube_world[:3, :3] @ ray.start + T_cube_world[:3, 3], T_cube_world[:3, :3] @ ray.direction)
+        if (np.abs(local.start) <= self.half).all():
+            return None
+        return self._edge_grip(view, (x, y), local) or self._face_grip(local)
+
+    def _face_grip(self, local: Ray) -> Grip | None:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            crossings = np.stack([-self.half - local.start, self.half - local.start]) / local.direction
+        near, far = np.nanmin(crossings, axis=0), np.nanmax(crossings, axis=0)
+        axis = int(near.argmax())
+        if not 0 <= near[axis] <= far.min():
+            return None
+        return Grip(axis, False, self._in_world(local.start + near[axis] * local.direction))
+
+    def _edge_grip(self, view: View, at: tuple[float, float], local: Ray) -> Grip | None:
+        edges = [edge for edge in self._edges() if any(self._sees(local.start, *face) for face in edge.faces)]
+        found = [(_distance_on_screen(view, at, self._in_world(edge.ends)), edge) for edge in edges]
+        distance, edge = min(found, key=lambda one: one[0], default=(np.inf, None))
+        if edge is None or distance > _REACH:
+            return None
+        point = _nearest_on_segment(edge.ends, local)
+        return Grip(edge.axis, True, self._in_world(point))
+
+    def _sees(self, eye: Floats, axis: int, sign: int) -> bool:
+        return bool(sign * eye[axis] > self.half[axis])
+
+    def _edges(self) -> Iterator[_Edge]:
+        for axis in range(3):
+            one, other = (axis + 1) % 3, (axis + 2) % 3
+            for sign, other_sign in itertools.product((-1, 1), repeat=2):
+                ends = np.zeros((2, 3))
+                ends[:, one], ends[:, other] = sign * self.half[one], other_sign * self.half[other]
+                ends[:, axis] = -self.half[axis], self.half[axis]
+                yield _Edge(axis, ends, ((one, sign), (other, other_sign)))
+
+    def _in_world(self, points: Floats) -> Floats:
+        return points @ self.T_world_cube[:3, :3].T + self.T_world_cube[:3, 3]
+
+    def shapes(self) -> Shapes:
+        """Return its figures, in the world."""
+        ends = np.concatenate([edge.ends for edge in self._edges()])
+        lines = drawing.line_list(ends, _EDGE_WIDTH, np.repeat(_EDGES, len(ends), axis=0))
+        return drawing.merge([drawing.box(np.zeros(3), self.half, _FACES), lines]).placed(self.T_world_cube)
+
+
+def _distance_on_screen(view: View, at: tuple[float, float], ends: Floats) -> float:
+    """Return how far a point of the screen is from the picture of a segment [points]; infinite behind the eye."""
+    (start, end), depths = view.camera.project(ends, *view.size)
+    if (depths <= 0).any():
+        return np.inf
+    along, towards = end - start, at - start
+    square = float(along @ along)
+    part = min(max(float(along @ towards) / square, 0.0), 1.0) if square else 0.0
+    return float(np.linalg.norm(towards - part * along))
+
+
+def _nearest_on_segment(ends: Floats, ray: Ray) -> Floats:
+    along = ends[1] - ends[0]
+    part = nearest_on_line(ends[0], along, ray)
+    return ends[0] + min(max(0.5 if part is None else part, 0.0), 1.0) * along
+
+
+def nearest_on_line(start: Floats, along: Floats, ray: Ray) -> float | None:
+    """Return where on a line a ray comes nearest to it, as a factor of ``along``; None where they are parallel."""
+    across = np.cross(np.cross(along, ray.direction), ray.direction)
+    slope = float(along @ across)
+    if abs(slope) < 1e-6 * float(along @ along):
+        return None
+    return float((ray.start - start) @ across) / slope

@@ -1,0 +1,81 @@
+"""What the pointer points at: the nearest surface that pictures show, by ray casting."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, inverse
+from ravemj.engine.collision.rays import first_hit
+from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.graphics.rendering import bounding_sphere, drawn_geoms, geom_corners
+from ravemj.gui.interaction.view import Ray
+
+
+@dataclass(frozen=True, eq=False)
+class Hit:
+    """A point on a link.
+
+    Attributes:
+        body: The body.
+        link: Index of its link.
+        position: The point, in the world [m], shape (3,).
+        normal: Unit normal of the surface, outwards, shape (3,).
+        distance: How far it is from the eye [m].
+    """
+
+    body: BodyState
+    link: int
+    position: Floats
+    normal: Floats
+    distance: float
+
+
+def pick(simulation: Simulation, ray: Ray) -> Hit | None:
+    """Return the nearest point on a link that a ray meets, or None."""
+    compiled = simulation.compile()
+    model, data = compiled.model, compiled.data
+    center, radius = bounding_sphere(model, data)
+    reach = 2 * (float(np.linalg.norm(center - ray.start)) + radius)
+    hit = first_hit(model, data, np.flatnonzero(drawn_geoms(model)), ray.start, reach * ray.direction)
+    if hit is None:
+        return None
+    body_id = model.geom_bodyid[hit.geom]
+    for body in simulation.bodies:
+        links = np.flatnonzero(body.kinematics.body_ids == body_id)
+        if len(links):
+            return Hit(body, int(links[0]), hit.position, hit.normal, hit.fraction * reach)
+    return None
+
+
+@dataclass(frozen=True, eq=False)
+class VisibleBox:
+    """A box around what pictures show of some links.
+
+    Attributes:
+        center: Its centre in the frame that it is along [m], shape (3,).
+        half: Half of its sides [m], shape (3,).
+    """
+
+    center: Floats
+    half: Floats
+
+
+def visible_box(body: BodyState, links: "list[int] | None", T_world_frame: Floats) -> VisibleBox | None:
+    """Return the box along the axes of a frame around some links; None where nothing of them is seen.
+
+    Args:
+        body: Their body.
+        links: Their indices; None: all.
+        T_world_frame: The frame, 4x4.
+    """
+    kinematics = body.kinematics
+    model, data = kinematics.model, kinematics.data
+    body_ids = kinematics.body_ids if links is None else kinematics.body_ids[links]
+    geoms = np.flatnonzero(drawn_geoms(model) & np.isin(model.geom_bodyid, body_ids))
+    if not len(geoms):
+        return None
+    corners = geom_corners(model, data, geoms).reshape(-1, 3)
+    T_frame_world = inverse(T_world_frame)
+    inside = corners @ T_frame_world[:3, :3].T + T_frame_world[:3, 3]
+    low, high = inside.min(axis=0), inside.max(axis=0)
+    return VisibleBox(0.5 * (low + high), 0.5 * (high - low))

@@ -1,0 +1,185 @@
+"""What is selected, and what clicks and drags do with it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.gui.interaction import dragging
+from ravemj.gui.interaction.cube import Cube, Grip
+from ravemj.gui.interaction.events import Press
+from ravemj.gui.interaction.joint_handle import SIZES, JointHandle, driving_dof, joint_and_axis
+from ravemj.gui.interaction.overlay import body_line, joint_line, point_line
+from ravemj.gui.interaction.picking import Hit, pick
+from ravemj.gui.interaction.view import Ray, View
+from ravemj.model.drawing import NOTHING, Shapes
+
+OnSelect = Callable[[Hit, Ray], bool]
+"""Asked before something is selected; False keeps it unselected."""
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """What was clicked on.
+
+    Attributes:
+        body: The body.
+        link: Index of the link.
+        point: Where, in the link [m], shape (3,).
+        normal: The surface normal there, in the link, shape (3,).
+        dof: The DOF whose joint was chosen; None: the body as a whole.
+        size: Number of the size of the joint's cylinder.
+    """
+
+    body: BodyState
+    link: int
+    point: Floats
+    normal: Floats
+    dof: int | None = None
+    size: int = 0
+
+
+class Selector:
+    """Selects bodies and joints, and shows the cube or the cylinder that moves them.
+
+    Attributes:
+        selection: What is selected, or None.
+        changes: How often this may have changed.
+    """
+
+    def __init__(self, simulation: Simulation, on_select: OnSelect | None) -> None:
+        self._simulation = simulation
+        self._on_select = on_select
+        self._notice = ""
+        self.selection: Selection | None = None
+        self.changes = 0
+
+    def forget_what_is_gone(self) -> bool:
+        """Select nothing if the body is no more in the world; return whether that was so."""
+        is_gone = self.selection is not None and not self._simulation.holds(self.selection.body)
+        if is_gone:
+            self.selection = None
+            self.changes += 1
+        return is_gone
+
+    def click(self, view: View, press: Press) -> None:
+        """Select what is under the pointer, or nothing; Ctrl selects the joint above it."""
+        self._notice = ""
+        self.changes += 1
+        ray = view.ray(press.x, press.y)
+        hit = pick(self._simulation, ray)
+        if press.ctrl:
+            if self._handle_at(ray, hit) is not None:
+                self._resize()
+            elif hit is not None:
+                self._select_joint(hit, ray)
+        elif self._handle_at(ray, hit) is None:
+            self._select_body(hit, ray, is_on_cube=self._grip_at(view, press, hit) is not None)
+
+    def _select_body(self, hit: Hit | None, ray: Ray, *, is_on_cube: bool) -> None:
+        old = self.selection
+        is_again = old is not None and old.dof is None and hit is not None and hit.body is old.body
+        if hit is None or is_on_cube or is_again:
+            self.selection = None
+        else:
+            self.selection = self._selection(hit) if self._may_select(hit, ray) else None
+
+    def _select_joint(self, hit: Hit, ray: Ray) -> None:
+        dof = driving_dof(hit.body.scene, hit.link)
+        if dof is None:
+            self.selection, self._notice = None, f"No joint moves {hit.body.scene.links[hit.link].name}"
+        elif not self._may_select(hit, ray):
+            self.selection = None
+        else:
+            self.selection = replace(self._selection(hit), dof=self._next_axis(hit.body, dof))
+
+    def _next_axis(self, body: BodyState, first: int) -> int:
+        """Return the next axis of a joint that is selected already, else the first one."""
+        old = self.selection
+        joint, _ = joint_and_axis(body, first)
+        number = -1
+        if old is not None and old.body is body and old.dof is not None:
+            number = old.dof - first
+        return first + (number + 1) % len(joint.axes) if -1 <= number < len(joint.axes) else first
+
+    def _may_select(self, hit: Hit, ray: Ray) -> bool:
+        return self._on_select is None or self._on_select(hit, ray)
+
+    def _selection(self, hit: Hit) -> Selection:
+        T_world_link = hit.body.link_transform(hit.link)
+        rotation = T_world_link[:3, :3]
+        return Selection(hit.body, hit.link, (hit.position - T_world_link[:3, 3]) @ rotation, hit.normal @ rotation)
+
+    def _resize(self) -> None:
+        if self.selection is not None:
+            self.selection = replace(self.selection, size=(self.selection.size + 1) % len(SIZES))
+
+    def hold(self, view: View, press: Press) -> dragging.Follow | None:
+        """Take hold of the cube or the cylinder; None where the button went down beside them."""
+        selection = self.selection
+        if selection is None:
+            return None
+        ray = view.ray(press.x, press.y)
+        hit = pick(self._simulation, ray)
+        grip = self._grip_at(view, press, hit)
+        cube = self._cube()
+        if grip is not None and cube is not None:
+            if grip.is_edge:
+                return dragging.turn_by_edge(selection.body, cube, grip, ray)
+            return dragging.move_by_face(selection.body, cube, grip)
+        handle, point = self._handle(), self._handle_at(ray, hit)
+        if handle is None or point is None or selection.dof is None:
+            return None
+        return dragging.move_joint(selection.body, selection.dof, handle, point, ray)
+
+    def _cube(self) -> Cube | None:
+        selection = self.selection
+        return None if selection is None or selection.dof is not None else Cube.around(selection.body)
+
+    def _handle(self) -> JointHandle | None:
+        selection = self.selection
+        if selection is None or selection.dof is None:
+            return None
+        return JointHandle.at(selection.body, selection.dof, SIZES[selection.size])
+
+    def _grip_at(self, view: View, press: Press, hit: Hit | None) -> Grip | None:
+        """Return where the pointer is on the cube, unless another body hides it there."""
+        cube = self._cube()
+        grip = None if cube is None else cube.grip(view, press.x, press.y)
+        return None if grip is None or self._is_hidden(grip.point, view.ray(press.x, press.y), hit) else grip
+
+    def _handle_at(self, ray: Ray, hit: Hit | None) -> Floats | None:
+        """Return where the pointer is on the cylinder, unless another body hides it there."""
+        handle = self._handle()
+        point = None if handle is None else handle.hit(ray)
+        return None if point is None or self._is_hidden(point, ray, hit) else point
+
+    def _is_hidden(self, point: Floats, ray: Ray, hit: Hit | None) -> bool:
+        if hit is None or self.selection is None or hit.body is self.selection.body:
+            return False
+        return hit.distance < float(np.linalg.norm(point - ray.start))
+
+    def shapes(self) -> Shapes:
+        """Return the figures of the cube or the cylinder."""
+        shown = self._cube() or self._handle()
+        return NOTHING if shown is None else shown.shapes()
+
+    def point_line(self) -> str:
+        """Return the text about the point that was clicked on, where it is now; empty where there is none."""
+        selection = self.selection
+        if selection is None:
+            return ""
+        T_world_link = selection.body.link_transform(selection.link)
+        rotation = T_world_link[:3, :3]
+        position = rotation @ selection.point + T_world_link[:3, 3]
+        return point_line(selection.body, selection.link, position, rotation @ selection.normal)
+
+    def lines(self) -> list[str]:
+        """Return the text about the body and the joint that are selected."""
+        selection = self.selection
+        if selection is None:
+            return [self._notice] if self._notice else []
+        joint = [] if selection.dof is None else [joint_line(selection.body, selection.dof)]
+        return [body_line(selection.body), *joint]

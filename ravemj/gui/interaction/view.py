@@ -1,0 +1,115 @@
+"""A point of view that the mouse changes: a camera and the distance of what it turns about."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, rows_from_wxyz, wxyz_from_axis_angle
+from ravemj.graphics.rendering import Camera
+from ravemj.gui.interaction.events import Fingers
+from ravemj.gui.interaction.layout import Tool
+
+_NEAREST, _FARTHEST = 1e-3, 1e6
+"""How near and how far zooming brings the focus [m]."""
+
+_STRONGEST = 10.0
+"""Largest power of e by which one step of zooming changes the distance."""
+
+_ZOOM = 4.0
+"""Powers of e by which the distance changes over the height of the view."""
+
+
+class Ray(NamedTuple):
+    """Where a point of the screen looks at.
+
+    Attributes:
+        start: The eye, in the world [m], shape (3,).
+        direction: Unit vector, shape (3,).
+    """
+
+    start: Floats
+    direction: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A camera that looks at a focus.
+
+    Attributes:
+        camera: The camera.
+        distance: How far along its viewing direction the focus is [m].
+        size: Width and height of the view [points].
+    """
+
+    camera: Camera
+    distance: float
+    size: tuple[int, int]
+
+    @property
+    def focus(self) -> Floats:
+        """The point that the camera turns about, in the world [m], shape (3,)."""
+        return self.camera.position + self.distance * self.camera.rotation[:, 2]
+
+    def ray(self, x: float, y: float) -> Ray:
+        """Return the ray through a point of the screen [points]."""
+        fx, fy, cx, cy = self.camera.pinhole(*self.size)
+        direction = self.camera.rotation @ [(x - cx) / fx, (y - cy) / fy, 1.0]
+        return Ray(self.camera.position, direction / np.linalg.norm(direction))
+
+    def turned(self, right: float, down: float) -> "View":
+        """Turn about the focus; what is before it follows the pointer.
+
+        Args:
+            right: How far the pointer went to the right [points]; the height of the view is half a turn.
+            down: How far it went down [points].
+        """
+        angle = math.pi * math.hypot(right, down) / self.size[1]
+        rotation = self.camera.rotation @ rows_from_wxyz(wxyz_from_axis_angle((-down, right, 0.0), angle))
+        return self._placed(rotation, self.focus, self.distance)
+
+    def shifted(self, right: float, down: float) -> "View":
+        """Move across the viewing direction, so that the focus follows the pointer, which went so far [points]."""
+        fx, fy, _, _ = self.camera.pinhole(*self.size)
+        x, y, _ = self.camera.rotation.T
+        focus = self.focus - self.distance * (right / fx * x + down / fy * y)
+        return self._placed(self.camera.rotation, focus, self.distance)
+
+    def zoomed(self, power: float) -> "View":
+        """Bring the eye nearer to the focus, or farther away: its distance is multiplied by e to a power."""
+        factor = math.exp(min(max(power, -_STRONGEST), _STRONGEST))
+        distance = min(max(self.distance * factor, _NEAREST), _FARTHEST)
+        return self._placed(self.camera.rotation, self.focus, distance)
+
+    def rolled(self, wheel: Tool, amount: float) -> "View":
+        """Return the view after one of its wheels was moved to the right or down [points]."""
+        if wheel is Tool.ROT_X:
+            return self.turned(0.0, amount)
+        if wheel is Tool.ROT_Y:
+            return self.turned(amount, 0.0)
+        return self.zoomed(-_ZOOM * amount / self.size[1])
+
+    def pinched(self, fingers: Fingers) -> "View":
+        """Shift and zoom, so that what is under two fingers stays there, as deep as the focus."""
+        _, _, cx, cy = self.camera.pinhole(*self.size)
+        x, y = fingers.x - cx, fingers.y - cy
+        right = x - fingers.spread * (x - fingers.right)
+        down = y - fingers.spread * (y - fingers.down)
+        return self.zoomed(-math.log(fingers.spread)).shifted(right, down)
+
+    def centred(self, point: Floats) -> "View":
+        """Look at a point from half the distance; it becomes the focus. The camera does not roll."""
+        towards = point - self.camera.position
+        length = float(np.linalg.norm(towards))
+        forward = self.camera.rotation[:, 2]
+        x, y, z = np.cross(forward, towards).tolist()
+        angle = math.atan2(math.sqrt(x * x + y * y + z * z), float(forward @ towards))
+        rotation = np.array(rows_from_wxyz(wxyz_from_axis_angle((x, y, z), angle))) @ self.camera.rotation
+        return self._placed(rotation, point, max(length / 2, _NEAREST))
+
+    def _placed(self, rotation: Floats, focus: Floats, distance: float) -> "View":
+        T_world_camera = np.eye(4)
+        T_world_camera[:3, :3] = rotation
+        T_world_camera[:3, 3] = focus - distance * rotation[:, 2]
+        return replace(self, camera=replace(self.camera, T_world_camera=T_world_camera), distance=distance)

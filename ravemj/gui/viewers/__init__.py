@@ -1,0 +1,89 @@
+"""Viewers: a camera and a background on a simulation, with or without a window.
+
+The methods in ``CamelCase`` are OpenRAVE's.
+"""
+
+import logging
+import os
+import sys
+
+from ravemj.engine.simulation import Simulation
+from ravemj.errors import RenderingError
+from ravemj.graphics.studio import Studio
+from ravemj.gui.viewers import notebook
+from ravemj.gui.viewers.viewer import Viewer
+
+__all__ = ["VIEWERS", "Viewer", "has_display", "open_viewer"]
+
+VIEWERS = ("window", "web", "qtcoin", "qtosg", "qtogre", "offscreen")
+"""Names of viewers: ours, and those that OpenRAVE's scripts ask for."""
+
+_LOG = logging.getLogger("ravemj")
+
+
+def has_display() -> bool:
+    """Return whether a window could be opened from here."""
+    if sys.platform == "darwin":  # GLFW wants the main thread there
+        return False
+    return sys.platform == "win32" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -> Viewer | None:
+    """Open the viewer that a name asks for.
+
+    Args:
+        simulation: What it shows.
+        studio: What draws pictures of it.
+        name: One of ``VIEWERS``: ``window``, ``web`` for a page in a browser, ``offscreen``; another is the best of
+            these that works here.
+        show: False for a viewer without a window.
+
+    Returns:
+        The viewer; the log says which it is. None, and an error in the log, for an unknown name.
+    """
+    if name not in VIEWERS:
+        _LOG.error("there is no viewer '%s'; the viewers are: %s", name, ", ".join(VIEWERS))
+        return None
+    kind, reason = _choice(name) if show else ("offscreen", "")
+    if kind == "web":
+        if reason:
+            _LOG.info("viewer '%s' is a page in a browser: %s", name, reason)
+        return _open_page(simulation, studio, name)
+    if kind == "window":
+        from ravemj.gui.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
+
+        try:
+            viewer = WindowViewer(simulation, studio, name)
+        except RenderingError as error:
+            _LOG.warning("%s; pictures are drawn without a window", error)
+        else:
+            _LOG.info("viewer '%s' is a window", name)
+            return viewer
+    elif name == "window" and show:
+        _LOG.warning("no window can be opened: %s; pictures are drawn without a window", reason)
+    _LOG.info("viewer '%s' has no window", name)
+    return Viewer(simulation, studio, name)
+
+
+def _choice(name: str) -> tuple[str, str]:
+    """Return the kind of viewer that a name means here, and why it is not the kind that its name says."""
+    if name in ("web", "offscreen"):
+        return name, ""
+    if has_display():
+        return "window", ""
+    if sys.platform == "darwin":
+        return "web", "windows would need the main thread on macOS"
+    if name != "window" and notebook.in_notebook():
+        return "web", "this is a notebook, and there is no display"
+    return "offscreen", "there is no display"
+
+
+def _open_page(simulation: Simulation, studio: Studio, name: str) -> Viewer:
+    from ravemj.gui.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
+
+    viewer = WebViewer(simulation, studio, name, any_name=notebook.is_proxied())
+    if notebook.in_notebook():
+        notebook.show(viewer)
+    else:
+        _LOG.warning("the viewer is at %s", viewer.url)
+    return viewer

@@ -1,0 +1,226 @@
+"""A GLFW window: what it is asked to be, and what people do in it."""
+
+import functools
+import threading
+from typing import Any
+
+from ravemj.errors import RenderingError
+from ravemj.gui.interaction import Button, Event, Key, Leave, Move, Press, Release, Wheel
+from ravemj.gui.viewers.x_connection import XConnection
+
+_dispatching = threading.Lock()
+"""Held while GLFW hands out events: all windows share one queue, and each has a thread of its own."""
+
+
+class GlfwWindow:
+    """A window with an OpenGL context; all of its methods belong to one thread.
+
+    Attributes:
+        events: What people did since the list was last emptied.
+        size: Width and height, in units of the screen.
+        pixels: Width and height of what is drawn [pixels]; 0 while it is minimised.
+        pixel_ratio: How many pixels a point has: 1, or more on screens with small pixels.
+        is_lost: Whether what was drawn in it is lost.
+    """
+
+    def __init__(self, title: str, width: int, height: int) -> None:
+        """Open a window of some size, in units of the screen.
+
+        Raises:
+            RenderingError: there is no display, or it has no OpenGL.
+        """
+        self._glfw = glfw = _import_glfw()
+        self.events: list[Event] = []
+        self.is_lost = True
+        self._pointer = 0.0, 0.0
+        self._x = _x_connection(glfw)
+        if self.is_broken:
+            raise RenderingError("no window can be opened: the connection to the display broke; a new process may do")
+        glfw.window_hint(glfw.SAMPLES, 4)
+        glfw.window_hint(glfw.SCALE_TO_MONITOR, True)  # more of its pixels where they are small
+        with _dispatching:
+            self._window: Any = glfw.create_window(width, height, title, None, None)
+        if not self._window:
+            raise RenderingError("no window can be opened: the display offers no OpenGL")
+        glfw.make_context_current(self._window)
+        glfw.swap_interval(1)
+        self._listen()
+
+    def _listen(self) -> None:
+        glfw, window = self._glfw, self._window
+        self.size: tuple[int, int] = glfw.get_window_size(window)  # asking the display each time would be slow
+        self.pixels: tuple[int, int] = glfw.get_framebuffer_size(window)
+        glfw.set_window_size_callback(window, self._on_size)
+        glfw.set_framebuffer_size_callback(window, self._on_pixels)
+        self._on_scale(window, *glfw.get_window_content_scale(window))
+        glfw.set_window_content_scale_callback(window, self._on_scale)
+        glfw.set_window_refresh_callback(window, self._on_refresh)
+        glfw.set_cursor_pos_callback(window, self._on_pointer)
+        glfw.set_cursor_enter_callback(window, self._on_enter)
+        glfw.set_mouse_button_callback(window, self._on_button)
+        glfw.set_scroll_callback(window, self._on_scroll)
+        glfw.set_key_callback(window, self._on_key)
+        glfw.set_window_focus_callback(window, self._on_focus)
+        self._buttons = {
+            glfw.MOUSE_BUTTON_LEFT: Button.LEFT,
+            glfw.MOUSE_BUTTON_MIDDLE: Button.MIDDLE,
+            glfw.MOUSE_BUTTON_RIGHT: Button.RIGHT,
+        }
+        self._keys = {
+            glfw.KEY_ESCAPE: "escape",
+            glfw.KEY_SPACE: " ",
+            glfw.KEY_LEFT: "arrowleft",
+            glfw.KEY_RIGHT: "arrowright",
+        }
+
+    # --- what people do
+
+    def _on_size(self, window: object, width: int, height: int) -> None:
+        del window
+        self.size = max(width, 1), max(height, 1)
+
+    def _on_pixels(self, window: object, width: int, height: int) -> None:
+        del window
+        self.pixels = width, height
+
+    def _on_scale(self, window: object, x: float, y: float) -> None:
+        del window, y
+        self.pixel_ratio = max(float(x), 0.5)
+
+    def _on_refresh(self, window: object) -> None:
+        del window
+        self.is_lost = True
+
+    def _on_pointer(self, window: object, x: float, y: float) -> None:
+        del window
+        self._pointer = self._in_points(x, y)
+        self._move(*self._pointer)
+
+    def _move(self, x: float, y: float) -> None:
+        if self.events and isinstance(self.events[-1], Move):
+            self.events.pop()  # only where the pointer is now counts
+        self.events.append(Move(x, y))
+
+    def _on_enter(self, window: object, entered: int) -> None:
+        held = any(self._glfw.get_mouse_button(window, button) for button in self._buttons)
+        if not entered and not held:
+            self._move(-1.0, -1.0)
+
+    def _on_button(self, window: object, button: int, action: int, mods: int) -> None:
+        del window
+        glfw = self._glfw
+        if button not in self._buttons:
+            return
+        x, y = self._pointer  # GLFW would tell where it is now, not where it was then
+        if action == glfw.PRESS:
+            ctrl, shift = bool(mods & (glfw.MOD_CONTROL | glfw.MOD_SUPER)), bool(mods & glfw.MOD_SHIFT)
+            self.events.append(Press(x, y, self._buttons[button], ctrl, shift))
+        else:
+            self.events.append(Release(x, y, self._buttons[button]))
+
+    def _on_scroll(self, window: object, aside: float, steps: float) -> None:
+        del window, aside
+        self.events.append(Wheel(steps))
+
+    def _on_key(self, window: object, key: int, scancode: int, action: int, mods: int) -> None:
+        del window, mods
+        glfw = self._glfw
+        name = self._keys.get(key) or glfw.get_key_name(key, scancode)
+        if name and not name.isascii() and key < 128:  # Greek, say: what the key is on an English keyboard
+            name = chr(key)
+        if name and action != glfw.REPEAT:
+            self.events.append(Key(name, action == glfw.PRESS))
+
+    def _on_focus(self, window: object, focused: int) -> None:
+        del window
+        if not focused:
+            self.events.append(Leave())
+
+    # --- what it is
+
+    @property
+    def is_broken(self) -> bool:
+        """Whether the display is gone; nothing should be asked of the window any more."""
+        return self._x is not None and self._x.is_broken
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the user closed it."""
+        return bool(self._glfw.window_should_close(self._window))
+
+    @property
+    def points(self) -> tuple[int, int]:
+        """Width and height [points]."""
+        width, height = self.pixels
+        return max(round(width / self.pixel_ratio), 1), max(round(height / self.pixel_ratio), 1)
+
+    def _in_points(self, x: float, y: float) -> tuple[float, float]:
+        width, height = self.size
+        columns, rows = self.points
+        return x * columns / width, y * rows / height
+
+    def set_title(self, title: str) -> None:
+        """Set the title."""
+        self._glfw.set_window_title(self._window, title)
+
+    def resize(self, width: int, height: int) -> None:
+        """Set the size, in units of the screen."""
+        self._glfw.set_window_size(self._window, width, height)
+
+    def move(self, x: int, y: int) -> None:
+        """Set where its upper left corner is on the screen."""
+        self._glfw.set_window_pos(self._window, x, y)
+
+    def show_or_hide(self, shown: bool) -> None:
+        """Show the window, or hide it."""
+        (self._glfw.show_window if shown else self._glfw.hide_window)(self._window)
+
+    def copy_text(self, text: str) -> None:
+        """Put a text on the clipboard."""
+        with _dispatching:  # in whose course others ask for it
+            self._glfw.set_clipboard_string(self._window, text)
+
+    def wait(self, seconds: float) -> None:
+        """Wait until people do something, but not longer than some time."""
+        if self._x is None:
+            self._glfw.wait_events_timeout(seconds)
+            return
+        self._x.wait(seconds)
+        if not self.is_broken:
+            with _dispatching:
+                self._glfw.poll_events()
+
+    def swap(self) -> None:
+        """Show what was drawn."""
+        self.is_lost = False
+        self._glfw.swap_buffers(self._window)
+
+    def close(self) -> None:
+        """Close the window, or leave it where the display is gone."""
+        if self._x is not None and self._x.is_broken:
+            self._x.abandon()
+            return
+        with _dispatching:
+            self._glfw.destroy_window(self._window)
+            self._glfw.poll_events()
+
+
+@functools.cache
+def _x_connection(glfw: Any) -> XConnection | None:  # noqa: ANN401 - glfw has no types
+    """Return GLFW's connection to its X server, which all windows share; None on other systems.
+
+    Raises:
+        RenderingError: there is no display.
+    """
+    if not glfw.init():
+        raise RenderingError("no window can be opened: GLFW finds no display")
+    if not hasattr(glfw, "get_platform") or glfw.get_platform() != glfw.PLATFORM_X11:
+        return None
+    return XConnection(glfw.get_x11_display())
+
+
+def _import_glfw() -> Any:  # noqa: ANN401 - glfw has no types
+    import glfw  # noqa: PLC0415 - loads the libraries of the display
+
+    glfw.ERROR_REPORTING = "ignore"
+    return glfw

@@ -1,0 +1,170 @@
+"""Pictures and videos that people save from a viewer, written by threads of their own into the working folder."""
+
+import itertools
+import logging
+import math
+import os
+import threading
+import time
+import weakref
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from ravemj.errors import RavemjError
+from ravemj.graphics.studio import Format, Frame, Studio
+from ravemj.gui.interaction import Interaction, Notices, Playback
+
+_FPS = 30
+_LONGEST_END = 5.0
+"""How long the end of a viewer waits at most [s] for what is being written."""
+
+_LOG = logging.getLogger("ravemj")
+
+_Colour = tuple[float, float, float]
+
+
+class Look:
+    """What is seen in a view. Views do not live longer for it."""
+
+    def __init__(self, interaction: Interaction, studio: Studio, background: _Colour, ratio: float = 1.0) -> None:
+        """Look at a view.
+
+        Args:
+            interaction: The view.
+            studio: What draws it.
+            background: Colour where nothing is, in 0..1.
+            ratio: How many pixels a point has.
+        """
+        self._interaction, self._studio = weakref.ref(interaction), weakref.ref(studio)
+        self._background = background
+        width, height = (max(round(ratio * length), 1) for length in interaction.view.size)
+        self._form = Format(width, height)
+
+    def frame(self) -> Frame | None:
+        """Return what the view shows now, always of one size; None once there is none."""
+        interaction, studio = self._interaction(), self._studio()
+        if interaction is None or studio is None:
+            return None
+        gizmos = interaction.overlay().shapes
+        return studio.picture(interaction.view.camera, self._background, self._form, gizmos=gizmos)
+
+    def close(self) -> None:
+        """Free what this thread has drawn with."""
+        studio = self._studio()
+        if studio is not None:
+            studio.close()
+
+
+class Saving:
+    """Saves what a viewer shows, and tells in its notices where.
+
+    A video of a motion has every frame at its time, however long drawing takes: it goes from the start of the motion to
+    its end, at the speed chosen. Without a motion it is what happens until it is stopped, in real time.
+
+    This knows no simulation: it outlives forgotten viewers until what they began to save is written.
+    """
+
+    def __init__(self, notices: Notices) -> None:
+        self._notices = notices
+        self._stop = threading.Event()
+        self._recorder: threading.Thread | None = None
+        self._threads: set[threading.Thread] = set()
+
+    def save_picture(self, look: Look) -> None:
+        """Save a picture."""
+        self._start(free_path(".png"), lambda path: _write_picture(path, look))
+
+    def record(self, look: Look, playback: Playback) -> None:
+        """Begin a video, or end the one that is under way.
+
+        Args:
+            look: What is seen in it.
+            playback: The motion that it is of, if there is one.
+        """
+        if self._recorder is not None and self._recorder.is_alive():
+            self._stop.set()
+            return
+        self._stop.clear()
+        times = self._frames_of_clock() if playback.course is None else _frames_of_motion(playback)
+        self._notices.recording = True
+        self._recorder = self._start(free_path(".mp4"), lambda path: self._write_video(path, times, look))
+
+    def end(self) -> None:
+        """End a video, and wait until all is written; not for long, since a script may hold what is drawn."""
+        self._stop.set()
+        end = time.monotonic() + _LONGEST_END
+        for thread in self._threads - {threading.current_thread()}:
+            thread.join(max(end - time.monotonic(), 0.0))
+
+    def _start(self, path: Path, write: Callable[[Path], object]) -> threading.Thread:
+        def run() -> None:
+            try:
+                write(path)
+            except RavemjError as error:
+                _LOG.error("%s", error.message)
+                self._notices.say(error.message)
+            else:
+                folder = os.path.abspath(path.parent)
+                _LOG.info("saved %s in %s", path, folder)
+                self._notices.say(f"Saved {path} in {folder}")
+            finally:
+                self._threads.discard(threading.current_thread())
+
+        thread = threading.Thread(target=run, name="ravemj saving", daemon=True)
+        self._threads.add(thread)
+        thread.start()
+        return thread
+
+    def _write_video(self, path: Path, times: Iterator[bool], look: Look) -> None:
+        from ravemj.graphics.video import write_frames  # noqa: PLC0415 - slow to import
+
+        try:
+            write_frames(path, self._frames(times, look), _FPS)
+        finally:
+            self._notices.recording = False
+            look.close()
+
+    def _frames(self, times: Iterator[bool], look: Look) -> Iterator[Frame]:
+        frame = None
+        for is_new in times:
+            frame = look.frame() if is_new or frame is None else frame
+            if frame is None:
+                return
+            yield frame
+            if self._stop.is_set():
+                return
+
+    def _frames_of_clock(self) -> Iterator[bool]:
+        """Yield for each frame that is due whether there is time to draw it; those that are late show the last one."""
+        start = time.monotonic()
+        for count in itertools.count():
+            late = time.monotonic() - start - count / _FPS
+            self._stop.wait(max(-late, 0.0))
+            yield late < 1 / _FPS
+
+
+def _write_picture(path: Path, look: Look) -> None:
+    from ravemj.graphics.video import write_picture  # noqa: PLC0415 - slow to import
+
+    frame = look.frame()
+    look.close()
+    if frame is not None:
+        write_picture(path, frame)
+
+
+def _frames_of_motion(playback: Playback) -> Iterator[bool]:
+    """Go through a motion frame by frame."""
+    course, step = playback.course, playback.speed / _FPS
+    playback.pause()
+    for count in range(math.ceil(playback.duration / step - 1e-6) + 1):
+        if playback.course is not course:
+            return
+        playback.seek(count * step)
+        yield True
+
+
+def free_path(suffix: str) -> Path:
+    """Return a name in the working folder that no file has, made of the time."""
+    stem = time.strftime("ravemj-%Y%m%d-%H%M%S")
+    names = itertools.chain([stem], (f"{stem}-{number}" for number in itertools.count(2)))
+    return next(path for name in names if not (path := Path(name + suffix)).exists())

@@ -1,0 +1,336 @@
+"""What every viewer can do, and the viewer without a window."""
+
+import contextlib
+import weakref
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.arrays import checked_vector
+from ravemj.core.handles import Handle
+from ravemj.core.transforms import Floats
+from ravemj.engine.simulation import Simulation
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
+from ravemj.graphics.studio import Format, Frame, Studio, checked_colour
+from ravemj.gui.interaction import Resize
+from ravemj.gui.viewers.callbacks import Callback, Callbacks
+from ravemj.gui.viewers.playing import Playing
+from ravemj.gui.viewers.saving import Saving
+from ravemj.model.scene import View
+
+_SIZE = 640, 480
+_LARGEST = 16384
+"""Most pixels along a side: what graphics cards can draw."""
+
+_FIGURES = "SetFiguresInCamera"
+
+
+class Viewer(Playing):
+    """A point of view on an environment; ``env.SetViewer`` makes it and ``env.GetViewer()`` returns it.
+
+    This one has no window: it draws when it is asked for a picture. The camera is OpenRAVE's: a 4x4 matrix
+    ``T_world_camera`` whose columns are image right, image down, the viewing direction, and the position of the eye.
+
+    Example:
+        >>> viewer = env.GetViewer()
+        >>> viewer.SetBkgndColor([0.8, 0.85, 0.9])
+        >>> viewer.SetCamera([[0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+        >>> frame = viewer.render(640, 480)
+
+    Attributes:
+        environment: What it was made for; OpenRAVE's scripts ask ``GetEnv``.
+        interaction: Takes events of mouse and keys; windows hand in theirs.
+    """
+
+    _internal = ("environment", "take_over")
+
+    def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
+        self._simulation = simulation
+        self._studio = studio
+        self._name = name
+        super().__init__(simulation, studio.file_camera() or studio.camera_from_above(), _SIZE)
+        self._background = simulation.view.background
+        self._saving = Saving(self.interaction.controls.notices)
+        weakref.finalize(self, self._saving.end)
+        self._title = name
+        self._size = _SIZE
+        self._figures_in_camera = False
+        self._thread_callbacks = Callbacks()
+        self._image_callbacks = Callbacks()
+        self._camera_of_nothing = None if simulation.bodies else self.camera
+
+    def GetXMLId(self) -> str:
+        """Return the name that ``SetViewer`` was given."""
+        return self._name
+
+    def GetName(self) -> str:
+        """Return the viewer's title: at first the name that ``SetViewer`` was given."""
+        return self._title
+
+    def SetName(self, title: str) -> None:
+        """Set the title; a window shows it.
+
+        Args:
+            title: The title.
+        """
+        self._title = str(title)
+
+    def SetTitle(self, title: str) -> None:
+        """Set the title, like ``SetName``.
+
+        Args:
+            title: The title.
+        """
+        self.SetName(title)
+
+    def SetSize(self, w: int, h: int) -> None:
+        """Set the size of the window, and of pictures that name none.
+
+        Args:
+            w: Columns [pixels].
+            h: Rows [pixels].
+
+        Raises:
+            ArgumentError: a size is no number from 1 to 16384.
+        """
+        self._size = _checked_size(w, h, "SetSize")
+        self.interaction.handle(Resize(*self._size))
+
+    def Move(self, x: int, y: int) -> None:
+        """Move the window; nothing happens without one.
+
+        Args:
+            x: Where its left edge goes on the screen [pixels].
+            y: Where its upper edge goes on the screen [pixels].
+        """
+
+    def Show(self, showtype: int) -> None:
+        """Hide the window, or show it; nothing happens without one.
+
+        Args:
+            showtype: 0 hides it.
+        """
+
+    def main(self, bShow: bool = True) -> int:
+        """Wait until the window is closed or ``quitmainloop`` is called; without a window, return at once.
+
+        Args:
+            bShow: False hides the window.
+
+        Returns:
+            0.
+        """
+        del bShow
+        return 0
+
+    def quitmainloop(self) -> None:
+        """End ``main``; a window closes."""
+
+    def EnvironmentSync(self) -> None:
+        """Wait until the window shows the environment as it is now. Pictures always do."""
+
+    def RegisterViewerThreadCallback(self, callback: Callback) -> Handle:
+        """Have a function called in the thread of the window, once for each turn of its loop.
+
+        Args:
+            callback: The function, without arguments.
+
+        Returns:
+            A handle; the function is forgotten when it is closed or dropped.
+
+        Raises:
+            ArgumentError: this cannot be called.
+        """
+        return self._thread_callbacks.add(callback)
+
+    def RegisterViewerImageCallback(self, callback: Callback) -> Handle:
+        """Have a function called with each picture of the window, in its own thread, and with those of ``render``.
+
+        Args:
+            callback: The function; its argument is the picture, (height, width, 3), uint8.
+
+        Returns:
+            A handle; the function is forgotten when it is closed or dropped.
+
+        Raises:
+            ArgumentError: this cannot be called.
+        """
+        return self._image_callbacks.add(callback)
+
+    def SupportsCommand(self, cmd: str) -> bool:
+        """Return whether ``SendCommand`` knows a command.
+
+        Args:
+            cmd: Its name.
+        """
+        return cmd == _FIGURES
+
+    def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str:
+        """Run one of OpenRAVE's commands by its text: ``SetFiguresInCamera 1``, and 0 to undo it.
+
+        Args:
+            cmd: Name and arguments. After ``SetFiguresInCamera 1`` drawings are in pictures of ``GetCameraImage``.
+            releasegil: Without meaning.
+            lockenv: Without meaning.
+
+        Returns:
+            What the command answers: nothing.
+
+        Raises:
+            openrave_exception: the command is not known (``CommandNotSupported``).
+        """
+        del releasegil, lockenv
+        name, *arguments = cmd.split() or [""]
+        if name != _FIGURES:
+            raise RavemjError(f"the viewer knows no command '{name}', only {_FIGURES}", ErrorCode.CommandNotSupported)
+        if arguments not in (["0"], ["1"]):
+            raise ArgumentError(f"{_FIGURES}: is followed by '{' '.join(arguments)}', and should be by 0 or 1")
+        self._figures_in_camera = arguments == ["1"]
+        return ""
+
+    def SetCamera(self, transform: ArrayLike, focalDistance: float = 0.0) -> None:
+        """Set the camera.
+
+        Args:
+            transform: ``T_world_camera``, 4x4 or 3x4, or a pose [w, x, y, z, tx, ty, tz]. z looks forward, x is image
+                right, y is image down. ``GetCameraTransform`` returns the same numbers.
+            focalDistance: Distance [m] to the point that the mouse turns the camera about; it changes no picture. 0
+                keeps the one before.
+
+        Raises:
+            ArgumentError: this is no rigid transform, or the distance no finite number.
+
+        Example:
+            >>> viewer.SetCamera(saved)  # what viewer.GetCameraTransform() printed
+        """
+        (distance,) = checked_vector([focalDistance], 1, "focalDistance").tolist()
+        self.interaction.look_from(Camera.from_matrix(transform), max(distance, 0.0))
+
+    def GetCameraTransform(self) -> Floats:
+        """Return the camera's pose.
+
+        Returns:
+            ``T_world_camera``, shape (4, 4): columns image right, image down, viewing direction, eye; a copy.
+        """
+        return self.camera.T_world_camera.copy()
+
+    def GetCameraDistanceToFocus(self) -> float:
+        """Return how far the point is that the mouse turns the camera about [m]; 0 before one was set."""
+        return self.interaction.view.distance
+
+    def GetCameraIntrinsics(self) -> CameraIntrinsics:
+        """Return the camera matrix for the viewer's size: ``GetCameraIntrinsics().K``, (3, 3) [pixels]."""
+        fx, fy, cx, cy = self.camera.pinhole(*self._size)
+        return CameraIntrinsics(np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]))
+
+    def GetCameraImage(self, width: int, height: int, transform: ArrayLike, K: ArrayLike) -> Frame:
+        """Draw what a camera sees, anywhere; the viewer's own camera stays as it is.
+
+        Drawings are left out, as in OpenRAVE, until ``SendCommand('SetFiguresInCamera 1')``.
+
+        Args:
+            width: Columns [pixels]; 0: the viewer's.
+            height: Rows [pixels]; 0: the viewer's.
+            transform: ``T_world_camera``, 4x4 or 3x4, or a pose; z forward, x image right, y image down.
+            K: Focal lengths and principal point, [fx, fy, cx, cy] [pixels].
+
+        Returns:
+            The picture, shape (height, width, 3), uint8, top row first.
+
+        Raises:
+            ArgumentError: the transform is not rigid, K is not four numbers with positive focal lengths, or nothing has
+                such a size.
+            RenderingError: nothing can draw here.
+
+        Example:
+            >>> T = viewer.GetCameraTransform()
+            >>> picture = viewer.GetCameraImage(640, 480, T, [640, 640, 320, 240])
+        """
+        fx, fy, cx, cy = checked_vector(K, 4, "K").tolist()
+        if fx <= 0 or fy <= 0:
+            raise ArgumentError(f"K: the focal lengths are {fx:g} and {fy:g}, and should be positive")
+        camera = Camera(Camera.from_matrix(transform).T_world_camera, calibration=Pinhole(fx, fy, cx, cy))
+        form = self._format(width, height, "GetCameraImage")
+        return self._studio.picture(camera, self._background, form, self._figures_in_camera)
+
+    def SetBkgndColor(self, color: ArrayLike) -> None:
+        """Set the colour behind everything.
+
+        Args:
+            color: Red, green, blue from 0 to 1.
+
+        Raises:
+            ArgumentError: this is no colour.
+        """
+        self._background = checked_colour(color)
+
+    def take_over(self, view: View | None = None) -> None:
+        """Take note that bodies were added.
+
+        Args:
+            view: What their file says about background and camera. Where it has no camera, the first bodies in an
+                empty environment are looked at from above, unless somebody has chosen another view before.
+        """
+        if view is not None:
+            self._background = view.background
+        if view is not None and view.T_world_camera is not None:
+            self.SetCamera(view.T_world_camera.matrix())
+        elif self.camera is self._camera_of_nothing and self._simulation.bodies:
+            with contextlib.suppress(RavemjError):  # bodies that MuJoCo refuses; whoever asks for them next is told
+                self.SetCamera(self._studio.camera_from_above().T_world_camera)
+
+    @property
+    def camera(self) -> Camera:
+        """The camera: pose and vertical field of view."""
+        return self.interaction.view.camera
+
+    @property
+    def background(self) -> tuple[float, float, float]:
+        """The colour behind everything: red, green, blue from 0 to 1."""
+        return self._background
+
+    def render(self, width: int | None = None, height: int | None = None) -> Frame:
+        """Draw what the viewer sees, the cube or cylinder of what is selected included.
+
+        Args:
+            width: Columns [pixels]; None: as ``SetSize`` says, at first 640.
+            height: Rows [pixels]; None: as ``SetSize`` says, at first 480.
+
+        Returns:
+            The picture, shape (height, width, 3), uint8, top row first.
+
+        Raises:
+            ArgumentError: no picture has such a size.
+            RenderingError: nothing can draw here.
+        """
+        form = self._format(width, height, "render")
+        gizmos = self.interaction.overlay().shapes
+        picture = self._studio.picture(self.camera, self._background, form, gizmos=gizmos)
+        self._image_callbacks.call(picture)
+        return picture
+
+    def _format(self, width: int | None, height: int | None, caller: str) -> Format:
+        """Return the size of a picture; for what is left open or 0, the viewer's."""
+        return Format(*_checked_size(width or self._size[0], height or self._size[1], caller))
+
+    def close(self) -> None:
+        """Close the viewer."""
+        self._saving.end()
+        self._studio.close()
+
+    def __repr__(self) -> str:
+        return f"<viewer:{self._name}>"
+
+
+def _checked_size(width: float, height: float, caller: str) -> tuple[int, int]:
+    """Return a size as whole pixels.
+
+    Raises:
+        ArgumentError: nothing has such a size.
+    """
+    size = checked_vector([width, height], 2, f"{caller}: size")
+    if size.min() < 1 or size.max() > _LARGEST:
+        limits = f"1 x 1 to {_LARGEST} x {_LARGEST}"
+        raise ArgumentError(f"{caller}: is {width} x {height}, and should be from {limits} pixels")
+    return int(size[0]), int(size[1])

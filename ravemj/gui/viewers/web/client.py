@@ -1,0 +1,187 @@
+"""One page in a browser: its events in, pictures of its view out."""
+
+import base64
+import json
+import logging
+import time
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import asdict
+from typing import NamedTuple, Protocol
+
+from ravemj.engine.simulation import Simulation
+from ravemj.errors import RavemjError
+from ravemj.graphics.studio import Format, Frame, Studio
+from ravemj.gui.interaction import Interaction, Leave, Move, Overlay
+from ravemj.gui.viewers.painter import appearance
+from ravemj.gui.viewers.saving import free_path
+from ravemj.gui.viewers.web import encoding
+from ravemj.gui.viewers.web.complaints import Complaints
+from ravemj.gui.viewers.web.link import Link
+from ravemj.gui.viewers.web.messages import Message, Ready, Shape, parse
+
+_LOG = logging.getLogger("ravemj")
+_PERIOD = 1 / 60
+_REST = 0.3
+"""After so long without a change [s], the picture is sent once more, crisp."""
+
+_MOST_PIXELS = 1920 * 1440
+_MOST_AT_ONCE = 100
+"""Messages that are taken in before the next picture: moves come faster than pictures can be drawn."""
+
+
+class Connection(Protocol):
+    """What connects to a page: ``websockets``' connections do."""
+
+    def recv(self, timeout: float | None = None) -> str | bytes:
+        """Wait for a message."""
+        ...
+
+    def send(self, message: str | bytes) -> None:
+        """Send text or bytes."""
+        ...
+
+
+class Look(NamedTuple):
+    """How all pages of a viewer look.
+
+    Attributes:
+        background: Colour where nothing is, in 0..1.
+        title: What the page is called.
+    """
+
+    background: tuple[float, float, float]
+    title: str
+
+
+def receive(connection: Connection) -> list[str | bytes]:
+    """Return the messages of a page; where there are none, wait for at most a frame's time."""
+    messages: list[str | bytes] = []
+    try:
+        messages.append(connection.recv(timeout=_PERIOD))
+        while len(messages) < _MOST_AT_ONCE:
+            messages.append(connection.recv(timeout=0))
+    except TimeoutError:
+        pass
+    return messages
+
+
+class Client:
+    """Serves one page, in a thread of its own.
+
+    Attributes:
+        interaction: The mouse and the keys of the page, and its view.
+        looks: How often it was found, or seen to, that the page was sent how everything is.
+    """
+
+    def __init__(self, simulation: Simulation, studio: Studio, interaction: Interaction) -> None:
+        self.interaction = interaction
+        self.looks = 0
+        self._simulation = simulation
+        self._studio = studio
+        self._link = Link()
+        self._ratio = 1.0
+        self._waiting: deque[Message] = deque([Leave()])  # of what an earlier connection of the page has left
+        self._seen: object = None
+        self._complaint = ""
+        self._changed_at = 0.0
+        self._is_crisp = True
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether there is enough to do before more messages are received."""
+        return len(self._waiting) > _MOST_AT_ONCE
+
+    def take_in(self, messages: Iterable[str | bytes], complain: Complaints) -> None:
+        """Read messages, which ``attend`` acts upon; nonsense is left out."""
+        for text in messages:
+            try:
+                message = parse(text)
+            except ValueError as error:
+                complain(str(error), text)
+                continue
+            if isinstance(message, Ready):
+                self._link.shown()
+                continue
+            if isinstance(message, Move) and self._waiting and isinstance(self._waiting[-1], Move):
+                self._waiting.pop()  # only where the pointer is now counts
+            self._waiting.append(message)
+
+    def attend(self, connection: Connection, look: Look) -> Frame | None:
+        """Do what the page said, and send it a picture if it takes one and anything has changed or come to rest.
+
+        Returns:
+            The picture; None if there was none to be sent.
+        """
+        try:
+            overlay = self._overlay_if_due(look)
+            picture = None if overlay is None else self._picture(overlay, look)
+        except RavemjError as error:
+            if error.message != self._complaint:
+                _LOG.error("a page cannot show the environment: %s", error)
+                self._complaint = error.message
+            self._seen = None
+            return None
+        if overlay is None or picture is None:
+            return None
+        self._send(connection, overlay, picture, look)
+        self.looks += 1
+        return picture
+
+    def _overlay_if_due(self, look: Look) -> Overlay | None:
+        """Do what the page said; return what is to be drawn over the bodies if a picture is due, else None."""
+        if not self._simulation.lock.acquire(timeout=_PERIOD):  # who holds it may wait for this thread to end
+            return None
+        try:
+            self.interaction.pass_time(time.monotonic())
+            while self._waiting:
+                self._do(self._waiting.popleft())
+            if not self._link.is_free:
+                return None
+            seen = appearance(self._simulation), self.interaction.version, look, self._ratio
+            now = time.monotonic()
+            if seen != self._seen:
+                self._seen, self._changed_at, self._is_crisp = seen, now, False
+            elif self._is_crisp or now - self._changed_at < _REST:
+                self.looks += 1
+                return None
+            else:
+                self._is_crisp = True
+            return self.interaction.overlay()
+        finally:
+            self._simulation.lock.release()
+
+    def _do(self, message: Message) -> None:
+        if isinstance(message, Shape):
+            self._ratio = message.ratio
+            self.interaction.handle(message.resize)
+        elif not isinstance(message, Ready):
+            self.interaction.handle(message)
+
+    def _picture(self, overlay: Overlay, look: Look) -> Frame:
+        width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
+        shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, 1.0)
+        form = Format(max(int(width * shrink), 1), max(int(height * shrink), 1))
+        return self._studio.picture(self.interaction.view.camera, look.background, form, gizmos=overlay.shapes)
+
+    def send_file(self, connection: Connection, look: Look) -> None:
+        """Have the browser save a picture of the view as it is now."""
+        content = encoding.resting(self._picture(self.interaction.overlay(), look), is_exact=True)
+        file = {"task": "save", "name": free_path(".png").name, "data": base64.b64encode(content).decode()}
+        connection.send(json.dumps(file))
+
+    def send_text(self, connection: Connection, text: str) -> None:
+        """Have the browser put a text on the clipboard."""
+        connection.send(json.dumps({"task": "copy", "text": text}))
+
+    def _send(self, connection: Connection, overlay: Overlay, picture: Frame, look: Look) -> None:
+        link = self._link
+        link.sent(is_moving=not self._is_crisp)
+        mode = self.interaction.mode.value
+        controls = [asdict(control) for control in overlay.controls]
+        text = {"lines": overlay.lines, "mode": mode, "title": look.title, "crisp": self._is_crisp}
+        connection.send(json.dumps({**text, "controls": controls}))
+        if self._is_crisp:
+            connection.send(encoding.resting(picture, is_exact=link.is_good))
+        else:
+            connection.send(encoding.moving(picture, link.quality, is_halved=link.is_halved))

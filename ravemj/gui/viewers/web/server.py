@@ -1,0 +1,209 @@
+"""Serves the page's files and its connections, to those who know the secret in the address."""
+
+import atexit
+import contextlib
+import http
+import logging
+import secrets
+import socket
+import threading
+import time
+import weakref
+from collections.abc import Callable
+from pathlib import Path
+
+from websockets.datastructures import Headers
+from websockets.http11 import Request, Response
+from websockets.sync.server import ServerConnection, serve
+
+from ravemj.errors import RenderingError
+from ravemj.gui.viewers.web.complaints import Complaints
+from ravemj.gui.viewers.web.messages import LONGEST
+
+LOOPBACK = "127.0.0.1"
+_LOCAL_NAMES = {LOOPBACK, "localhost", "::1"}
+_EVERYWHERE = {"", "0.0.0.0", "::"}
+_FOLDER = Path(__file__).with_name("page")
+_FILES = {
+    "": "text/html",
+    "page.css": "text/css",
+    "page.js": "text/javascript",
+    "controls.css": "text/css",
+    "controls.js": "text/javascript",
+}
+_SOCKET = "socket"
+_MOST_CONNECTIONS = 32
+_HANDSHAKE = 5.0
+"""How long a stranger may take to say what is wanted [s]."""
+
+_FAREWELL = 1.0
+"""How long a page may take to leave when the viewer is closed [s]."""
+
+_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; base-uri 'none'; "
+    "form-action 'none'"
+)
+
+
+_servers: "weakref.WeakSet[PageServer]" = weakref.WeakSet()
+
+
+class PageServer:
+    """A port at which a page is served.
+
+    Attributes:
+        port: Its number.
+        token: The secret that begins each path.
+        complain: Logs what strangers and broken pages send.
+        closed: Set once it is closed.
+    """
+
+    def __init__(self, host: str, port: int, serve_page: Callable[[ServerConnection], None], *, any_name: bool) -> None:
+        """Listen.
+
+        Args:
+            host: Name or number of the interface.
+            port: Number of the port; 0: any that is free.
+            serve_page: Called with the connection of each page, in a thread of its own.
+            any_name: Whether browsers may call this server what they like, as they do where something stands between.
+
+        Raises:
+            RenderingError: this port cannot be had.
+        """
+        self.token = secrets.token_urlsafe(16)
+        self.complain = Complaints()
+        self.closed = threading.Event()
+        self._may_stop = threading.Lock()  # once, by whoever comes first
+        self._any_name = any_name
+        self._listening = _listen(host, port)
+        self.port = int(self._listening.getsockname()[1])
+        self._threads: set[threading.Thread] = set()
+        silent = logging.getLogger("ravemj.web")
+        silent.setLevel(logging.CRITICAL)  # what strangers send is no news
+        self._server = serve(
+            serve_page,
+            sock=self._listening,
+            process_request=lambda connection, request: self._answer(request),
+            max_size=LONGEST,
+            compression=None,
+            open_timeout=_HANDSHAKE,
+            close_timeout=_FAREWELL,
+            logger=silent,
+        )
+        self._accepting = threading.Thread(target=self._accept, name="ravemj web", daemon=True)
+        self._accepting.start()
+        _servers.add(self)
+
+    def url(self, host: str, scheme: str = "http") -> str:
+        """Return the address of the page for those who know this machine by a name."""
+        name = socket.gethostname() if host in _EVERYWHERE else f"[{host}]" if ":" in host else host
+        return f"{scheme}://{name}:{self.port}/{self.token}/"
+
+    def close(self) -> None:
+        """Listen no more, and wait a moment for the pages to leave. Threads that hang do not keep Python alive."""
+        self.closed.set()
+        if self._may_stop.acquire(blocking=False):
+            self._stop_listening()
+        end = time.monotonic() + _FAREWELL
+        for thread in {self._accepting, *self._threads} - {threading.current_thread()}:
+            thread.join(max(end - time.monotonic(), 0.0))
+
+    def _stop_listening(self) -> None:
+        with contextlib.suppress(OSError):  # it is not known on every system
+            self._listening.shutdown(socket.SHUT_RDWR)  # wakes the thread that accepts
+        self._listening.close()
+        self._server.serve_forever()  # it ends at once, which ``shutdown`` waits for
+        self._server.shutdown()
+
+    def _accept(self) -> None:
+        """Start threads for connections; those of ``Server.serve_forever`` would be waited for without end."""
+        while not self.closed.is_set():
+            try:
+                connection, address = self._listening.accept()
+            except OSError:  # closed, or too many files are open
+                self.closed.wait(0.1)
+                continue
+            if len(self._threads) >= _MOST_CONNECTIONS:
+                self.complain("there are too many connections")
+                connection.close()
+                continue
+            thread = threading.Thread(target=self._serve, args=(connection, address), name="ravemj page", daemon=True)
+            self._threads.add(thread)
+            thread.start()
+
+    def _serve(self, connection: socket.socket, address: object) -> None:
+        try:
+            self._server.handler(connection, address)
+        finally:
+            self._threads.discard(threading.current_thread())
+
+    def _answer(self, request: Request) -> Response | None:
+        """Answer a request: with a file, with a refusal, or None where a page may open its connection."""
+        token, slash, name = request.path.partition("?")[0].removeprefix("/").partition("/")
+        is_known = secrets.compare_digest(token.encode(), self.token.encode()) and name in {*_FILES, _SOCKET}
+        if not (slash and is_known) or not self._is_our_name(request.headers.get("Host", "")):
+            return _text(http.HTTPStatus.NOT_FOUND, "There is nothing here.\n")
+        if name != _SOCKET:
+            return _response(http.HTTPStatus.OK, f"{_FILES[name]}; charset=utf-8", _read(name or "page.html"))
+        origin = request.headers.get("Origin", "")
+        if not self._is_our_page(origin, request.headers):
+            self.complain("a page of another site is refused", origin)
+            return _text(http.HTTPStatus.FORBIDDEN, "Other sites may not connect.\n")
+        return None
+
+    def _is_our_name(self, host: str) -> bool:
+        return self._any_name or host in {f"{_bracketed(name)}:{self.port}" for name in _LOCAL_NAMES}
+
+    def _is_our_page(self, origin: str, headers: Headers) -> bool:
+        """Return whether the page is from where it connects to; other sites cannot set these headers in a browser."""
+        names, schemes = [headers.get("Host", "")], ["http"]
+        if self._any_name:
+            names.append(headers.get("X-Forwarded-Host", "").partition(",")[0].strip())
+            schemes.append("https")
+        scheme, _, name = origin.partition("://")
+        return scheme in schemes and name != "" and name in names
+
+
+@atexit.register
+def _close_all() -> None:
+    """Wait for pages whose viewers went in their own threads: Python must not end while OpenGL draws."""
+    for server in _servers.copy():
+        server.close()
+
+
+def is_local(host: str) -> bool:
+    """Return whether an interface is for programs of this machine only."""
+    return host in _LOCAL_NAMES
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    try:
+        family = socket.getaddrinfo(host or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0][0]
+        return socket.create_server((host, port), family=family)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise RenderingError(f"no page can be served at port {port} of {host or 'this machine'}: {reason}") from None
+
+
+def _bracketed(name: str) -> str:
+    return f"[{name}]" if ":" in name else name
+
+
+def _read(name: str) -> bytes:
+    return (_FOLDER / name).read_bytes()
+
+
+def _text(status: http.HTTPStatus, text: str) -> Response:
+    return _response(status, "text/plain", text.encode())
+
+
+def _response(status: http.HTTPStatus, kind: str, body: bytes) -> Response:
+    headers = Headers()
+    headers["Content-Type"] = kind
+    headers["Content-Length"] = str(len(body))
+    headers["Content-Security-Policy"] = _POLICY
+    headers["Cache-Control"] = "no-store"
+    headers["Referrer-Policy"] = "no-referrer"
+    headers["X-Content-Type-Options"] = "nosniff"
+    headers["Connection"] = "close"
+    return Response(status.value, status.phrase, headers, body)

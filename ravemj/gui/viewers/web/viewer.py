@@ -1,0 +1,209 @@
+"""The viewer whose window is a page in a browser."""
+
+import logging
+import re
+import threading
+import time
+import weakref
+from collections.abc import Iterable
+
+from numpy.typing import ArrayLike
+from websockets.exceptions import ConnectionClosed
+from websockets.frames import CloseCode
+from websockets.sync.server import ServerConnection
+
+from ravemj.engine.simulation import Simulation
+from ravemj.errors import RavemjError
+from ravemj.graphics.studio import Studio
+from ravemj.gui.interaction import Interaction, Wish
+from ravemj.gui.viewers import saving
+from ravemj.gui.viewers.notebook import frame
+from ravemj.gui.viewers.playing import camera_line
+from ravemj.gui.viewers.viewer import Viewer
+from ravemj.gui.viewers.web.client import Client, Look, receive
+from ravemj.gui.viewers.web.server import LOOPBACK, PageServer, is_local
+
+_LOG = logging.getLogger("ravemj")
+_LONGEST_SYNC, _SYNC_STEP = 0.5, 0.005
+_MOST_TABS = 64
+"""So many tabs find their own view again after their connection was lost."""
+
+
+class WebViewer(Viewer):
+    """A viewer in a browser: ``viewer.url`` opens it. Each page has a camera of its own; all share what is selected.
+
+    Pages of this machine only can connect, and only with the secret that is in the URL.
+
+    Attributes:
+        url: The page.
+        server: Listens for pages.
+    """
+
+    _internal = ("attend", "dismiss", "server", "welcome")
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        studio: Studio,
+        name: str,
+        host: str = LOOPBACK,
+        port: int = 0,
+        *,
+        any_name: bool = False,
+    ) -> None:
+        """Serve the page.
+
+        Args:
+            simulation: What it shows.
+            studio: What draws the pictures.
+            name: Name of the viewer.
+            host: Interface that browsers come to; another than the default lets those of other machines in.
+            port: Number of the port; 0: any that is free.
+            any_name: Whether browsers may know this machine by any name, as they do behind a proxy.
+
+        Raises:
+            RenderingError: this port cannot be had.
+        """
+        super().__init__(simulation, studio, name)
+        self._clients: dict[ServerConnection, Client] = {}
+        self._views: dict[str, Interaction] = {}
+        self._lock = threading.Lock()
+        reference: weakref.ref[WebViewer] = weakref.ref(self)
+        self.server = PageServer(
+            host, port, lambda connection: _serve(reference, connection), any_name=any_name or not is_local(host)
+        )
+        self.url = self.server.url(host)
+        self._end = weakref.finalize(self, self.server.close)
+
+    @property
+    def is_open(self) -> bool:
+        """False once it is closed."""
+        return not self.server.closed.is_set()
+
+    def SetCamera(self, transform: ArrayLike, focalDistance: float = 0.0) -> None:
+        """Set the camera of all pages; see ``Viewer.SetCamera``."""
+        super().SetCamera(transform, focalDistance)
+        with self._lock:
+            views = list(self._views.values())
+        for interaction in views:
+            interaction.look_from(self.camera, self.GetCameraDistanceToFocus())
+
+    def EnvironmentSync(self) -> None:
+        """Wait until all pages were sent the environment as it is now; half a second at most, where one is slow."""
+        with self._lock:
+            looks = {client: client.looks for client in self._clients.values()}
+        end = time.monotonic() + _LONGEST_SYNC
+        # the look that is under way may have begun before
+        while any(client.looks < before + 2 for client, before in looks.items()) and time.monotonic() < end:
+            time.sleep(_SYNC_STEP)
+
+    def main(self, bShow: bool = True) -> int:
+        """Wait until ``quitmainloop`` is called or the viewer is closed.
+
+        Args:
+            bShow: Without meaning.
+
+        Returns:
+            0.
+        """
+        del bShow
+        while not self.server.closed.wait(0.1):  # in slices, so that Ctrl-C gets through
+            pass
+        return 0
+
+    def quitmainloop(self) -> None:
+        """End ``main``; pages are told that the viewer has closed."""
+        self.server.closed.set()
+
+    def close(self) -> None:
+        """Close the viewer and its pages."""
+        self._end()
+        super().close()
+
+    def _repr_html_(self) -> str:
+        """Return what notebooks show for a viewer: its page."""
+        return frame(self.url, f"{self.server.port}/{self.server.token}/")
+
+    def welcome(self, connection: ServerConnection) -> None:
+        """Take a page up; one that was here before has the view that it had."""
+        tab = _tab(connection)
+        with self._lock:
+            view = self._views.pop(tab, None) or self.interaction.another_view(has_tools=False)
+            if any(client.interaction is view for client in self._clients.values()):
+                view = view.another_view(has_tools=False)  # the tab was duplicated
+            self._views[tab] = view
+            for oldest in list(self._views)[:-_MOST_TABS]:
+                del self._views[oldest]
+            self._clients[connection] = Client(self._simulation, self._studio, view)
+
+    def attend(self, connection: ServerConnection, messages: Iterable[str | bytes]) -> bool:
+        """Do what a page says and send it a picture if one is due; return whether it may say more.
+
+        The viewer's camera becomes that of the page where it was moved last.
+        """
+        client = self._clients[connection]
+        before = client.interaction.view
+        client.take_in(messages, self.server.complain)
+        look = Look(self._background, self._title)
+        picture = client.attend(connection, look)
+        view = client.interaction.view
+        if messages and view.camera is not before.camera:
+            self.interaction.look_from(view.camera, view.distance)
+        if picture is not None:
+            self._image_callbacks.call(picture)
+        for wish in client.interaction.controls.take_wishes():
+            self._grant(wish, client, connection, look)
+        return not client.is_behind
+
+    def _grant(self, wish: Wish, client: Client, connection: ServerConnection, look: Look) -> None:
+        """Do what a button asked for that needs the page, or writes here."""
+        if wish is Wish.PICTURE:
+            try:
+                client.send_file(connection, look)
+            except RavemjError as error:
+                client.interaction.controls.notices.say(error.message)
+        elif wish is Wish.VIDEO:
+            self._saving.record(saving.Look(client.interaction, self._studio, self._background), self.playback)
+        else:
+            line = camera_line(client.interaction.view.camera)
+            client.send_text(connection, line)
+            _LOG.info("%s", line)
+
+    def dismiss(self, connection: ServerConnection) -> None:
+        """Forget a page that has left, in the thread that drew for it."""
+        with self._lock:
+            self._clients.pop(connection, None)
+        self._studio.close()
+
+
+def _serve(reference: "weakref.ref[WebViewer]", connection: ServerConnection) -> None:
+    """Exchange messages with a page until it leaves, or the viewer is closed or gone, which waiting does not keep."""
+    viewer = reference()
+    if viewer is None:
+        return
+    viewer.welcome(connection)
+    messages: list[str | bytes] = []
+    try:
+        while viewer is not None and viewer.is_open:
+            is_listened_to = viewer.attend(connection, messages)
+            viewer = None
+            messages = receive(connection) if is_listened_to else []
+            viewer = reference()
+        connection.close(CloseCode.GOING_AWAY)
+    except ConnectionClosed as error:
+        viewer = reference()
+        if viewer is not None and error.sent is not None and error.sent.code == CloseCode.MESSAGE_TOO_BIG:
+            viewer.server.complain("a message is too long")
+    except Exception:
+        _LOG.exception("a viewer's page has failed")
+    finally:
+        viewer = reference()
+        if viewer is not None:
+            viewer.dismiss(connection)
+
+
+def _tab(connection: ServerConnection) -> str:
+    """Return the name that a page gives itself, or an own one for those that do not."""
+    request = connection.request
+    found = None if request is None else re.search(r"\?tab=([A-Za-z0-9-]{1,40})$", request.path)
+    return found[1] if found else f"#{id(connection)}"

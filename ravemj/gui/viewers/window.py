@@ -1,0 +1,273 @@
+"""A viewer with a window, drawn by a thread of its own while the script goes on."""
+
+import atexit
+import logging
+import threading
+import time
+import weakref
+from collections.abc import Callable
+from queue import SimpleQueue
+
+import numpy as np
+
+from ravemj.core.arrays import checked_vector
+from ravemj.engine.simulation import Simulation
+from ravemj.errors import ArgumentError, RavemjError, RenderingError
+from ravemj.graphics.studio import Studio
+from ravemj.gui.interaction import Resize, Wish
+from ravemj.gui.viewers.glfw_window import GlfwWindow
+from ravemj.gui.viewers.painter import Painter
+from ravemj.gui.viewers.playing import camera_line
+from ravemj.gui.viewers.saving import Look
+from ravemj.gui.viewers.viewer import Viewer
+
+_LOG = logging.getLogger("ravemj")
+_WIDTH, _HEIGHT = 960, 720
+_PERIOD = 1 / 60
+_SLOW = 1.5 * _PERIOD
+"""From this long on drawing takes the processor and not only the wait for the screen; then the script has its turn."""
+
+_LONGEST_SYNC = 1.0
+_FARTHEST = 32767
+"""Largest coordinate on an X screen."""
+
+_running: dict[threading.Thread, tuple[threading.Event, threading.Event]] = {}
+"""The threads of windows; for each an event that closes it, and one that tells its end: Ctrl-C breaks ``join``."""
+
+_Request = Callable[[GlfwWindow], object]
+"""What other threads ask of a window: its methods belong to one thread."""
+
+
+class WindowViewer(Viewer):
+    """A viewer in a window; it shows every change at once and stays until it is closed or forgotten."""
+
+    _internal = ("open_window", "turn")
+
+    def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
+        super().__init__(simulation, studio, name)
+        self._size = _WIDTH, _HEIGHT
+        self._requests: SimpleQueue[_Request] = SimpleQueue()
+        self._awaited: SimpleQueue[threading.Event] = SimpleQueue()
+        self._complaint = ""
+        self._closing = threading.Event()
+        self._opened = threading.Event()
+        self._failure = ""
+        self._ended = threading.Event()
+        thread = threading.Thread(target=_run, args=(weakref.ref(self),), name="ravemj window", daemon=True)
+        _running[thread] = self._closing, self._ended
+        self._end = weakref.finalize(self, _end, thread)  # before Ctrl-C can end this here
+        thread.start()
+        self._opened.wait()
+        if self._failure:
+            self._ended.wait()
+            raise RenderingError(self._failure)
+
+    @property
+    def is_open(self) -> bool:
+        """False once the window is closed, by the user or by ``close``."""
+        return not self._ended.is_set()
+
+    def wait(self) -> None:
+        """Wait until the user closes the window."""
+        while not self._ended.wait(0.1):  # in slices, so that Ctrl-C gets through
+            pass
+
+    def SetName(self, title: str) -> None:
+        """Set the title of the window.
+
+        Args:
+            title: The title.
+        """
+        super().SetName(title)
+        self._requests.put(lambda window: window.set_title(str(title)))
+
+    def SetSize(self, w: int, h: int) -> None:
+        """Set the size of the window.
+
+        Args:
+            w: Columns [pixels].
+            h: Rows [pixels].
+
+        Raises:
+            ArgumentError: a size is no number from 1 to 16384.
+        """
+        super().SetSize(w, h)
+        size = self._size
+        self._requests.put(lambda window: window.resize(*size))
+
+    def Move(self, x: int, y: int) -> None:
+        """Move the window.
+
+        Args:
+            x: Where its left edge goes on the screen [pixels].
+            y: Where its upper edge goes on the screen [pixels].
+
+        Raises:
+            ArgumentError: these are no numbers that a screen could have.
+        """
+        place = checked_vector([x, y], 2, "Move")
+        if np.abs(place).max() > _FARTHEST:
+            raise ArgumentError(f"Move: is {x}, {y}, and should be from {-_FARTHEST} to {_FARTHEST}")
+        left, top = place.astype(int).tolist()
+        self._requests.put(lambda window: window.move(left, top))
+
+    def Show(self, showtype: int) -> None:
+        """Hide the window, or show it.
+
+        Args:
+            showtype: 0 hides it.
+        """
+        self._requests.put(lambda window: window.show_or_hide(bool(showtype)))
+
+    def main(self, bShow: bool = True) -> int:
+        """Wait until the user closes the window or ``quitmainloop`` is called.
+
+        Args:
+            bShow: False hides the window.
+
+        Returns:
+            0.
+        """
+        self.Show(int(bShow))
+        self.wait()
+        return 0
+
+    def quitmainloop(self) -> None:
+        """Close the window, which ends ``main``."""
+        self._closing.set()
+
+    def EnvironmentSync(self) -> None:
+        """Wait until the window shows the environment as it is now; at most a second, in which others may hold it."""
+        drawn = threading.Event()
+        self._awaited.put(drawn)
+        drawn.wait(_LONGEST_SYNC if self.is_open else 0.0)
+
+    def close(self) -> None:
+        """Close the window."""
+        self._end()
+        super().close()
+
+    def open_window(self) -> GlfwWindow | None:
+        """Open the window, in the thread that it belongs to; None where that fails."""
+        try:
+            return GlfwWindow("ravemj", *self._size)
+        except RenderingError as error:
+            self._failure = error.message
+            return None
+        finally:
+            self._opened.set()
+
+    def turn(self, window: GlfwWindow, painter: Painter) -> bool:
+        """Do what was asked for, and draw if anything has changed; return False once the window should close."""
+        if self._closing.is_set() or window.is_broken or window.is_closed:
+            return False
+        for _ in range(self._requests.qsize()):
+            self._requests.get()(window)
+        waiting = [self._awaited.get() for _ in range(self._awaited.qsize())]
+        self._size = window.size
+        self._thread_callbacks.call()
+        if self._simulation.lock.acquire(timeout=_PERIOD):  # who holds it may wait for this thread to end
+            try:
+                is_changed = self._take_in(window, painter)
+            finally:
+                self._simulation.lock.release()
+            if is_changed:
+                self._draw(window, painter)
+            for wish in self.interaction.controls.take_wishes():
+                self._grant(wish, window)
+            for drawn in waiting:
+                drawn.set()
+        else:
+            for drawn in waiting:
+                self._awaited.put(drawn)
+        return True
+
+    def _take_in(self, window: GlfwWindow, painter: Painter) -> bool:
+        """Do what people did, and return whether the window has to be drawn."""
+        try:
+            if self.interaction.view.size != window.points:
+                self.interaction.handle(Resize(*window.points))
+            self.interaction.pass_time(time.monotonic())
+            events, window.events = window.events, []
+            for event in events:
+                self.interaction.handle(event)
+            width, height = window.pixels
+            if not (width and height):
+                return False
+            view = self._background, (width, height), window.pixel_ratio
+            return painter.look(self._simulation, self.interaction, *view) or window.is_lost
+        except RavemjError as error:
+            if error.message != self._complaint:
+                _LOG.error("the window cannot show the environment: %s", error)
+                self._complaint = error.message
+            return False
+
+    def _draw(self, window: GlfwWindow, painter: Painter) -> None:
+        pixels, ratio = window.pixels, window.pixel_ratio
+        painter.draw(self._background, pixels)
+        if self._image_callbacks:
+            self._image_callbacks.call(painter.read(pixels))
+        painter.draw_overlay(pixels, ratio)
+        window.swap()
+
+    def _grant(self, wish: Wish, window: GlfwWindow) -> None:
+        """Do what a button asked for that needs the window."""
+        look = Look(self.interaction, self._studio, self._background, window.pixel_ratio)
+        if wish is Wish.PICTURE:
+            self._saving.save_picture(look)
+        elif wish is Wish.VIDEO:
+            self._saving.record(look, self.playback)
+        else:
+            line = camera_line(self.camera)
+            window.copy_text(line)
+            self.interaction.controls.notices.say("Copied viewer.SetCamera([...])")
+            _LOG.info("%s", line)
+
+
+def _run(reference: "weakref.ref[WindowViewer]") -> None:
+    """Show a viewer's window, and tell that it has ended."""
+    try:
+        _show(reference)
+    finally:
+        _running[threading.current_thread()][1].set()
+        del _running[threading.current_thread()]
+
+
+def _show(reference: "weakref.ref[WindowViewer]") -> None:
+    """Open a viewer's window and draw it until it is closed, or the viewer is gone, which waiting does not keep."""
+    viewer = reference()
+    window = None if viewer is None else viewer.open_window()
+    if window is None:
+        return
+    painter = Painter()
+    try:
+        begin = time.monotonic()
+        while viewer is not None and viewer.turn(window, painter):
+            viewer = None
+            taken = time.monotonic() - begin
+            window.wait(max(_PERIOD - taken, 0.0) if taken < _SLOW else _PERIOD)
+            begin = time.monotonic()
+            viewer = reference()
+    except Exception as error:  # of OpenGL, say; the script goes on without the window
+        _LOG.error("the window closes: %s", error, exc_info=_LOG.isEnabledFor(logging.DEBUG))
+    if window.is_broken:
+        _LOG.error("the window is gone, as the connection to the display broke")
+    else:
+        painter.close()
+    window.close()
+
+
+def _end(thread: threading.Thread) -> None:
+    """Close a window and wait for the end of its thread."""
+    closing, ended = _running.get(thread, (None, None))
+    if closing is not None and ended is not None and thread.ident is not None:
+        closing.set()
+        if threading.current_thread() is not thread:
+            ended.wait()
+
+
+@atexit.register
+def _end_all() -> None:
+    """Wait for windows whose viewers went in their own threads: Python must not end while OpenGL draws."""
+    for thread in list(_running):
+        _end(thread)

@@ -1,0 +1,1 @@
+"""What OpenRAVE has in memory after loading, and what follows from it alone."""

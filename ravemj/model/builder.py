@@ -1,0 +1,298 @@
+"""The mutable body that readers fill in document order, and that becomes a frozen ``scene.KinBody``.
+
+OpenRAVE re-opens links by name, moves and renames what was read before, and merges nested bodies; only the end
+of a body's outermost element settles it. ``BodyBuilder.freeze`` then decides parents, measures the joint values
+from the poses of the links, and places the links by them, as OpenRAVE does.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from ravemj.core.transforms import UNMOVED, ZERO, Pose, Vec3, Wxyz, rotate, scale
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.model import hierarchy, scene
+from ravemj.model.following import Equations, Follower, evaluation_order, leaders, resolve
+from ravemj.model.joints import measured_values, place_links
+from ravemj.model.manipulators import ManipulatorBuilder, freeze_manipulator
+
+_ROUNDING = 1e-9  # of values that were degrees
+
+DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 0.4)))
+"""A link without mass properties weighs 1 kg, like a unit sphere."""
+
+
+@dataclass(slots=True)
+class LinkBuilder:
+    """A link in the making; ``pose`` is in the frame of the element that is open."""
+
+    name: str
+    source: Source
+    pose: Pose = UNMOVED
+    geometries: list[scene.Geometry] = field(default_factory=lambda: [])
+    inertial: scene.Inertial = DEFAULT_INERTIAL
+    static: bool = False
+    enabled: bool = True
+    groups: tuple[tuple[str, tuple[scene.Geometry, ...]], ...] = ()
+    parameters: scene.Parameters = scene.NO_PARAMETERS
+
+
+@dataclass(slots=True, kw_only=True)
+class JointBuilder:
+    """A joint as listed: anchor and axis directions are in the frame of the first listed link.
+
+    Attributes:
+        weld_turn: What turns the axes of a weld into those that OpenRAVE reports; None: the second link's rotation.
+    """
+
+    name: str
+    kind: scene.JointKind
+    links: tuple[int, int]
+    T_first_second: Pose
+    anchor: Vec3
+    axes: tuple[scene.Axis, ...]
+    weld_turn: Wxyz | None = None
+    enabled: bool
+    equations: Equations | None = None
+    parameters: scene.Parameters = scene.NO_PARAMETERS
+    source: Source
+
+    @property
+    def active(self) -> bool:
+        """True where it has DOFs."""
+        return self.enabled and self.equations is None
+
+    @property
+    def fixed(self) -> bool:
+        """True for a weld."""
+        moves = self.equations is not None and self.equations.position
+        return not moves and self.has_no_room
+
+    @property
+    def has_no_room(self) -> bool:
+        """True where the limits of all axes are equal."""
+        return all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
+
+
+@dataclass(slots=True)
+class BodyBuilder:
+    """A body in the making.
+
+    Attributes:
+        joint_values: Values of all DOFs that the file asks for, or None.
+        refusal: Why OpenRAVE ends its reading behind this body, though the body is there; or None.
+    """
+
+    is_robot: bool
+    source: Source
+    name: str = ""
+    links: list[LinkBuilder] = field(default_factory=lambda: [])
+    joints: list[JointBuilder] = field(default_factory=lambda: [])
+    adjacent: list[tuple[int, int]] = field(default_factory=lambda: [])
+    joined_links_adjacent: bool = True
+    manipulators: list[ManipulatorBuilder] = field(default_factory=lambda: [])
+    sensors: list[scene.AttachedSensor] = field(default_factory=lambda: [])
+    joint_values: list[float] | None = None
+    refusal: SourceError | None = None
+
+    def find_link(self, name: str) -> int | None:
+        """Return the index of the first link of that name, or None."""
+        return next((index for index, link in enumerate(self.links) if link.name == name), None)
+
+    def find_link_any_case(self, name: str) -> int | None:
+        """Return the index of the first link of that name in any letter case, or None."""
+        wanted = name.lower()
+        return next((index for index, link in enumerate(self.links) if link.name.lower() == wanted), None)
+
+    def freeze(self, diagnostics: Diagnostics) -> scene.KinBody:
+        """Settle the body.
+
+        Args:
+            diagnostics: Takes a warning for every value that is moved into its limits.
+
+        Raises:
+            SourceError: a manipulator is impossible.
+        """
+        if not self.joints and not self.manipulators:
+            return self._frozen([link.pose for link in self.links], [], 0)
+        listed = self._in_order()
+        has_dofs = bool(listed and listed[0].active)
+        mimics = _with_welds(listed, resolve(_followers(listed), diagnostics))
+        decided = self._decide(listed, mimics)
+        poses = [link.pose for link in self.links]
+        joints = [
+            _directed(joint, mimics.get(index), swap=swap, places_child=index in decided.order, has_dofs=has_dofs)
+            for index, (joint, swap) in enumerate(zip(listed, decided.swapped, strict=True))
+        ]
+        if has_dofs:
+            joints = self._settled(joints, poses, diagnostics)
+            placing = [joints[index] for index in decided.order]
+            place_links(poses, placing, [[axis.value for axis in joint.axes] for joint in placing])
+        body = self._frozen(poses, joints, sum(built.active for built in listed))
+        manipulators = tuple(freeze_manipulator(built, body, diagnostics) for built in self.manipulators)
+        return replace(body, manipulators=manipulators) if manipulators else body
+
+    def _frozen(self, poses: Sequence[Pose], joints: Sequence[scene.Joint], active: int) -> scene.KinBody:
+        """Return the body with its links at the given poses, and without its manipulators."""
+        return scene.KinBody(
+            name=self.name,
+            is_robot=self.is_robot,
+            links=tuple(_frozen_link(link, pose) for link, pose in zip(self.links, poses, strict=True)),
+            joints=tuple(joints[:active]),
+            passive_joints=tuple(joints[active:]),
+            adjacent=tuple(self.adjacent),
+            joined_links_adjacent=self.joined_links_adjacent,
+            sensors=tuple(self.sensors),
+            source=self.source,
+        )
+
+    def _in_order(self) -> list[JointBuilder]:
+        """Return the active joints, then the disabled ones, then the followers."""
+        active = [joint for joint in self.joints if joint.active]
+        disabled = [joint for joint in self.joints if not joint.enabled]
+        return active + disabled + [joint for joint in self.joints if joint.enabled and not joint.active]
+
+    def _decide(self, listed: Sequence[JointBuilder], mimics: dict[int, scene.Mimic]) -> hierarchy.Hierarchy:
+        edges: list[hierarchy.Edge] = []
+        for index, joint in enumerate(listed):
+            mimic = mimics.get(index)
+            follows = leaders(mimic.expression) if mimic is not None and mimic.expression is not None else ()
+            passive = tuple(leader for leader in follows if not listed[leader].active)
+            fixed = joint.fixed if mimic is None else mimic.static
+            edges.append(hierarchy.Edge(joint.links, fixed, joint.active, passive))
+        return hierarchy.decide([link.static for link in self.links], edges)
+
+    def _settled(
+        self, joints: Sequence[scene.Joint], poses: Sequence[Pose], diagnostics: Diagnostics
+    ) -> list[scene.Joint]:
+        """Return the joints with their values: measured, or as the file asks, moved into the limits."""
+        values = [list(measured_values(joint, poses[joint.parent].inverse() @ poses[joint.child])) for joint in joints]
+        findings = diagnostics if self.joint_values is None else Diagnostics()
+        values = _limited(joints, values, findings)
+        active = sum(1 for joint in self.joints if joint.active)
+        values = self._asked(joints[:active], values, diagnostics)
+        follow(joints, values)
+        return [
+            replace(
+                joint,
+                axes=tuple(replace(axis, value=v) for axis, v in zip(joint.axes, joint_values, strict=True)),
+            )
+            for joint, joint_values in zip(joints, values, strict=True)
+        ]
+
+    def _asked(
+        self, active: Sequence[scene.Joint], values: list[list[float]], diagnostics: Diagnostics
+    ) -> list[list[float]]:
+        """Put the values that ``<jointvalues>`` asks for in place of the measured ones."""
+        if self.joint_values is None:
+            return values
+        dof = sum(len(joint.axes) for joint in active)
+        if len(self.joint_values) != dof:
+            message = f"<jointvalues> has {len(self.joint_values)} values, and '{self.name}' has {dof} DOFs; no effect"
+            diagnostics.warn("number-count", message, self.source)
+            return values
+        asked = iter(self.joint_values)
+        chosen = [[next(asked) for _ in joint.axes] for joint in active]
+        still = [[0.0] * len(axes) if joint.static else axes for joint, axes in zip(active, chosen, strict=True)]
+        return _limited(active, still, diagnostics) + values[len(active) :]
+
+
+def follow(joints: Sequence[scene.Joint], values: list[list[float]]) -> None:
+    """Compute the values of the followers from those of the others, in place, inside their limits."""
+    mimics = {index: joint.mimic for index, joint in enumerate(joints) if joint.mimic is not None}
+    for index in evaluation_order(mimics):
+        expression = mimics[index].expression
+        axis = joints[index].axes[0]
+        if expression is not None:
+            named = {f"joint{leader}": values[leader][0] for leader in leaders(expression)}
+            values[index][0] = _inside(axis, expression.evaluate(named))
+
+
+def _inside(axis: scene.Axis, value: float) -> float:
+    return value if axis.circular else min(max(value, axis.lower), axis.upper)
+
+
+def _followers(listed: Sequence[JointBuilder]) -> list[Follower]:
+    followers: list[Follower] = []
+    dof = 0
+    for joint in listed:
+        count = len(joint.axes) if joint.active else 0
+        followers.append(Follower(joint.name, tuple(range(dof, dof + count)), joint.equations, joint.source))
+        dof += count
+    return followers
+
+
+def _with_welds(listed: Sequence[JointBuilder], mimics: dict[int, scene.Mimic]) -> dict[int, scene.Mimic]:
+    """Return the followers; those that are welds and follow nothing but welds are marked."""
+    fixed = [joint.has_no_room for joint in listed if joint.active for _ in joint.axes]
+    return {
+        index: replace(mimic, static=listed[index].has_no_room and all(fixed[dof] for dof in mimic.dofs))
+        for index, mimic in mimics.items()
+    }
+
+
+def _directed(
+    joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, places_child: bool, has_dofs: bool
+) -> scene.Joint:
+    """Return the joint with parent and child decided; swapping turns its axes round."""
+    parent, child = joint.links
+    T_parent_child, anchor, axes = joint.T_first_second, joint.anchor, joint.axes
+    if swap:
+        parent, child = child, parent
+        T_parent_child = T_parent_child.inverse()
+        anchor = T_parent_child.apply(anchor)
+        axes = tuple(replace(axis, direction=scale(rotate(T_parent_child.wxyz, axis.direction), -1.0)) for axis in axes)
+    if (joint.fixed if mimic is None else mimic.static) and has_dofs:  # OpenRAVE moves the frame of a weld to its child
+        anchor = T_parent_child.position
+        turn = T_parent_child.wxyz if joint.weld_turn is None else joint.weld_turn
+        axes = tuple(replace(axis, direction=rotate(turn, axis.direction)) for axis in axes)
+    return scene.Joint(
+        name=joint.name,
+        kind=joint.kind,
+        parent=parent,
+        child=child,
+        T_parent_child=T_parent_child,
+        anchor=anchor,
+        axes=axes,
+        places_child=places_child,
+        mimic=mimic,
+        parameters=joint.parameters,
+        source=joint.source,
+    )
+
+
+def _limited(
+    joints: Sequence[scene.Joint], values: Sequence[list[float]], diagnostics: Diagnostics
+) -> list[list[float]]:
+    """Return the values moved into the joints' limits, with a warning for each that moves."""
+    limited: list[list[float]] = []
+    for joint, joint_values in zip(joints, values, strict=True):
+        if joint.mimic is not None:  # its value will be computed
+            limited.append(joint_values)
+            continue
+        limited.append([_inside(axis, value) for axis, value in zip(joint.axes, joint_values, strict=True)])
+        for axis, value, inside in zip(joint.axes, joint_values, limited[-1], strict=True):
+            if abs(value - inside) > _ROUNDING:
+                diagnostics.warn(
+                    "value-outside-limits",
+                    f"joint '{joint.name}' loads at {inside:.6g}, not at {value:.6g}, which its limits "
+                    f"[{axis.lower:.6g}, {axis.upper:.6g}] exclude",
+                    joint.source,
+                )
+    return limited
+
+
+def _frozen_link(link: LinkBuilder, pose: Pose) -> scene.Link:
+    if not (math.isfinite(sum(pose.position)) and math.isfinite(sum(pose.wxyz))):
+        raise SourceError(f"the pose of link '{link.name}' is not finite", link.source, "look for enormous numbers")
+    return scene.Link(
+        name=link.name,
+        T_world_link=pose,
+        inertial=link.inertial,
+        geometries=tuple(link.geometries),
+        static=link.static,
+        enabled=link.enabled,
+        groups=link.groups,
+        parameters=link.parameters,
+        source=link.source,
+    )

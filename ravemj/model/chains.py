@@ -1,0 +1,141 @@
+"""Questions about the graph of links and joints of a body.
+
+Joints are counted as in a body's list: active ones, then passive ones.
+"""
+
+from collections import deque
+from collections.abc import Callable
+
+from ravemj.model.manipulators import joint_dofs
+from ravemj.model.scene import Joint, KinBody, Manipulator
+
+
+def all_joints(body: KinBody) -> tuple[Joint, ...]:
+    """Return the active joints, then the passive ones."""
+    return (*body.joints, *body.passive_joints)
+
+
+def parents(body: KinBody, link: int) -> list[int]:
+    """Return the links that joints hang a link on."""
+    return list(dict.fromkeys(joint.parent for joint in all_joints(body) if joint.child == link))
+
+
+def rigidly_attached(body: KinBody, link: int) -> list[int]:
+    """Return a link and those that welds fix to it; the link is the first."""
+    reached = _search(body, link, lambda joint: joint.static)
+    return [link, *sorted(reached.keys() - {link})]
+
+
+def chain(body: KinBody, first: int, last: int) -> tuple[list[int], list[int]]:
+    """Return the shortest way from one link to another.
+
+    Returns:
+        The links on it, both ends included, and the joints between them; none where there is no way, or no need of one.
+    """
+    reached = _search(body, first, lambda joint: True)
+    if first == last or last not in reached:
+        return [], []
+    return _way_back(reached, first, last)
+
+
+def _search(body: KinBody, start: int, passes: Callable[[Joint], bool]) -> dict[int, tuple[int, int]]:
+    """Walk the graph breadth first; return for each link the joint and the link that it was reached by."""
+    neighbours: dict[int, list[tuple[int, int]]] = {}
+    for index, joint in enumerate(all_joints(body)):
+        if passes(joint):
+            neighbours.setdefault(joint.parent, []).append((index, joint.child))
+            neighbours.setdefault(joint.child, []).append((index, joint.parent))
+    reached = {start: (-1, start)}
+    queue = deque([start])
+    while queue:
+        link = queue.popleft()
+        for joint, other in neighbours.get(link, ()):
+            if other not in reached:
+                reached[other] = (joint, link)
+                queue.append(other)
+    return reached
+
+
+def _way_back(reached: dict[int, tuple[int, int]], first: int, last: int) -> tuple[list[int], list[int]]:
+    links, joints = [last], list[int]()
+    while links[-1] != first:
+        joint, link = reached[links[-1]]
+        joints.append(joint)
+        links.append(link)
+    return links[::-1], joints[::-1]
+
+
+def joints_above(body: KinBody, link: int) -> list[int]:
+    """Return the joints that place a link and the links that it hangs on, the nearest first."""
+    joints = all_joints(body)
+    placing = {joint.child: index for index, joint in enumerate(joints) if joint.places_child}
+    above: list[int] = []
+    while link in placing:
+        above.append(placing[link])
+        link = joints[placing[link]].parent
+    return above
+
+
+def dofs_moving(body: KinBody, link: int) -> set[int]:
+    """Return the DOFs that move a link, also through joints that follow them."""
+    joints = all_joints(body)
+    moving: set[int] = set()
+    for index in joints_above(body, link):
+        mimic = joints[index].mimic
+        if mimic is not None:
+            moving.update(mimic.dofs)
+        elif index < len(body.joints):
+            moving.update(joint_dofs(body, index))
+    return moving
+
+
+def dependency_order(body: KinBody) -> list[int]:
+    """Return the active joints, each behind those that move the links at it; else those nearer to the root first."""
+
+    def depth(index: int) -> tuple[int, int, int]:
+        joint = body.joints[index]
+        near, far = sorted(len(joints_above(body, link)) for link in (joint.parent, joint.child))
+        return near, far, index
+
+    return sorted(range(len(body.joints)), key=depth)
+
+
+def closed_loops(body: KinBody) -> list[list[tuple[int, int]]]:
+    """Return for each joint that closes a loop the loop: links, each with the joint that leads on from it."""
+    loops: list[list[tuple[int, int]]] = []
+    for index, joint in enumerate(all_joints(body)):
+        if not joint.places_child:
+            reached = _search(body, joint.child, lambda other: other.places_child)
+            if joint.parent in reached:
+                links, joints = _way_back(reached, joint.child, joint.parent)
+                loops.append(list(zip(links, [*joints, index], strict=True)))
+    return loops
+
+
+def links_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:
+    """Return the effector of a manipulator, what is fixed to it, and what hangs on these."""
+    if manipulator.effector is None:
+        return []
+    joints = all_joints(body)
+    fixed = set(rigidly_attached(body, manipulator.effector))
+
+    def hangs(link: int) -> bool:
+        return link in fixed or any(joints[index].parent in fixed for index in joints_above(body, link))
+
+    return [link for link in range(len(body.links)) if hangs(link)]
+
+
+def joints_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:
+    """Return the active joints between the links beyond a manipulator's arm."""
+    beyond = set(links_beyond(body, manipulator))
+    return [
+        index
+        for index, joint in enumerate(body.joints)
+        if joint.parent in beyond and not set(joint_dofs(body, index)) & set(manipulator.arm_dofs)
+    ]
+
+
+def independent_links(body: KinBody, manipulator: Manipulator) -> list[int]:
+    """Return the links that neither the arm nor the gripper of a manipulator moves."""
+    own = {*manipulator.arm_dofs, *manipulator.gripper_dofs}
+    return [link for link in range(len(body.links)) if not dofs_moving(body, link) & own]

@@ -1,0 +1,271 @@
+"""Drawings that scripts add to a scene: points, lines and triangles over arrays, without a renderer.
+
+Every call of OpenRAVE's (arrow, box, plane, mesh) becomes a ``Batch`` of one of four kinds; renderers know these
+four. ``Drawings`` keeps what is to be seen. Adding, changing and removing are each one step on a dict, so any thread
+may do so at any time, garbage collection included, and nobody waits for anybody.
+"""
+
+import itertools
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints
+
+_TIP_OF_ARROW = 0.1
+"""Length of an arrow's tip as a part of the whole, as in OpenRAVE."""
+
+_SIDES_OF_ARROW = 12
+_SIDES_OF_CYLINDER = 32
+_SHADES = 16
+"""Pieces of a line along which a colour goes from 0 to 1."""
+
+_TEXTURE_CELLS = 64
+"""Most cells along a side of a plane; finer textures are averaged."""
+
+_BOX_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
+_BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+
+
+class Batch(NamedTuple):
+    """Figures of one kind.
+
+    Attributes:
+        corners: Shape (N, k, 3) [m]; k is 1 for points and spheres, 2 for lines, 3 for triangles.
+        sizes: Shape (N,): width of points and lines [pixels], radius of spheres [m]; triangles have none.
+        rgba: Shape (N, 4) in 0..1.
+    """
+
+    corners: Floats
+    sizes: Floats
+    rgba: Floats
+
+    def placed(self, transform: Floats) -> "Batch":
+        """Return the figures moved by a 4x4 transform."""
+        return self._replace(corners=self.corners @ transform[:3, :3].T + transform[:3, 3])
+
+
+def _empty(corners: int) -> Batch:
+    return Batch(np.empty((0, corners, 3)), np.empty(0), np.empty((0, 4)))
+
+
+@dataclass(frozen=True, eq=False)
+class Shapes:
+    """Drawings, as renderers see them: figures by kind. Equal is only what is the same object.
+
+    Attributes:
+        points: Squares that face the camera, in their own colour; OpenGL's points.
+        spheres: Balls, lit.
+        lines: Segments of constant width on the screen, in their own colour.
+        triangles: Flat and lit, seen from both sides.
+    """
+
+    points: Batch = field(default_factory=lambda: _empty(1))
+    spheres: Batch = field(default_factory=lambda: _empty(1))
+    lines: Batch = field(default_factory=lambda: _empty(2))
+    triangles: Batch = field(default_factory=lambda: _empty(3))
+
+    @property
+    def batches(self) -> tuple[Batch, Batch, Batch, Batch]:
+        """Points, spheres, lines and triangles."""
+        return self.points, self.spheres, self.lines, self.triangles
+
+    def __len__(self) -> int:
+        return sum(len(batch.sizes) for batch in self.batches)
+
+    def placed(self, transform: Floats) -> "Shapes":
+        """Return the figures moved by a 4x4 transform."""
+        return Shapes(*(batch.placed(transform) for batch in self.batches))
+
+    def bounding_sphere(self) -> tuple[Floats, float]:
+        """Return centre (3,) and radius [m] of a sphere around all of them; there has to be one."""
+        corners = np.concatenate([batch.corners.reshape(-1, 3) for batch in self.batches])
+        center = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+        largest = self.spheres.sizes.max(initial=0.0)
+        return center, float(np.linalg.norm(corners - center, axis=1).max() + largest)
+
+
+NOTHING = Shapes()
+
+
+def points(positions: Floats, size: float, rgba: Floats) -> Shapes:
+    """Return points (N, 3) of a size [pixels], with colours (N, 4)."""
+    return Shapes(points=Batch(positions[:, None], np.full(len(positions), size), rgba))
+
+
+def spheres(positions: Floats, radius: float, rgba: Floats) -> Shapes:
+    """Return spheres around positions (N, 3), with colours (N, 4)."""
+    return Shapes(spheres=Batch(positions[:, None], np.full(len(positions), radius), rgba))
+
+
+def line_strip(positions: Floats, width: float, rgba: Floats) -> Shapes:
+    """Return the line through positions (N, 3); colours (N, 4) run from one to the next."""
+    first = np.arange(len(positions) - 1)
+    return _lines(positions, width, rgba, np.stack([first, first + 1], axis=1))
+
+
+def line_list(positions: Floats, width: float, rgba: Floats) -> Shapes:
+    """Return a line between each pair of positions (N, 3); a last one that is alone is left out."""
+    return _lines(positions, width, rgba, np.arange(len(positions) // 2 * 2).reshape(-1, 2))
+
+
+def _lines(positions: Floats, width: float, rgba: Floats, ends: Ints) -> Shapes:
+    """Cut lines whose ends differ in colour into pieces of one colour."""
+    pieces = max(1, int(np.ceil(_SHADES * np.abs(np.diff(rgba[ends], axis=1)).max(initial=0))))
+    cuts = np.arange(pieces + 1) / pieces
+    at = positions[ends[:, 0], None] + cuts[:, None] * np.diff(positions[ends], axis=1)
+    middles = 0.5 * (cuts[:-1] + cuts[1:])
+    colors = rgba[ends[:, 0], None] + middles[:, None] * np.diff(rgba[ends], axis=1)
+    corners = np.stack([at[:, :-1], at[:, 1:]], axis=2).reshape(-1, 2, 3)
+    return Shapes(lines=Batch(corners, np.full(len(corners), width), colors.reshape(-1, 4)))
+
+
+def mesh(positions: Floats, triangles: Ints, rgba: Floats) -> Shapes:
+    """Return triangles (M, 3) of positions (N, 3); each has the mean colour of its corners' (N, 4)."""
+    return _triangles(positions[triangles], rgba[triangles].mean(axis=1))
+
+
+def _triangles(corners: Floats, rgba: Floats) -> Shapes:
+    return Shapes(triangles=Batch(corners, np.zeros(len(corners)), rgba))
+
+
+def arrow(start: Floats, end: Floats, radius: float, rgba: Floats) -> Shapes:
+    """Return an arrow: a shaft of that radius [m] and a tip twice as wide; nothing where it has no length."""
+    along = end - start
+    if not along.any():
+        return NOTHING
+    aside, across = radius * np.linalg.svd(along[None]).Vh[1:]
+    turn = np.linspace(0, 2 * np.pi, _SIDES_OF_ARROW, endpoint=False)[:, None]
+    ring = np.cos(turn) * aside + np.sin(turn) * across
+    neck = end - _TIP_OF_ARROW * along
+    outline = [start + 0 * ring, start + ring, neck + ring, neck + 2 * ring, end + 0 * ring]
+    return _skin(outline, rgba)
+
+
+def cylinder(radius: float, height: float, rgba: Floats) -> Shapes:
+    """Return a cylinder along z around the origin, with its full height [m]."""
+    turn = np.linspace(0, 2 * np.pi, _SIDES_OF_CYLINDER, endpoint=False)
+    ring = radius * np.column_stack([np.cos(turn), np.sin(turn), 0 * turn])
+    up = np.array([0.0, 0.0, height / 2])
+    return _skin([0 * ring - up, ring - up, ring + up, 0 * ring + up], rgba)
+
+
+def _skin(rings: list[Floats], rgba: Floats) -> Shapes:
+    """Return the surface through rings of points, each (N, 3)."""
+    corners = np.concatenate([_quads(inner, outer) for inner, outer in itertools.pairwise(rings)])
+    return _triangles(corners, np.tile(rgba, (len(corners), 1)))
+
+
+def _quads(ring: Floats, other: Floats) -> Floats:
+    """Return the triangles between two closed rings of points (N, 3), without those that have no area."""
+    following, other_following = np.roll(ring, -1, axis=0), np.roll(other, -1, axis=0)
+    corners = np.concatenate(
+        [np.stack([ring, other, other_following], axis=1), np.stack([ring, other_following, following], axis=1)]
+    )
+    return corners[np.linalg.norm(_normals(corners), axis=1) > 0]
+
+
+def _normals(corners: Floats) -> Floats:
+    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def box(center: Floats, extents: Floats, rgba: Floats) -> Shapes:
+    """Return a box along the axes; extents (3,) are half of its sides [m]."""
+    faces = np.array(_BOX_FACES)[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
+    return _triangles((center + _BOX_CORNERS * extents)[faces], np.tile(rgba, (len(faces), 1)))
+
+
+def plane(transform: Floats, extents: Floats, texture: Floats) -> Shapes:
+    """Return an image on a rectangle.
+
+    Args:
+        transform: The rectangle lies in the plane of x and y of this frame, its centre in the origin; 4x4.
+        extents: Half of its sides along x and y, (2,) [m].
+        texture: Colours (H, W, 4) in 0..1. Columns run along +x, rows along +y.
+    """
+    cells = _averaged(_averaged(texture, 0), 1)
+    rows, columns = cells.shape[:2]
+    grid = np.zeros((rows + 1, columns + 1, 3))
+    grid[..., 0] = np.linspace(-extents[0], extents[0], columns + 1)
+    grid[..., 1] = np.linspace(-extents[1], extents[1], rows + 1)[:, None]
+    low, high = grid[:-1], grid[1:]
+    corners = np.stack([low[:, :-1], low[:, 1:], high[:, 1:], low[:, :-1], high[:, 1:], high[:, :-1]], axis=2)
+    rgba = np.repeat(cells.reshape(-1, 4), 2, axis=0)
+    return _triangles(corners.reshape(-1, 3, 3), rgba).placed(transform)
+
+
+def _averaged(texture: Floats, axis: int) -> Floats:
+    """Return a texture with at most so many cells along an axis as are drawn, each the mean of the pixels in it."""
+    count = texture.shape[axis]
+    cells = min(count, _TEXTURE_CELLS)
+    edges: Ints = np.arange(cells, dtype=np.int_) * count // cells
+    sizes = np.diff(edges, append=count)
+    return np.add.reduceat(texture, edges, axis=axis) / np.expand_dims(sizes, tuple({0, 1, 2} - {axis}))
+
+
+class Drawing:
+    """A drawing on show; the one who draws holds it, and ``Drawings.remove`` takes it off.
+
+    Attributes:
+        state: The figures as they were drawn, and where they are now; None while they are hidden. Replaced as a whole.
+    """
+
+    def __init__(self, shapes: Shapes) -> None:
+        self._shapes = shapes
+        self._transform = np.eye(4)
+        self._shown = True
+        self.state: Shapes | None = shapes
+
+    def place(self, transform: Floats) -> None:
+        """Set where the figures are: a 4x4 transform of what was drawn."""
+        self._transform = transform
+        self._update()
+
+    def show(self, shown: bool) -> None:
+        """Show or hide the figures."""
+        self._shown = shown
+        self._update()
+
+    def _update(self) -> None:
+        self.state = self._shapes.placed(self._transform) if self._shown else None
+
+
+class Drawings:
+    """What is drawn beside the bodies."""
+
+    def __init__(self) -> None:
+        self._drawn: dict[int, Drawing] = {}
+        self._keys = itertools.count()
+        self._merged: tuple[tuple[Shapes, ...], Shapes] = ((), NOTHING)
+
+    def add(self, shapes: Shapes) -> tuple[int, Drawing]:
+        """Show figures; return the key that removes them, and the drawing."""
+        key, drawing = next(self._keys), Drawing(shapes)
+        self._drawn[key] = drawing
+        return key, drawing
+
+    def remove(self, key: int) -> None:
+        """Take a drawing off; nothing happens where it is off already. Never waits, so finalizers may call it."""
+        self._drawn.pop(key, None)
+
+    def clear(self) -> None:
+        """Take all drawings off."""
+        self._drawn.clear()
+
+    def shapes(self) -> Shapes:
+        """Return all visible figures, in the world; the same object for as long as nothing changes."""
+        states = [drawing.state for drawing in self._drawn.copy().values()]
+        visible = tuple(state for state in states if state is not None)
+        before, merged = self._merged
+        if visible != before:
+            merged = merge(visible)
+            self._merged = (visible, merged)
+        return merged
+
+
+def merge(parts: Iterable[Shapes]) -> Shapes:
+    """Return all figures of several drawings."""
+    by_kind = zip(NOTHING.batches, *(part.batches for part in parts), strict=True)
+    return Shapes(*(Batch(*(np.concatenate(arrays) for arrays in zip(*kind, strict=True))) for kind in by_kind))

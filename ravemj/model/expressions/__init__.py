@@ -1,0 +1,33 @@
+"""The language of mimic equations: how one joint follows others.
+
+OpenRAVE reads such equations with the library fparser 4.5; this package has the same language and its own
+implementation, which runs nothing of what it reads: text becomes a tree, and only the tree is evaluated.
+
+>>> follower = parse(substitute("JF1/3+0.8727", joint_variables(["JF1"])), {"joint0"})
+>>> follower.evaluate({"joint0": 0.3})
+0.9727
+>>> str(follower.derivative("joint0"))
+'0.3333333333333333'
+>>> follower.polynomial("joint0")
+(0.8727, 0.3333333333333333)
+
+Hostile text cannot do more than raise ``ExpressionError``: its length, the depth of its nesting and the number of
+values it can have are bounded, and evaluation takes time in proportion to the length.
+"""
+
+from ravemj.model.expressions.errors import ExpressionError
+from ravemj.model.expressions.expression import Expression, first_within, parse
+from ravemj.model.expressions.mimic import joint_variables, linear_mimic, partials, substitute
+from ravemj.model.expressions.polynomials import fit_polynomial
+
+__all__ = [
+    "Expression",
+    "ExpressionError",
+    "first_within",
+    "fit_polynomial",
+    "joint_variables",
+    "linear_mimic",
+    "parse",
+    "partials",
+    "substitute",
+]

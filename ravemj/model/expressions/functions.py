@@ -1,0 +1,227 @@
+"""The functions and operators of mimic equations: one table, with a scalar and an array form of each.
+
+No form ever raises or warns, whatever the numbers. Where a function has no value (``sqrt(-1)``, ``log(0)``,
+``1/0``, ``acos(2)``) the result is nan, and where it is too large for a float it is infinite. OpenRAVE's parser,
+fparser, reports an evaluation error in these cases and leaves the value open.
+
+Truth is a number: a value is true where ``int(value)`` is not 0, that is from 0.5 on, and comparisons give 1 or 0.
+They allow for rounding: ``0.1+0.2 = 0.3`` is true.
+"""
+
+import math
+import operator
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats
+from ravemj.model.expressions.roots import enclosed_angle, next_angle, real_roots, third_side
+
+EPSILON = 1e-12  # of comparisons; fparser's default for doubles
+NAN, INFINITY = math.nan, math.inf
+Bools = NDArray[np.bool_]
+Scalar = Callable[..., float]
+Array = Callable[..., Floats]
+Roots = Callable[..., tuple[float, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """One function or operator.
+
+    Attributes:
+        arity: Number of arguments.
+        scalar: From floats to a float.
+        array: From arrays of one shape to an array of that shape; may warn, so call it within ``np.errstate``.
+        roots: For functions with several values: from floats to all of them, best first. Else None.
+        most_roots: How many values there can be.
+    """
+
+    arity: int
+    scalar: Scalar
+    array: Array
+    roots: Roots | None = None
+    most_roots: int = 1
+
+
+def _total(function: Callable[[float], float]) -> Callable[[float], float]:
+    """Make a function of Python's ``math`` return nan or infinity where it raises."""
+
+    def guarded(x: float) -> float:
+        try:
+            return function(x)
+        except ValueError:
+            return NAN
+        except OverflowError:
+            return math.copysign(INFINITY, x)
+
+    return guarded
+
+
+def _rounding(function: Callable[[float], float]) -> Callable[[float], float]:
+    """Make a rounding function return what cannot be rounded: infinity and nan."""
+
+    def rounded(x: float) -> float:
+        return float(function(x)) if math.isfinite(x) else x
+
+    return rounded
+
+
+def _divide(x: float, y: float) -> float:
+    return x / y if y else NAN
+
+
+def _divide_arrays(x: Floats, y: Floats) -> Floats:
+    return np.where(y == 0, NAN, x / y)
+
+
+def _modulo(x: float, y: float) -> float:
+    try:
+        return math.fmod(x, y)
+    except ValueError:
+        return NAN
+
+
+def _power(x: float, y: float) -> float:
+    if x == 0 and y < 0:
+        return NAN  # a division by zero
+    try:
+        return math.pow(x, y)
+    except ValueError:
+        return NAN
+    except OverflowError:
+        is_odd = abs(math.fmod(y, 2.0)) == 1.0
+        return -INFINITY if x < 0 and is_odd else INFINITY
+
+
+def _power_arrays(x: Floats, y: Floats) -> Floats:
+    return np.where((x == 0) & (y < 0), NAN, np.power(x, y))
+
+
+def _nearest(x: float) -> float:
+    return math.copysign(math.floor(abs(x) + 0.5), x)  # halves go away from zero
+
+
+def _nearest_arrays(x: Floats) -> Floats:
+    return np.copysign(np.floor(np.abs(x) + 0.5), x)
+
+
+def is_true(x: float) -> bool:
+    """Return whether a condition holds: whether its nearest integer is not 0."""
+    return abs(x) >= 0.5
+
+
+def _are_true(x: Floats) -> Bools:
+    return np.abs(x) >= 0.5
+
+
+def _equal(x: float, y: float) -> bool:
+    return x == y or abs(x - y) <= EPSILON
+
+
+def _are_equal(x: Floats, y: Floats) -> Bools:
+    return (x == y) | (np.abs(x - y) <= EPSILON)
+
+
+def _unary(scalar: Callable[[float], float], array: Callable[[Floats], Floats]) -> Function:
+    return Function(1, scalar, array)
+
+
+def _binary(scalar: Callable[[float, float], float], array: Callable[[Floats, Floats], Floats]) -> Function:
+    return Function(2, scalar, array)
+
+
+def _test(scalar: Callable[[float, float], bool], array: Callable[[Floats, Floats], Bools]) -> Function:
+    """Build an operator whose result is 1 or 0."""
+    return _binary(lambda x, y: 1.0 if scalar(x, y) else 0.0, lambda x, y: array(x, y).astype(np.float64))
+
+
+def _inverse(scalar: Callable[[float], float], array: Callable[[Floats], Floats]) -> Function:
+    """Build one over a function."""
+    return _unary(lambda x: _divide(1.0, scalar(x)), lambda x: _divide_arrays(np.ones_like(x), array(x)))
+
+
+def _logarithm(scalar: Callable[[float], float], array: Callable[[Floats], Floats]) -> Function:
+    return _unary(_total(scalar), lambda x: np.where(x > 0, array(x), NAN))
+
+
+def _if(condition: float, x: float, y: float) -> float:
+    return x if is_true(condition) else y
+
+
+def _if_arrays(condition: Floats, x: Floats, y: Floats) -> Floats:
+    return np.where(_are_true(condition), x, y)
+
+
+def _several(arity: int, roots: Roots, most_roots: int) -> Function:
+    """Build a function with several values, of which the scalar and the array form take the first."""
+
+    def first(*arguments: float) -> float:
+        values = roots(*arguments)
+        return values[0] if values else NAN
+
+    return Function(arity, first, np.vectorize(first, otypes=[np.float64]), roots, most_roots)
+
+
+_tan, _sin, _cos, _cosh = (_total(f) for f in (math.tan, math.sin, math.cos, math.cosh))
+
+OPERATORS: dict[str, Function] = {
+    "or": _test(lambda x, y: is_true(x) or is_true(y), lambda x, y: _are_true(x) | _are_true(y)),
+    "and": _test(lambda x, y: is_true(x) and is_true(y), lambda x, y: _are_true(x) & _are_true(y)),
+    "not": _unary(lambda x: 0.0 if is_true(x) else 1.0, lambda x: (~_are_true(x)).astype(np.float64)),
+    "eq": _test(_equal, _are_equal),
+    "ne": _test(lambda x, y: not _equal(x, y), lambda x, y: ~_are_equal(x, y)),
+    "lt": _test(lambda x, y: x < y - EPSILON, lambda x, y: x < y - EPSILON),
+    "le": _test(lambda x, y: x <= y + EPSILON, lambda x, y: x <= y + EPSILON),
+    "gt": _test(lambda x, y: x > y + EPSILON, lambda x, y: x > y + EPSILON),
+    "ge": _test(lambda x, y: x >= y - EPSILON, lambda x, y: x >= y - EPSILON),
+    "add": _binary(operator.add, np.add),
+    "sub": _binary(operator.sub, np.subtract),
+    "mul": _binary(operator.mul, np.multiply),
+    "div": _binary(_divide, _divide_arrays),
+    "mod": _binary(_modulo, np.fmod),
+    "neg": _unary(lambda x: -x, np.negative),
+}
+
+NAMED: dict[str, Function] = {
+    "abs": _unary(math.fabs, np.abs),
+    "acos": _unary(_total(math.acos), np.arccos),
+    "acosh": _unary(_total(math.acosh), np.arccosh),
+    "asin": _unary(_total(math.asin), np.arcsin),
+    "asinh": _unary(math.asinh, np.arcsinh),
+    "atan": _unary(math.atan, np.arctan),
+    "atan2": _binary(math.atan2, np.arctan2),
+    "atanh": _unary(_total(math.atanh), lambda x: np.where(np.abs(x) < 1, np.arctanh(x), NAN)),
+    "cbrt": _unary(math.cbrt, np.cbrt),
+    "ceil": _unary(_rounding(math.ceil), np.ceil),
+    "cos": _unary(_cos, np.cos),
+    "cosh": _unary(lambda x: _cosh(abs(x)), np.cosh),
+    "cot": _inverse(_tan, np.tan),
+    "csc": _inverse(_sin, np.sin),
+    "exp": _unary(_total(math.exp), np.exp),
+    "exp2": _unary(_total(math.exp2), np.exp2),
+    "floor": _unary(_rounding(math.floor), np.floor),
+    "hypot": _binary(math.hypot, np.hypot),
+    "if": Function(3, _if, _if_arrays),
+    "int": _unary(_rounding(_nearest), _nearest_arrays),
+    "log": _logarithm(math.log, np.log),
+    "log10": _logarithm(math.log10, np.log10),
+    "log2": _logarithm(math.log2, np.log2),
+    "max": _binary(lambda x, y: x if x > y else y, lambda x, y: np.where(x > y, x, y)),
+    "min": _binary(lambda x, y: x if x < y else y, lambda x, y: np.where(x < y, x, y)),
+    "pow": _binary(_power, _power_arrays),
+    "sec": _inverse(_cos, np.cos),
+    "sin": _unary(_sin, np.sin),
+    "sinh": _unary(_total(math.sinh), np.sinh),
+    "sqrt": _unary(_total(math.sqrt), np.sqrt),
+    "tan": _unary(_tan, np.tan),
+    "tanh": _unary(math.tanh, np.tanh),
+    "trunc": _unary(_rounding(int), np.trunc),
+    "SSSA": _several(3, enclosed_angle, 2),
+    "SASA": _several(3, next_angle, 1),
+    "SASS": _several(3, third_side, 1),
+} | {f"polyroots{degree}": _several(degree + 1, real_roots, degree) for degree in range(2, 9)}
+
+FUNCTIONS = OPERATORS | NAMED

@@ -1,0 +1,90 @@
+"""How OpenRAVE's XML writes mimic equations: joint names in the text, and partial derivatives in one attribute."""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+
+from ravemj.model.expressions.errors import ExpressionError
+
+
+def joint_variables(names: Sequence[str]) -> dict[str, str]:
+    """Return the variable that stands for each joint: ``joint0``, ``joint1``, and so on.
+
+    Args:
+        names: The joints with DOFs in their order, then the passive ones.
+    """
+    return {name: f"joint{index}" for index, name in reversed(list(enumerate(names)))}
+
+
+def substitute(text: str, names: Mapping[str, str]) -> str:
+    """Replace joint names in an equation by variables, as blindly as OpenRAVE does it.
+
+    From left to right, wherever the text goes on with a name, the longest such name is replaced; what was put in is
+    not looked at again. Neither words nor functions are respected: a joint called ``s`` turns ``sin(x)`` into
+    ``joint0in(x)``, and the equation is lost. Names may have any characters (``/arm/j01``). What is no name stays,
+    so equations may also say ``joint0``, and the second axis of joint ``u`` is ``u_1``.
+
+    Args:
+        text: The equation.
+        names: The variable for each joint name, as ``joint_variables`` makes it.
+    """
+    longest_first = sorted(filter(None, names), key=len, reverse=True)
+    if not longest_first:
+        return text
+    pattern = "|".join(map(re.escape, longest_first))
+    return re.sub(pattern, lambda match: names[match[0]], text)
+
+
+def partials(text: str) -> dict[str, str]:
+    """Take ``mimic_vel`` or ``mimic_accel`` apart: ``|name expression |name expression``.
+
+    Every ``|`` starts a partial derivative, so they cannot use the logical operator. What stands before the first
+    one are inline variables for all of them.
+
+    Args:
+        text: The attribute; may be empty.
+
+    Returns:
+        For each name the text of the expression. Of a name given twice the last counts.
+
+    Raises:
+        ExpressionError: If a name or an expression is missing.
+    """
+    shared, *parts = text.split("|")
+    shared = f"{shared.strip().rstrip(';')}; " if shared.strip() and parts else ""
+    if not parts and text.strip():
+        raise ExpressionError("a partial derivative begins otherwise", text, 0, "'|name expression'")
+    found: dict[str, str] = {}
+    position = len(text) - sum(len(part) + 1 for part in parts)
+    for part in parts:
+        words = part.split(maxsplit=1)
+        if len(words) < 2:
+            raise ExpressionError("a partial derivative is not complete", text, position + 1, "'name expression'")
+        found[words[0]] = shared + words[1].strip()
+        position += len(part) + 1
+    return found
+
+
+def linear_mimic(text: str) -> tuple[str, str]:
+    """Translate the deprecated attribute ``mimic="J a b"``.
+
+    Returns:
+        The equation of the position, ``J*a+b``, and that of the velocity, ``|J a``.
+
+    Raises:
+        ExpressionError: If the text is not a name and two numbers.
+    """
+    name, *words = text.split()[:3] or [""]
+    try:
+        a, b = (_plain(word) for word in words)
+    except ValueError:
+        raise ExpressionError("cannot read a mimic joint", text, 0, "a joint and two numbers") from None
+    return f"{name}*{a}+{b}", f"|{name} {a}"
+
+
+def _plain(word: str) -> str:
+    """Return a number in the equations' syntax, which knows no unary plus and no nan."""
+    number = float(word)
+    if not math.isfinite(number):
+        raise ValueError(word)
+    return repr(number).removesuffix(".0")

@@ -1,0 +1,127 @@
+"""What an expression is made of: numbers, variables and calls, which refer to each other without cycles.
+
+Operators are calls as well: ``1 - x`` is ``Call("sub", (Number(1), Variable("x")))``. Nodes never change, so
+expressions share them: an inline variable that is used twice is one node with two users. A ``Graph`` makes the nodes
+and never makes two alike, which keeps derivatives from growing out of bounds.
+
+A long sum is a deep chain of calls. So nothing here walks by recursion; ``ordered`` gives the order to walk in.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from ravemj.model.expressions.functions import FUNCTIONS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Number:
+    """A constant."""
+
+    value: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Variable:
+    """A value that is given at evaluation."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Call:
+    """A function or operator and what it is applied to.
+
+    Attributes:
+        function: Key in ``FUNCTIONS``.
+        arguments: As many nodes as the function takes.
+    """
+
+    function: str
+    arguments: "tuple[Node, ...]" = field(repr=False)
+
+
+Node = Number | Variable | Call
+
+
+class Graph:
+    """Makes nodes, each of them once, and computes what is constant."""
+
+    def __init__(self, nodes: Iterable[Node] = ()) -> None:
+        """Start with the nodes of an expression, each after its arguments."""
+        self._known = {_key(node): node for node in nodes}
+
+    def number(self, value: float) -> Node:
+        """Return the constant."""
+        return self._only(Number(value))
+
+    def variable(self, name: str) -> Node:
+        """Return the variable."""
+        return self._only(Variable(name))
+
+    def call(self, function: str, *arguments: Node) -> Node:
+        """Return the call, or the number that it comes to if its arguments are numbers."""
+        definition = FUNCTIONS[function]
+        if definition.roots is None:
+            numbers = [node.value for node in arguments if isinstance(node, Number)]
+            if len(numbers) == len(arguments):
+                return self.number(definition.scalar(*numbers))
+        return self._only(Call(function, arguments))
+
+    def _only(self, node: Node) -> Node:
+        return self._known.setdefault(_key(node), node)
+
+
+def _key(node: Node) -> tuple[object, ...]:
+    """Return what makes two nodes alike, given that their arguments are the same objects."""
+    match node:
+        case Number(value):
+            return (Number, repr(value))  # tells -0.0 from 0.0 and takes every nan for the same
+        case Variable(name):
+            return (Variable, name)
+        case Call(function, arguments):
+            return (function, *map(id, arguments))
+
+
+def ordered(root: Node) -> list[Node]:
+    """Return the nodes below and including ``root``, each once and after its arguments."""
+    found: list[Node] = []
+    seen: set[Node] = set()
+    waiting: list[tuple[Node, bool]] = [(root, False)]
+    while waiting:
+        node, are_arguments_done = waiting.pop()
+        if are_arguments_done:
+            found.append(node)
+        elif node not in seen:
+            seen.add(node)
+            waiting.append((node, True))
+            if isinstance(node, Call):
+                waiting += [(argument, False) for argument in reversed(node.arguments)]
+    return found
+
+
+def steps(nodes: list[Node], most_nested: int) -> list[Node]:
+    """Choose the calls to work out one after the other, so that no node is worked out twice.
+
+    The steps are the calls with several users, and every so often one within deep nesting. What lies between
+    two steps is a tree of at most ``most_nested`` levels, so that recursion is safe there.
+
+    Args:
+        nodes: The result of ``ordered``.
+        most_nested: Levels from which a call becomes a step.
+
+    Returns:
+        The steps in order; the last is the root.
+    """
+    users = dict.fromkeys(nodes, 0)
+    for node in nodes:
+        for argument in node.arguments if isinstance(node, Call) else ():
+            users[argument] += 1
+    height = dict.fromkeys(nodes, 0)
+    chosen: list[Node] = []
+    for node in nodes:
+        if isinstance(node, Call):
+            height[node] = 1 + max(height[argument] for argument in node.arguments)
+            if (users[node] > 1 or height[node] >= most_nested) and node is not nodes[-1]:
+                chosen.append(node)
+                height[node] = 0
+    return [*chosen, nodes[-1]]

@@ -1,0 +1,144 @@
+"""Polynomials in one variable, which MuJoCo's ``<joint polycoef>`` can enforce: found exactly, or fitted."""
+
+import math
+from collections.abc import Callable
+from itertools import zip_longest
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ravemj.model.expressions.functions import FUNCTIONS
+from ravemj.model.expressions.nodes import Call, Node, Number, Variable
+
+if TYPE_CHECKING:
+    from ravemj.model.expressions.expression import Expression
+
+MAX_INNER_DEGREE = 16  # on the way to the result
+FIT_POINTS, CHECK_POINTS = 200, 2001
+
+Coefficients = tuple[float, ...]  # ascending
+
+
+def coefficients(nodes: list[Node], variable: str, max_degree: int) -> Coefficients | None:
+    """Return the coefficients of the last of ``nodes`` if it is a polynomial in ``variable`` alone, else None."""
+    found: dict[Node, Coefficients | None] = {}
+    for node in nodes:
+        match node:
+            case Number(value):
+                found[node] = (value,)
+            case Variable(name):
+                found[node] = (0.0, 1.0) if name == variable else None
+            case Call(function, arguments):
+                known = [found[argument] for argument in arguments]
+                found[node] = _combine(function, [polynomial for polynomial in known if polynomial is not None])
+    result = found[nodes[-1]]
+    is_good = result is not None and len(result) <= max_degree + 1 and all(map(math.isfinite, result))
+    return result if is_good else None
+
+
+def _combine(function: str, known: list[Coefficients]) -> Coefficients | None:
+    """Return the polynomial that a function makes of polynomials; None if it makes none, or some are missing."""
+    definition = FUNCTIONS[function]
+    if len(known) < definition.arity or definition.roots is not None:
+        return None
+    if function in _RULES:
+        return _RULES[function](*known)
+    if all(len(polynomial) == 1 for polynomial in known):
+        return (definition.scalar(*(value for (value,) in known)),)
+    return None
+
+
+def _add(x: Coefficients, y: Coefficients) -> Coefficients:
+    return _trimmed([a + b for a, b in zip_longest(x, y, fillvalue=0.0)])
+
+
+def _subtract(x: Coefficients, y: Coefficients) -> Coefficients:
+    return _trimmed([a - b for a, b in zip_longest(x, y, fillvalue=0.0)])
+
+
+def _negate(x: Coefficients) -> Coefficients:
+    return tuple(-value for value in x)
+
+
+def _multiply(x: Coefficients, y: Coefficients) -> Coefficients | None:
+    if len(x) + len(y) > MAX_INNER_DEGREE + 2:
+        return None
+    product = [0.0] * (len(x) + len(y) - 1)
+    for i, a in enumerate(x):
+        for j, b in enumerate(y):
+            product[i + j] += a * b
+    return _trimmed(product)
+
+
+def _power(base: Coefficients, exponent: Coefficients) -> Coefficients | None:
+    if len(base) == 1 and len(exponent) == 1:
+        return (FUNCTIONS["pow"].scalar(base[0], exponent[0]),)
+    if len(exponent) != 1 or exponent[0] not in range(MAX_INNER_DEGREE + 1):
+        return None
+    result: Coefficients | None = (1.0,)
+    for _ in range(int(exponent[0])):
+        result = _multiply(result, base) if result is not None else None
+    return result
+
+
+def _divide(x: Coefficients, y: Coefficients) -> Coefficients | None:
+    return tuple(value / y[0] for value in x) if len(y) == 1 and y[0] != 0 else None
+
+
+def _trimmed(values: list[float]) -> Coefficients:
+    while len(values) > 1 and values[-1] == 0:
+        values.pop()
+    return tuple(values)
+
+
+_RULES: dict[str, Callable[..., Coefficients | None]] = {
+    "add": _add,
+    "sub": _subtract,
+    "neg": _negate,
+    "mul": _multiply,
+    "div": _divide,
+    "pow": _power,
+}
+
+
+def fit_polynomial(
+    expression: "Expression", variable: str, lower: float, upper: float, degree: int = 4
+) -> tuple[Coefficients, float]:
+    """Approximate an expression in one variable by a polynomial.
+
+    The fit is by least squares at Chebyshev points, which lie closer together towards the limits; that keeps the
+    largest error near the smallest possible.
+
+    Args:
+        expression: Of no other variable.
+        variable: Its variable.
+        lower: Where the range begins.
+        upper: Where it ends.
+        degree: Of the polynomial.
+
+    Returns:
+        ``degree + 1`` coefficients in ascending order, and the largest error at evenly spaced points of the range;
+        infinite if the expression has no value at some of them.
+
+    Raises:
+        ValueError: If there are other variables, or the range is not finite.
+    """
+    others = [name for name in expression.variables if name != variable]
+    if others or not (math.isfinite(lower) and math.isfinite(upper)):
+        raise ValueError(f"cannot fit over {lower} to {upper}" + "".join(f"; {name} is open" for name in others))
+    middle, radius = (lower + upper) / 2, abs(upper - lower) / 2 or 1.0
+    unit = np.cos(np.pi * (np.arange(FIT_POINTS) + 0.5) / FIT_POINTS)
+    points = middle + radius * (unit if lower != upper else 0 * unit)
+    values = expression.evaluate_many({variable: points})
+    usable = np.isfinite(values)
+    if lower == upper or np.count_nonzero(usable) <= degree:
+        constant = float(values[usable].mean()) if usable.any() else 0.0
+        fitted = np.array([constant] + [0.0] * degree)
+    else:
+        basis = np.polynomial.Chebyshev.fit(points[usable], values[usable], degree, domain=[lower, upper])
+        found = basis.convert(kind=np.polynomial.Polynomial).coef  # without zeros at its end
+        fitted = np.pad(found, (0, degree + 1 - len(found)))
+    checks = np.linspace(lower, upper, CHECK_POINTS)
+    errors = np.abs(np.polynomial.polynomial.polyval(checks, fitted) - expression.evaluate_many({variable: checks}))
+    largest = float(errors.max()) if np.isfinite(errors).all() else math.inf
+    return tuple(fitted.tolist()), largest

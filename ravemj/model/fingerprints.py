@@ -1,0 +1,85 @@
+"""Short texts that are the same for bodies of the same structure, wherever they stand and whatever their limits."""
+
+from collections.abc import Iterable
+from dataclasses import fields, is_dataclass
+from typing import cast
+
+from ravemj.core.transforms import Pose
+from ravemj.model.joints import directions_at, relative_pose
+from ravemj.model.scene import Geometry, Joint, KinBody, Manipulator, Mesh
+
+DIGITS = 8
+"""Decimals that count, so that rounding does not."""
+
+
+def of_body(body: KinBody) -> str:
+    """Return the fingerprint of links, their shapes and joints: 32 hexadecimal digits. Names do not matter."""
+    return _digest(_links(body), [_joint(joint) for joint in (*body.joints, *body.passive_joints)])
+
+
+def of_robot(body: KinBody) -> str:
+    """Return the fingerprint of a robot with its manipulators and sensors."""
+    tools = [_tool(arm) for arm in body.manipulators]
+    return _digest(of_body(body), tools, [(one.link, one.T_link_sensor, one.type) for one in body.sensors])
+
+
+def of_arm(body: KinBody, arm: Manipulator) -> str:
+    """Return the fingerprint of the joints between base and effector, and of the tool."""
+    joints = [joint for joint in body.joints for _ in joint.axes]
+    return _digest([_joint(joints[dof]) for dof in arm.arm_dofs], _tool(arm))
+
+
+def of_manipulator(body: KinBody, arm: Manipulator) -> str:
+    """Return the fingerprint of a manipulator in its robot, gripper included."""
+    return _digest(of_body(body), _tool(arm), arm.gripper_dofs, arm.chucking_direction)
+
+
+def _tool(arm: Manipulator) -> tuple[object, ...]:
+    return arm.base, arm.effector, arm.T_effector_tool, arm.direction, arm.arm_dofs
+
+
+def _links(body: KinBody) -> list[object]:
+    """Return the shapes of all links, and where those are that no joint places."""
+    placed = {joint.child for joint in (*body.joints, *body.passive_joints) if joint.places_child}
+    found: list[object] = []
+    for index, link in enumerate(body.links):
+        at_root = None if index in placed else body.links[0].T_world_link.inverse() @ link.T_world_link
+        found.append((at_root, [_geometry(geometry) for geometry in link.geometries]))
+    return found
+
+
+def _geometry(geometry: Geometry) -> tuple[object, ...]:
+    return type(geometry.shape).__name__, geometry.shape, geometry.T_link_geometry
+
+
+def _joint(joint: Joint) -> tuple[object, ...]:
+    rest = [0.0] * len(joint.axes)
+    moves: tuple[object, ...] = ()
+    if not joint.static:
+        anchor = None if joint.kind == "slider" else joint.anchor
+        directions = None if joint.kind == "spherical" else directions_at(joint, rest)
+        moves = (anchor, directions, [axis.circular for axis in joint.axes])
+    mimic = None if joint.mimic is None else joint.mimic.position
+    return joint.kind, joint.parent, joint.child, relative_pose(joint, rest), moves, joint.places_child, mimic
+
+
+def _digest(*parts: object) -> str:
+    import hashlib  # noqa: PLC0415 - slow to import
+
+    return hashlib.md5(repr(_plain(parts)).encode(), usedforsecurity=False).hexdigest()
+
+
+def _plain(part: object) -> object:
+    """Return a part with its numbers rounded, and without what differs between equal ones."""
+    if isinstance(part, float):
+        return round(part, DIGITS) + 0.0  # no negative zero
+    if isinstance(part, Mesh):
+        return part.digest
+    if isinstance(part, Pose):
+        sign = 1.0 if next((one for one in part.wxyz if abs(one) > 10**-DIGITS), 1.0) > 0 else -1.0
+        return [_plain(number) for number in (*part.position, *(sign * one for one in part.wxyz))]
+    if isinstance(part, tuple | list):
+        return [_plain(member) for member in cast("Iterable[object]", part)]
+    if is_dataclass(part):
+        return [_plain(getattr(part, field.name)) for field in fields(part)]
+    return part

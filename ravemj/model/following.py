@@ -1,0 +1,125 @@
+"""Mimic joints: from the equations of a file to expressions over the joints of a body."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from ravemj.core.ordering import dependencies_first
+from ravemj.errors import ArgumentError, Diagnostics, Source
+from ravemj.model.scene import Joint, KinBody, Mimic
+
+if TYPE_CHECKING:
+    from ravemj.model.expressions import Expression
+
+
+class Equations(NamedTuple):
+    """The equations of a mimic joint as written, with the names of other joints; ``position`` may be empty."""
+
+    position: str = ""
+    velocity: str = ""
+    acceleration: str = ""
+
+
+class Follower(NamedTuple):
+    """A joint as its leaders and followers see it.
+
+    Attributes:
+        name: Its name.
+        dofs: Its DOFs; none for a passive joint.
+        equations: How it follows others, or None.
+        source: Where it stands.
+    """
+
+    name: str
+    dofs: tuple[int, ...]
+    equations: Equations | None
+    source: Source
+
+
+def resolve(joints: Sequence[Follower], diagnostics: Diagnostics) -> dict[int, Mimic]:
+    """Return how each mimic joint follows the others.
+
+    Args:
+        joints: Active joints in DOF order, then passive ones.
+        diagnostics: Takes an error text for every equation that cannot be used.
+
+    Returns:
+        By index of the joint; empty where any equation is wrong: OpenRAVE then drops all of them.
+    """
+    if not any(joint.equations for joint in joints):
+        return {}
+    from ravemj.model.expressions import ExpressionError, joint_variables, parse, substitute  # noqa: PLC0415 - rarely wanted
+
+    mimics: dict[int, Expression] = {}
+    variables = joint_variables([joint.name for joint in joints])
+    known = {f"joint{index}" for index, joint in enumerate(joints) if len(joint.dofs) <= 1}
+    for index, joint in enumerate(joints):
+        if joint.equations is None or not joint.equations.position:
+            continue
+        try:
+            mimics[index] = parse(substitute(joint.equations.position, variables), known)
+        except ExpressionError as error:
+            hint = "without it, no joint of this body follows another"
+            diagnostics.warn("bad-mimic", f"joint '{joint.name}' cannot follow: {error.message}", joint.source, hint)
+    if len(mimics) < sum(1 for joint in joints if joint.equations and joint.equations.position):
+        return {}
+    return {index: _mimic(index, joints, mimics, diagnostics) for index in mimics}
+
+
+def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[Joint, ...]:
+    """Return the passive joints of a body where one of them follows by other equations.
+
+    Args:
+        body: The body.
+        index: Index of the joint among the active joints followed by the passive ones.
+        equations: How it should follow.
+
+    Raises:
+        ArgumentError: these equations cannot be used.
+    """
+    followers: list[Follower] = []
+    dof = 0
+    for place, joint in enumerate((*body.joints, *body.passive_joints)):
+        count = len(joint.axes) if place < len(body.joints) else 0
+        mimic = joint.mimic
+        own = None if mimic is None else Equations(mimic.position, mimic.velocity, mimic.acceleration)
+        chosen = equations if place == index else own
+        followers.append(Follower(joint.name, tuple(range(dof, dof + count)), chosen, joint.source))
+        dof += count
+    diagnostics = Diagnostics()
+    mimics = resolve(followers, diagnostics)
+    for finding in diagnostics:
+        raise ArgumentError(finding.message)
+    first = len(body.joints)
+    return tuple(replace(joint, mimic=mimics.get(first + i)) for i, joint in enumerate(body.passive_joints))
+
+
+def leaders(expression: "Expression") -> tuple[int, ...]:
+    """Return the indices of the joints that an expression depends on."""
+    return tuple(int(name.removeprefix("joint")) for name in expression.variables)
+
+
+def _mimic(index: int, joints: Sequence[Follower], mimics: "dict[int, Expression]", diagnostics: Diagnostics) -> Mimic:
+    joint = joints[index]
+    equations = joint.equations or Equations()
+    dofs: set[int] = set()
+    pending, seen = [index], set[int]()
+    while pending:
+        current = pending.pop()
+        for leader in leaders(mimics[current]) if current in mimics else ():
+            if leader == index:
+                message = f"joint '{joint.name}' follows itself through others; none of them moves"
+                diagnostics.warn("bad-mimic", message, joint.source)
+                return Mimic(equations.position, equations.velocity, equations.acceleration, None, ())
+            dofs.update(joints[leader].dofs)
+            if leader not in seen:
+                seen.add(leader)
+                pending.append(leader)
+    texts = (equations.position, equations.velocity, equations.acceleration)
+    return Mimic(*texts, mimics[index], tuple(sorted(dofs)))
+
+
+def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
+    """Return the followers, each behind the followers that it depends on."""
+    moving = {index: mimic.expression for index, mimic in mimics.items() if mimic.expression is not None}
+    return dependencies_first(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])

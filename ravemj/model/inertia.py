@@ -1,0 +1,36 @@
+"""Mass properties: from a tensor to principal axes, and back."""
+
+import numpy as np
+
+from ravemj.core.transforms import UNIT_WXYZ, Floats, Pose, Vec3, Wxyz, rows_from_wxyz, wxyz_from_rows
+from ravemj.model.scene import Inertial
+
+
+def principal_frame(inertial: Inertial) -> Pose:
+    """Return the frame of the principal axes at the centre of mass, in the link."""
+    return Pose(inertial.com, _axes(inertial))
+
+
+def principal_moments(inertial: Inertial) -> Floats:
+    """Return the moments of inertia about the axes of ``principal_frame`` [kg m^2], shape (3,)."""
+    rotation = np.array(rows_from_wxyz(_axes(inertial)))
+    return np.diag(rotation.T @ np.array(inertial.inertia) @ rotation).copy()
+
+
+def inertial_about(mass: float, T_link_mass: Pose, moments: Floats) -> Inertial:
+    """Return the mass properties with given moments about the axes of a frame at the centre of mass."""
+    rotation = np.array(rows_from_wxyz(T_link_mass.wxyz))
+    xx, xy, xz, _, yy, yz, _, _, zz = ((rotation * moments) @ rotation.T).ravel().tolist()
+    rows: tuple[Vec3, Vec3, Vec3] = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+    return Inertial(mass, T_link_mass.position, rows, T_link_mass.wxyz)
+
+
+def _axes(inertial: Inertial) -> Wxyz:
+    (_, xy, xz), (_, _, yz), _ = inertial.inertia
+    if inertial.axes is not None:
+        return inertial.axes
+    if xy == xz == yz == 0.0:
+        return UNIT_WXYZ
+    _, axes = np.linalg.eigh(np.array(inertial.inertia))
+    axes[:, 0] *= np.linalg.det(axes)  # a rotation, not a reflection
+    return wxyz_from_rows(axes.tolist())

@@ -1,0 +1,114 @@
+"""How a joint moves its child: poses from values, and values from poses."""
+
+import math
+from collections.abc import Sequence
+
+from ravemj.core.transforms import Pose, Vec3, Wxyz, add, conjugate, dot, multiply, rotate, scale, wxyz_from_axis_angle
+from ravemj.model.scene import Axis, Joint
+
+ROUNDING = 1e-12
+"""A measured joint value [rad or m] below this is rounding of the poses, not a displacement."""
+
+
+def place_links(poses: list[Pose], joints: Sequence[Joint], values: Sequence[Sequence[float]]) -> None:
+    """Place the child link of each joint, in order: forward kinematics in place.
+
+    Args:
+        poses: World poses of all links.
+        joints: The joints that place a link, parents before children.
+        values: The values of each joint's axes [rad or m].
+    """
+    for joint, joint_values in zip(joints, values, strict=True):
+        poses[joint.child] = poses[joint.parent] @ relative_pose(joint, joint_values)
+
+
+def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
+    """Return the pose of a joint's child in its parent at the given values [rad or m]."""
+    if joint.static:
+        return joint.T_parent_child
+    if joint.kind == "slider":
+        (axis,), (value,) = joint.axes, values
+        motion = Pose(scale(axis.direction, value - axis.reference))
+    else:
+        motion = about(joint.anchor, rotation(joint, values))
+    return motion @ joint.T_parent_child
+
+
+def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
+    """Return the directions of a joint's axes in its parent at given values; the second one turns with the first."""
+    directions = [axis.direction for axis in joint.axes]
+    if joint.kind == "hinge2":
+        first = joint.axes[0]
+        directions[1] = rotate(wxyz_from_axis_angle(first.direction, values[0] - first.reference), directions[1])
+    return directions
+
+
+def reported_anchor(joint: Joint) -> Vec3:
+    """Return the anchor that OpenRAVE reports, in the joint's parent: for sliders that of the value 0."""
+    if joint.kind != "slider":
+        return joint.anchor
+    return add(joint.anchor, scale(joint.axes[0].direction, -joint.axes[0].reference))
+
+
+def rotation(joint: Joint, values: Sequence[float]) -> Wxyz:
+    """Return how far a joint has turned from ``T_parent_child``, in the parent's axes."""
+    if joint.kind == "spherical":
+        return wxyz_from_rotation_vector((values[0], values[1], values[2]))
+    turned: Wxyz = (1.0, 0.0, 0.0, 0.0)
+    for axis, value in zip(joint.axes, values, strict=True):
+        turned = multiply(turned, wxyz_from_axis_angle(axis.direction, value - axis.reference))
+    return turned
+
+
+def about(anchor: Vec3, wxyz: Wxyz) -> Pose:
+    """Return the motion that turns about a point."""
+    return Pose(add(anchor, scale(rotate(wxyz, anchor), -1.0)), wxyz)
+
+
+def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
+    """Return the values of a joint that the poses of its links show.
+
+    Args:
+        joint: The joint.
+        now: ``T_parent_child`` as it is.
+
+    Returns:
+        A value [rad or m] for each axis. An angle lies in (-pi, pi], or in the turn around the middle of limits beyond
+        that; a joint with two axes counts as unmoved.
+    """
+    if joint.static:
+        return tuple(0.0 for _ in joint.axes)
+    rest = joint.T_parent_child
+    turned = multiply(now.wxyz, conjugate(rest.wxyz))
+    if joint.kind == "spherical":
+        return tuple(part if abs(part) > ROUNDING else 0.0 for part in rotation_vector(turned))
+    if joint.kind == "hinge2":
+        return tuple(axis.reference for axis in joint.axes)
+    (axis,) = joint.axes
+    if joint.kind == "slider":
+        moved = dot(axis.direction, add(now.position, scale(rest.position, -1.0)))
+    else:
+        moved = _nearest_turn(axis, 2 * math.atan2(dot(axis.direction, turned[1:]), turned[0]))
+    return (axis.reference + (moved if abs(moved) > ROUNDING else 0.0),)
+
+
+def _nearest_turn(axis: Axis, moved: float) -> float:
+    """Add full turns to an angle so that the joint's value comes near the middle of its range."""
+    if math.isnan(moved):
+        raise OverflowError("the poses of the links are too far apart to compute with")
+    beyond = axis.lower < -math.pi or axis.upper > math.pi
+    middle = (axis.lower + axis.upper) / 2 if beyond else 0.0
+    return moved - math.tau * round((axis.reference + moved - middle) / math.tau)
+
+
+def wxyz_from_rotation_vector(vector: Vec3) -> Wxyz:
+    """Return the rotation about a vector by its length [rad]."""
+    return wxyz_from_axis_angle(vector, math.sqrt(dot(vector, vector)))
+
+
+def rotation_vector(wxyz: Wxyz) -> Vec3:
+    """Return the axis of a rotation times its angle, which is at most pi [rad]."""
+    w, x, y, z = wxyz if wxyz[0] >= 0 else (-wxyz[0], -wxyz[1], -wxyz[2], -wxyz[3])
+    sine = math.sqrt(x * x + y * y + z * z)
+    factor = 2.0 if sine < 1e-12 else 2 * math.atan2(sine, w) / sine
+    return (factor * x, factor * y, factor * z)

@@ -1,0 +1,73 @@
+"""Bodies made of numbers, where no file describes them."""
+
+from collections.abc import Iterable, Sequence
+
+from ravemj.core.transforms import ZERO, Floats, Pose, wxyz_from_rows
+from ravemj.errors import Source
+from ravemj.model.scene import Box, Geometry, Inertial, KinBody, Link, Rgb, Shape, Sphere
+
+MADE = Source("made by a script")
+"""Where things come from that no file describes."""
+
+MASSLESS = Inertial(1e-10, ZERO, (ZERO, ZERO, ZERO))
+"""What a link weighs that is made of shapes alone."""
+
+DIFFUSE: Rgb = (1.0, 0.5, 0.5)
+AMBIENT: Rgb = (0.1, 0.0, 0.0)
+
+
+def shape_geometry(shape: Shape, T_link_geometry: Pose, *, visible: bool) -> Geometry:
+    """Return a geometry in the colours that OpenRAVE gives to shapes without any."""
+    return Geometry(
+        shape=shape,
+        T_link_geometry=T_link_geometry,
+        name="",
+        diffuse=DIFFUSE,
+        ambient=AMBIENT,
+        transparency=0.0,
+        visible=visible,
+        source=MADE,
+    )
+
+
+def box_geometries(boxes: Floats, *, visible: bool) -> list[Geometry]:
+    """Return boxes.
+
+    Args:
+        boxes: Centre and half extents [m], shape (n, 6); or centre, the directions of the box's x, y and z axes, and
+            half extents, shape (n, 15).
+        visible: Whether they are drawn.
+    """
+    return [
+        shape_geometry(Box((ex, ey, ez)), Pose((x, y, z), _rotation(axes)), visible=visible)
+        for x, y, z, *axes, ex, ey, ez in boxes.tolist()
+    ]
+
+
+def _rotation(axes: Sequence[float]) -> tuple[float, float, float, float]:
+    """Return the rotation whose columns are the given axes, nine numbers; no numbers, no rotation."""
+    return wxyz_from_rows([axes[row::3] for row in range(3)]) if axes else Pose().wxyz
+
+
+def sphere_geometries(spheres: Floats, *, visible: bool) -> list[Geometry]:
+    """Return spheres.
+
+    Args:
+        spheres: Centre and radius [m], shape (n, 4).
+        visible: Whether they are drawn.
+    """
+    return [shape_geometry(Sphere(radius), Pose((x, y, z)), visible=visible) for x, y, z, radius in spheres.tolist()]
+
+
+def body_of_geometries(body: KinBody, geometries: Iterable[Geometry]) -> KinBody:
+    """Return a body of the same name and kind that is one static link with these shapes."""
+    base = Link(
+        name="base",
+        T_world_link=Pose(),
+        inertial=MASSLESS,
+        geometries=tuple(geometries),
+        static=True,
+        enabled=True,
+        source=MADE,
+    )
+    return KinBody(name=body.name, is_robot=body.is_robot, links=(base,), joints=(), passive_joints=(), source=MADE)

@@ -1,0 +1,69 @@
+"""What OpenRAVE has in memory after loading: frozen, resolved, nothing of XML and nothing of MuJoCo.
+
+Readers make a ``Scene`` (through ``ravemj.model.builder``), writers and the runtime read it. Lengths are metres,
+angles radians, masses kilograms. Links are referred to by their index in ``KinBody.links``.
+"""
+
+from ravemj.model.scene.body import AttachedSensor, Intrinsics, KinBody, Manipulator
+from ravemj.model.scene.mechanism import (
+    NO_PARAMETERS,
+    UNLIMITED,
+    Axis,
+    Inertial,
+    Joint,
+    JointKind,
+    Link,
+    Mimic,
+    Parameters,
+)
+from ravemj.model.scene.shapes import (
+    Box,
+    CalibrationBoard,
+    Capsule,
+    Container,
+    Cylinder,
+    Geometry,
+    Mesh,
+    MeshFile,
+    NoShape,
+    Prism,
+    Rgb,
+    Shape,
+    Sphere,
+    Surface,
+    TriMesh,
+)
+from ravemj.model.scene.world import Scene, View
+
+__all__ = [
+    "NO_PARAMETERS",
+    "UNLIMITED",
+    "AttachedSensor",
+    "Axis",
+    "Box",
+    "CalibrationBoard",
+    "Capsule",
+    "Container",
+    "Cylinder",
+    "Geometry",
+    "Inertial",
+    "Intrinsics",
+    "Joint",
+    "JointKind",
+    "KinBody",
+    "Link",
+    "Manipulator",
+    "Mesh",
+    "MeshFile",
+    "Mimic",
+    "NoShape",
+    "Parameters",
+    "Prism",
+    "Rgb",
+    "Scene",
+    "Shape",
+    "Sphere",
+    "Surface",
+    "TriMesh",
+    "View",
+]

@@ -1,0 +1,108 @@
+"""Bodies, and what robots have besides."""
+
+from dataclasses import dataclass
+
+from ravemj.core.transforms import Pose, Vec3
+from ravemj.errors import Source
+from ravemj.model.scene.mechanism import Axis, Joint, Link
+from ravemj.model.scene.record import Record
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class Manipulator(Record):
+    """An arm of a robot.
+
+    Attributes:
+        name: Its name.
+        base: Index of the link that it starts from, or None.
+        effector: Index of the link that carries the tool, or None.
+        T_effector_tool: Pose of the tool in the effector.
+        direction: Unit vector that the tool points along, in its own frame.
+        arm_dofs: DOFs of the joints from base to effector.
+        gripper_joints: Indices of the active joints of the gripper.
+        gripper_dofs: Their DOFs.
+        chucking_direction: For each of these DOFs the sign of closing: 1, 0 or -1.
+        source: The element that it comes from.
+    """
+
+    name: str
+    base: int | None
+    effector: int | None
+    T_effector_tool: Pose
+    direction: Vec3
+    arm_dofs: tuple[int, ...]
+    gripper_joints: tuple[int, ...]
+    gripper_dofs: tuple[int, ...]
+    chucking_direction: tuple[float, ...]
+    source: Source
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Intrinsics(Record):
+    """A pinhole camera: u = fx x / z + cx, v = fy y / z + cy [pixels], z forward and y down."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class AttachedSensor(Record):
+    """A sensor on a link.
+
+    Attributes:
+        name: Its name.
+        link: Index of the link that carries it, or None.
+        T_link_sensor: Its pose in the link.
+        type: OpenRAVE's name of the kind of sensor, or None for a frame without a device.
+        camera: The camera that it is, or None.
+        source: The element that it comes from.
+    """
+
+    name: str
+    link: int | None
+    T_link_sensor: Pose
+    type: str | None
+    camera: Intrinsics | None
+    source: Source
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class KinBody(Record):
+    """A body: links and the joints between them.
+
+    Attributes:
+        name: Its name, unique in an environment.
+        is_robot: True for a ``<Robot>``.
+        links: Links in the order of their first appearance; link 0 is the root.
+        joints: Active joints in DOF order.
+        passive_joints: Joints without a DOF.
+        adjacent: Pairs of link indices that ``<adjacent>`` names.
+        joined_links_adjacent: Whether links that a joint connects count as adjacent.
+        manipulators: Arms; the first is the active one.
+        sensors: Sensors on links.
+        source: The element that it comes from.
+    """
+
+    name: str
+    is_robot: bool
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...]
+    passive_joints: tuple[Joint, ...]
+    adjacent: tuple[tuple[int, int], ...] = ()
+    joined_links_adjacent: bool = True
+    manipulators: tuple[Manipulator, ...] = ()
+    sensors: tuple[AttachedSensor, ...] = ()
+    source: Source
+
+    @property
+    def dof_axes(self) -> tuple[Axis, ...]:
+        """The axes of all active joints, in DOF order."""
+        return tuple(axis for joint in self.joints for axis in joint.axes)
+
+    def joint_of_dof(self, dof: int) -> Joint:
+        """Return the joint that a DOF belongs to."""
+        return [joint for joint in self.joints for _ in joint.axes][dof]

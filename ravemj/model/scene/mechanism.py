@@ -1,0 +1,171 @@
+"""Links and the joints between them."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from ravemj.core.transforms import Pose, Rows, Vec3, Wxyz
+from ravemj.errors import Source
+from ravemj.model.scene.record import Record
+from ravemj.model.scene.shapes import Geometry
+
+if TYPE_CHECKING:
+    from ravemj.model.expressions import Expression
+
+JointKind = Literal["hinge", "slider", "hinge2", "spherical"]
+
+UNLIMITED = 10000.0
+"""The limit [rad] that OpenRAVE reports for a circular joint."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Inertial(Record):
+    """Mass properties of a link.
+
+    Attributes:
+        mass: Mass [kg].
+        com: Centre of mass in the link frame [m].
+        inertia: Inertia tensor about the centre of mass, in axes parallel to the link's [kg m^2].
+        axes: Orientation in the link of the principal axes that a script chose; None: any that fit the tensor.
+    """
+
+    mass: float
+    com: Vec3
+    inertia: Rows
+    axes: Wxyz | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Parameters(Record):
+    """What scripts attach to a link or a joint: names, and what they stand for."""
+
+    floats: tuple[tuple[str, tuple[float, ...]], ...] = ()
+    integers: tuple[tuple[str, tuple[int, ...]], ...] = ()
+    texts: tuple[tuple[str, str], ...] = ()
+
+
+NO_PARAMETERS = Parameters()
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class Link(Record):
+    """A rigid part of a body.
+
+    Attributes:
+        name: Its name.
+        T_world_link: Its pose after loading.
+        inertial: Its mass properties, as the file gives them.
+        geometries: Its shapes, in document order.
+        static: True for ``type="static"``.
+        enabled: False where collision checking leaves it out.
+        groups: Other sets of shapes that scripts can swap in, by name.
+        parameters: What scripts attach to it.
+        self_collision_ignored: True where it is not tested against other links of its body.
+        source: The element that it comes from.
+    """
+
+    name: str
+    T_world_link: Pose
+    inertial: Inertial
+    geometries: tuple[Geometry, ...]
+    static: bool
+    enabled: bool
+    groups: tuple[tuple[str, tuple[Geometry, ...]], ...] = ()
+    parameters: Parameters = NO_PARAMETERS
+    self_collision_ignored: bool = False
+    source: Source
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Axis(Record):
+    """One degree of freedom of a joint.
+
+    Attributes:
+        direction: Unit vector in the frame of the joint's parent link.
+        reference: The value at which ``Joint.T_parent_child`` holds.
+        value: The value after loading.
+        lower: Lower limit [rad or m].
+        upper: Upper limit [rad or m].
+        circular: True for a joint that turns without end; its limits are ±``UNLIMITED``.
+        weight: Weight in distances between configurations.
+        resolution: Step of planners [rad or m].
+        max_velocity: Velocity limit [rad/s or m/s].
+        max_acceleration: Acceleration limit [rad/s^2 or m/s^2].
+        max_torque: Torque or force limit [N m or N]; 0 where the file says nothing.
+        armature: Inertia of a motor behind its gear [kg m^2].
+        wrap_offset: The value about which scripts chose the turn that the value is in [rad].
+    """
+
+    direction: Vec3
+    reference: float = 0.0
+    value: float = 0.0
+    lower: float = 0.0
+    upper: float = 0.0
+    circular: bool = False
+    weight: float = 1.0
+    resolution: float = 0.02
+    max_velocity: float = 10.0
+    max_acceleration: float = 50.0
+    max_torque: float = 0.0
+    armature: float = 0.0
+    wrap_offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Mimic(Record):
+    """How a joint follows others.
+
+    Attributes:
+        position: The equation as written; it has the names of the joints.
+        velocity: The partial derivatives as written.
+        acceleration: The second derivatives as written.
+        expression: The equation over ``joint0``, ``joint1``, … (active joints, then passive ones); None where joints
+            follow each other in a circle, and none of them moves.
+        dofs: Indices of the DOFs that it depends on, directly or through other followers.
+        static: True where none of these DOFs can move, and the limits of the joint itself leave no room.
+    """
+
+    position: str
+    velocity: str
+    acceleration: str
+    expression: "Expression | None"
+    dofs: tuple[int, ...]
+    static: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class Joint(Record):
+    """A joint between two links; a positive value moves the child right-handed about or along the axis.
+
+    Attributes:
+        name: Its name.
+        kind: ``hinge``, ``slider``, ``hinge2`` (two axes, the second carried by the first) or ``spherical`` (a rotation
+            vector in the parent's axes).
+        parent: Index of the link nearer to link 0.
+        child: Index of the link farther from link 0.
+        T_parent_child: Relative pose of the two at ``Axis.reference``.
+        anchor: A point on the axis, in the parent's frame.
+        axes: Its degrees of freedom.
+        places_child: False for a joint that closes a loop: another joint places its child.
+        mimic: How it follows other joints, or None.
+        parameters: What scripts attach to it.
+        source: The element that it comes from.
+    """
+
+    name: str
+    kind: JointKind
+    parent: int
+    child: int
+    T_parent_child: Pose
+    anchor: Vec3
+    axes: tuple[Axis, ...]
+    places_child: bool
+    mimic: Mimic | None = None
+    parameters: Parameters = NO_PARAMETERS
+    source: Source
+
+    @property
+    def static(self) -> bool:
+        """True for a weld: a joint whose limits leave no room, and that follows nothing that moves."""
+        if self.mimic is not None:
+            return self.mimic.static
+        return all(axis.lower == axis.upper and not axis.circular for axis in self.axes)

@@ -1,0 +1,36 @@
+"""The content of a file."""
+
+from dataclasses import dataclass
+
+from ravemj.core.transforms import Pose, Vec3
+from ravemj.model.scene.body import KinBody
+from ravemj.model.scene.record import Record
+from ravemj.model.scene.shapes import Rgb
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class View(Record):
+    """How a file wants to be looked at.
+
+    Attributes:
+        background: Colour behind everything.
+        T_world_camera: Pose of the camera (z forward, y down), or None where the file has no camera.
+    """
+
+    background: Rgb = (1.0, 1.0, 1.0)
+    T_world_camera: Pose | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Scene(Record):
+    """The content of a file.
+
+    Attributes:
+        bodies: Bodies in document order.
+        view: Background and camera, or None where the file has no ``<Environment>``.
+        gravity: Acceleration of free fall [m/s^2], or None where the file has no physics engine.
+    """
+
+    bodies: tuple[KinBody, ...] = ()
+    view: View | None = None
+    gravity: Vec3 | None = None

@@ -1,0 +1,158 @@
+"""Videos of a robot that follows a motion."""
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.errors import ArgumentError, Diagnostic, send_warning
+from ravemj.graphics.rendering import Camera
+from ravemj.graphics.studio import Format, Frame, checked_colour, fitting_view
+from ravemj.rave import CheckLimitsAction, Environment, KinBody
+from ravemj.trajectories.motion import Motion
+
+_POSES_FOR_THE_VIEW = 17
+
+
+class Shot(NamedTuple):
+    """How a video is taken.
+
+    Attributes:
+        camera: Where from.
+        background: Colour behind everything: red, green, blue from 0 to 1.
+        form: Size and quality of the frames.
+        fps: Frames in a second.
+    """
+
+    camera: Camera
+    background: tuple[float, float, float]
+    form: Format
+    fps: float
+
+
+def record(  # noqa: PLR0913 - keyword arguments
+    env: Environment,
+    path: str | os.PathLike[str],
+    motion: Motion,
+    *,
+    robot: KinBody | None = None,
+    width: int = 640,
+    height: int = 480,
+    fps: float = 30.0,
+    camera: ArrayLike | None = None,
+    background: ArrayLike | None = None,
+    on_frame: Callable[[int], None] | None = None,
+) -> Path:
+    """Write a video of a robot that follows a motion. The robot stays at the motion's end.
+
+    Args:
+        env: The environment.
+        path: The video: ``.mp4``, ``.gif``, ``.webp``, or a folder for PNG frames (no suffix).
+        motion: Joint values over time; values outside the limits are moved to them, with a warning.
+        robot: Which body moves; None: the first robot.
+        width: Columns of the frames [pixels].
+        height: Rows of the frames [pixels].
+        fps: Frames in a second.
+        camera: ``T_world_camera``, 4x4, z forward and y down; None: the viewer's, else the file's, else a view of the
+            whole motion.
+        background: Red, green, blue from 0 to 1; None: the viewer's, else the file's, else white.
+        on_frame: Called with the number of frames drawn so far.
+
+    Returns:
+        The path of the video.
+
+    Raises:
+        ArgumentError: an argument is wrong, or there is no robot.
+        OutputError: the video cannot be written; nothing is left behind then.
+        RenderingError: nothing can draw here.
+
+    Example:
+        >>> swing = ravemj.Motion.line([0, 0], [3.14, 0], duration=1.0)
+        >>> ravemj.record(env, "swing.mp4", swing)
+    """
+    from ravemj.graphics.video import write_frames  # noqa: PLC0415 - slow to import
+
+    body = moving_body(env) if robot is None else robot
+    allowed = within_limits(body, motion)
+    shot = Shot(
+        camera_for_motion(env, body, allowed, width / height) if camera is None else Camera.from_matrix(camera),
+        env.background if background is None else checked_colour(background),
+        Format(width, height),
+        fps,
+    )
+    return write_frames(path, draw_frames(env, body, allowed, shot), fps, on_frame=on_frame)
+
+
+def draw_frames(env: Environment, body: KinBody, motion: Motion, shot: Shot) -> Iterator[Frame]:
+    """Yield the frames of a motion, moving the body from one to the next."""
+    for values in motion.frames(shot.fps):
+        with env:
+            body.SetDOFValues(values, None, CheckLimitsAction.Nothing)
+            frame = env.studio.picture(shot.camera, shot.background, shot.form)
+        yield frame
+
+
+def moving_body(env: Environment) -> KinBody:
+    """Return the body that moves where none is named: the first robot with joints.
+
+    Raises:
+        ArgumentError: there is none.
+    """
+    for robot in env.GetRobots():
+        if robot.GetDOF():
+            return robot
+    names = ", ".join(body.GetName() for body in env.GetBodies())
+    raise ArgumentError(f"there is no robot with joints to move; the bodies are: {names or 'none'}")
+
+
+def within_limits(body: KinBody, motion: Motion) -> Motion:
+    """Return the motion with all values moved into the joints' limits; a warning names each joint concerned.
+
+    Raises:
+        ArgumentError: the motion has another number of joints than the body.
+    """
+    if motion.dof != body.GetDOF():
+        raise ArgumentError(f"the motion has {motion.dof} joints, and '{body.GetName()}' has {body.GetDOF()} DOFs")
+    circular = body.simulation_state.kinematics.circular
+    lower, upper = body.GetDOFLimits()
+    values = np.where(circular, motion.values, np.clip(motion.values, lower, upper))
+    for joint in body.GetJoints():
+        dof = joint.GetDOFIndex()
+        if np.any(values[:, dof] != motion.values[:, dof]):
+            source = body.simulation_state.scene.joints[joint.GetJointIndex()].source
+            message = (
+                f"the motion takes joint '{joint.GetName()}' outside its limits "
+                f"[{lower[dof]:.6g}, {upper[dof]:.6g}]; it stops at the limit"
+            )
+            diagnostic = Diagnostic("warning", "value-outside-limits", message, source)
+            send_warning(diagnostic, 3)
+    return Motion(motion.times, values)
+
+
+def camera_for_motion(env: Environment, body: KinBody, motion: Motion, aspect: float) -> Camera:
+    """Return the viewer's camera, else the file's, else a view of everything that the motion sweeps over.
+
+    Args:
+        env: The environment.
+        body: The body that moves; it is where it was afterwards.
+        motion: Its motion.
+        aspect: Width of the picture divided by its height.
+    """
+    chosen = env.studio.file_camera() if env.GetViewer() is None else env.default_camera()
+    if chosen is not None:
+        return chosen
+    before = body.GetDOFValues()
+    spheres = [env.studio.bounding_sphere()]
+    for step in range(_POSES_FOR_THE_VIEW):
+        time = float(motion.times[0]) + motion.duration * step / (_POSES_FOR_THE_VIEW - 1)
+        body.SetDOFValues(motion.sample(time), None, CheckLimitsAction.Nothing)
+        spheres.append(env.studio.bounding_sphere())
+    body.SetDOFValues(before, None, CheckLimitsAction.Nothing)
+    lowest = np.min([center - radius for center, radius in spheres], axis=0)
+    highest = np.max([center + radius for center, radius in spheres], axis=0)
+    center = (lowest + highest) / 2
+    reach = max(float(np.linalg.norm(part - center)) + radius for part, radius in spheres)
+    return fitting_view(center, reach, aspect)

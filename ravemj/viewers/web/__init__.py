@@ -1,5 +1,0 @@
-"""A viewer in a browser: pictures drawn here, mouse and keys from there."""
-
-from ravemj.viewers.web.viewer import WebViewer
-
-__all__ = ["WebViewer"]
