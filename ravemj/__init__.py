@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 
 import ravemj.engine.mujoco_import  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco
 from ravemj import geometry_functions, rave
-from ravemj.compat.extension import load_ipython_extension
+from ravemj.compat import names
+from ravemj.compat.extension import load_ipython_extension as load_ipython_extension  # for %load_ext ravemj
 from ravemj.errors import (
     ArgumentError,
     CompileError,
@@ -33,11 +34,12 @@ from ravemj.rave.recording import record
 from ravemj.trajectories.motion import Motion, read_motion
 
 if TYPE_CHECKING:
+    from ravemj.compat import databases, interfaces, misc, planningutils
     from ravemj.gui.viewers import Viewer
 
 __version__ = "0.1.0"
 
-_MODULES = ["databases", "examples", "interfaces", "metaclass", "misc", "openravepy_int", "planningutils"]
+names.install(__name__)
 
 __all__ = [
     "ArgumentError",
@@ -53,18 +55,20 @@ __all__ = [
     "UnsupportedError",
     "Viewer",
     "__version__",
-    "load_ipython_extension",
+    "databases",
+    "interfaces",
+    "misc",
+    "planningutils",
     "read_motion",
     "record",
 ]
 __all__ += geometry_functions.__all__
 __all__ += rave.__all__
-__all__ += _MODULES  # noqa: PLE0605  # pyright: ignore[reportUnsupportedDunderAll] - __getattr__ imports them
 
 
 def __getattr__(name: str) -> object:
     """Import a module of OpenRAVE's, or what most scripts do without, when it is asked for."""
-    if name in _MODULES:
+    if name in names.PUBLIC:
         return importlib.import_module(f"ravemj.{name}")
     if name == "Viewer":
         return importlib.import_module("ravemj.gui.viewers").Viewer

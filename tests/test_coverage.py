@@ -37,7 +37,7 @@ def test_the_page_is_up_to_date(page, made):
 
 def test_the_page_of_the_api_is_up_to_date():
     page = (REPOSITORY / "docs" / "api-coverage.md").read_text(encoding="utf-8")
-    assert page == api_coverage.markdown(), "run python -m api_coverage > docs/api-coverage.md"
+    assert page == api_coverage.markdown(), "run python scripts/pages/api_coverage.py > docs/api-coverage.md"
 
 
 def test_names_of_the_api_are_found_where_they_are():

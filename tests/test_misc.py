@@ -141,7 +141,7 @@ def test_logging_is_shown_once(capsys):
     try:
         misc.InitOpenRAVELogging()
         misc.InitOpenRAVELogging()
-        ravemj.raveLogInfo("to be seen")
+        ravemj.RaveLogInfo("to be seen")
         assert capsys.readouterr().out.count("to be seen") == 1
     finally:
         logging.getLogger("openravepy").handlers = []

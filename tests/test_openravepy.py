@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ravemj
-from ravemj.compat import alias
+from ravemj.compat import alias, legacy, metaclass, names
 from ravemj.rave import environment, library, plugins
 
 
@@ -45,10 +45,12 @@ def _level():
 def test_the_star_brings_openraves_names_and_what_slips_out(openravepy):
     space: dict[str, object] = {"load": "numpy's"}
     exec("from openravepy import *", space)
-    for name in ("Environment", "RaveInitialize", "raveLogInfo", "openrave_exception", "IkParameterizationType"):
+    for name in ("Environment", "RaveInitialize", "openrave_exception", "IkParameterizationType"):
         assert space[name] is getattr(ravemj, name)
+    for name in ("raveLogInfo", "with_destroy", "planning_error"):
+        assert space[name] is getattr(legacy, name)
     for name in ("databases", "interfaces", "metaclass", "misc", "openravepy_int", "planningutils"):
-        assert space[name] is sys.modules[f"ravemj.{name}"]
+        assert space[name] is sys.modules[f"ravemj.compat.{name}"]
     assert space["numpy"] is np
     assert space["sys"] is sys
     assert isinstance(space["log"], logging.Logger)
@@ -60,7 +62,8 @@ def test_the_star_brings_openraves_names_and_what_slips_out(openravepy):
 
 def test_every_name_of_openraves_is_in_ravemj_too(openravepy):
     for name in dir(openravepy):
-        assert hasattr(ravemj, name) or name in {"numpy", "sys", "pickle", "logging", "log"}
+        leaks = {"numpy", "sys", "pickle", "logging", "log"}
+        assert hasattr(ravemj, name) or name in {*leaks, *legacy.__all__, *names.ONLY_OPENRAVEPY}
 
 
 def test_sub_modules_are_ours(openravepy):
@@ -68,10 +71,10 @@ def test_sub_modules_are_ours(openravepy):
     from openravepy import databases, misc
     from openravepy.misc import InitOpenRAVELogging
 
-    assert ik is databases.inversekinematics is sys.modules["ravemj.databases.inversekinematics"]
+    assert ik is databases.inversekinematics is ravemj.databases.inversekinematics
     assert misc.InitOpenRAVELogging is InitOpenRAVELogging
     assert openravepy.openravepy_int.Environment is ravemj.Environment
-    assert __import__("openravepy.examples").examples is ravemj.examples
+    assert __import__("openravepy.examples").examples is sys.modules["ravemj.compat.examples"]
 
 
 def test_importing_sets_the_flag_and_has_a_version_that_can_be_compared(openravepy):
@@ -110,7 +113,7 @@ def test_initialize_and_destroy():
 def test_with_destroy_ends_with_empty_environments_even_after_an_error():
     made = []
 
-    @ravemj.with_destroy
+    @legacy.with_destroy
     def main(count):
         """What main does."""
         made.append(ravemj.load("models/env.xml"))
@@ -126,10 +129,10 @@ def test_with_destroy_ends_with_empty_environments_even_after_an_error():
 def test_the_level_decides_what_is_logged(caplog):
     ravemj.RaveSetDebugLevel(ravemj.DebugLevel.Warn | ravemj.DebugLevel.VerifyPlans)
     assert ravemj.RaveGetDebugLevel() & 0xFFFF == ravemj.DebugLevel.Warn
-    ravemj.raveLogInfo("quiet")
+    legacy.raveLogInfo("quiet")
     ravemj.RaveLogWarn("loud\n")
     ravemj.RaveSetDebugLevel(5)
-    ravemj.raveLogVerbose("100 %s")
+    legacy.raveLogVerbose("100 %s")
     assert caplog.messages == ["loud", "100 %s"]
 
 
@@ -259,12 +262,12 @@ def test_planning_says_what_is_missing(robot):
         with pytest.raises(NotImplementedError, match=r"planning|retiming|smoothing"):
             call()
     with pytest.raises(ravemj.PlanningError):
-        raise ravemj.planning_error("no way")
+        raise legacy.planning_error("no way")
     assert not issubclass(ravemj.PlanningError, ravemj.openrave_exception)
 
 
 def test_metaclass_has_what_scripts_derive_from():
-    class Model(ravemj.metaclass.AutoReloader):
+    class Model(metaclass.AutoReloader):
         pass
 
-    assert isinstance(Model(), ravemj.metaclass.InstanceTracker)
+    assert isinstance(Model(), metaclass.InstanceTracker)

@@ -134,7 +134,7 @@ def untyped_answers(app: Sphinx, what: str, name: str, member: object, options: 
 
 
 def named_by_last_word(app: Sphinx, env: BuildEnvironment, node: pending_xref, text: nodes.Element) -> object:
-    """Return the link to what has a longer name: the source says ``WebViewer`` for ``ravemj.gui.viewers.web.WebViewer``."""
+    """Return the link to what has a longer name: ``WebViewer`` for ``ravemj.gui.viewers.web.WebViewer``."""
     if node.get("refdomain") != "py":
         return None
     domain = env.domains.python_domain

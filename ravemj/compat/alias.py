@@ -5,68 +5,28 @@ Importing ravemj alone changes nothing. ``install_finder`` acts for the running 
 (``ravemj alias --install``), so that old scripts run by themselves.
 """
 
-import importlib
-import importlib.util
 import shutil
 import sys
 import sysconfig
-from collections.abc import Sequence
-from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
 from pathlib import Path
-from types import ModuleType
 
+from ravemj.compat import names
 from ravemj.errors import OutputError, RavemjError
 
-NAME = "openravepy"
+NAME = names.OPENRAVEPY
 _MARK = "made by ravemj alias --install"
 _PACKAGE = f'''"""Scripts that import openravepy get ravemj; {_MARK}, removed by ravemj alias --remove."""
 
-import ravemj.compat.alias
+from ravemj.compat import names
 
-ravemj.compat.alias.install_finder()
-ravemj.compat.alias.take_over(__name__)
+names.install(__name__)
+names.take_over(__name__)
 '''
-
-
-class _Finder(MetaPathFinder, Loader):
-    """Answers imports of ``openravepy`` and its sub-modules with the modules of ravemj."""
-
-    def find_spec(
-        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
-    ) -> ModuleSpec | None:
-        """Return a spec for ``openravepy`` and for its sub-modules that ravemj has."""
-        del path, target
-        if fullname.partition(".")[0] != NAME or not _exists(_translated(fullname)):
-            return None
-        return ModuleSpec(fullname, self)
-
-    def exec_module(self, module: ModuleType) -> None:
-        """Put ravemj's module in place of the empty one."""
-        take_over(module.__name__)
 
 
 def install_finder() -> None:
     """Make ``import openravepy`` give ravemj, in this process."""
-    if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
-        sys.meta_path.insert(0, _Finder())
-
-
-def take_over(name: str) -> None:
-    """Register ravemj's module under a name of openravepy's."""
-    sys.modules[name] = importlib.import_module(_translated(name))
-
-
-def _translated(name: str) -> str:
-    """Return ravemj's module for a name of openravepy's."""
-    return "ravemj.compat.openravepy" if name == NAME else "ravemj" + name.removeprefix(NAME)
-
-
-def _exists(name: str) -> bool:
-    try:
-        return importlib.util.find_spec(name) is not None
-    except ModuleNotFoundError:
-        return False
+    names.install(NAME)
 
 
 def package_folder() -> Path:
@@ -120,7 +80,7 @@ def remove_package() -> Path | None:
 
 def _foreign_package() -> str | None:
     """Return where Python finds an openravepy that is not ours, or None."""
-    finders = [finder for finder in sys.meta_path if not isinstance(finder, _Finder)]
+    finders = [finder for finder in sys.meta_path if not isinstance(finder, names.Renamed)]
     for finder in finders:
         spec = finder.find_spec(NAME, None)
         if spec is not None:

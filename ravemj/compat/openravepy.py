@@ -6,6 +6,7 @@ names such as ``numpy.load``.
 """
 
 import builtins
+import importlib
 import logging
 import pickle
 import sys
@@ -13,25 +14,31 @@ import sys
 import numpy
 
 import ravemj
+from ravemj.compat import legacy
+from ravemj.compat.names import ONLY_OPENRAVEPY
 from ravemj.rave.logs import log
 
 __version__ = "0.9.0"
 """That of OpenRAVE's last release, for scripts that compare."""
 
-_OWN = {"load", "load_ipython_extension", "read_motion", "record"}
+_OWN = {"load", "read_motion", "record"}
 _LEAKS = {"numpy": numpy, "sys": sys, "pickle": pickle, "logging": logging, "log": log}
 _NAMES: list[str] = [name for name in dir(ravemj) if name not in _OWN and not name.startswith("_")]
 
 builtins.__dict__["__openravepy_build_doc__"] = False
-__path__: list[str] = []  # sub-modules are found by ravemj.compat.alias
-globals().update({name: getattr(ravemj, name) for name in _NAMES}, **_LEAKS, __all__=[*_NAMES, *_LEAKS])
+__path__: list[str] = []  # sub-modules are found by ravemj.compat.names
+_ALL = [*_NAMES, *legacy.__all__, *ONLY_OPENRAVEPY, *_LEAKS]
+globals().update({name: getattr(ravemj, name) for name in _NAMES}, **_LEAKS, __all__=_ALL)
+globals().update({name: getattr(legacy, name) for name in legacy.__all__})
 
 
 def __getattr__(name: str) -> object:
-    """Give what is ravemj's own."""
+    """Import a module of openravepy's when it is asked for, or give what is ravemj's own."""
+    if name in ONLY_OPENRAVEPY:
+        return importlib.import_module(f"ravemj.compat.{name}")
     return getattr(ravemj, name)
 
 
 def __dir__() -> list[str]:
     """Return what completion shows."""
-    return [*_NAMES, *_LEAKS]
+    return _ALL

@@ -7,6 +7,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Ints, Pose
 from ravemj.model.scene import Mesh, Prism, Shape, TriMesh
+from ravemj.model.solids import solids
 
 SUBDIVISIONS = 3
 """How often an icosahedron is refined to a sphere."""
@@ -25,8 +26,6 @@ def triangulated(shape: Shape) -> Mesh:
         case Prism():
             return shape.walls()
         case _:
-            from ravemj.formats.mjcf import solids  # noqa: PLC0415 - slow to import
-
             return merged(moved(_solid(kind, size), Pose(centre).matrix()) for kind, size, centre in solids(shape))
 
 

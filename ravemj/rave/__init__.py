@@ -62,7 +62,6 @@ from ravemj.rave.library import (
     RaveInitialize,
     RaveLoadPlugin,
     RaveReloadPlugins,
-    with_destroy,
 )
 from ravemj.rave.link import Link
 from ravemj.rave.logs import (
@@ -75,17 +74,10 @@ from ravemj.rave.logs import (
     RaveLogVerbose,
     RaveLogWarn,
     RaveSetDebugLevel,
-    raveLog,
-    raveLogDebug,
-    raveLogError,
-    raveLogFatal,
-    raveLogInfo,
-    raveLogVerbose,
-    raveLogWarn,
 )
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
-from ravemj.rave.planning import Planner, PlanningError, planning_error
+from ravemj.rave.planning import Planner, PlanningError
 from ravemj.rave.plugins import (
     RaveCreateIkSolver,
     RaveCreateModule,
@@ -202,13 +194,4 @@ __all__ = [
     "VelocityController",
     "load",
     "openrave_exception",
-    "planning_error",
-    "raveLog",
-    "raveLogDebug",
-    "raveLogError",
-    "raveLogFatal",
-    "raveLogInfo",
-    "raveLogVerbose",
-    "raveLogWarn",
-    "with_destroy",
 ]

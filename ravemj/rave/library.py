@@ -2,17 +2,10 @@
 
 import logging
 import os
-from collections.abc import Callable
-from functools import wraps
 from pathlib import Path
-from typing import ParamSpec, TypeVar
 
 from ravemj.rave import logs
 from ravemj.rave.enums import DebugLevel
-from ravemj.rave.environment import RaveDestroy
-
-Parameters = ParamSpec("Parameters")
-Result = TypeVar("Result")
 
 _LOG = logging.getLogger("ravemj")
 
@@ -30,25 +23,6 @@ def RaveInitialize(load_all_plugins: bool = True, level: int = DebugLevel.Info) 
     del load_all_plugins
     logs.RaveSetDebugLevel(level)
     return 0
-
-
-def with_destroy(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
-    """Return a function that destroys all environments when it ends; OpenRAVE's examples put it above ``main``.
-
-    Example:
-        >>> @with_destroy
-        ... def main():
-        ...     env = Environment()
-    """
-
-    @wraps(function)
-    def run(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Result:
-        try:
-            return function(*args, **kwargs)
-        finally:
-            RaveDestroy()
-
-    return run
 
 
 def RaveLoadPlugin(filename: str) -> bool:

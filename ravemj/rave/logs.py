@@ -104,15 +104,6 @@ def RaveLogVerbose(log: str) -> None:
     RaveLog(log, DebugLevel.Verbose)
 
 
-raveLog = RaveLog
-raveLogFatal = RaveLogFatal
-raveLogError = RaveLogError
-raveLogWarn = RaveLogWarn
-raveLogInfo = RaveLogInfo
-raveLogDebug = RaveLogDebug
-raveLogVerbose = RaveLogVerbose
-
-
 def _python_level(level: int) -> int:
     number = min(level & _LEVEL_BITS, int(DebugLevel.Verbose))
     return _LEVELS[DebugLevel(number)]

@@ -20,9 +20,6 @@ class PlanningError(Exception):
         self.recoverySolutions = recoverySolutions
 
 
-planning_error = PlanningError
-
-
 class PlannerParameters:
     """What a planner is asked for."""
 

@@ -17,7 +17,7 @@ from api_names import BEHIND, PYMANOID, SCRIPTS
 import ravemj
 from ravemj.compat import databases, interfaces, misc, planningutils
 
-_TESTS = Path(__file__).resolve().parent.parent / "tests"
+_TESTS = Path(__file__).resolve().parents[2] / "tests"
 _CASES = "data/api-conformance"
 _STATEMENTS = {"with_env": ravemj.Environment, "with_robot": ravemj.KinBody}
 _SHOWN = {"with_env": "with env:", "with_robot": "with robot:"}
@@ -25,7 +25,7 @@ _SHOWN = {"with_env": "with env:", "with_robot": "with robot:"}
 _HEAD = """\
 # Which names of OpenRAVE's API are there
 
-Made by `scripts/docs`, or `python -m api_coverage > docs/api-coverage.md` alone, from the program itself;
+Made by `scripts/docs`, or `python scripts/pages/api_coverage.py > docs/api-coverage.md` alone, from the program itself;
 a test compares.
 
 The names are the 250 that make most of 308 published scripts possible, in an order in which whole scripts become

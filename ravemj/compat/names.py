@@ -1,0 +1,72 @@
+"""Modules that are imported under other names than those of their files.
+
+``ravemj.misc`` is ``ravemj.compat.misc``, always; ``openravepy`` is ``ravemj.compat.openravepy`` where a script asked
+for it (see ``ravemj.compat.alias``). A module has one object, whatever name it is imported by.
+"""
+
+import importlib
+import importlib.util
+import sys
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
+OPENRAVEPY = "openravepy"
+PUBLIC = ("databases", "interfaces", "misc", "planningutils")
+"""Sub-modules of OpenRAVE that are imported from ``ravemj`` as well."""
+ONLY_OPENRAVEPY = ("examples", "metaclass", "openravepy_int")
+
+
+class Renamed:
+    """A finder and loader of Python's import system: gives modules of ravemj for other names.
+
+    Args:
+        root: The first word of the names that it answers.
+    """
+
+    def __init__(self, root: str) -> None:
+        self.root = root
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return a spec for a name that stands for another one, else None."""
+        del path, target
+        root, _, rest = fullname.partition(".")
+        if root != self.root or (real := real_name(root, rest)) == fullname or not _exists(real):
+            return None
+        return ModuleSpec(fullname, self)
+
+    def create_module(self, spec: ModuleSpec) -> None:
+        """Leave it to Python to make an empty module, which ``exec_module`` replaces."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Put ravemj's module in place of the empty one."""
+        take_over(module.__name__)
+
+
+def real_name(root: str, rest: str) -> str:
+    """Return the name of ravemj's module for ``root.rest``."""
+    if not rest:
+        return "ravemj.compat.openravepy" if root == OPENRAVEPY else root
+    in_compat = PUBLIC + ONLY_OPENRAVEPY if root == OPENRAVEPY else PUBLIC
+    return f"ravemj.compat.{rest}" if rest.partition(".")[0] in in_compat else f"ravemj.{rest}"
+
+
+def take_over(name: str) -> None:
+    """Register ravemj's module under another name."""
+    root, _, rest = name.partition(".")
+    sys.modules[name] = importlib.import_module(real_name(root, rest))
+
+
+def install(root: str) -> None:
+    """Answer imports of names that start with a word, in this process."""
+    if not any(isinstance(finder, Renamed) and finder.root == root for finder in sys.meta_path):
+        sys.meta_path.insert(0, Renamed(root))
+
+
+def _exists(name: str) -> bool:
+    try:
+        return importlib.util.find_spec(name) is not None
+    except ModuleNotFoundError:
+        return False
