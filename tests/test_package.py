@@ -20,7 +20,7 @@ def rooms(names: str) -> set[str]:
 LEVELS = [
     rooms(row)
     for row in (
-        "_mujoco errors showing transforms",
+        "_mujoco endings errors showing transforms",
         "alias api_names arrays clock coverage_notes drawing examples expressions handles metaclass motion ordering "
         "output python2",
         "geometry_functions scene video",
