@@ -1,7 +1,8 @@
 """How a command ends on Ctrl-C (SIGINT), SIGTERM and SIGHUP: with the exit code 128 + the signal's number.
 
-It ends at once, whatever it imports, loads or computes. Only where something is ``Unfinished`` does the signal become
-an exception that gets to the end of it: ``KeyboardInterrupt``, or ``Terminated``. A second signal ends that at once.
+It ends at once, whatever it imports, loads or draws, after the functions of ``on_signal``. An exception out of nowhere,
+which is Python's way, is not safe there: C code makes other errors of it, and threads may wait for ever. It is raised
+only where a command waits for its user, in ``signals_raised``.
 
 ``ravemj/__init__.py`` imports this before all else, so that it holds from the first line on; therefore this imports
 next to nothing. Programs that import ravemj keep the handlers that they have.
@@ -23,19 +24,21 @@ _IS_COMMAND = _is_command()
 
 try:
     import signal
+    from collections.abc import Callable, Generator
+    from contextlib import contextmanager
 except KeyboardInterrupt:
     if _IS_COMMAND:
         os._exit(130)
     raise
 
-_SHOW_CURSOR = "\x1b[?25h"  # a bar of progress hides it
-
-_unfinished: "set[Unfinished]" = set()
-_is_ending = False
+_functions: list[Callable[[], object]] = []
+_delays: list[object] = []
+_delayed: list[int] = []
+_raises = False
 
 
 class Terminated(SystemExit):
-    """SIGTERM or SIGHUP has come while something was unfinished."""
+    """SIGTERM or SIGHUP, where signals are raised."""
 
     def __init__(self, number: int) -> None:
         """Make one of the number of the signal."""
@@ -43,34 +46,38 @@ class Terminated(SystemExit):
         self.number = number
 
 
-class Unfinished:
-    """A context at whose end something is put in order, also when a signal comes.
+@contextmanager
+def on_signal(function: Callable[[], object]) -> Generator[None]:
+    """Have a function called when a signal ends the process within the block."""
+    _functions.append(function)
+    try:
+        yield
+    finally:
+        _functions.remove(function)
 
-    Args:
-        temporary: A file or folder that is removed if a second signal leaves no time for that.
-    """
 
-    def __init__(self, temporary: "os.PathLike[str] | None" = None) -> None:
-        self._temporary = temporary
+@contextmanager
+def signals_delayed() -> Generator[None]:
+    """Have signals wait for the end of the block, in whichever thread that runs."""
+    block = object()
+    _delays.append(block)
+    try:
+        yield
+    finally:
+        _delays.remove(block)
+        if _delayed:
+            signal.raise_signal(_delayed[0])
 
-    def __enter__(self) -> None:
-        _unfinished.add(self)
 
-    def __exit__(self, *reason: object) -> None:
-        _unfinished.discard(self)
-
-    def give_up(self) -> None:
-        """Remove the file or folder, though a thread may be writing into it."""
-        import shutil  # noqa: PLC0415 - slow to import
-
-        if self._temporary is None:
-            return
-        doomed = f"{os.fspath(self._temporary)}-"
-        try:
-            os.replace(self._temporary, doomed)  # so that nothing new gets into a folder
-            os.unlink(doomed)
-        except OSError:
-            shutil.rmtree(doomed, ignore_errors=True)
+@contextmanager
+def signals_raised() -> Generator[None]:
+    """Have a signal raise ``KeyboardInterrupt`` or ``Terminated`` in the block; a second one ends the process."""
+    global _raises  # noqa: PLW0603 - signals are the process's
+    _raises = True
+    try:
+        yield
+    finally:
+        _raises = False
 
 
 def heed_signals() -> None:
@@ -81,7 +88,7 @@ def heed_signals() -> None:
 
 
 def leave_interrupts_to_python() -> None:
-    """Let Ctrl-C be an exception, however often it comes; for scripts and prompts of users."""
+    """Let Ctrl-C raise ``KeyboardInterrupt`` anywhere, as scripts and people at a prompt expect."""
     if signal.getsignal(signal.SIGINT) is _end:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -91,36 +98,37 @@ def message(number: int) -> str:
     return "ravemj: interrupted" if number == signal.SIGINT else f"ravemj: ended by {signal.Signals(number).name}"
 
 
-def _signals() -> "list[signal.Signals]":
+def _signals() -> list[signal.Signals]:
     names = ("SIGINT", "SIGTERM", "SIGHUP")
     return [getattr(signal, name) for name in names if hasattr(signal, name)]  # Windows has no SIGHUP
 
 
 def _end(number: int, frame: object) -> None:
-    global _is_ending  # noqa: PLW0603 - a process ends once
+    global _raises  # noqa: PLW0603
     del frame
-    if _unfinished and not _is_ending:
-        _is_ending = True
+    if _delays:
+        _delayed.append(number)
+        if _delays:  # still, for they may end in other threads
+            return
+    if _raises:
+        _raises = False
         raise KeyboardInterrupt if number == signal.SIGINT else Terminated(number)
     try:
-        for each in tuple(_unfinished):
-            each.give_up()
-        if sys.__stderr__ is not None:
-            start = _SHOW_CURSOR if sys.__stderr__.isatty() else ""
-            # Past Python's buffer, which this may have interrupted.
-            os.write(sys.__stderr__.fileno(), f"{start}{message(number)}\n".encode())
+        for function in reversed(_functions):
+            function()
+        if sys.__stderr__ is not None:  # past its buffer, which this may have interrupted
+            os.write(sys.__stderr__.fileno(), f"{message(number)}\n".encode())
     finally:
         os._exit(128 + number)
 
 
-def _forget() -> None:
-    """Leave a forked process, which scripts may start, as Python would."""
-    _unfinished.clear()
+def _leave_children_to_python() -> None:
+    """Let signals end a forked process, which scripts may start, as in any Python program."""
     for number in _signals():
         if signal.getsignal(number) is _end:
             signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
 
 
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget)
+    os.register_at_fork(after_in_child=_leave_children_to_python)
 heed_signals()

@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
-from ravemj.endings import Unfinished
+from ravemj.endings import on_signal, signals_delayed
 from ravemj.errors import OutputError
 
 AnyPath = str | os.PathLike[str]
@@ -110,7 +110,7 @@ def added_files(path: AnyPath) -> Generator[Path]:
         with _output_errors(path):
             temporary.mkdir()
         yield temporary
-        with _output_errors(path):
+        with _output_errors(path), signals_delayed():
             _move_all(temporary, target)
 
 
@@ -171,17 +171,13 @@ def _foreign_entries(folder: Path, patterns: Collection[str]) -> Iterator[str]:
 @contextmanager
 def _temporary(path: AnyPath) -> Generator[Path]:
     """Yield a name beside a target; what has it at the end of the block is removed."""
-    temporary = _temporary_name(path)
+    temporary = _real(path).with_name(f".ravemj-{_realm()}-{os.getpid()}-{os.urandom(4).hex()}.tmp")
     _remove_left_over(temporary.parent)
-    with Unfinished(temporary):
+    with on_signal(lambda: _remove(temporary)):
         try:
             yield temporary
         finally:
             _remove(temporary)
-
-
-def _temporary_name(path: AnyPath) -> Path:
-    return _real(path).with_name(f".ravemj-{_realm()}-{os.getpid()}-{os.urandom(4).hex()}.tmp")
 
 
 @cache
@@ -216,10 +212,14 @@ def _is_running(process: int) -> bool:
 
 
 def _remove(path: Path) -> None:
-    if path.is_dir() and not path.is_symlink():
-        shutil.rmtree(path, ignore_errors=True)
-    else:
-        path.unlink(missing_ok=True)
+    """Remove a file or a folder if it is there, though another thread may be writing into it."""
+    with suppress(OSError):
+        if path.is_dir() and not path.is_symlink():
+            doomed = path.with_name(f"{path.name}-")  # where nothing new gets in
+            os.replace(path, doomed)
+            shutil.rmtree(doomed, ignore_errors=True)
+        else:
+            path.unlink()
 
 
 def _check_permissions(path: AnyPath, target: Path) -> None:
@@ -234,15 +234,10 @@ def _replace_folder(temporary: Path, target: Path) -> None:
     if not target.exists():
         os.replace(temporary, target)
         return
-    old = _temporary_name(target)
-    os.replace(target, old)
-    try:
-        os.replace(temporary, target)
-    except BaseException:
-        os.replace(old, target)
-        raise
-    try:
-        shutil.rmtree(old)
-    except BaseException:
-        shutil.rmtree(old, ignore_errors=True)
-        raise
+    with _temporary(target) as old, signals_delayed():
+        os.replace(target, old)
+        try:
+            os.replace(temporary, target)
+        except BaseException:
+            os.replace(old, target)
+            raise

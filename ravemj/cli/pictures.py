@@ -12,6 +12,7 @@ import numpy as np
 
 from ravemj.cli.console import console, progress, table
 from ravemj.cli.models import load_model
+from ravemj.endings import signals_raised
 from ravemj.errors import ArgumentError
 from ravemj.motion import Motion, read_motion
 from ravemj.rave import Environment, KinBody
@@ -68,7 +69,8 @@ def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot)
     viewer.SetCamera(shot.camera.T_world_camera)
     viewer.SetBkgndColor(shot.background)
     viewer.play(motion, robot=body)
-    viewer.wait()
+    with signals_raised():  # so that what is being saved gets complete
+        viewer.wait()
     return True
 
 

@@ -5,7 +5,7 @@ import contextlib
 import sys
 
 from ravemj.cli.models import load_model
-from ravemj.endings import Unfinished
+from ravemj.endings import signals_raised
 from ravemj.rave import Environment
 from ravemj.viewers import has_display
 from ravemj.viewers.window import WindowViewer
@@ -19,7 +19,8 @@ def view(options: argparse.Namespace) -> int:
         if window is None:
             _serve(env, options.host, options.port)
         else:
-            window.main()
+            with signals_raised():  # so that what is being saved gets complete
+                window.main()
     finally:
         env.Destroy()
     return 0
@@ -43,6 +44,6 @@ def _serve(env: Environment, host: str, port: int) -> None:
             "everything, and nothing is encrypted on the way",
             file=sys.stderr,
         )
-    with Unfinished(), contextlib.suppress(KeyboardInterrupt):  # so that pages learn that it has ended
+    with contextlib.suppress(KeyboardInterrupt), signals_raised():  # so that pages learn that it has ended
         print(viewer.url, flush=True)
         viewer.main()
