@@ -213,3 +213,11 @@ def test_what_stands_before_a_clash_in_a_file_stays(env, tmp_path, caplog):
 def test_paths_may_be_bytes(env):
     assert env.Load(os.fsencode(WEDGE))
     assert env.ReadKinBodyURI(os.fsencode(WEDGE)).GetName() == "wedge"
+
+
+def test_arguments_by_name(env):
+    assert env.ReadKinBodyURI(filename=WEDGE, atts={"name": "n"}).GetName() == "n"
+    assert env.ReadRobotData(ROBOT, atts={"name": "n"}).GetName() == "n"
+    assert env.ReadRobotData(data=ROBOT).GetName() == "r"
+    with pytest.raises(TypeError, match="attributes"):
+        env.ReadRobotURI(WEDGE, attributes={})

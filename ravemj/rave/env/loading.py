@@ -19,6 +19,7 @@ Attributes = Mapping[str, str]
 """What acts on the bodies of a file, by name: see ``Load``."""
 
 Text = str | bytes | os.PathLike[str]
+Argument = KinBody | Text | Attributes | None
 
 _LOG = logging.getLogger("ravemj")
 
@@ -108,10 +109,10 @@ class Loading(EnvironmentPart):
         self._files.update(dict.fromkeys(reading.files))
         self._found.update(dict.fromkeys(reading.diagnostics))
 
-    def ReadKinBodyURI(self, *arguments: "KinBody | Text | Attributes | None") -> KinBody | None:
+    def ReadKinBodyURI(self, *arguments: Argument, **named: Argument) -> KinBody | None:
         """Read a body from a file without adding it: ``ReadKinBodyURI(filename[, atts])``.
 
-        Also ``ReadKinBodyURI(body, filename[, atts])``, which makes that body anew.
+        Also ``ReadKinBodyURI(body, filename[, atts])``, which makes that body anew. ``atts`` are as for ``Load``.
 
         Returns:
             The body, for ``env.Add``; None, with the reason in the log, if there is none in the file.
@@ -120,32 +121,32 @@ class Loading(EnvironmentPart):
             >>> mug = env.ReadKinBodyURI("mug.kinbody.xml")
             >>> env.Add(mug)
         """
-        into, filename, given = _read_arguments("ReadKinBodyURI", arguments)
+        into, filename, given = _read_arguments("ReadKinBodyURI", arguments, named)
         return self._read(_read_file(filename, given), into, is_robot=False)
 
     ReadKinBodyXMLFile = ReadKinBodyURI
 
-    def ReadKinBodyData(self, *arguments: "KinBody | Text | Attributes | None") -> KinBody | None:
+    def ReadKinBodyData(self, *arguments: Argument, **named: Argument) -> KinBody | None:
         """Return a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
-        into, data, given = _read_arguments("ReadKinBodyData", arguments)
+        into, data, given = _read_arguments("ReadKinBodyData", arguments, named)
         return self._read(_read_data(data, given), into, is_robot=False)
 
     ReadKinBodyXMLData = ReadKinBodyData
 
-    def ReadRobotURI(self, *arguments: "KinBody | Text | Attributes | None") -> Robot | None:
+    def ReadRobotURI(self, *arguments: Argument, **named: Argument) -> Robot | None:
         """Return a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
 
         A body that the file does not call a robot becomes one.
         """
-        into, filename, given = _read_arguments("ReadRobotURI", arguments)
+        into, filename, given = _read_arguments("ReadRobotURI", arguments, named)
         robot = self._read(_read_file(filename, given), into, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLFile = ReadRobotURI
 
-    def ReadRobotData(self, *arguments: "KinBody | Text | Attributes | None") -> Robot | None:
+    def ReadRobotData(self, *arguments: Argument, **named: Argument) -> Robot | None:
         """Return a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
-        into, data, given = _read_arguments("ReadRobotData", arguments)
+        into, data, given = _read_arguments("ReadRobotData", arguments, named)
         robot = self._read(_read_data(data, given), into, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
@@ -178,15 +179,17 @@ class Loading(EnvironmentPart):
 
 
 def _read_arguments(
-    caller: str, arguments: "tuple[KinBody | Text | Attributes | None, ...]"
+    caller: str, arguments: tuple[Argument, ...], named: dict[str, Argument]
 ) -> tuple[KinBody | None, str | bytes, Attributes]:
     """Return the body to fill, if one is given, the file or text, and the attributes."""
-    into = arguments[0] if arguments and isinstance(arguments[0], KinBody) else None
-    rest = arguments if into is None else arguments[1:]
-    if not (1 <= len(rest) <= 2 and isinstance(rest[0], str | bytes | os.PathLike)):
-        wanted = "a text, optionally after a body and before attributes"
-        raise ArgumentError(f"{caller}: takes {wanted}, not {arguments!r}")
-    return into, os.fspath(rest[0]), _checked_attributes(rest[1] if len(rest) > 1 else None, caller)
+    given = [*arguments, *(named.pop(name) for name in ("filename", "data", "atts") if name in named)]
+    if named:
+        raise TypeError(f"{caller}: has no argument {', '.join(named)}")
+    into = given.pop(0) if given and isinstance(given[0], KinBody) else None
+    text, atts, *rest = *given, None, None
+    if len(rest) > 2 or not isinstance(text, str | bytes | os.PathLike):
+        raise ArgumentError(f"{caller}: takes a text, optionally after a body and before attributes, not {arguments!r}")
+    return into, os.fspath(text), _checked_attributes(atts, caller)
 
 
 def _checked_attributes(atts: object, caller: str) -> Attributes:
