@@ -185,8 +185,8 @@ def _read_arguments(
     given = [*arguments, *(named.pop(name) for name in ("filename", "data", "atts") if name in named)]
     if named:
         raise TypeError(f"{caller}: has no argument {', '.join(named)}")
-    into = given.pop(0) if given and isinstance(given[0], KinBody) else None
-    text, atts, *rest = *given, None, None
+    into = given[0] if given and isinstance(given[0], KinBody) else None
+    text, atts, *rest = *(given if into is None else given[1:]), None, None
     if len(rest) > 2 or not isinstance(text, str | bytes | os.PathLike):
         raise ArgumentError(f"{caller}: takes a text, optionally after a body and before attributes, not {arguments!r}")
     return into, os.fspath(text), _checked_attributes(atts, caller)
