@@ -16,7 +16,7 @@ from ravemj import python2
 from ravemj.cli.models import load_model
 from ravemj.errors import Source, SourceError
 
-_OUR_FILES = {__file__, python2.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
+_OUR_FILES = {__file__, *python2.FILES, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
 
 
 def run(options: argparse.Namespace) -> int:
