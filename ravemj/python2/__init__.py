@@ -1,16 +1,15 @@
-"""Scripts written for Python 2, translated while they are read.
+"""Scripts written for Python 2, translated while they are read, with the names that they knew.
 
-fissix changes the syntax and the renamed parts of the standard library; here, division of integers is made to round
-down, and the lines of the original are kept for tracebacks.
+fissix changes the syntax (``translation``); what Python 3 reads, but takes for something else, is changed after it
+(``statements``, ``division``). Such scripts, and no other code, have the names of Python 2 and NumPy 1: built-in ones
+(``builtin``, ``files``), those of objects (``methods``), and those of modules (``modules``, ``library``, ``numpy1``).
 """
 
 from pathlib import Path
 
-from ravemj.python2.division import HELPERS
-from ravemj.python2.finder import install_finder
-from ravemj.python2.translation import compile_script, is_python2
+from ravemj.python2.finder import execute, install_finder, is_python2
 
-__all__ = ["FILES", "HELPERS", "compile_script", "install_finder", "is_python2"]
+__all__ = ["FILES", "execute", "install_finder", "is_python2"]
 
 FILES = {str(path) for path in Path(__file__).parent.glob("*.py")}
 """Files whose frames tracebacks do not show."""

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-_DIVIDE, _DIVISOR = "__divide__", "__divisor__"
+DIVIDE, DIVISOR = "__divide__", "__divisor__"
+"""Names of ``divide`` and ``Divisor`` for scripts."""
 
 
 class Division(ast.NodeTransformer):
@@ -21,19 +22,19 @@ class Division(ast.NodeTransformer):
         self.generic_visit(node)
         if not isinstance(node.op, ast.Div):
             return node
-        call = ast.Call(ast.Name(_DIVIDE, ast.Load()), [node.left, node.right], [])
+        call = ast.Call(ast.Name(DIVIDE, ast.Load()), [node.left, node.right], [])
         return ast.copy_location(call, node)
 
     def visit_AugAssign(self, node: ast.AugAssign) -> ast.AST:
         """Change ``a /= b``."""
         self.generic_visit(node)
         if isinstance(node.op, ast.Div):
-            call = ast.Call(ast.Name(_DIVISOR, ast.Load()), [node.value], [])
+            call = ast.Call(ast.Name(DIVISOR, ast.Load()), [node.value], [])
             node.value = ast.copy_location(call, node.value)
         return node
 
 
-def _divide(left: Any, right: Any) -> Any:  # noqa: ANN401 - whatever scripts divide
+def divide(left: Any, right: Any) -> Any:  # noqa: ANN401 - whatever scripts divide
     """Divide as Python 2 does."""
     if hasattr(type(left), "__div__"):
         return left.__div__(right)
@@ -42,7 +43,7 @@ def _divide(left: Any, right: Any) -> Any:  # noqa: ANN401 - whatever scripts di
     return left // right if _is_whole(left) and _is_whole(right) else left / right
 
 
-class _Divisor:
+class Divisor:
     """The right side of ``a /= b``, which no left side knows, so that it is asked what to do."""
 
     def __init__(self, value: Any) -> None:  # noqa: ANN401 - whatever scripts divide by
@@ -67,11 +68,3 @@ def _is_whole(value: object) -> bool:
     if isinstance(value, np.ndarray):
         return value.dtype.kind in "biu"
     return isinstance(value, int | np.integer)
-
-
-def _compare(left: Any, right: Any) -> int:  # noqa: ANN401 - whatever scripts compare
-    return int(left > right) - int(left < right)
-
-
-HELPERS = {_DIVIDE: _divide, _DIVISOR: _Divisor, "cmp": _compare, "file": open}
-"""Names that translated modules use."""

@@ -6,88 +6,72 @@
 
 import ast
 import functools
-import importlib.util
-import re
-from collections.abc import Callable
+import warnings
 from types import CodeType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal
 
 from ravemj.python2.division import Division
+from ravemj.python2.statements import Statements
 
 if TYPE_CHECKING:
     from fissix.pytree import Node
     from fissix.refactor import RefactoringTool
 
-_TRUE_DIVISION = re.compile(r"^from\s+__future__\s+import\b[^\n]*\bdivision\b", re.MULTILINE)
-_OF_STRING = {"letters": "ascii_letters", "lowercase": "ascii_lowercase", "uppercase": "ascii_uppercase"}
+_FIXERS = """
+asserts exec execfile exitfunc funcattrs metaclass methodattrs ne nonzero numliterals paren print raise repr sys_exc
+throw unicode
+"""
+"""Those of fissix that change syntax; names are given by ``builtin``, ``methods`` and ``modules``."""
 _TAB = 8
+_EXCEPT_NAMED = 4  # parts of "except", class, "," or "as", target
 
 
-def compile_script(source: bytes, path: str) -> CodeType:
-    """Translate a script or module and compile it; run it with ``HELPERS`` among its names.
+def translate(text: str, path: str, mode: Literal["exec", "eval"] = "exec") -> CodeType:
+    """Translate and compile a script, a module or an expression; run it with ``builtin.NAMES``.
 
     Args:
-        source: Its bytes.
-        path: Where it is; the names of its neighbours decide which imports are relative.
+        text: What is written.
+        path: Where, for tracebacks.
+        mode: Whether it is statements or an expression.
 
     Raises:
-        SyntaxError: it is neither Python 2 nor Python 3; file and line are those of the original.
+        SyntaxError: it is not Python 2; file and line are those of the original.
     """
-    text = importlib.util.decode_source(source)
     if not text.endswith("\n"):
         text += "\n"
-    try:
-        tree = _translated(text, path)
-    except SyntaxError:
-        try:
-            return _compile_unchanged(source, path)  # may be of our days
-        except SyntaxError:
-            pass
-        raise
+    tree = _tree(text, path)
+    targets = _name_targets(tree)
     lines = _original_lines(tree)
-    try:
-        module = ast.parse(str(tree), path)
-    except SyntaxError as error:
-        raise _syntax_error(str(error.msg), path, lines[min(error.lineno or 1, len(lines)) - 1], text) from None
-    if not _TRUE_DIVISION.search(text):
-        module = ast.fix_missing_locations(Division().visit(module))
-    for node in ast.walk(_Strings().visit(module)):
-        if isinstance(node, ast.expr | ast.stmt | ast.excepthandler | ast.arg | ast.keyword | ast.alias):
-            node.lineno = node.end_lineno = lines[node.lineno - 1]
-            node.col_offset = node.end_col_offset = -1  # unknown: the columns of the translation mean nothing
-    return compile(module, path, "exec", dont_inherit=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SyntaxWarning)  # "\d" was all right
+        warnings.simplefilter("ignore", DeprecationWarning)  # the same in Python 3.11
+        try:
+            module: Any = ast.parse(str(tree), path, mode)
+        except SyntaxError as error:
+            raise _syntax_error(str(error.msg), path, lines[min(error.lineno or 1, len(lines)) - 1], text) from None
+        if not _has_true_division(module):
+            Division().visit(module)
+        ast.fix_missing_locations(Statements(targets).visit(module))
+        for node in ast.walk(module):
+            if isinstance(node, ast.expr | ast.stmt | ast.excepthandler | ast.arg | ast.keyword | ast.alias):
+                node.lineno = node.end_lineno = lines[node.lineno - 1]
+                node.col_offset = node.end_col_offset = -1  # unknown: the columns of the translation mean nothing
+        return compile(module, path, mode, dont_inherit=True)
 
 
-def is_python2(path: str) -> bool:
-    """Return whether a file is Python 2, and not Python 3."""
-    try:
-        with open(path, "rb") as file:
-            source = file.read()
-    except OSError:
-        return False
-    return not _compiles(_compile_unchanged, source, path) and _compiles(compile_script, source, path)
-
-
-def _compile_unchanged(source: bytes, path: str) -> CodeType:
-    return compile(source, path, "exec", dont_inherit=True)
-
-
-def _compiles(compiler: Callable[[bytes, str], CodeType], source: bytes, path: str) -> bool:
-    try:
-        compiler(source, path)
-    except (SyntaxError, ValueError):
-        return False
-    return True
+def _has_true_division(module: ast.AST) -> bool:
+    imports = [node for node in ast.walk(module) if isinstance(node, ast.ImportFrom) and node.module == "__future__"]
+    return any(alias.name == "division" for node in imports for alias in node.names)
 
 
 @functools.cache
 def _tool() -> "RefactoringTool":
     from fissix import refactor  # noqa: PLC0415 - slow to import
 
-    return refactor.RefactoringTool(refactor.get_fixers_from_package("fissix.fixes"))
+    return refactor.RefactoringTool([f"fissix.fixes.fix_{name}" for name in _FIXERS.split()])
 
 
-def _translated(text: str, path: str) -> "Node":
+def _tree(text: str, path: str) -> "Node":
     """Return the tree of the translation."""
     from fissix.pgen2 import token  # noqa: PLC0415 - slow to import
     from fissix.pgen2.parse import ParseError  # noqa: PLC0415 - slow to import
@@ -109,6 +93,29 @@ def _translated(text: str, path: str) -> "Node":
     return tree
 
 
+def _name_targets(tree: "Node") -> dict[str, str]:
+    """Put names where Python 3 wants no tuples: ``def f((a, b))``, ``except E, (a, b)``; return those by name."""
+    from fissix.pgen2 import token  # noqa: PLC0415 - slow to import
+    from fissix.pygram import python_symbols  # noqa: PLC0415 - slow to import
+    from fissix.pytree import Leaf  # noqa: PLC0415 - slow to import
+
+    symbols: Any = python_symbols
+    inner = {symbols.tfplist, symbols.vfplist, symbols.tfpdef, symbols.vfpdef}
+    found: list[Any] = []
+    node: Any
+    for node in tree.pre_order():
+        if node.type in {symbols.tfpdef, symbols.vfpdef} and node.parent.type not in inner:
+            found.append(node)
+        elif node.type == symbols.except_clause and len(node.children) == _EXCEPT_NAMED:
+            _, _, comma, target = node.children
+            comma.value, comma.prefix = "as", " "
+            found += [] if target.type == token.NAME else [target]
+    targets = {f"__target_{number}__": str(node).strip() for number, node in enumerate(found)}
+    for name, node in zip(targets, found, strict=True):
+        node.replace(Leaf(token.NAME, name, prefix=node.prefix or " "))
+    return targets
+
+
 def _original_lines(tree: "Node") -> list[int]:
     """Return for each line of the translation the line that it comes from."""
     lines = [1]
@@ -125,13 +132,3 @@ def _original_lines(tree: "Node") -> list[int]:
 def _syntax_error(message: str, path: str, line: int, text: str) -> SyntaxError:
     lines = text.splitlines()
     return SyntaxError(message, (path, line, None, lines[line - 1] if 0 < line <= len(lines) else None))
-
-
-class _Strings(ast.NodeTransformer):
-    """Renames what is called otherwise in the module ``string``."""
-
-    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        self.generic_visit(node)
-        if isinstance(node.value, ast.Name) and node.value.id == "string":
-            node.attr = _OF_STRING.get(node.attr, node.attr)
-        return node
