@@ -36,6 +36,7 @@ def run(options: argparse.Namespace) -> int:
         python2.install_finder(folder)
     status = _execute(script, main, options.py2)
     if options.interactive:
+        main.__dict__.pop("__builtins__", None)  # the prompt is Python 3
         return _start_ipython(["--no-banner"], main.__dict__)
     return status
 

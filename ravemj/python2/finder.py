@@ -1,11 +1,13 @@
 """Scripts and modules written for Python 2, found where scripts import them, translated and run."""
 
+import functools
 import importlib.util
 import os
 import site
 import sys
 import sysconfig
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
 
@@ -96,15 +98,24 @@ class _Finder:
         return spec
 
     def _is_old(self, path: str) -> bool:
-        """Return whether a module is Python 2: with the script, or because Python 3 does not understand it."""
+        """Return whether a module is Python 2: with the script, or since Python 3 does not read it, or its package."""
         path = os.path.realpath(path)
         if any(_is_in(path, folder) for folder in _ENVIRONMENT):
             return False
         folders = [folder for folder in map(os.path.realpath, sys.path) if _is_in(path, folder)]
         if folders and max(folders, key=len) not in self._known:
             return True
-        with open(path, "rb") as file:
-            return _compile(file.read(), path) is None
+        folder = Path(path).parent
+        return not (_all_compile(folder) if (folder / "__init__.py").exists() else _compiles(Path(path)))
+
+
+@functools.cache
+def _all_compile(folder: Path) -> bool:
+    return all(_compiles(path) for path in folder.glob("*.py"))
+
+
+def _compiles(path: Path) -> bool:
+    return _compile(path.read_bytes(), str(path)) is not None
 
 
 class _Loader(SourceFileLoader):

@@ -7,6 +7,7 @@ from ravemj.python2 import methods
 METHOD, MESSAGE, CODE = "__method__", "__message__", "__code__"
 """Names of what calls methods, reads ``error.message``, and compiles what ``exec`` and ``eval`` are given."""
 _ERROR = "__error__"
+_ORDER = {"__lt__": "<", "__le__": "<=", "__gt__": ">", "__ge__": ">=", "__eq__": "==", "__ne__": "!="}
 
 
 class Statements(ast.NodeTransformer):
@@ -44,10 +45,21 @@ class Statements(ast.NodeTransformer):
         return [argument.arg for argument in arguments.args if argument.arg in self._targets]
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
-        """Let classes with a method ``next`` be iterators."""
+        """Iterate by ``next``, order by ``__cmp__``, or by identity; what is equal by ``__eq__`` has a hash."""
         self.generic_visit(node)
-        if any(isinstance(part, ast.FunctionDef) and part.name == "next" for part in node.body):
-            node.body.append(_at(node, "__next__ = next"))
+        own = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
+        is_plain = all(isinstance(base, ast.Name) and base.id == "object" for base in node.bases)
+        added: dict[str, str] = {}
+        if "next" in own:
+            added["__next__"] = "__next__ = next"
+        if "__cmp__" in own:
+            for name, sign in _ORDER.items():
+                added[name] = f"def {name}(self, other): return self.__cmp__(other) {sign} 0"
+        elif is_plain and own.isdisjoint(_ORDER):
+            added["__lt__"] = "def __lt__(self, other): return id(self) < id(other)"
+        if is_plain and ("__eq__" in own or "__cmp__" in own):
+            added["__hash__"] = "__hash__ = object.__hash__"
+        node.body += [_at(node, text) for name, text in added.items() if name not in own]
         return node
 
     def visit_ExceptHandler(self, node: ast.ExceptHandler) -> ast.AST:

@@ -6,6 +6,7 @@
 
 import ast
 import functools
+import re
 import warnings
 from types import CodeType
 from typing import TYPE_CHECKING, Any, Literal
@@ -18,10 +19,10 @@ if TYPE_CHECKING:
     from fissix.refactor import RefactoringTool
 
 _FIXERS = """
-asserts exec execfile exitfunc funcattrs metaclass methodattrs ne nonzero numliterals paren print raise repr sys_exc
-throw unicode
+asserts exec execfile exitfunc funcattrs metaclass methodattrs ne nonzero print raise repr sys_exc throw unicode
 """
 """Those of fissix that change syntax; names are given by ``builtin``, ``methods`` and ``modules``."""
+_OCTAL = re.compile(r"^0(?=[0-7]+$)")
 _TAB = 8
 _EXCEPT_NAMED = 4  # parts of "except", class, "," or "as", target
 
@@ -40,6 +41,7 @@ def translate(text: str, path: str, mode: Literal["exec", "eval"] = "exec") -> C
     if not text.endswith("\n"):
         text += "\n"
     tree = _tree(text, path)
+    _enclose_lists(tree)
     targets = _name_targets(tree)
     lines = _original_lines(tree)
     with warnings.catch_warnings():
@@ -90,7 +92,21 @@ def _tree(text: str, path: str) -> "Node":
         leaf.prefix = leaf.prefix.expandtabs(_TAB)  # Python 2 lets tabs and spaces be mixed
         if leaf.type == token.INDENT:
             leaf.value = leaf.value.expandtabs(_TAB)
+        elif leaf.type == token.NUMBER:
+            leaf.value = _OCTAL.sub("0o", str(leaf.value).rstrip("lL"))  # some are numbers indeed
     return tree
+
+
+def _enclose_lists(tree: "Node") -> None:
+    """Put ``[x for x in 1, 2]`` into the parentheses that Python 3 wants."""
+    from fissix.fixer_util import LParen, RParen  # noqa: PLC0415 - slow to import
+    from fissix.pygram import python_symbols  # noqa: PLC0415 - slow to import
+
+    symbols: Any = python_symbols
+    for node in tree.pre_order():
+        if node.type == symbols.testlist_safe:
+            node.insert_child(0, LParen())
+            node.append_child(RParen())
 
 
 def _name_targets(tree: "Node") -> dict[str, str]:
@@ -108,7 +124,7 @@ def _name_targets(tree: "Node") -> dict[str, str]:
             found.append(node)
         elif node.type == symbols.except_clause and len(node.children) == _EXCEPT_NAMED:
             _, _, comma, target = node.children
-            comma.value, comma.prefix = "as", " "
+            comma.value, comma.prefix, target.prefix = "as", " ", " "
             found += [] if target.type == token.NAME else [target]
     targets = {f"__target_{number}__": str(node).strip() for number, node in enumerate(found)}
     for name, node in zip(targets, found, strict=True):
