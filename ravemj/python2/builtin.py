@@ -16,13 +16,12 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 from types import ModuleType
 from typing import Any, Literal
 
-import numpy as np
-
 from ravemj.python2 import methods
 from ravemj.python2.division import DIVIDE, DIVISOR, Divisor, divide
 from ravemj.python2.files import File
 from ravemj.python2.modules import View, import_
-from ravemj.python2.statements import CODE, MESSAGE, METHOD
+from ravemj.python2.numpy1 import item
+from ravemj.python2.statements import CODE, ITEM, MESSAGE, METHOD
 from ravemj.python2.translation import translate
 
 
@@ -59,7 +58,7 @@ def _zip(*sequences: Iterable[Any]) -> list[tuple[Any, ...]]:
 
 def _round(number: Any, ndigits: int = 0) -> float:  # noqa: ANN401 - whatever is a number
     """Round halves away from zero."""
-    exact = Decimal(float(number.item() if isinstance(number, np.ndarray) else number))
+    exact = Decimal(float(item(number)))
     if not exact.is_finite():
         return float(exact)
     return float(exact.quantize(Decimal((0, (1,), -ndigits)), ROUND_HALF_UP, Context(prec=2000)))
@@ -114,25 +113,42 @@ def _input(prompt: object = "") -> Any:  # noqa: ANN401 - whatever users type
     return eval(_code(builtins.input(prompt), "eval"), caller.f_globals, caller.f_locals)
 
 
+_FOR_TRANSLATIONS = {
+    CODE: _code,
+    DIVIDE: divide,
+    DIVISOR: Divisor,
+    ITEM: item,
+    MESSAGE: _message,
+    METHOD: methods.call,
+}
+_OLD = {
+    "apply": _apply,
+    "basestring": str,
+    "cmp": _cmp,
+    "compile": _compile,
+    "file": File,
+    "filter": _filter,
+    "input": _input,
+    "intern": sys.intern,
+    "long": int,
+    "map": _map,
+    "open": _open,
+    "range": _range,
+    "raw_input": input,
+    "reduce": functools.reduce,
+    "reload": _reload,
+    "round": _round,
+    "sorted": methods.sort,
+    "StandardError": Exception,
+    "unichr": chr,
+    "unicode": str,
+    "xrange": range,
+    "zip": _zip,
+    "__import__": import_,
+    "__openravepy_build_doc__": False,
+}
 BUILTIN = ModuleType("__builtin__")
 """What scripts take for ``__builtin__``."""
-vars(BUILTIN).update(vars(builtins))
-vars(BUILTIN).update(
-    {
-        **{
-            DIVIDE: divide,
-            DIVISOR: Divisor,
-            METHOD: methods.call,
-            MESSAGE: _message,
-            CODE: _code,
-            "__import__": import_,
-        },
-        **{"apply": _apply, "cmp": _cmp, "compile": _compile, "filter": _filter, "input": _input, "map": _map},
-        **{"open": _open, "range": _range, "reload": _reload, "round": _round, "sorted": methods.sort, "zip": _zip},
-        **{"basestring": str, "file": File, "long": int, "unicode": str, "xrange": range},
-        **{"intern": sys.intern, "raw_input": input, "reduce": functools.reduce, "unichr": chr},
-        **{"StandardError": Exception, "__openravepy_build_doc__": False},
-    }
-)
+vars(BUILTIN).update({**vars(builtins), **_OLD, **_FOR_TRANSLATIONS})
 NAMES: dict[str, object] = {"__builtins__": BUILTIN}
 """What the namespace of a translated script holds at its start."""

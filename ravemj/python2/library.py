@@ -14,8 +14,11 @@ import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ravemj.python2 import files
 from ravemj.python2.division import divide
+from ravemj.python2.numpy1 import item
 
 _RENAMED = """
 BaseHTTPServer=http.server CGIHTTPServer=http.server commands=subprocess ConfigParser=configparser
@@ -46,11 +49,16 @@ class ArgSpec(NamedTuple):
 
 
 def _ceil(x: float) -> float:
-    return float(math.ceil(x)) if math.isfinite(x) else x
+    return float(np.ceil(x))
 
 
 def _floor(x: float) -> float:
-    return float(math.floor(x)) if math.isfinite(x) else x
+    return float(np.floor(x))
+
+
+def _of_items(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that takes arrays of one for numbers."""
+    return lambda *args: function(*map(item, args))
 
 
 def _getargspec(func: Callable[..., Any]) -> ArgSpec:
@@ -99,7 +107,11 @@ NAMES: dict[str, dict[str, object]] = {
         "izip": "builtins.zip",
         "izip_longest": "itertools.zip_longest",
     },
-    "math": {"ceil": _ceil, "floor": _floor},
+    "math": {
+        name: _of_items({"ceil": _ceil, "floor": _floor}.get(name, function))
+        for name, function in vars(math).items()
+        if callable(function) and not name.startswith("_")
+    },
     "md5": {"md5": "hashlib.md5", "new": "hashlib.md5"},
     "ntpath": _PATH,
     "operator": {"div": divide, "isCallable": "builtins.callable", "sequenceIncludes": "operator.contains"},

@@ -1,4 +1,4 @@
-"""Names of NumPy 1 that NumPy 2 has no more, and what ``from numpy import *`` gave."""
+"""What NumPy 1 had and NumPy 2 has not: names, types of results, and numbers out of arrays."""
 
 # What old scripts pass has no types.
 # pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
@@ -35,6 +35,13 @@ unique_all unique_counts unique_inverse unique_values unstack vecdot vecmat
 """
 """What the star of later versions gives as well; it would hide what scripts have from Python and from ``math``."""
 
+_WHERE_NEEDED = None if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else False
+
+
+def item(a: Any) -> Any:  # noqa: ANN401 - whatever scripts take for a number
+    """Return the number in an array of one; anything else stays."""
+    return a.item() if isinstance(a, np.ndarray) and a.size == 1 else a
+
 
 def _alen(a: Any) -> int:  # noqa: ANN401 - whatever makes an array
     return len(np.atleast_1d(a))
@@ -42,7 +49,7 @@ def _alen(a: Any) -> int:  # noqa: ANN401 - whatever makes an array
 
 def _array(object: Any, dtype: Any = None, copy: bool = True, *args: Any, **options: Any) -> Any:  # noqa: ANN401
     """Copy where it must be with ``copy=False`` too; lists of unlike lengths are objects."""
-    may_copy: Any = True if copy else None
+    may_copy: Any = True if copy else _WHERE_NEEDED
     try:
         return np.array(object, dtype, *args, copy=may_copy, **options)
     except ValueError as error:
@@ -59,13 +66,13 @@ def _asscalar(a: Any) -> Any:  # noqa: ANN401 - an array of any type
     return a.item()
 
 
-def _find_common_type(array_types: Iterable[Any], scalar_types: Iterable[Any]) -> Any:  # noqa: ANN401
-    return np.result_type(*array_types, *(np.dtype(scalar).type(0).item() for scalar in scalar_types))
-
-
 def _divide(x1: Any, x2: Any, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes arrays
     is_whole = all(np.asarray(x).dtype.kind in "biu" for x in (x1, x2))
     return (np.floor_divide if is_whole else np.divide)(x1, x2, *args, **options)
+
+
+def _find_common_type(array_types: Iterable[Any], scalar_types: Iterable[Any]) -> Any:  # noqa: ANN401
+    return np.result_type(*array_types, *(np.dtype(scalar).type(0).item() for scalar in scalar_types))
 
 
 def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -73,7 +80,7 @@ def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
 
     @functools.wraps(function)
     def call(x: Any, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes an array
-        x = np.asarray(x)
+        x = np.asanyarray(x)
         return function(x.astype(float) if x.dtype.kind in "biu" else x, *args, **options)
 
     return call

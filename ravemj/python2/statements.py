@@ -4,8 +4,8 @@ import ast
 
 from ravemj.python2 import methods
 
-METHOD, MESSAGE, CODE = "__method__", "__message__", "__code__"
-"""Names of what calls methods, reads ``error.message``, and compiles what ``exec`` and ``eval`` are given."""
+METHOD, MESSAGE, CODE, ITEM = "__method__", "__message__", "__code__", "__item__"
+"""Names of what calls methods, reads ``error.message``, compiles for ``exec`` and ``eval``, reads numbers."""
 _ERROR = "__error__"
 _ORDER = {"__lt__": "<", "__le__": "<=", "__gt__": ">", "__ge__": ">=", "__eq__": "==", "__ne__": "!="}
 
@@ -83,13 +83,16 @@ class Statements(ast.NodeTransformer):
         return node
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
-        """Call what does the same as methods that are gone; translate what ``exec`` and ``eval`` are given."""
+        """Call what does the same as methods that are gone; give ``exec``, ``eval`` and ``float`` what they want."""
         self.generic_visit(node)
         if isinstance(node.func, ast.Attribute) and node.func.attr in methods.NAMES:
             node.args[:0] = [node.func.value, ast.Constant(node.func.attr)]
             node.func = ast.Name(METHOD, ast.Load())
-        elif isinstance(node.func, ast.Name) and node.func.id in {"exec", "eval"} and node.args:
-            node.args[0] = ast.Call(ast.Name(CODE, ast.Load()), [node.args[0], ast.Constant(node.func.id)], [])
+        elif isinstance(node.func, ast.Name) and node.args:
+            if node.func.id in {"exec", "eval"}:
+                node.args[0] = ast.Call(ast.Name(CODE, ast.Load()), [node.args[0], ast.Constant(node.func.id)], [])
+            elif node.func.id in {"float", "int", "long"}:
+                node.args[0] = ast.Call(ast.Name(ITEM, ast.Load()), [node.args[0]], [])
         return node
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
