@@ -9,6 +9,10 @@
 ``CamelCase`` names are OpenRAVE's, with OpenRAVE's meaning; ``snake_case`` names are ravemj's own.
 """
 
+import ravemj.core.signals  # pyright: ignore[reportUnusedImport] - first, so that Ctrl-C ends a command from here on
+
+# isort: split
+
 import importlib
 from typing import TYPE_CHECKING
 

@@ -29,6 +29,14 @@ def robot(env) -> ravemj.Robot:
     return env.GetRobots()[0]
 
 
+@pytest.fixture(autouse=True, scope="session")
+def _home(tmp_path_factory):
+    """``RaveInitialize`` makes OpenRAVE's folder, here and in processes of tests: not in the user's home."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("OPENRAVE_HOME", str(tmp_path_factory.mktemp("openrave") / "home"))
+        yield
+
+
 @pytest.fixture(autouse=True)
 def _no_data_folder(monkeypatch):
     """Models are found by their paths, whatever this machine has in OPENRAVE_DATA."""

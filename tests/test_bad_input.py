@@ -16,6 +16,13 @@ SHEAR[0, 1] = 0.5
 CALLS = {
     # wrong lengths, shapes and numbers
     "InvalidArguments": """
+        robot.SendCommand("")
+        env.Load("room.env.xml", "prefix")
+        env.Load("room.env.xml", {"prefix": 1})
+        env.LoadData("<KinBody/>", {1: "p"})
+        env.ReadKinBodyData("<KinBody/>", {"scalegeometry": 2})
+        env.ReadRobotData()
+        env.ReadRobotData({"name": "r"}, "<Robot/>")
         robot.SetDOFValues([1])
         robot.SetDOFValues([[1, 2, 3, 4]])
         robot.SetDOFValues("abcd")
@@ -267,7 +274,6 @@ CALLS = {
     "CommandNotSupported": """
         controller.SendCommand("dance")
         env.GetCollisionChecker().SendCommand("dance now")
-        robot.SendCommand("")
         """,
     "EnvironmentNotLocked": "env.Unlock()",
 }

@@ -164,7 +164,30 @@ def test_a_failing_step_stops_time_with_a_message(caplog):
     assert wait_until(lambda: "no step of 0.001" in caplog.text)
     assert wait_until(lambda: not time_threads())
     assert clock.now == 0
+    caplog.clear()
+    clock.wake()
+    assert wait_until(lambda: "no step of 0.001" in caplog.text)
     clock.stop()
+
+
+def test_commands_that_fail_in_the_thread_end_and_the_next_one_runs(env, caplog):
+    robot = robot_in(env)
+    robot.SetDOFVelocityLimits([1, 1])
+    spec = robot.GetActiveConfigurationSpecification()
+    spec.AddDeltaTimeGroup()
+    trajectory = ravemj.RaveCreateTrajectory(env, "")
+    trajectory.Init(spec)
+    trajectory.Insert(0, [0, 0, 0, 1, 1, 0.1])
+    controller = robot.GetController()
+    controller.SendCommand("SetThrowExceptions 1")
+    for _ in range(2):
+        robot.SetDOFValues([0, 0])
+        controller.SetPath(trajectory)
+        assert robot.WaitForController(60)
+        assert wait_until(lambda: "speed limit" in caplog.text, 60)
+        caplog.clear()
+    controller.SetDesired([0.1, 0.1])
+    assert robot.WaitForController(60)
 
 
 def test_the_thread_does_not_keep_python_alive():

@@ -304,6 +304,41 @@ def test_held_bodies_collide_with_the_holder(env, arm):
     assert not arm.CheckSelfCollision()
 
 
+@pytest.mark.parametrize("disabled", ["nothing", "the body", "the links", "both"])
+def test_links_touched_when_grabbing_are_ignored_even_if_disabled(env, arm, disabled):
+    """OpenRAVE's answers in the case ``name-26-grab-disabled-body``."""
+    thing = box(env, "thing", (1.9, 0, 0.3), (0.4, 0.03, 0.03))
+    thing.Enable(disabled not in {"the body", "both"})
+    arm.Enable(disabled not in {"the links", "both"})
+    arm.Grab(thing)
+    thing.Enable(True)
+    arm.Enable(True)
+    (info,) = arm.GetGrabbedInfo()
+    assert info._setIgnoreRobotLinkNames == ["finger", "fore"]
+    assert not arm.CheckSelfCollision()
+    arm.SetDOFValues([0, 2.95, 0])
+    assert arm.CheckSelfCollision()  # reaches the upper arm
+    thing.Enable(False)
+    assert not arm.CheckSelfCollision()
+
+
+def test_grab_takes_its_arguments_by_name(env, arm):
+    thing = box(env, "thing", (0.5, 0, 0.4), (0.6, 0.05, 0.05))
+    upper, fore = arm.GetLink("upper"), arm.GetLink("fore")
+    for named, link in [
+        ({"body": thing}, arm.GetActiveManipulator().GetEndEffector()),
+        ({"body": thing, "grablink": upper}, upper),
+        ({"body": thing, "grablink": fore, "linkstoignore": ["base"]}, fore),
+        ({"body": thing, "linkstoignore": ["base"]}, arm.GetActiveManipulator().GetEndEffector()),
+    ]:
+        assert arm.Grab(**named)
+        assert arm.IsGrabbing(thing) == link
+        (info,) = arm.GetGrabbedInfo()
+        assert ("base" in info._setIgnoreRobotLinkNames) == ("linkstoignore" in named)
+    arm.Grab(thing, [0])
+    assert "base" in arm.GetGrabbedInfo()[0]._setIgnoreRobotLinkNames
+
+
 def test_two_held_bodies(env, arm):
     one = box(env, "one", (1.5, 0, 0.4), (0.05, 0.05, 0.05))
     other = box(env, "other", (0.5, 0, 0.4), (0.6, 0.05, 0.05))

@@ -179,3 +179,118 @@ def test_velocities_without_physics(env, robot):
     with pytest.raises(ravemj.openrave_exception) as caught:
         controller.SetPath(None)
     assert caught.value.GetCode() == "NotImplemented"
+
+
+def error_of(function):
+    """The code and the message of the exception that a function raises, or None."""
+    try:
+        function()
+    except ravemj.openrave_exception as error:
+        return error.GetCode(), str(error)
+
+
+def told(robot, **flags):
+    """The controller of a robot, after commands such as ``SetThrowExceptions=1``."""
+    controller = robot.GetController()
+    for name, flag in flags.items():
+        assert controller.SendCommand(f"{name} {flag}") == ""
+    return controller
+
+
+def test_too_fast_a_path_is_a_warning_or_an_exception(env, robot, caplog):
+    robot.SetDOFVelocityLimits([2, 1])
+    fast = path(env, robot, [0, 0, 0], [0.2, 0.3, 0.1])
+    controller = told(robot, SetThrowExceptions=0)
+    controller.SetPath(fast)
+    step(env, 0.05, 0.05, 0.05, 0.05)
+    assert controller.IsDone()
+    assert caplog.text.count("speed limit is 0.050001 in 0.05 s") == 1
+    caplog.clear()
+
+    robot.SetDOFValues([0, 0])
+    told(robot, SetThrowExceptions=1).SetPath(fast)
+    step(env, 0.05)
+    code, message = error_of(lambda: step(env, 0.05))
+    assert code == "Assert"
+    assert "'Pendulum' moves joint 'Joint1' by 0.15;" in message
+    assert controller.IsDone()
+    np.testing.assert_allclose(robot.GetDOFValues(), [0, 0], atol=1e-12)
+    step(env, 0.05)
+    np.testing.assert_allclose(robot.GetDOFValues(), [0, 0], atol=1e-12)
+    assert not caplog.text
+
+
+def test_a_path_within_the_limits_is_no_problem_however_time_is_stepped(env, robot, caplog):
+    robot.SetDOFVelocityLimits([2, 3])
+    controller = told(robot, SetThrowExceptions=1)
+    controller.SetPath(path(env, robot, [0, 0, 0], [2, -3, 1]))
+    step(env, 0.5, 0.1, 0.001, 0.3, 0.7, 0.01)
+    np.testing.assert_allclose(robot.GetDOFValues(), [2, -3])
+    assert not caplog.text
+
+
+def test_a_jump_to_the_start_of_a_path_is_too_fast(env, robot):
+    told(robot, SetThrowExceptions=1).SetPath(path(env, robot, [1, 1, 0], [1.1, 1.1, 1]))
+    assert error_of(lambda: step(env, 0.05))[0] == "Assert"
+
+
+@pytest.mark.filterwarnings("ignore:.*loads at")
+def test_limits_of_joints_are_kept_or_an_exception(env):
+    assert env.Load("tests/data/limited.xml")
+    robot = env.GetRobot("Limited")
+    start = robot.GetDOFValues()
+    controller = told(robot, SetThrowExceptions=1)
+    code, message = error_of(lambda: controller.SetDesired([0, 1.5]))
+    assert (code, "joint 'Elbow' is set to 1.5, outside its limits" in message) == ("Assert", True)
+    np.testing.assert_array_equal(robot.GetDOFValues(), start)
+    assert controller.IsDone()
+    assert controller.SetDesired([0, 2])
+    told(robot, SetThrowExceptions=0)
+    with pytest.warns(ravemj.RavemjWarning, match="limit"):
+        assert controller.SetDesired([0, 1.5])
+    np.testing.assert_allclose(robot.GetDOFValues(), [0, np.pi / 2])
+
+
+@pytest.mark.parametrize("throws", [0, 1])
+@pytest.mark.parametrize("checks", [0, 1])
+@pytest.mark.parametrize("by_path", [True, False])
+def test_collisions_are_a_problem_only_if_they_are_checked(env, robot, caplog, throws, checks, by_path):
+    """As OpenRAVE's own answers in the case ``retime-32-controller-commands``."""
+    robot.SetDOFVelocityLimits([10, 10])
+    robot.SetDOFValues([1, 0])
+    post = ravemj.RaveCreateKinBody(env, "")
+    post.InitFromBoxes(np.array([[*robot.GetLinks()[-1].GetGlobalCOM(), 0.01, 0.01, 0.01]]), True)
+    post.SetName("post")
+    env.Add(post)
+    assert env.CheckCollision(robot)
+    robot.SetDOFValues([0, 0])
+    assert not env.CheckCollision(robot)
+
+    controller = told(robot, SetThrowExceptions=throws, SetCheckCollisions=checks)
+
+    def run():
+        if by_path:
+            controller.SetPath(path(env, robot, [0, 0, 0], [1, 0, 1]))
+            step(env, *[0.05] * 23)
+        else:
+            controller.SetDesired([1, 0])
+
+    error = error_of(run)
+    raised = bool(throws and checks)
+    assert (error is not None) == raised
+    assert (raised and "post" in error[1] and error[0] == "Assert") == raised
+    assert ("collides" in caplog.text) == bool(checks and not throws)
+    assert controller.IsDone() == (by_path or raised)
+    assert (robot.GetDOFValues()[0] < 1) == (by_path and raised)
+
+
+def test_commands(env, robot):
+    controller = robot.GetController()
+    known = [controller.SupportsCommand(name) for name in ("setthrowexceptions", "SetCheckCollisions", "help", "x")]
+    assert known == [True, True, True, False]
+    assert "SetThrowExceptions" in controller.SendCommand("help")
+    assert controller.SendCommand("  SETTHROWEXCEPTIONS   1 ") == ""
+    for wrong in ("SetThrowExceptions", "SetThrowExceptions yes", "", " "):
+        assert error_of(lambda text=wrong: controller.SendCommand(text))[0] == "InvalidArguments"
+    assert error_of(lambda: controller.SendCommand("nosuch 1"))[0] == "CommandNotSupported"
+    assert error_of(lambda: robot.SendCommand("SetThrowExceptions 1"))[0] == "CommandNotSupported"

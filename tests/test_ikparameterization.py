@@ -118,9 +118,71 @@ def test_what_cannot_be_says_so_and_changes_nothing():
         with pytest.raises(ravemj.openrave_exception):
             wrong()
         assert str(goal) == f"{int(Type.Translation3D)} 1.0 2.0 3.0"
-    goal.SetValues([1, 2], Type.TranslationXY2D)
-    with pytest.raises(NotImplementedError, match="TranslationXY2D"):
+    goal = IkParameterization([[1, 2, 3], 0.5], Type.TranslationXAxisAngle4D)
+    with pytest.raises(NotImplementedError, match="TranslationXAxisAngle4D"):
         goal.MultiplyTransform(SHIFT)
+    for unmoved in (goal, IkParameterization(Ray([1, 2, 3], [0, 0, 1]), Type.Ray4D)):
+        before = str(unmoved)
+        with pytest.raises(ravemj.openrave_exception, match="own frame") as caught:
+            unmoved.MultiplyTransformRight(SHIFT)
+        assert (caught.value.GetCode(), str(unmoved)) == ("Failed", before)
+
+
+def test_pairs_of_points_and_of_a_point_and_an_angle():
+    goal = IkParameterization([[1, 2, 3], [4, 5, 6]], Type.TranslationLocalGlobal6D)
+    assert goal.GetValues().tolist() == [1, 2, 3, 4, 5, 6]
+    assert (SHIFT * goal).GetValues().tolist() == [1, 2, 3, 5, 7, 9]
+    assert (goal * SHIFT).GetValues().tolist() == [1, 2, 3, 5, 7, 9]
+    angle = IkParameterization([[1, 2, 3], 0.5], Type.TranslationZAxisAngleYNorm4D)
+    assert angle.GetValues().tolist() == [0.5, 1, 2, 3]
+    assert IkParameterization([0.5, 1, 2, 3], Type.TranslationZAxisAngleYNorm4D).GetValues().tolist() == [0.5, 1, 2, 3]
+    for wrong in ([1, 2, 3, 4, 5], [[1, 2], [3, 4]], None):
+        with pytest.raises(ravemj.openrave_exception):
+            IkParameterization(wrong, Type.TranslationLocalGlobal6D)
+        with pytest.raises(ravemj.openrave_exception):
+            IkParameterization(wrong, Type.TranslationXAxisAngle4D)
+
+
+@given(numbers, numbers)
+def test_a_frame_is_moved_inside_itself(row, other):
+    T, move = pose(row), pose(other)
+    for kind, whole in ((Type.Transform6D, T), (Type.Rotation3D, ravemj.quatFromRotationMatrix(T))):
+        result = IkParameterization(whole, kind) * move
+        expected = IkParameterization(goals(T @ move)[kind], kind)
+        assert expected.ComputeDistanceSqr(result) < 1e-12
+
+
+@given(numbers, numbers)
+def test_a_direction_is_moved_inside_the_frame_that_is_turned_to_it(row, other):
+    """OpenRAVE's answers in the case ``ik-09-param-multiply-in-place``."""
+    T, move = pose(row), pose(other)
+    frame = ravemj.matrixFromQuat(ravemj.quatRotateDirection([0, 0, 1], T[:3, 0]))
+    frame[:3, 3] = T[:3, 3]
+    moved = frame @ move
+    for kind, whole in (
+        (Type.Direction3D, moved[:3, 2]),
+        (Type.TranslationDirection5D, Ray(moved[:3, 3], moved[:3, 2])),
+    ):
+        goal = IkParameterization(goals(T)[kind], kind)
+        result = goal * move
+        assert IkParameterization(whole, kind).ComputeDistanceSqr(result) < 1e-12
+        assert goal.MultiplyTransformRight(move) is None
+        assert goal.GetValues().tolist() == result.GetValues().tolist()
+
+
+def test_other_goals_are_shifted_inside_themselves():
+    for kind in (Type.Translation3D, Type.Lookat3D):
+        assert (IkParameterization([4, 5, 6], kind) * (SHIFT @ TURN)).GetValues().tolist() == [5, 7, 9]
+    assert (IkParameterization([4, 5], Type.TranslationXY2D) * SHIFT).GetValues().tolist() == [5, 7]
+    turned = IkParameterization([4, 5, 0.25], Type.TranslationXYOrientation3D) * (SHIFT @ TURN)
+    np.testing.assert_allclose(turned.GetValues(), [5, 7, 0.25 + np.pi / 2])
+
+
+def test_planar_goals_are_moved_in_their_plane():
+    goal = IkParameterization([4, 5, 0.25], Type.TranslationXYOrientation3D)
+    np.testing.assert_allclose((SHIFT @ TURN * goal).GetValues(), [1 - 5, 2 + 4, 0.25 + np.pi / 2])
+    goal = IkParameterization([4, 5], Type.TranslationXY2D)
+    np.testing.assert_allclose(([1, 0, 0, 0, 1, 2, 3] * goal).GetValues(), [5, 7])
 
 
 def test_distances():

@@ -304,6 +304,24 @@ class TestMass:
         assert codes(reading) == ["openrave-bug"]
         assert reading.scene.bodies[0].links[0].inertial.mass == pytest.approx(0.48)
 
+    @pytest.mark.parametrize(
+        "shape",
+        [
+            "",
+            '<Geom type="trimesh"><vertices>0 0 0  1 0 0  0 1 0</vertices></Geom>',
+            '<Geom type="box"><extents>0 1 1</extents></Geom>',
+            '<Geom type="capsule"><radius>1</radius><height>1</height></Geom>',
+        ],
+    )
+    @pytest.mark.parametrize("amount", ["<total>2</total>", "<total>0</total>", "<density>2</density>", ""])
+    def test_without_a_volume_is_0(self, read_text, shape, amount):
+        """OpenRAVE's masses are 0 or, of some shapes with a total, NaN."""
+        body = f'<Body name="a">{shape}<Mass type="mimicgeom">{amount}</Mass></Body>'
+        reading = read_text(f'<KinBody name="b">{body}</KinBody>')
+        inertial = reading.scene.bodies[0].links[0].inertial
+        assert (inertial.mass, np.abs(inertial.inertia).max()) == (0, 0)
+        assert ("openrave-bug" in codes(reading)) == (amount == "<total>2</total>")
+
     def test_box_extents_in_a_body_have_no_effect(self, read_text):
         mass = '<Mass type="box"><extents>.1 .2 .3</extents><total>10</total></Mass>'
         reading = read_text(f'<KinBody name="b"><Body name="a">{mass}</Body></KinBody>')

@@ -213,6 +213,36 @@ def test_files_of_databases(tmp_path, monkeypatch):
     assert library.RaveFindDatabaseFile("file") == str(tmp_path / "home" / "file")
 
 
+@pytest.mark.parametrize("by_alias", [True, False])
+@pytest.mark.parametrize("given", ["OPENRAVE_HOME", "HOME"])
+def test_initialising_makes_the_home_folder(request, tmp_path, monkeypatch, by_alias, given):
+    module = request.getfixturevalue("openravepy") if by_alias else ravemj
+    monkeypatch.delenv("OPENRAVE_HOME")
+    monkeypatch.setenv(given, str(tmp_path / "not yet" / "home"))
+    wanted = tmp_path / "not yet" / "home" / ("" if given == "OPENRAVE_HOME" else ".openrave")
+    for _ in range(2):
+        assert module.RaveInitialize() == 0
+        assert wanted.is_dir()
+    assert module.RaveGetHomeDirectory() == str(wanted)
+
+
+def test_a_home_folder_that_cannot_be_made_is_a_warning(tmp_path, monkeypatch, caplog):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("OPENRAVE_HOME", str(tmp_path / "file" / "home"))
+    assert ravemj.RaveInitialize(level=ravemj.DebugLevel.Info) == 0
+    assert str(tmp_path / "file" / "home") in caplog.text
+
+
+def test_nobody_at_home_is_a_warning(monkeypatch, caplog):
+    def nobody():
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.delenv("OPENRAVE_HOME")
+    monkeypatch.setattr(library.Path, "home", nobody)
+    assert ravemj.RaveInitialize(level=ravemj.DebugLevel.Info) == 0
+    assert "Could not determine" in caplog.text
+
+
 def test_local_files(tmp_path, monkeypatch):
     (tmp_path / "file").touch()
     assert library.RaveFindLocalFile("file", str(tmp_path)) == str(tmp_path / "file")

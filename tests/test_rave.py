@@ -31,9 +31,13 @@ class TestEnvironment:
         assert env.Load(models / "env.xml") is True
         assert env.diagnostics == ()
 
-    def test_load_twice_is_a_clash(self, env, models):
+    def test_load_twice_is_a_clash(self, env, models, caplog):
+        """OpenRAVE's answers in the case ``name-15-load-twice``."""
+        assert env.Load(models / "env.xml") is False
+        assert str(models / "env.xml") in caplog.text
+        assert "already is a body 'Pendulum'" in caplog.text
         with pytest.raises(ravemj.openrave_exception, match="already is a body 'Pendulum'") as caught:
-            env.Load(models / "env.xml")
+            env.LoadData((models / "double-pendulum.xml").read_text())
         assert caught.value.GetCode() == "BodyNameConflict"
         assert len(env.GetBodies()) == 1
 

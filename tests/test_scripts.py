@@ -74,7 +74,7 @@ EXPECTED = {
     "example_main": "options data/room.env.xml True GenericPhysicsEngine mujoco\nlevel 3",
     "exceptions": """load False None None\nopenrave_exception InvalidArguments True
         openrave_exception InvalidArguments True\nopenrave_exception Assert True
-        openrave_exception BodyNameConflict True\nopenrave_exception CommandNotSupported True
+        nothing\nopenrave_exception CommandNotSupported True
         openrave_exception InvalidArguments True\nopenrave_exception BodyNameConflict True
         lookups None None -1 None\nplugins False None None""",
     "fly": f"mug 0 0\nmug 0.5 {math.pi / 4}\nmug 1 {math.pi / 2}",

@@ -1,50 +1,65 @@
 """The command line: ``ravemj COMMAND …``.
 
 Results go to standard output, everything else to standard error. Exit codes: 0 done, 1 the input is bad or the output
-cannot be written, 2 the command was not understood, 130 interrupted.
+cannot be written, 2 the command was not understood, 128 + n ended by signal n: 130 by Ctrl-C.
 """
 
+import errno
 import logging
 import os
 import re
+import signal
 import sys
 from collections.abc import Sequence
 
 from ravemj.cli.console import print_error, show_warnings_in_one_line
 from ravemj.cli.parser import make_parser
+from ravemj.cli.streams import prepare_streams
+from ravemj.core import signals
 from ravemj.errors import OutputError, RavemjError
 
 __all__ = ["main"]
 
 _VECTOR_OPTIONS = {"--to", "--q", "--background"}
-_INTERRUPTED = 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command.
 
     Args:
-        arguments: Words of the command line behind ``ravemj``; None: those of this process.
+        arguments: Words of the command line behind ``ravemj``; None: those of this process, whose standard streams are
+            made ready for it.
 
     Returns:
         The exit code.
     """
+    if arguments is None:
+        prepare_streams()
     logging.basicConfig(format="ravemj: %(message)s")
-    options = make_parser().parse_args(_joined(sys.argv[1:] if arguments is None else arguments))
     try:
         with show_warnings_in_one_line():
-            status = options.run(options)
-        sys.stdout.flush()  # here, where its failure can be told
-        return status
+            return _run(sys.argv[1:] if arguments is None else arguments)
     except RavemjError as error:
         print_error(error)
         return 1
     except KeyboardInterrupt:
-        print("ravemj: interrupted", file=sys.stderr)
-        return _INTERRUPTED
+        print(signals.message(signal.SIGINT), file=sys.stderr)
+        return 128 + signal.SIGINT
+    except signals.Terminated as end:
+        print(signals.message(end.number), file=sys.stderr)
+        raise
     except OSError as error:
         _explain(error)
         return 1
+
+
+def _run(arguments: Sequence[str]) -> int:
+    try:
+        options = make_parser().parse_args(_joined(arguments))
+        return options.run(options)
+    finally:
+        signals.heed_signals()  # again, where the command has left Ctrl-C to a script
+        sys.stdout.flush()  # here, where its failure can be told
 
 
 def _explain(error: OSError) -> None:
@@ -56,6 +71,7 @@ def _explain(error: OSError) -> None:
     # Send the rest nowhere, so that Python does not complain at its end.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if not isinstance(error, BrokenPipeError):  # else the reader of our output is gone, for instance ``head``
+        reason = "it is closed" if error.errno == errno.EBADF else reason
         print_error(OutputError(f"cannot write standard output: {reason}"))
 
 

@@ -1,6 +1,7 @@
 """What the commands print: errors, warnings, tables and progress."""
 
 import contextlib
+import os
 import re
 import sys
 import warnings
@@ -8,6 +9,7 @@ from collections.abc import Callable, Generator, Iterable, Sequence
 from typing import TYPE_CHECKING, TextIO
 
 from ravemj.cli.checking import Finding
+from ravemj.core.signals import on_signal
 from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, Source, SourceError
 
 if TYPE_CHECKING:
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
 
 _LEAST_WIDTH = 100
 _PLACES = 4
+_WITHOUT_BAR = b"\r\x1b[2K\x1b[?25h"  # what erases a line of a terminal, and shows the cursor again
 
 
 def print_error(error: RavemjError) -> None:
@@ -111,6 +114,7 @@ def progress(task: str, total: int) -> Generator[Callable[[int], None]]:
         bars.TextColumn("frames"),
         bars.TimeRemainingColumn(),
     )
-    with bars.Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    bar = bars.Progress(*columns, console=Console(stderr=True), transient=True)
+    with on_signal(lambda: os.write(sys.stderr.fileno(), _WITHOUT_BAR)), bar:
         number = bar.add_task(task, total=total)
         yield lambda done: bar.update(number, completed=done)

@@ -12,6 +12,7 @@ import numpy as np
 
 from ravemj.cli.console import console, progress, table
 from ravemj.cli.models import load_model
+from ravemj.core.signals import signals_raised
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering.camera_file import read_camera
 from ravemj.graphics.rendering.contexts import INSTALL, RAY, requested_backend
@@ -68,7 +69,8 @@ def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot)
     viewer.SetCamera(shot.camera.T_world_camera)
     viewer.SetBkgndColor(shot.background)
     viewer.play(motion, robot=body)
-    viewer.wait()
+    with signals_raised():  # so that what is being saved gets complete
+        viewer.wait()
     return True
 
 

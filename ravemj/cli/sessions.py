@@ -14,9 +14,10 @@ import ravemj
 from ravemj.cli.models import load_model
 from ravemj.compat import alias as openravepy_alias
 from ravemj.compat import python2
+from ravemj.core import signals
 from ravemj.errors import Source, SourceError
 
-_OUR_FILES = {__file__, python2.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
+_OUR_FILES = {__file__, *python2.FILES, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
 
 
 def run(options: argparse.Namespace) -> int:
@@ -34,20 +35,24 @@ def run(options: argparse.Namespace) -> int:
     main.__file__ = script
     if options.py2:
         python2.install_finder(folder)
-        main.__dict__.update(python2.HELPERS)
+        np.set_printoptions(legacy="1.25")  # lists of numbers print as [1.0], not as [np.float64(1.0)]
     status = _execute(script, main, options.py2)
     if options.interactive:
+        main.__dict__.pop("__builtins__", None)  # the prompt is Python 3
         return _start_ipython(["--no-banner"], main.__dict__)
     return status
 
 
 def _execute(script: str, main: ModuleType, py2: bool) -> int:
     """Run a script as the main module; what it raises is shown as Python does, and gives 1."""
+    signals.leave_interrupts_to_python()
     try:
         with open(script, "rb") as file:
             source = file.read()
-        code = python2.compile_script(source, script) if py2 else compile(source, script, "exec", dont_inherit=True)
-        exec(code, main.__dict__)
+        if py2:
+            python2.execute(source, script, main.__dict__)
+        else:
+            exec(compile(source, script, "exec", dont_inherit=True), main.__dict__)
     except Exception as error:  # whatever the user's script raises
         _print_traceback(error, script)
         if isinstance(error, SyntaxError) and error.filename and not py2 and python2.is_python2(error.filename):
@@ -59,8 +64,11 @@ def _execute(script: str, main: ModuleType, py2: bool) -> int:
 def _print_traceback(error: Exception, script: str) -> None:
     """Print what Python prints, without our own frames."""
     shown = traceback.TracebackException.from_exception(error)
-    inner = itertools.dropwhile(lambda frame: frame.filename != script, shown.stack)
-    shown.stack[:] = [frame for frame in inner if frame.filename not in _OUR_FILES]
+    shown.stack[:] = itertools.dropwhile(lambda frame: frame.filename != script, shown.stack)
+    link = shown
+    while link is not None:
+        link.stack[:] = [frame for frame in link.stack if frame.filename not in _OUR_FILES]
+        link = link.__cause__ or link.__context__
     sys.stderr.writelines(shown.format())
 
 
@@ -80,6 +88,7 @@ def shell(options: argparse.Namespace) -> int:
 def _start_ipython(arguments: list[str], names: Mapping[str, object] | None = None) -> int:
     from IPython import start_ipython  # noqa: PLC0415 - slow to import  # pyright: ignore[reportUnknownVariableType]
 
+    signals.leave_interrupts_to_python()
     status: object = start_ipython(argv=arguments, user_ns=dict(names or {}))
     return status if isinstance(status, int) else 0
 

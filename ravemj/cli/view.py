@@ -1,22 +1,26 @@
 """The command ``view``."""
 
 import argparse
+import contextlib
 import sys
 
 from ravemj.cli.models import load_model
-from ravemj.gui.viewers import Viewer, has_display
+from ravemj.core.signals import signals_raised
+from ravemj.gui.viewers import has_display
 from ravemj.gui.viewers.window import WindowViewer
 from ravemj.rave import Environment
 
 
 def view(options: argparse.Namespace) -> int:
-    """Show a model until its window is closed, or the command is interrupted."""
+    """Show a model until its window is closed, or its page is ended by Ctrl-C."""
     env = load_model(options)
     try:
-        viewer = None if options.web or not has_display() else _open_window(env)
-        if viewer is None:
-            viewer = _serve(env, options.host, options.port)
-        viewer.main()
+        window = None if options.web or not has_display() else _open_window(env)
+        if window is None:
+            _serve(env, options.host, options.port)
+        else:
+            with signals_raised():  # so that what is being saved gets complete
+                window.main()
     finally:
         env.Destroy()
     return 0
@@ -29,8 +33,8 @@ def _open_window(env: Environment) -> WindowViewer | None:
     return viewer if isinstance(viewer, WindowViewer) else None
 
 
-def _serve(env: Environment, host: str, port: int) -> Viewer:
-    """Serve the page and print its address."""
+def _serve(env: Environment, host: str, port: int) -> None:
+    """Serve the page, print its address, and wait for Ctrl-C: there is no other way to end a page."""
     from ravemj.gui.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
 
     viewer = env.serve_viewer(host, port)
@@ -40,5 +44,6 @@ def _serve(env: Environment, host: str, port: int) -> Viewer:
             "everything, and nothing is encrypted on the way",
             file=sys.stderr,
         )
-    print(viewer.url, flush=True)
-    return viewer
+    with contextlib.suppress(KeyboardInterrupt), signals_raised():  # so that pages learn that it has ended
+        print(viewer.url, flush=True)
+        viewer.main()

@@ -1,15 +1,20 @@
 """Files and folders that appear whole or not at all.
 
 They are written under a temporary name beside the target and renamed at the end. What fails leaves nothing behind,
-and a target that was there before stays as it was.
+and a target that was there before stays as it was. Where a process is killed before it can tidy up, the next one that
+writes into the folder does it.
 """
 
+import hashlib
 import os
+import platform
 import shutil
 from collections.abc import Collection, Generator, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 
+from ravemj.core.signals import on_signal, signals_delayed
 from ravemj.errors import OutputError
 
 AnyPath = str | os.PathLike[str]
@@ -61,16 +66,12 @@ def new_file(path: AnyPath) -> Generator[Path]:
         OutputError: As for ``check_file``, or the temporary file cannot be created or renamed.
     """
     check_file(path)
-    temporary = _temporary_name(path)
-    try:
+    with _temporary(path) as temporary:
         with _output_errors(path):
             temporary.touch(exist_ok=False)
         yield temporary
         with _output_errors(path):
             os.replace(temporary, _real(path))
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
 
 
 @contextmanager
@@ -81,17 +82,13 @@ def new_folder(path: AnyPath, *patterns: str) -> Generator[Path]:
         OutputError: As for ``check_folder``, or the temporary folder cannot be created or renamed.
     """
     check_folder(path, *patterns)
-    temporary = _temporary_name(path)
-    try:
+    with _temporary(path) as temporary:
         with _output_errors(path):
             temporary.mkdir()
         yield temporary
         check_folder(path, *patterns)  # while the files were written, others may have come
         with _output_errors(path):
             _replace_folder(temporary, _real(path))
-    except BaseException:
-        shutil.rmtree(temporary, ignore_errors=True)
-        raise
 
 
 @contextmanager
@@ -109,15 +106,12 @@ def added_files(path: AnyPath) -> Generator[Path]:
         _check_permissions(path, target)
         if target.exists() and not target.is_dir():
             raise OutputError(f"cannot write {os.fspath(path)}: it exists and is no folder")
-    temporary = _temporary_name(path)
-    try:
+    with _temporary(path) as temporary:
         with _output_errors(path):
             temporary.mkdir()
         yield temporary
-        with _output_errors(path):
+        with _output_errors(path), signals_delayed():
             _move_all(temporary, target)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _move_all(source: Path, target: Path) -> None:
@@ -174,8 +168,58 @@ def _foreign_entries(folder: Path, patterns: Collection[str]) -> Iterator[str]:
             yield name
 
 
-def _temporary_name(path: AnyPath) -> Path:
-    return _real(path).with_name(f".ravemj-{os.urandom(8).hex()}.tmp")
+@contextmanager
+def _temporary(path: AnyPath) -> Generator[Path]:
+    """Yield a name beside a target; what has it at the end of the block is removed."""
+    temporary = _real(path).with_name(f".ravemj-{_realm()}-{os.getpid()}-{os.urandom(4).hex()}.tmp")
+    _remove_left_over(temporary.parent)
+    with on_signal(lambda: _remove(temporary)):
+        try:
+            yield temporary
+        finally:
+            _remove(temporary)
+
+
+@cache
+def _realm() -> str:
+    """Return eight hexadecimal digits for where our process id counts: the machine, and the container on it."""
+    try:
+        processes = os.readlink("/proc/self/ns/pid")
+    except OSError:  # not Linux
+        processes = ""
+    return hashlib.sha256(f"{platform.node()} {processes}".encode(errors="replace")).hexdigest()[:8]
+
+
+def _remove_left_over(folder: Path) -> None:
+    """Remove the user's temporary files and folders of processes that have ended, as those that were killed."""
+    if os.name != "posix":  # there is no harmless way to ask for a process
+        return
+    for path in folder.glob(f".ravemj-{_realm()}-*"):
+        process = path.name.split("-")[2]
+        with suppress(OSError):  # another process was faster
+            if path.lstat().st_uid == os.getuid() and process.isdecimal() and not _is_running(int(process)):
+                _remove(path)
+
+
+def _is_running(process: int) -> bool:
+    try:
+        os.kill(process, 0)  # sends nothing
+    except ProcessLookupError:
+        return False
+    except (PermissionError, OverflowError):  # another user's, or nobody's
+        return True
+    return True
+
+
+def _remove(path: Path) -> None:
+    """Remove a file or a folder if it is there, though another thread may be writing into it."""
+    with suppress(OSError):
+        if path.is_dir() and not path.is_symlink():
+            doomed = path.with_name(f"{path.name}-")  # where nothing new gets in
+            os.replace(path, doomed)
+            shutil.rmtree(doomed, ignore_errors=True)
+        else:
+            path.unlink()
 
 
 def _check_permissions(path: AnyPath, target: Path) -> None:
@@ -190,11 +234,10 @@ def _replace_folder(temporary: Path, target: Path) -> None:
     if not target.exists():
         os.replace(temporary, target)
         return
-    old = _temporary_name(target)
-    os.replace(target, old)
-    try:
-        os.replace(temporary, target)
-    except BaseException:
-        os.replace(old, target)
-        raise
-    shutil.rmtree(old)
+    with _temporary(target) as old, signals_delayed():
+        os.replace(target, old)
+        try:
+            os.replace(temporary, target)
+        except BaseException:
+            os.replace(old, target)
+            raise

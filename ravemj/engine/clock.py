@@ -90,6 +90,12 @@ class Clock:
         if wait and thread is not None and thread is not threading.current_thread():
             thread.join()
 
+    def lose_thread(self) -> None:
+        """Take note that the calling thread ends, if it is the clock's: ``wake`` then starts another."""
+        with self._starting:
+            if self._thread is threading.current_thread():
+                self._thread = None
+
     def __del__(self) -> None:
         self._ending.set()
 
@@ -117,13 +123,16 @@ def _run(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> None:
         while not rhythm.lock.acquire(timeout=POLL):
             if rhythm.ending.is_set():
                 return
+        present = None
         try:
             present = clock()
             if present is None or rhythm.ending.is_set():
                 return
             present.step(rhythm.timestep)
         except Exception:
-            _LOG.exception("a step of simulation time failed; time stands still until StartSimulation")
+            _LOG.exception("a step of simulation time failed; time stands still until the next command")
+            if present is not None:
+                present.lose_thread()
             return
         finally:
             present = None

@@ -7,18 +7,21 @@ from urllib.parse import unquote
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import collada
 from ravemj.formats.openrave_xml import Reading, read, read_text
+from ravemj.formats.openrave_xml.collada_body import uniform
 from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.given import NOTHING, Attributes, check_given, give, given_scale
 from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.model.builder import BodyBuilder
 from ravemj.model.scene import KinBody, Scene
 
 
-def read_file(path: str | os.PathLike[str]) -> Reading:
+def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING) -> Reading:
     """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
 
     Args:
         path: An OpenRAVE XML file, a COLLADA file, or a mesh file, which becomes a static body. ``robot.dae#arm`` is
             what has the id ``arm`` in a COLLADA file.
+        given: Attributes that act on the bodies of the file; see ``openrave_xml.given``.
 
     Returns:
         What was read; its ``failure`` says what ended the reading.
@@ -35,43 +38,51 @@ def read_file(path: str | os.PathLike[str]) -> Reading:
         failure = SourceError(f"this is a {kind}, not a model file", Source(found))
     elif found.lower().endswith(collada.SUFFIXES):
         uri = f"{found}#{wanted}" if wanted else found
-        return _read_collada(found, lambda context: collada.read_file(uri, context.diagnostics, context.files))
+        return _read_collada(
+            found, given, lambda context, scale: collada.read_file(uri, context.diagnostics, context.files, scale=scale)
+        )
     else:
-        return read_mesh_file(found) if is_mesh(found) else read(found)
+        return read_mesh_file(found, given) if is_mesh(found) else read(found, given)
     return Reading(Scene(), Diagnostics(), failure)
 
 
-def read_data(data: str | bytes) -> Reading:
+def read_data(data: str | bytes, given: Attributes = NOTHING) -> Reading:
     """Read the text of an OpenRAVE XML or COLLADA document, as ``read_file`` reads a file."""
     head = data[:1000] if isinstance(data, bytes) else data[:1000].encode()
     if b"<COLLADA" in head:
         text = data if isinstance(data, bytes) else data.encode()
         return _read_collada(
-            "data", lambda context: collada.read_text(text, "data", context.diagnostics, context.files)
+            "data",
+            given,
+            lambda context, scale: collada.read_text(text, "data", context.diagnostics, context.files, scale),
         )
-    return read_text(data, "data")
+    return read_text(data, "data", given)
 
 
-def _read_collada(path: str, read_content: Callable[[Context], collada.Content]) -> Reading:
-    context = Context()
+def _read_collada(path: str, given: Attributes, read_content: Callable[[Context, float], collada.Content]) -> Reading:
+    context, source = Context(), Source(path)
+    check_given(given, source, context)
     bodies: list[KinBody] = []
     gravity = failure = None
     try:
-        content = read_content(context)
+        content = read_content(context, uniform(given_scale(given), source, context))
         gravity = content.gravity
         if not content.bodies and not content.others:
-            raise SourceError("there is no body in it", Source(path))
+            raise SourceError("there is no body in it", source)
         if not content.bodies:
             message = "without a kinematics scene, OpenRAVE loads no body of it into an environment"
-            context.diagnostics.error("no-kinematics", message, Source(path), "read it with ReadKinBodyURI")
-        for built in (*content.bodies, *content.others):
+            context.diagnostics.error("no-kinematics", message, source, "read it with ReadKinBodyURI")
+        found = (*content.bodies, *content.others)
+        give(given, found)
+        for built in found:
             built.name = _unused(built.name or "body", {body.name for body in bodies})
             bodies.append(built.freeze(context.diagnostics))
     except SourceError as error:
         failure = error
     except ArithmeticError:
-        failure = SourceError("a number in the file is too large to compute with", Source(path))
-    return Reading(Scene(tuple(bodies), None, gravity), context.diagnostics, failure, tuple(context.files))
+        failure = SourceError("a number in the file is too large to compute with", source)
+    scene = Scene(tuple(bodies), None, gravity)
+    return Reading(scene, context.diagnostics, failure, tuple(context.files), renames=True)
 
 
 def _unused(name: str, taken: set[str]) -> str:
@@ -96,11 +107,13 @@ def _without_scheme(uri: str) -> str:
     return unquote(path)
 
 
-def read_mesh_file(path: str) -> Reading:
+def read_mesh_file(path: str, given: Attributes = NOTHING) -> Reading:
     """Read a mesh file as a static body with the file's name."""
     context = Context()
     source = Source(path)
+    check_given(given, source, context)
     body = BodyBuilder(is_robot=False, source=source)
-    add_mesh(body, path, (1.0, 1.0, 1.0), source, context)
+    add_mesh(body, path, given_scale(given), source, context)
+    give(given, [body])
     scene = Scene((body.freeze(context.diagnostics),))
-    return Reading(scene, context.diagnostics, None, tuple(context.files))
+    return Reading(scene, context.diagnostics, None, tuple(context.files), renames=True)

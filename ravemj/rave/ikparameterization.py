@@ -10,14 +10,20 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.showing import Shown
 from ravemj.core.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
-from ravemj.errors import ArgumentError, UnsupportedError
-from ravemj.geometry_functions import Ray
+from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
+from ravemj.geometry_functions import Ray, quatRotateDirection, rotationMatrixFromQuat
 from ravemj.rave.enums import IkParameterizationType
 from ravemj.rave.specification import ConfigurationSpecification
 
 _Type = IkParameterizationType
 _RAYS = {_Type.Ray4D, _Type.TranslationDirection5D}
 _POINTS = {_Type.Translation3D, _Type.Lookat3D}
+_WITH_DIRECTION = {_Type.Direction3D, *_RAYS}
+"""Types whose first three numbers are a direction."""
+_WITH_POINT = {*_POINTS, *_RAYS, _Type.TranslationLocalGlobal6D}
+"""Types whose last three numbers are a point that moves."""
+_PLANAR = {_Type.TranslationXY2D, _Type.TranslationXYOrientation3D}
+_ANGLES = {kind for kind in _Type if "AxisAngle" in kind.name}
 _CUSTOM_DATA = 0x10000
 _ANGLE_WEIGHT = 0.4
 
@@ -27,16 +33,19 @@ class IkParameterization(Shown):
 
     The numbers are, by type: ``Transform6D`` the pose [w, x, y, z, tx, ty, tz]; ``Rotation3D`` the quaternion;
     ``Translation3D`` and ``Lookat3D`` the point; ``Direction3D`` the direction; ``Ray4D`` and
-    ``TranslationDirection5D`` direction and point. Of the other types only the plain numbers can be set.
+    ``TranslationDirection5D`` direction and point; ``TranslationXY2D`` x and y, ``TranslationXYOrientation3D`` the
+    angle behind them; ``TranslationLocalGlobal6D`` a point of the tool and where it shall be; the types with
+    ``AxisAngle`` angle and point.
 
     Args:
-        value: What to reach: a 4x4 matrix or a pose, a quaternion, a vector, or a ``Ray``, as the type asks for; or
-            another ``IkParameterization``, or the text of one.
+        value: What to reach: a 4x4 matrix or a pose, a quaternion, a vector, a ``Ray``, a pair of points, or a point
+            and an angle, as the type asks for; or another ``IkParameterization``, or the text of one.
         type: The type, with a value.
 
     Example:
         >>> goal = IkParameterization(T_world_tool, IkParameterization.Type.Transform6D)
-        >>> moved = matrixFromPose([1, 0, 0, 0, 0, 0, 0.1]) * goal
+        >>> moved_in_the_world = matrixFromPose([1, 0, 0, 0, 0, 0, 0.1]) * goal
+        >>> moved_in_the_tool = goal * matrixFromPose([1, 0, 0, 0, 0, 0, 0.1])
     """
 
     Type = IkParameterizationType
@@ -226,6 +235,26 @@ class IkParameterization(Shown):
     def __rmul__(self, transform: ArrayLike) -> "IkParameterization":
         return self.Transform(transform)
 
+    def MultiplyTransformRight(self, transform: ArrayLike) -> None:
+        """Move the goal itself by a transform in its own frame, as ``goal * transform`` does.
+
+        A frame is turned as the goal says: as it stands for points, and for directions so that the shortest way brings
+        its z axis onto the direction.
+
+        Args:
+            transform: 4x4, or [w, x, y, z, tx, ty, tz].
+
+        Raises:
+            openrave_exception: OpenRAVE moves no goal of type ``Ray4D`` so.
+        """
+        pose = pose_of(checked_transform(transform, "transform"))
+        self._values = _moved_inside(self._type, self._values, pose)
+
+    def __mul__(self, transform: ArrayLike) -> "IkParameterization":
+        moved = IkParameterization(self)
+        moved.MultiplyTransformRight(transform)
+        return moved
+
     def ComputeDistanceSqr(self, other: "IkParameterization") -> float:
         """Return the squared distance to another goal of the same type; angles count in radians, and less for poses.
 
@@ -308,23 +337,58 @@ def _numbers(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: ANN40
             raise ArgumentError(f"value: is a {type(value).__name__}, and should be a Ray")
         direction = value.dir()
         return np.concatenate([direction / (np.linalg.norm(direction) or 1.0), value.pos()])
-    return checked_vector(value, IkParameterization.GetNumberOfValuesFromType(kind), "value")
+    if kind == _Type.TranslationLocalGlobal6D:
+        value = np.ravel(checked_numbers(value, "value"))
+    count = IkParameterization.GetNumberOfValuesFromType(kind)
+    match value:
+        case [point, angle] if kind in _ANGLES:
+            return checked_vector([angle, *checked_vector(point, 3, "value: point")], count, "value")
+        case _:
+            return checked_vector(value, count, "value")
 
 
 def _moved(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
     """Return the numbers of a goal that is moved by a pose."""
-    matrix = pose.matrix()
+    rotation, translation = pose.matrix()[:3, :3], np.array(pose.position)
     if kind == _Type.Transform6D:
         return (pose @ _pose(values)).numbers()
     if kind == _Type.Rotation3D:
         return np.array(multiply(pose.wxyz, _wxyz(values)))
-    if kind == _Type.Direction3D:
-        return matrix[:3, :3] @ values
-    if kind in _POINTS:
-        return matrix[:3, :3] @ values + matrix[:3, 3]
-    if kind in _RAYS:
-        return np.concatenate([matrix[:3, :3] @ values[:3], matrix[:3, :3] @ values[3:] + matrix[:3, 3]])
-    raise UnsupportedError(f"moving a goal of type {kind.name}", "inverse kinematics of that type")
+    if kind in _PLANAR:
+        return np.append(rotation[:2, :2] @ values[:2] + translation[:2], values[2:] + _turn_about_z(pose))
+    if kind not in _WITH_DIRECTION | _WITH_POINT:
+        raise UnsupportedError(f"moving a goal of type {kind.name}", "inverse kinematics of that type")
+    moved = values.copy()
+    if kind in _WITH_DIRECTION:
+        moved[:3] = rotation @ values[:3]
+    if kind in _WITH_POINT:
+        moved[-3:] = rotation @ values[-3:] + translation
+    return moved
+
+
+def _moved_inside(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
+    """Return the numbers of a goal that is moved by a pose in its own frame."""
+    rotation, translation = pose.matrix()[:3, :3], np.array(pose.position)
+    if kind == _Type.Transform6D:
+        return (_pose(values) @ pose).numbers()
+    if kind == _Type.Rotation3D:
+        return np.array(multiply(_wxyz(values), pose.wxyz))
+    if kind in _PLANAR:
+        return np.append(values[:2] + translation[:2], values[2:] + _turn_about_z(pose))
+    if kind not in (_WITH_DIRECTION | _WITH_POINT) - {_Type.Ray4D}:
+        raise RavemjError(f"a goal of type {kind.name} cannot be moved in its own frame")
+    moved, frame = values.copy(), np.eye(3)
+    if kind in _WITH_DIRECTION:
+        frame = rotationMatrixFromQuat(quatRotateDirection([0, 0, 1], values[:3]))
+        moved[:3] = frame @ rotation[:, 2]
+    if kind in _WITH_POINT:
+        moved[-3:] += frame @ translation
+    return moved
+
+
+def _turn_about_z(pose: Pose) -> float:
+    """Return the part of a rotation that turns about z [rad]."""
+    return 2 * math.atan2(pose.wxyz[3], pose.wxyz[0])
 
 
 def _wxyz(values: Floats) -> Wxyz:

@@ -1,6 +1,7 @@
 """What all objects of an environment have in common."""
 
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from ravemj.core.showing import Shown
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -79,6 +80,7 @@ class Interface(UserData):
 
     _env: "Environment"
     _interface_type: InterfaceType
+    _commands: ClassVar[Mapping[str, Callable[[Any, str], str]]] = {}
 
     def GetEnv(self) -> "Environment":
         """Return the environment that the object was made for, also before it is added.
@@ -114,19 +116,18 @@ class Interface(UserData):
         self._annotations.description = str(description)
 
     def SupportsCommand(self, cmd: str) -> bool:
-        """Return whether ``SendCommand`` knows a command; no command is known here.
+        """Return whether ``SendCommand`` knows a command.
 
         Args:
-            cmd: The name of the command, and behind a blank its arguments.
+            cmd: The name of the command; upper and lower case are the same.
         """
-        del cmd
-        return False
+        return cmd.lower() in {"help", *map(str.lower, self._commands)}
 
     def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str | None:
         """Run a command of OpenRAVE's plugins by its text.
 
         Args:
-            cmd: The name of the command, and behind a blank its arguments.
+            cmd: The name of the command, and behind a blank its arguments. ``help`` lists the commands.
             releasegil: Not used.
             lockenv: Not used.
 
@@ -134,12 +135,32 @@ class Interface(UserData):
             Its answer; None if it failed.
 
         Raises:
-            openrave_exception: the command is not known (``CommandNotSupported``); none is, here.
+            openrave_exception: ``cmd`` is empty, or the arguments are wrong (``InvalidArguments``); the command is not
+                known (``CommandNotSupported``).
         """
         del releasegil, lockenv
-        checked_kind(cmd, str, "SendCommand: cmd", "a text")
-        name = cmd.split(maxsplit=1)[0] if cmd.strip() else ""
-        raise RavemjError(f"{type(self).__name__} knows no command '{name}'", ErrorCode.CommandNotSupported)
+        name, *arguments = checked_kind(cmd, str, "SendCommand: cmd", "a text").split(maxsplit=1) or [""]
+        if not name:
+            raise ArgumentError("SendCommand: cmd is empty, and should be the name of a command")
+        if name.lower() == "help":
+            return "\n".join(["help", *self._commands])
+        for known, command in self._commands.items():
+            if known.lower() == name.lower():
+                return command(self, " ".join(arguments))
+        known = ", ".join(["help", *self._commands])
+        message = f"{type(self).__name__} knows no command '{name}', only {known}"
+        raise RavemjError(message, ErrorCode.CommandNotSupported)
+
+
+def checked_flag(text: str, command: str) -> bool:
+    """Return the argument of a command that turns something on or off.
+
+    Raises:
+        ArgumentError: it is neither 0 nor 1.
+    """
+    if text.strip() not in {"0", "1"}:
+        raise ArgumentError(f"{command}: is followed by '{text}', and should be by 0 or 1")
+    return text.strip() == "1"
 
 
 def checked_environment(env: "Environment", caller: str) -> "Environment":

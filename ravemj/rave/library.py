@@ -11,7 +11,9 @@ _LOG = logging.getLogger("ravemj")
 
 
 def RaveInitialize(load_all_plugins: bool = True, level: int = DebugLevel.Info) -> int:
-    """Get ready; importing has done so already, but for the level of the log.
+    """Make the folder of ``RaveGetHomeDirectory()``, and set the level of the log; importing has done the rest.
+
+    Where the folder cannot be made, a warning is logged.
 
     Args:
         load_all_plugins: For OpenRAVE; there are no plugins.
@@ -22,6 +24,10 @@ def RaveInitialize(load_all_plugins: bool = True, level: int = DebugLevel.Info) 
     """
     del load_all_plugins
     logs.RaveSetDebugLevel(level)
+    try:
+        os.makedirs(RaveGetHomeDirectory(), exist_ok=True)
+    except (OSError, RuntimeError) as error:  # Path.home raises the latter where nobody is at home
+        _LOG.warning("RaveInitialize: the folder of OPENRAVE_HOME cannot be made: %s", error)
     return 0
 
 

@@ -1,5 +1,6 @@
 """Robots: bodies with manipulators and sensors."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -52,11 +53,17 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
         return "GenericRobot"
 
     def Grab(  # pyright: ignore[reportIncompatibleMethodOverride] - a robot has an arm to grab with
-        self, body: KinBody, *links: "Link | list[Link | int | str]"
+        self,
+        body: KinBody,
+        grablink: "Link | Iterable[Link | int | str] | None" = None,
+        linkstoignore: "Iterable[Link | int | str]" = (),
     ) -> bool:
-        """Hold a body: ``Grab(body)``, ``Grab(body, link)``, ``Grab(body, linkstoignore)`` or with both.
+        """Hold a body: ``Grab(body)``, ``Grab(body, grablink)``, ``Grab(body, linkstoignore)`` or with both.
 
-        It is held by the given link, else by the active manipulator's end effector. See ``KinBody.Grab``.
+        Args:
+            body: What to hold. See ``KinBody.Grab``.
+            grablink: The link of this robot that holds it; left out: the active manipulator's end effector.
+            linkstoignore: Further links of this robot that it should not collide with.
 
         Returns:
             False if there is neither a link nor an active manipulator with an end effector.
@@ -66,10 +73,11 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
             True
             >>> robot.SetDOFValues([0.3], [0])  # the mug moves along
         """
+        if grablink is not None and not isinstance(grablink, Link):
+            grablink, linkstoignore = None, grablink
         active = self.GetActiveManipulator()
-        link = next((one for one in links if isinstance(one, Link)), active.GetEndEffector() if active else None)
-        ignored = [one for group in links if not isinstance(group, Link) for one in group]
-        return False if link is None else super().Grab(body, link, ignored)
+        link = grablink or (active.GetEndEffector() if active else None)
+        return False if link is None else super().Grab(body, link, linkstoignore)
 
     def CreateRobotStateSaver(self, options: int | None = None) -> StateSaver:
         """Return what keeps the robot's state; see ``CreateKinBodyStateSaver``.

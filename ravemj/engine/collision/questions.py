@@ -128,8 +128,8 @@ def _within(
 
 
 def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) -> frozenset[int]:
-    """Return the indices of a body's links that touch or overlap another body."""
-    pairs = world.make_pairs(*cross(world.geoms_of_body(holder), world.geoms_of_body(body)))
+    """Return the indices of a body's links that touch or overlap another body, enabled or not."""
+    pairs = world.make_pairs(*cross(*(world.geoms_of_body(one, enabled_only=False) for one in (holder, body))))
     return frozenset(world.owner(first)[1] for first, _ in world.hits(pairs))
 
 

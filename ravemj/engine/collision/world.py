@@ -96,10 +96,11 @@ class CollisionWorld:
         group = self._groups.get(body, [body])
         return [body, *(one for one in group if one is not body)]
 
-    def geoms_of_body(self, body: BodyState) -> Ints:
-        """Return the geoms of a body that collide."""
+    def geoms_of_body(self, body: BodyState, *, enabled_only: bool = True) -> Ints:
+        """Return the geoms of a body that collide, or would if all its links were enabled."""
         number = self._number.get(body, -2)
-        return np.flatnonzero(self.collides & (self._owner == number))
+        among = self.collides if enabled_only else self._is_solid
+        return np.flatnonzero(among & (self._owner == number))
 
     def geoms_of_link(self, body: BodyState, link: int, *, enabled_only: bool = True) -> Ints:
         """Return the geoms of a link that collide, or would if it were enabled."""

@@ -53,7 +53,7 @@ def split_uri(uri: str) -> tuple[str, str]:
     return (path, name) if path.lower().endswith(SUFFIXES) else (uri, "")
 
 
-def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str]) -> Content:
+def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str], scale: float = 1.0) -> Content:
     """Read a document that is no file, as ``read_file`` reads a file.
 
     Args:
@@ -61,8 +61,9 @@ def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str]
         name: What to call it in messages.
         diagnostics: Takes every finding.
         files: Takes the paths of the files that are read.
+        scale: What all lengths are multiplied by.
     """
-    library = Library(diagnostics, files, None)
+    library = Library(diagnostics, files, None, scale)
     return _read(library, name, lambda: library.open_text(data, name))
 
 

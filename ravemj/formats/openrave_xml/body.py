@@ -6,7 +6,6 @@ of an element acts at its end, once, on the links that were made inside it.
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple
 
 from ravemj.core.transforms import Vec3
 from ravemj.errors import SourceError
@@ -18,6 +17,7 @@ from ravemj.formats.openrave_xml.joint import read_joint
 from ravemj.formats.openrave_xml.link import read_link
 from ravemj.formats.openrave_xml.mass import DefaultMassReader
 from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
+from ravemj.formats.openrave_xml.prefix import Marks, add_prefix
 from ravemj.formats.openrave_xml.robot import read_attached_sensor, read_manipulator
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
@@ -30,22 +30,8 @@ from ravemj.formats.openrave_xml.values import (
     scale_attribute,
 )
 from ravemj.model.builder import BodyBuilder
-from ravemj.model.following import Equations
 from ravemj.model.manipulators import ManipulatorBuilder
 from ravemj.model.scene import KinBody
-
-
-class _Marks(NamedTuple):
-    """How many parts a body had at some moment; manipulators change their order, so they are kept themselves."""
-
-    links: int
-    joints: int
-    sensors: int
-    manipulators: tuple[ManipulatorBuilder, ...]
-
-    @classmethod
-    def of(cls, body: BodyBuilder) -> "_Marks":
-        return cls(len(body.links), len(body.joints), len(body.sensors), tuple(body.manipulators))
 
 
 class _Scope:
@@ -74,13 +60,13 @@ class _Scope:
         first_link = len(self.body.links)
         if "file" in element.attributes:
             self._include(element)
-        marks = _Marks.of(self.body)
+        marks = Marks.of(self.body)
         tags, ignored = (ROBOT_TAGS, ROBOT_IGNORED) if element.tag == "robot" else (KINBODY_TAGS, KINBODY_IGNORED)
         self.context.walk(element, tags, ignored, self)
         self.body.name = element.attributes.get("name", "") or self.body.name
         prefix = element.attributes.get("prefix", "")
         if prefix:
-            self._prefix(prefix, marks, whole=element.tag == "robot")
+            add_prefix(prefix, self.body, marks, whole=element.tag == "robot")
         if self.transparency is not None:
             for link in self.body.links:
                 link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
@@ -99,9 +85,9 @@ class _Scope:
                 add_mesh(self.body, path, self.scale, element.source, self.context)
             return
         if is_collada(name):
-            marks = _Marks.of(self.body)
+            marks = Marks.of(self.body)
             add_collada(self.body, name, element.source, self.context, self.scale, skip_geometry=self.skip_geometry)
-            self._prefix(element.attributes.get("prefix", ""), marks, whole=True)
+            add_prefix(element.attributes.get("prefix", ""), self.body, marks, whole=True)
             return
         root = self.context.include(element)
         if root is None:
@@ -111,32 +97,7 @@ class _Scope:
         inner = _Scope(self.body, self.context, self.scale, self.depth + 1, skip_geometry=self.skip_geometry)
         inner.read(wrapper)
 
-    def _prefix(self, prefix: str, marks: _Marks, *, whole: bool) -> None:
-        """Rename the parts made inside the element; OpenRAVE renames less in a KinBody than in a Robot."""
-        joints = self.body.joints[marks.joints :]
-        renamed = {joint.name: prefix + joint.name for joint in joints if joint.name}
-        for part in (*self.body.links[marks.links :], *joints):
-            part.name = prefix + part.name
-        if not whole:
-            return
-        for joint in joints:
-            if joint.equations is not None:
-                from ravemj.model.expressions import substitute  # noqa: PLC0415 - rarely wanted
-
-                equations = joint.equations
-                texts = (equations.position, equations.velocity, equations.acceleration)
-                joint.equations = Equations(*(substitute(text, renamed) for text in texts))
-        for built in self.body.manipulators:
-            if any(built is older for older in marks.manipulators):
-                continue
-            built.name = prefix + built.name
-            built.base = prefix + built.base
-            built.effector = prefix + built.effector
-            built.gripper_joints = [prefix + name for name in built.gripper_joints]
-        for index, sensor in enumerate(self.body.sensors[marks.sensors :], marks.sensors):
-            self.body.sensors[index] = replace(sensor, name=prefix + sensor.name)
-
-    def _own_first(self, marks: _Marks) -> None:
+    def _own_first(self, marks: Marks) -> None:
         """Move manipulators and sensors of this very element before those that were there, the youngest first."""
         if marks.manipulators:
             mine = self.own_manipulators

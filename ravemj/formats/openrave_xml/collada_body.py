@@ -26,12 +26,9 @@ def add_collada(
     found_path = context.find(path, source)
     if found_path is None:
         return
-    if len(set(scale)) > 1:
-        message = f"scalegeometry scales a COLLADA file by {scale[0]:g} in all directions"
-        context.diagnostics.warn("ignored-attribute", message, source)
     path = f"{found_path}#{wanted}" if wanted else found_path
     try:
-        content = collada.read_file(path, context.diagnostics, context.files, source, scale[0])
+        content = collada.read_file(path, context.diagnostics, context.files, source, uniform(scale, source, context))
         found = next(iter((*content.bodies, *content.others)), None)
         if found is None:
             raise SourceError("there is no body in it", Source(found_path, included_from=source))
@@ -45,6 +42,14 @@ def add_collada(
         if skip_geometry:
             link.geometries = []
     _join(body, found)
+
+
+def uniform(scale: Vec3, source: Source, context: Context) -> float:
+    """Return the one factor of lengths that a COLLADA file can have; report that others are left out."""
+    if len(set(scale)) > 1:
+        message = f"scalegeometry scales a COLLADA file by {scale[0]:g} in all directions"
+        context.diagnostics.warn("ignored-attribute", message, source)
+    return scale[0]
 
 
 def _join(body: BodyBuilder, other: BodyBuilder) -> None:

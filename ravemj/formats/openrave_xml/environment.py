@@ -9,6 +9,7 @@ from ravemj.core.transforms import ZERO, Pose, Vec3, Wxyz, multiply, wxyz_from_a
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats.openrave_xml.body import read_body
 from ravemj.formats.openrave_xml.context import IGNORED, NO_EFFECT_HERE, Context, uncomputable
+from ravemj.formats.openrave_xml.given import NOTHING, Attributes, with_given
 from ravemj.formats.openrave_xml.tree import Document, Element, parse, parse_file
 from ravemj.formats.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.model.scene import KinBody, Scene, View
@@ -53,39 +54,47 @@ class Reading:
         diagnostics: Every finding.
         failure: What ended the reading, or None.
         files: The files that were read, meshes included.
+        renames: Whether a body whose name is taken in the environment gets another one.
     """
 
     scene: Scene
     diagnostics: Diagnostics
     failure: SourceError | None
     files: tuple[str, ...] = ()
+    renames: bool = False
 
 
-def read(path: str | os.PathLike[str]) -> Reading:
-    """Read an OpenRAVE XML file whose root is an environment, a robot or a kinbody."""
-    return _read(os.fspath(path), parse_file)
+def read(path: str | os.PathLike[str], given: Attributes = NOTHING) -> Reading:
+    """Read an OpenRAVE XML file whose root is an environment, a robot or a kinbody.
+
+    Args:
+        path: The file.
+        given: Attributes that act on the root.
+    """
+    return _read(os.fspath(path), parse_file, given)
 
 
-def read_text(text: str | bytes, name: str) -> Reading:
+def read_text(text: str | bytes, name: str, given: Attributes = NOTHING) -> Reading:
     """Read an OpenRAVE XML document that is no file.
 
     Args:
         text: The document; files that it names are looked for in the working folder.
         name: What to call it in messages.
+        given: Attributes that act on the root.
     """
     content = text.encode() if isinstance(text, str) else text
-    reading = _read(name, lambda path: parse(content, path))
+    reading = _read(name, lambda path: parse(content, path), given)
     return replace(reading, files=reading.files[1:])
 
 
-def _read(path: str, parsed_file: Callable[[str], Document]) -> Reading:
+def _read(path: str, parsed_file: Callable[[str], Document], given: Attributes) -> Reading:
     context = Context()
     document = _Document(context)
     failure = None
     try:
         parsed = parsed_file(path)
         failure = parsed.error
-        document.read(parsed.root)
+        document.read(with_given(parsed.root, given, context))
     except SourceError as error:
         failure = error
     except RecursionError:

@@ -124,7 +124,11 @@ def read_link(
     scope.skip_geometry = skip_geometry
     scope.read(element)
     link.pose = scope.pose
-    link.inertial = link_inertial(mass.rule or default_mass, link.geometries)
+    rule = mass.rule or default_mass
+    link.inertial = link_inertial(rule, link.geometries)
+    if rule is not None and rule.total and not link.inertial.mass:
+        message = f"link '{link.name}' has no shape with a volume, so its mimicgeom mass is 0 and not {rule.total:g}"
+        context.diagnostics.warn("openrave-bug", message, element.source, "write the mass as type custom")
     link.enabled = not is_false(element.attributes.get("enable", "true"))
     if "type" in element.attributes:
         link.static = element.attributes["type"].lower() == "static"

@@ -201,13 +201,14 @@ def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Iner
 def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     """Combine the solids of all shapes by the parallel axis theorem.
 
-    With a total mass, OpenRAVE scales the masses of the parts and not their own inertias.
+    With a total mass, OpenRAVE scales the masses of the parts and not their own inertias. Where no shape has a volume
+    the mass is 0, also with a total: OpenRAVE gives 0 or NaN there.
     """
     density = TOTAL_DENSITY if rule.total is not None else (1.0 if rule.density is None else rule.density)
     solids = [_solid(geometry.shape, density) for geometry in geometries]
     mass = sum(part for part, _ in solids)
     if mass == 0.0:
-        return Inertial(0.0 if rule.total is None else math.nan, ZERO, NO_INERTIA)
+        return Inertial(0.0, ZERO, NO_INERTIA)
     factor = 1.0 if rule.total is None else rule.total / mass
     if len(geometries) == 1:
         position, wxyz = geometries[0].T_link_geometry

@@ -1,16 +1,23 @@
 """A controller that puts the robot where it should be."""
 
-from typing import NamedTuple
+import logging
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
-from ravemj.errors import ArgumentError, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.controllers.base import Controller
 from ravemj.rave.enums import CheckLimitsAction
-from ravemj.rave.interface import checked_kind
+from ravemj.rave.interface import checked_flag, checked_kind
+from ravemj.rave.report import CollisionReport
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.groups import joint_indices
+
+_LOG = logging.getLogger("ravemj")
+
+_SLACK = 1e-6
+"""How far [rad or m] beyond its speed limit a joint may move in a step; OpenRAVE's number."""
 
 
 class _Path(NamedTuple):
@@ -35,6 +42,11 @@ class IdealController(Controller):
     ``SetDesired`` moves the robot at once, and is done with the next step of time. ``SetPath`` plays a trajectory:
     the first step shows its first point, and the path is done one step after its last point.
 
+    Joints that move faster than their limits allow are a problem, and so are joints outside their limits; after
+    ``SendCommand("SetCheckCollisions 1")`` also collisions of the robot. The first problem of each command is logged
+    as a warning. After ``SendCommand("SetThrowExceptions 1")`` each raises an ``openrave_exception`` (``Assert``), out
+    of ``SetDesired`` or of the step of simulation time, and ends the command.
+
     Example:
         >>> controller = robot.GetController()
         >>> controller.SetPath(trajectory)
@@ -45,6 +57,10 @@ class IdealController(Controller):
 
     _path: _Path | None = None
     _desired: "tuple[Floats, Floats | None] | None" = None
+    _last_timestep = 0.0
+    _has_problem = False
+    _throws_exceptions = False
+    _checks_collisions = False
 
     def Reset(self, options: int = 0) -> None:
         """Forget what the controller was told; the robot stays where it is, and the controller is done.
@@ -59,9 +75,10 @@ class IdealController(Controller):
     def _desire(self, values: Floats, T_world_base: Floats | None) -> None:
         if T_world_base is None and self._moves_base:
             T_world_base = self._robot.GetTransform()
+        self._time, self._has_problem = 0.0, False
         self._place(self._robot_dofs(), values, T_world_base)
         self._path, self._desired = None, (values, T_world_base)
-        self._time, self._is_done = 0.0, False
+        self._is_done = False
 
     def SetPath(self, traj: Trajectory | None) -> bool:
         """Play a trajectory in simulation time, in place of what the controller was told before.
@@ -92,6 +109,7 @@ class IdealController(Controller):
             path.trajectory.Sample(0.0)
             self._path, self._desired = path, None
             self._time, self._is_done = 0.0, False
+            self._last_timestep, self._has_problem = 0.0, False
         self._env.clock.wake()
         return True
 
@@ -129,20 +147,74 @@ class IdealController(Controller):
         if path.moves_base:
             spec = path.trajectory.GetConfigurationSpecification()
             T_world_base = spec.ExtractTransform(self._robot.GetTransform(), point, self._robot)
-        self._place(path.dofs, point[path.columns], T_world_base)
+        self._place(path.dofs, point[path.columns], T_world_base, self._last_timestep or timestep)
         if is_over:
             self._path, self._is_done = None, True
         else:
             self._time += timestep
+            self._last_timestep = timestep
 
-    def _place(self, dofs: Ints, values: Floats, T_world_base: Floats | None) -> None:
-        """Put some of the joints, and the base, where they should be, at rest."""
+    def _place(self, dofs: Ints, values: Floats, T_world_base: Floats | None, elapsed: float = 0.0) -> None:
+        """Put some of the joints, and the base, where they should be, at rest.
+
+        Args:
+            dofs: DOFs of the joints.
+            values: Their values [rad or m].
+            T_world_base: Pose of the base; None: as it is.
+            elapsed: How long the motion takes [s]; 0: at once, at any speed.
+        """
         robot = self._robot
         if len(dofs):
-            robot.SetDOFValues(values, dofs)
+            self._check_speed(dofs, values, elapsed)
+            self._set_values(dofs, values)
         if T_world_base is not None:
             robot.SetTransform(T_world_base)
         velocities = robot.GetDOFVelocities()
         if velocities[dofs].any():
             velocities[dofs] = 0.0
             robot.SetDOFVelocities(velocities, checklimits=CheckLimitsAction.Nothing)
+        if self._checks_collisions:
+            report = CollisionReport()
+            if self._env.CheckCollision(robot, report) or robot.CheckSelfCollision(report):
+                self._complain(f"collides: {report}")
+
+    def _set_values(self, dofs: Ints, values: Floats) -> None:
+        if not self._throws_exceptions:
+            self._robot.SetDOFValues(values, dofs)  # warns of values outside the limits
+            return
+        try:
+            self._robot.SetDOFValues(values, dofs, CheckLimitsAction.CheckLimitsThrow)
+        except ArgumentError as error:
+            self._complain(f"cannot go there: {error.message}")
+
+    def _check_speed(self, dofs: Ints, values: Floats, elapsed: float) -> None:
+        robot = self._robot
+        moved = np.abs(robot.SubtractDOFValues(values, robot.GetDOFValues(dofs), dofs))
+        most = elapsed * robot.GetDOFVelocityLimits(dofs) + _SLACK
+        if elapsed > 0 and (moved > most).any():
+            first = int((moved > most).argmax())
+            joint, allowed = robot.GetJointFromDOFIndex(int(dofs[first])), f"{most[first]:.6g} in {elapsed:g} s"
+            self._complain(f"moves joint '{joint.GetName()}' by {moved[first]:.6g}; its speed limit is {allowed}")
+
+    def _complain(self, problem: str) -> None:
+        """Log a problem, or raise if the user asked for that."""
+        message = f"robot '{self._robot.GetName()}' {problem} (controller time {self._time:g} s)"
+        if self._throws_exceptions:
+            self.Reset()
+            raise RavemjError(message, ErrorCode.Assert)
+        if not self._has_problem:
+            _LOG.warning("%s", message)
+        self._has_problem = True
+
+    def _set_throw_exceptions(self, arguments: str) -> str:
+        self._throws_exceptions = checked_flag(arguments, "SetThrowExceptions")
+        return ""
+
+    def _set_check_collisions(self, arguments: str) -> str:
+        self._checks_collisions = checked_flag(arguments, "SetCheckCollisions")
+        return ""
+
+    _commands: ClassVar = {
+        "SetThrowExceptions": _set_throw_exceptions,
+        "SetCheckCollisions": _set_check_collisions,
+    }

@@ -4,9 +4,9 @@ import logging
 import os
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
-from ravemj.errors import ArgumentError, Diagnostic, send_warnings
+from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, send_warnings
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from ravemj.formats.openrave_xml import Reading
 
 Attributes = Mapping[str, str]
-"""OpenRAVE's options of reading; all are ignored."""
+"""What acts on the bodies of a file, by name: see ``Load``."""
+
+Text = str | bytes | os.PathLike[str]
+Argument = KinBody | Text | Attributes | None
 
 _LOG = logging.getLogger("ravemj")
 
@@ -24,31 +27,39 @@ _LOG = logging.getLogger("ravemj")
 class Loading(EnvironmentPart):
     """Reads models."""
 
-    def Load(self, filename: str | os.PathLike[str], atts: Attributes | None = None) -> bool:
+    def Load(self, filename: Text, atts: Attributes | None = None) -> bool:
         """Add the content of a model file to the environment.
 
         Args:
             filename: An OpenRAVE XML file with an environment, a robot or a kinbody, a COLLADA file (``.dae``,
                 ``.zae``), or a mesh file. It is looked for in the working folder, then in the folders of the
                 environment variable ``OPENRAVE_DATA``.
-            atts: OpenRAVE's options of reading; ignored.
+            atts: Attributes as of a ``<Robot>``: ``name`` in place of the body's, ``prefix`` before the names of its
+                parts, ``skipgeometry`` ("1": without shapes), ``scalegeometry`` ("2" or "2 3 4"; lengths times that,
+                but sizes of boxes, spheres and cylinders of XML as they are). They act where a robot, a kinbody, a
+                COLLADA file or a mesh is loaded, and not on what stands in an ``<Environment>``. What is left out is
+                a warning.
 
         Returns:
-            False where OpenRAVE's ``Load`` is False: the file is missing or broken, or refers to what is not there.
-            The reason is logged, and what could be read is in the environment all the same. ``ravemj.load`` raises
-            instead.
-
-        Raises:
-            openrave_exception: a body of that name is in the environment already (``BodyNameConflict``).
+            False where OpenRAVE's ``Load`` is False: the file is missing or broken, refers to what is not there, or
+            has a body of a name that is taken. The reason is logged, and what was read before is in the environment
+            all the same. ``ravemj.load`` raises instead. Bodies of COLLADA and of mesh files get other names where
+            theirs are taken.
 
         Example:
             >>> env = ravemj.Environment()
             >>> env.Load("models/env.xml")
             True
         """
-        del atts
-        checked_kind(filename, (str, os.PathLike), "Load: filename", "a path")
-        return self._take(_read_file(filename))
+        checked_kind(filename, (str, bytes, os.PathLike), "Load: filename", "a path")
+        reading = _read_file(filename, _checked_attributes(atts, "Load"))
+        try:
+            return self._take(reading)
+        except RavemjError as error:
+            if error.GetCode() != ErrorCode.BodyNameConflict.name:
+                raise
+            _LOG.error("%s: %s", os.fsdecode(filename), error)
+            return False
 
     LoadURI = Load
 
@@ -57,21 +68,21 @@ class Loading(EnvironmentPart):
 
         Args:
             data: An OpenRAVE XML or COLLADA document; files that it names are looked for in the working folder.
-            atts: OpenRAVE's options of reading; ignored.
+            atts: Attributes that act on its body; see ``Load``.
 
         Returns:
             False where the text is broken or refers to what is not there, as ``Load`` does.
 
         Raises:
-            openrave_exception: a body of that name is in the environment already (``BodyNameConflict``).
+            openrave_exception: a body of that name is in the environment already (``BodyNameConflict``); that of a
+                COLLADA document gets another name instead.
 
         Example:
             >>> env.LoadData('<KinBody name="a"><Body><Geom type="sphere"><radius>1</radius></Geom></Body></KinBody>')
             True
         """
-        del atts
         checked_kind(data, (str, bytes), "LoadData: data", "a text")
-        return self._take(_read_data(data))
+        return self._take(_read_data(data, _checked_attributes(atts, "LoadData")))
 
     def _take(self, reading: "Reading") -> bool:
         self._add(reading)
@@ -83,7 +94,8 @@ class Loading(EnvironmentPart):
         self._note(reading)
         with self._simulation.lock:
             for body in reading.scene.bodies:
-                self._simulation.add(body)
+                name = self._simulation.free_name(body.name) if reading.renames else body.name
+                self._simulation.add(replace(body, name=name))
             if reading.scene.view is not None:
                 self._simulation.view = reading.scene.view
             if reading.scene.gravity is not None:
@@ -97,10 +109,10 @@ class Loading(EnvironmentPart):
         self._files.update(dict.fromkeys(reading.files))
         self._found.update(dict.fromkeys(reading.diagnostics))
 
-    def ReadKinBodyURI(self, *arguments: "KinBody | str | Attributes | None") -> KinBody | None:
+    def ReadKinBodyURI(self, *arguments: Argument, **named: Argument) -> KinBody | None:
         """Read a body from a file without adding it: ``ReadKinBodyURI(filename[, atts])``.
 
-        Also ``ReadKinBodyURI(body, filename[, atts])``, which makes that body anew.
+        Also ``ReadKinBodyURI(body, filename[, atts])``, which makes that body anew. ``atts`` are as for ``Load``.
 
         Returns:
             The body, for ``env.Add``; None, with the reason in the log, if there is none in the file.
@@ -109,33 +121,33 @@ class Loading(EnvironmentPart):
             >>> mug = env.ReadKinBodyURI("mug.kinbody.xml")
             >>> env.Add(mug)
         """
-        body, filename = _read_arguments("ReadKinBodyURI", arguments)
-        return self._read(_read_file(filename), body, is_robot=False)
+        into, filename, given = _read_arguments("ReadKinBodyURI", arguments, named)
+        return self._read(_read_file(filename, given), into, is_robot=False)
 
     ReadKinBodyXMLFile = ReadKinBodyURI
 
-    def ReadKinBodyData(self, *arguments: "KinBody | str | Attributes | None") -> KinBody | None:
+    def ReadKinBodyData(self, *arguments: Argument, **named: Argument) -> KinBody | None:
         """Return a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
-        body, data = _read_arguments("ReadKinBodyData", arguments)
-        return self._read(_read_data(data), body, is_robot=False)
+        into, data, given = _read_arguments("ReadKinBodyData", arguments, named)
+        return self._read(_read_data(data, given), into, is_robot=False)
 
     ReadKinBodyXMLData = ReadKinBodyData
 
-    def ReadRobotURI(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
+    def ReadRobotURI(self, *arguments: Argument, **named: Argument) -> Robot | None:
         """Return a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
 
         A body that the file does not call a robot becomes one.
         """
-        body, filename = _read_arguments("ReadRobotURI", arguments)
-        robot = self._read(_read_file(filename), body, is_robot=True)
+        into, filename, given = _read_arguments("ReadRobotURI", arguments, named)
+        robot = self._read(_read_file(filename, given), into, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLFile = ReadRobotURI
 
-    def ReadRobotData(self, *arguments: "KinBody | str | Attributes | None") -> Robot | None:
+    def ReadRobotData(self, *arguments: Argument, **named: Argument) -> Robot | None:
         """Return a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
-        body, data = _read_arguments("ReadRobotData", arguments)
-        robot = self._read(_read_data(data), body, is_robot=True)
+        into, data, given = _read_arguments("ReadRobotData", arguments, named)
+        robot = self._read(_read_data(data, given), into, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLData = ReadRobotData
@@ -167,26 +179,45 @@ class Loading(EnvironmentPart):
 
 
 def _read_arguments(
-    caller: str, arguments: "tuple[KinBody | str | Attributes | None, ...]"
-) -> tuple[KinBody | None, str]:
-    """Return the body to fill, if one is given, and the file or text."""
-    given = [argument for argument in arguments if isinstance(argument, str | os.PathLike)]
-    into = arguments[0] if arguments and isinstance(arguments[0], KinBody) else None
-    if not given:
-        raise ArgumentError(f"{caller}: takes a text, optionally after a body, not {arguments!r}")
-    return into, os.fspath(given[0])
+    caller: str, arguments: tuple[Argument, ...], named: dict[str, Argument]
+) -> tuple[KinBody | None, str | bytes, Attributes]:
+    """Return the body to fill, if one is given, the file or text, and the attributes."""
+    given = [*arguments, *(named.pop(name) for name in ("filename", "data", "atts") if name in named)]
+    if named:
+        raise TypeError(f"{caller}: has no argument {', '.join(named)}")
+    into = given[0] if given and isinstance(given[0], KinBody) else None
+    text, atts, *rest = *(given if into is None else given[1:]), None, None
+    if len(rest) > 2 or not isinstance(text, str | bytes | os.PathLike):
+        raise ArgumentError(f"{caller}: takes a text, optionally after a body and before attributes, not {arguments!r}")
+    return into, os.fspath(text), _checked_attributes(atts, caller)
+
+
+def _checked_attributes(atts: object, caller: str) -> Attributes:
+    """Return attributes that a user gave, with their names in lower case.
+
+    Raises:
+        ArgumentError: they are no texts by names.
+    """
+    if atts is None:
+        return {}
+    given = cast("Mapping[object, object]", checked_kind(atts, Mapping, f"{caller}: atts", "a dict of texts"))
+    wanted = f"{caller}: atts: a name or value"
+    return {
+        checked_kind(name, str, wanted, "a text").lower(): checked_kind(value, str, wanted, "a text")
+        for name, value in given.items()
+    }
 
 
 # Readers are imported when they are asked for: that takes a while, and not every script reads a file.
 
 
-def _read_file(path: str | os.PathLike[str]) -> "Reading":
+def _read_file(path: Text, given: Attributes) -> "Reading":
     from ravemj.formats.readers import read_file  # noqa: PLC0415
 
-    return read_file(path)
+    return read_file(os.fsdecode(path), given)
 
 
-def _read_data(data: str | bytes) -> "Reading":
+def _read_data(data: str | bytes, given: Attributes) -> "Reading":
     from ravemj.formats.readers import read_data  # noqa: PLC0415
 
-    return read_data(data)
+    return read_data(data, given)

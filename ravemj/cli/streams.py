@@ -1,0 +1,50 @@
+"""The standard streams of a command, which may be closed, full, or of few characters."""
+
+import codecs
+import io
+import os
+import sys
+from contextlib import suppress
+from typing import cast
+
+_PLAIN = {"…": "...", "─": "-", "│": "|", "├": "|", "└": "`", "╴": "-", "←": "<-", "²": "^2", "³": "^3", "±": "+-"}
+_CHOSEN = {"replace", "ignore", "xmlcharrefreplace", "namereplace"}
+"""Error handlers that never fail, so that they stay where users ask for them."""
+
+
+def prepare_streams() -> None:
+    """Make the standard streams of this process ready for whatever is printed.
+
+    What the encoding of a stream does not have is written in ASCII. A standard output that is closed fails when it is
+    written to, like a full one. What cannot be told on standard error is lost.
+    """
+    codecs.register_error("ravemj", _in_ascii)
+    # In this order they get the numbers 0, 1 and 2, where no other file would be safe from what C libraries print.
+    for name, flags, mode in (("stdin", os.O_RDONLY, "r"), ("stdout", os.O_RDONLY, "w"), ("stderr", os.O_WRONLY, "w")):
+        if getattr(sys, name) is None:
+            stream = os.fdopen(os.open(os.devnull, flags), mode)
+            setattr(sys, name, stream)
+            setattr(sys, f"__{name}__", stream)
+    if sys.stdout.errors not in _CHOSEN:
+        cast(io.TextIOWrapper, sys.stdout).reconfigure(errors="ravemj")
+    sys.stderr = _Messages(sys.stderr.buffer, sys.stderr.encoding, "ravemj", line_buffering=True)
+
+
+def _in_ascii(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    character = error.object[error.start]
+    return _PLAIN.get(character) or ascii(character)[1:-1], error.start + 1
+
+
+class _Messages(io.TextIOWrapper):
+    """A stream that never fails: what cannot be told is lost, and the command goes on."""
+
+    def write(self, text: str) -> int:
+        with suppress(OSError):
+            super().write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        with suppress(OSError):
+            super().flush()

@@ -1,0 +1,99 @@
+"""Files and pickles of Python 2, which knew no difference between text and bytes."""
+
+# Pickles hold anything.
+# pyright: reportUnknownMemberType=false
+
+import os
+import pickle
+from collections.abc import Iterable
+from typing import Any, Self
+
+_ENCODING = ("utf-8", "surrogateescape")  # bytes that are no UTF-8 come out of text as they went in
+
+
+def as_bytes(text: Any) -> Any:  # noqa: ANN401 - what scripts write
+    """Return the bytes of a text; anything else stays."""
+    return text.encode(*_ENCODING) if isinstance(text, str) else text
+
+
+class File:
+    r"""What ``open`` and ``file`` give: it takes text and bytes in every mode, since both are ``str`` in Python 2.
+
+    Lines are text in every mode, as ``csv`` wants them. ``read`` gives text too, but bytes from a binary file: those
+    who ask so, want to unpack them.
+
+    Args:
+        name: Path.
+        mode: As in Python 2; with ``"U"`` each line ends with ``"\n"``.
+        buffering: 0 for none, 1 for lines, else a size in bytes.
+    """
+
+    encoding = newlines = None
+
+    def __init__(self, name: str, mode: str = "r", buffering: int = -1) -> None:
+        self.name, self.mode = name, mode
+        letters = "".join(letter for letter in mode if letter not in "btU") or "r"
+        self.buffer: Any = open(name, f"{letters}b", 0 if buffering == 1 else buffering)  # noqa: SIM115 - scripts close it
+        self._is_binary = "b" in mode
+        self._is_universal = "U" in mode or (os.linesep != "\n" and not self._is_binary)
+
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - close, flush, seek, fileno and so on
+        """Do what has nothing to do with text as Python 3 does it."""
+        return getattr(self.buffer, name)
+
+    def _text(self, data: bytes) -> str:
+        text = data.decode(*_ENCODING)
+        return text.replace("\r\n", "\n") if self._is_universal else text
+
+    def read(self, size: int = -1) -> str | bytes:
+        """Return what follows, at most a number of bytes."""
+        data = self.buffer.read(size)
+        return data if self._is_binary else self._text(data)
+
+    def readline(self, size: int = -1) -> str:
+        """Return the next line."""
+        return self._text(self.buffer.readline(size))
+
+    def readlines(self, size: int = -1) -> list[str]:
+        """Return the lines that follow, at least a number of bytes."""
+        return [self._text(line) for line in self.buffer.readlines(size)]
+
+    def __iter__(self) -> Self:
+        return self
+
+    xreadlines = __iter__
+
+    def __next__(self) -> str:
+        return self._text(next(self.buffer))
+
+    def write(self, text: object) -> None:
+        """Write text or bytes."""
+        self.buffer.write(as_bytes(text))
+
+    def writelines(self, lines: Iterable[object]) -> None:
+        """Write one after the other."""
+        for line in lines:
+            self.write(line)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.buffer.close()
+
+
+class Unpickler(pickle.Unpickler):
+    """Reads from all files, and what Python 2 wrote."""
+
+    def __init__(self, file: Any) -> None:  # noqa: ANN401 - whatever can be read
+        super().__init__(getattr(file, "buffer", file), encoding="latin-1")  # as numpy's arrays ask for
+
+
+def load(file: Any) -> Any:  # noqa: ANN401 - whatever was written
+    """Do what ``pickle.load`` does."""
+    return Unpickler(file).load()
+
+
+def loads(data: str | bytes) -> Any:  # noqa: ANN401 - whatever was written
+    """Do what ``pickle.loads`` does."""
+    return pickle.loads(as_bytes(data), encoding="latin-1")

@@ -1,0 +1,129 @@
+"""Scripts and modules written for Python 2, found where scripts import them, translated and run."""
+
+import functools
+import importlib.util
+import os
+import site
+import sys
+import sysconfig
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from pathlib import Path
+from types import CodeType, ModuleType
+from typing import Any
+
+from ravemj.compat.python2.builtin import NAMES
+from ravemj.compat.python2.translation import translate
+
+_ENVIRONMENT = [
+    os.path.realpath(folder)
+    for folder in (
+        *(sysconfig.get_path(name) for name in ("purelib", "platlib", "stdlib")),
+        *site.getsitepackages(),
+        site.getusersitepackages(),
+        os.path.dirname(os.path.dirname(__file__)),
+    )
+]
+"""Folders of packages that are installed, which are never translated, and of ravemj."""
+
+
+def execute(source: bytes, path: str, names: dict[str, Any]) -> None:
+    """Run a script or module.
+
+    Args:
+        source: Its bytes, in Python 2, or in what only Python 3 understands.
+        path: Where it is, for tracebacks.
+        names: Its namespace.
+
+    Raises:
+        SyntaxError: it is neither; file and line are those of the original.
+    """
+    try:
+        code = translate(importlib.util.decode_source(source), path)
+        names.update(NAMES)
+    except SyntaxError:
+        unchanged = _compile(source, path)
+        if unchanged is None:
+            raise
+        code = unchanged
+    exec(code, names)
+
+
+def is_python2(path: str) -> bool:
+    """Return whether a file is Python 2, and not Python 3."""
+    try:
+        with open(path, "rb") as file:
+            source = file.read()
+        if _compile(source, path) is not None:
+            return False
+        translate(importlib.util.decode_source(source), path)
+    except (OSError, SyntaxError, ValueError):
+        return False
+    return True
+
+
+def _compile(source: bytes, path: str) -> CodeType | None:
+    """Compile a file for Python 3, where it is."""
+    try:
+        return compile(source, path, "exec", dont_inherit=True)
+    except (SyntaxError, ValueError):
+        return None
+
+
+def load_source(name: str, path: str) -> ModuleType:
+    """Do what ``imp.load_source`` did: import a file under a name."""
+    spec = importlib.util.spec_from_file_location(name, path, loader=_Loader(name, path))
+    assert spec is not None
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    _Loader(name, path).exec_module(module)
+    return module
+
+
+def install_finder(folder: str) -> None:
+    """Translate from now on modules in a folder and in those that are added to ``sys.path``, and all that need it."""
+    here = next(place for place, finder in enumerate(sys.meta_path) if finder is PathFinder)
+    sys.meta_path.insert(here, _Finder(folder))  # pyright: ignore[reportArgumentType] - has what finders need
+
+
+class _Finder:
+    """Finds what Python's own finder does, and has it translated."""
+
+    def __init__(self, folder: str) -> None:
+        self._folder = os.path.realpath(folder)
+        self._known = {os.path.realpath(path) for path in sys.path} - {self._folder}
+
+    def find_spec(self, fullname: str, path: Any = None, target: ModuleType | None = None) -> ModuleSpec | None:  # noqa: ANN401 - as Python passes it
+        spec = PathFinder.find_spec(fullname, path, target)
+        if spec is not None and type(spec.loader) is SourceFileLoader and self._is_old(spec.loader.path):
+            spec.loader = _Loader(fullname, spec.loader.path)
+        return spec
+
+    def _is_old(self, path: str) -> bool:
+        """Return whether a module is Python 2: with the script, or since Python 3 does not read it, or its package."""
+        path = os.path.realpath(path)
+        if any(_is_in(path, folder) for folder in _ENVIRONMENT):
+            return False
+        folders = [folder for folder in map(os.path.realpath, sys.path) if _is_in(path, folder)]
+        if folders and max(folders, key=len) not in self._known:
+            return True
+        folder = Path(path).parent
+        return not (_all_compile(folder) if (folder / "__init__.py").exists() else _compiles(Path(path)))
+
+
+@functools.cache
+def _all_compile(folder: Path) -> bool:
+    return all(_compiles(path) for path in folder.glob("*.py"))
+
+
+def _compiles(path: Path) -> bool:
+    return _compile(path.read_bytes(), str(path)) is not None
+
+
+class _Loader(SourceFileLoader):
+    """Translates a module; keeps no byte code, which Python 3 would take for its own."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        execute(self.get_data(self.path), self.path, vars(module))
+
+
+def _is_in(path: str, folder: str) -> bool:
+    return path.startswith(os.path.join(folder, ""))

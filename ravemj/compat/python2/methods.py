@@ -1,0 +1,56 @@
+"""Methods of Python 2 and NumPy 1 that are gone, or that take or return something else."""
+
+# What old scripts call has no types.
+# pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownLambdaType=false, reportGeneralTypeIssues=false
+
+import functools
+from collections.abc import Callable, ItemsView, Iterable, KeysView, ValuesView
+from typing import Any
+
+import numpy as np
+
+
+def sort(iterable: Iterable[Any], cmp: Any = None, key: Any = None, reverse: bool = False) -> list[Any]:  # noqa: ANN401
+    """Do what ``sorted`` did."""
+    order = cmp and functools.cmp_to_key(cmp)
+    both = (lambda item: order(key(item))) if order and key else order or key
+    return sorted(iterable, key=both, reverse=reverse)
+
+
+def _sort(values: list[Any], *args: Any, **options: Any) -> None:  # noqa: ANN401 - as ``sort`` takes them
+    values[:] = sort(values, *args, **options)
+
+
+_GONE: dict[str, Callable[..., Any]] = {
+    "decode": lambda text, *_: text,
+    "getchildren": list,
+    "getiterator": lambda element, *args: element.iter(*args),
+    "has_key": lambda values, key: key in values,
+    "isAlive": lambda thread: thread.is_alive(),
+    "itemset": lambda array, *args: array.__setitem__(args[0] if len(args) > 1 else ..., args[-1]),
+    "iteritems": lambda values: iter(values.items()),
+    "iterkeys": lambda values: iter(values.keys()),
+    "itervalues": lambda values: iter(values.values()),
+    "next": next,
+    "ptp": np.ptp,
+    "readfp": lambda parser, *args: parser.read_file(*args),
+    "tostring": lambda array, *args: array.tobytes(*args),
+    "viewitems": lambda values: values.items(),
+    "viewkeys": lambda values: values.keys(),
+    "viewvalues": lambda values: values.values(),
+}
+"""What is done where an object has no such method."""
+_LISTED = {"items", "keys", "values"}
+NAMES = {*_GONE, *_LISTED, "sort"}
+"""Those that scripts call by ``call``."""
+
+
+def call(owner: Any, name: str, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever methods take
+    """Do what ``owner.name(...)`` did."""
+    if name == "sort" and isinstance(owner, list):
+        return _sort(owner, *args, **options)
+    if name in _GONE and not hasattr(owner, name):
+        return _GONE[name](owner, *args, **options)
+    result = getattr(owner, name)(*args, **options)
+    return list(result) if name in _LISTED and isinstance(result, KeysView | ValuesView | ItemsView) else result

@@ -1,0 +1,101 @@
+"""Imports as Python 2 has them, of modules with the names that they had.
+
+Scripts see modules through views; everything else in the process sees these modules as they are.
+"""
+
+import __future__
+
+import builtins
+import functools
+import importlib
+import importlib.util
+import pkgutil
+import sys
+from collections.abc import Mapping, Sequence
+from types import ModuleType
+from typing import Any
+
+from ravemj.compat.python2 import library, numpy1
+
+_NAMES = {**library.NAMES, "numpy": numpy1.NAMES, "ravemj.compat.openravepy": {}}  # the last one has numpy in it
+
+
+class View(ModuleType):
+    """A module, with names that it has no more; modules in it are views, too.
+
+    Args:
+        module: The module; what is set here is set there.
+        names: Those names; a text says where the value is now.
+    """
+
+    def __init__(self, module: ModuleType, names: Mapping[str, object]) -> None:
+        super().__init__(module.__name__)
+        public: Sequence[str] = getattr(module, "__all__", [name for name in dir(module) if name[0] != "_"])
+        places = {name: place for name, place in names.items() if isinstance(place, str)}
+        values = {name: value for name, value in names.items() if name not in places}
+        for name in ("__doc__", "__loader__", "__package__", "__spec__"):
+            del vars(self)[name]
+        vars(self).update({"__all__": [*public, *names], "_module_": module, "_places_": places, **values})
+
+    def __getattr__(self, name: str) -> object:
+        place = vars(self)["_places_"].get(name)
+        value = pkgutil.resolve_name(place) if place else getattr(vars(self)["_module_"], name)
+        return view(value) if isinstance(value, ModuleType) else value
+
+    def __setattr__(self, name: str, value: object) -> None:
+        setattr(vars(self)["_module_"], name, value)
+
+    def __dir__(self) -> list[str]:
+        return sorted({*dir(vars(self)["_module_"]), *vars(self)["__all__"]})
+
+
+@functools.cache
+def view(module: ModuleType) -> ModuleType:
+    """Return what scripts get for a module."""
+    names = _NAMES.get(module.__name__)
+    return module if names is None else View(module, names)
+
+
+def import_(
+    name: str,
+    globals: Mapping[str, Any] | None = None,
+    locals: Mapping[str, Any] | None = None,
+    fromlist: Sequence[str] | None = None,
+    level: int = -1,
+) -> ModuleType:
+    """Import a module for a script: of its own package first, and by names that modules had."""
+    importer = globals or {}
+    if level > 0 or _is_beside(name, importer):
+        return view(builtins.__import__(name, globals, locals, fromlist or (), max(level, 1)))
+    if name == "__builtin__":
+        return importer["__builtins__"]
+    if (name in library.RENAMED or name in _NAMES) and not _exists(name):
+        return _older(name, bool(fromlist))
+    return view(builtins.__import__(name, globals, locals, fromlist or ()))
+
+
+def _is_beside(name: str, importer: Mapping[str, Any]) -> bool:
+    """Return whether a plain import means a module in the package of the one that imports."""
+    package = importer.get("__package__")
+    if not package or importer.get("absolute_import") is __future__.absolute_import:
+        return False
+    return _exists(f"{package}.{name.partition('.')[0]}")
+
+
+def _exists(name: str) -> bool:
+    try:
+        return name in sys.modules or importlib.util.find_spec(name) is not None
+    except ModuleNotFoundError:  # a package that it would be in
+        return False
+
+
+def _older(name: str, is_last: bool) -> ModuleType:
+    """Return what ``import name`` binds: the module that is last in its dotted name, or the first one."""
+    module = importlib.import_module(library.RENAMED[name]) if name in library.RENAMED else _empty(name)
+    first, _, rest = name.partition(".")
+    return view(module if is_last or not rest else importlib.import_module(first))
+
+
+@functools.cache
+def _empty(name: str) -> ModuleType:
+    return ModuleType(name)

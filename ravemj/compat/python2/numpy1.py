@@ -1,0 +1,120 @@
+"""What NumPy 1 had and NumPy 2 has not: names, types of results, and numbers out of arrays."""
+
+# What old scripts pass has no types.
+# pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownParameterType=false
+
+import builtins
+import functools
+import re
+from collections.abc import Callable, Iterable
+from types import GeneratorType
+from typing import Any
+
+import numpy as np
+
+from ravemj.compat.python2.files import as_bytes
+
+_RENAMED = """
+alltrue=all bool8=bool_ bytes0=bytes_ cfloat=complex128 clongfloat=clongdouble complex_=complex128 cumproduct=cumprod
+float_=float64 Inf=inf infty=inf Infinity=inf int0=intp issubsctype=issubdtype longcomplex=clongdouble
+longfloat=longdouble mat=asmatrix NAN=nan NaN=nan object0=object_ PINF=inf product=prod rank=ndim round_=round
+row_stack=vstack singlecomplex=complex64 sometrue=any str0=str_ string0=str_ string_=str_ trapz=trapezoid
+typeDict=sctypeDict uint0=uintp unicode0=str_ unicode_=str_ void0=void
+"""
+_MOVED = {
+    np.char: "chararray compare_chararrays",
+    np.exceptions: "AxisError ComplexWarning ModuleDeprecationWarning TooHardError VisibleDeprecationWarning",
+    np.rec: "format_parser",
+}
+_ADDED = """
+abs acos acosh asin asinh astype atan atan2 atanh bitwise_count bitwise_invert bitwise_left_shift
+bitwise_right_shift bool concat core cumulative_prod cumulative_sum divmod dtypes exceptions f2py isdtype lib long
+matrix_transpose matvec max min permute_dims polynomial pow round strings test testing trapezoid typing ulong
+unique_all unique_counts unique_inverse unique_values unstack vecdot vecmat
+"""
+"""What the star of later versions gives as well; it would hide what scripts have from Python and from ``math``."""
+
+_WHERE_NEEDED = None if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else False
+
+
+def item(a: Any) -> Any:  # noqa: ANN401 - whatever scripts take for a number
+    """Return the number in an array of one; anything else stays."""
+    return a.item() if isinstance(a, np.ndarray) and a.size == 1 else a
+
+
+def _alen(a: Any) -> int:  # noqa: ANN401 - whatever makes an array
+    return len(np.atleast_1d(a))
+
+
+def _array(object: Any, dtype: Any = None, copy: bool = True, *args: Any, **options: Any) -> Any:  # noqa: ANN401
+    """Copy where it must be with ``copy=False`` too; lists of unlike lengths are objects."""
+    may_copy: Any = True if copy else _WHERE_NEEDED
+    try:
+        return np.array(object, dtype, *args, copy=may_copy, **options)
+    except ValueError as error:
+        if dtype is not None or "inhomogeneous" not in str(error):
+            raise
+    return np.array(object, np.object_, *args, copy=may_copy, **options)
+
+
+def _asfarray(a: Any, dtype: Any = np.float64) -> Any:  # noqa: ANN401 - whatever makes an array
+    return np.asarray(a, dtype if np.issubdtype(dtype, np.inexact) else np.float64)
+
+
+def _asscalar(a: Any) -> Any:  # noqa: ANN401 - an array of any type
+    return a.item()
+
+
+def _divide(x1: Any, x2: Any, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes arrays
+    is_whole = all(np.asarray(x).dtype.kind in "biu" for x in (x1, x2))
+    return (np.floor_divide if is_whole else np.divide)(x1, x2, *args, **options)
+
+
+def _find_common_type(array_types: Iterable[Any], scalar_types: Iterable[Any]) -> Any:  # noqa: ANN401
+    return np.result_type(*array_types, *(np.dtype(scalar).type(0).item() for scalar in scalar_types))
+
+
+def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that gives floats for integers, too."""
+
+    @functools.wraps(function)
+    def call(x: Any, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes an array
+        x = np.asanyarray(x)
+        return function(x.astype(float) if x.dtype.kind in "biu" else x, *args, **options)
+
+    return call
+
+
+def _fromstring(string: Any, dtype: Any = float, count: int = -1, sep: str = "") -> Any:  # noqa: ANN401
+    return np.fromstring(string, dtype, count, sep=sep) if sep else np.frombuffer(as_bytes(string), dtype, count).copy()
+
+
+def _in1d(ar1: Any, ar2: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes arrays
+    return np.isin(np.ravel(ar1), ar2, **options)
+
+
+def _msort(a: Any) -> Any:  # noqa: ANN401 - whatever makes an array
+    return np.sort(a, axis=0)
+
+
+def _sum(a: Any, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes an array
+    return builtins.sum(a) if isinstance(a, GeneratorType) else np.sum(a, *args, **options)
+
+
+def _names() -> dict[str, object]:
+    """Return what differs from numpy's own names, with the names of the star."""
+    renamed: dict[str, str] = dict(re.findall(r"(\S+)=(\S+)", _RENAMED))
+    names: dict[str, object] = {old: getattr(np, new) for old, new in renamed.items() if hasattr(np, new)}
+    names |= {name: getattr(module, name) for module, text in _MOVED.items() for name in text.split()}
+    names |= {"math": "math", "NINF": -np.inf, "NZERO": -0.0, "PZERO": 0.0}
+    own = (_alen, _array, _asfarray, _asscalar, _divide, _find_common_type, _fromstring, _in1d, _msort, _sum)
+    names |= {function.__name__[1:]: function for function in own}
+    names |= {function.__name__: _as_floats(function) for function in (np.ceil, np.fix, np.floor, np.trunc)}
+    star = ({*np.__all__} - {*_ADDED.split()}) | {*names}
+    types = {kind.__name__: kind for kind in (bool, complex, float, int, object, str)}
+    return {**names, **types, "long": int, "unicode": str, "__all__": sorted(star)}
+
+
+NAMES = _names()
+"""What a script finds in ``numpy`` first."""

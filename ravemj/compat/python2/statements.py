@@ -1,0 +1,111 @@
+"""Statements and expressions that Python 3 reads too, but takes for something else."""
+
+import ast
+
+from ravemj.compat.python2 import methods
+
+METHOD, MESSAGE, CODE, ITEM = "__method__", "__message__", "__code__", "__item__"
+"""Names of what calls methods, reads ``error.message``, compiles for ``exec`` and ``eval``, reads numbers."""
+_ERROR = "__error__"
+_ORDER = {"__lt__": "<", "__le__": "<=", "__gt__": ">", "__ge__": ">=", "__eq__": "==", "__ne__": "!="}
+
+
+class Statements(ast.NodeTransformer):
+    """Gives a tree the meaning that it had in Python 2; division is left to ``Division``.
+
+    Args:
+        targets: What was written for parameters and exceptions, where a name stands in its place.
+    """
+
+    def __init__(self, targets: dict[str, str]) -> None:
+        self._targets = targets
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
+        """Unpack tuples among the parameters first."""
+        self.generic_visit(node)
+        start = 0 if ast.get_docstring(node, clean=False) is None else 1
+        node.body[start:start] = [_at(node, f"{self._targets[name]} = {name}") for name in self._names(node.args)]
+        return node
+
+    def visit_Lambda(self, node: ast.Lambda) -> ast.AST:
+        """Unpack tuples: ``lambda (a, b): c`` becomes ``lambda t: [c for ((a, b),) in [(t,)]][0]``."""
+        self.generic_visit(node)
+        names = self._names(node.args)
+        if names:
+            targets = "".join(f"{self._targets[name]}, " for name in names)
+            statement = _at(node, f"[None for ({targets}) in [({', '.join(names)},)]][0]")
+            assert isinstance(statement, ast.Expr)
+            assert isinstance(statement.value, ast.Subscript)
+            assert isinstance(statement.value.value, ast.ListComp)
+            statement.value.value.elt = node.body
+            node.body = statement.value
+        return node
+
+    def _names(self, arguments: ast.arguments) -> list[str]:
+        return [argument.arg for argument in arguments.args if argument.arg in self._targets]
+
+    def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
+        """Iterate by ``next``, order by ``__cmp__``, or by identity; what is equal by ``__eq__`` has a hash."""
+        self.generic_visit(node)
+        own = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
+        is_plain = all(isinstance(base, ast.Name) and base.id == "object" for base in node.bases)
+        added: dict[str, str] = {}
+        if "next" in own:
+            added["__next__"] = "__next__ = next"
+        if "__cmp__" in own:
+            for name, sign in _ORDER.items():
+                added[name] = f"def {name}(self, other): return self.__cmp__(other) {sign} 0"
+        elif is_plain and own.isdisjoint(_ORDER):
+            added["__lt__"] = "def __lt__(self, other): return id(self) < id(other)"
+        if is_plain and ("__eq__" in own or "__cmp__" in own):
+            added["__hash__"] = "__hash__ = object.__hash__"
+        node.body += [_at(node, text) for name, text in added.items() if name not in own]
+        return node
+
+    def visit_ExceptHandler(self, node: ast.ExceptHandler) -> ast.AST:
+        """Keep the exception after the end of ``except E, name:``, where Python 3 deletes the name; unpack it."""
+        self.generic_visit(node)
+        if node.name is not None:
+            target = self._targets.get(node.name, node.name)
+            is_tuple = isinstance(ast.parse(target, mode="eval").body, ast.Tuple | ast.List)
+            node.body.insert(0, _at(node, f"{target} = {_ERROR}{'.args' if is_tuple else ''}"))
+            node.name = _ERROR
+        return node
+
+    def visit_Compare(self, node: ast.Compare) -> ast.AST:
+        """Take ``array == None`` for one question, as NumPy did before 1.13, and not for one on each element."""
+        self.generic_visit(node)
+        operands = [node.left, *node.comparators]
+        for place, operator in enumerate(node.ops):
+            if any(isinstance(side, ast.Constant) and side.value is None for side in operands[place : place + 2]):
+                is_same: dict[type[ast.cmpop], ast.cmpop] = {ast.Eq: ast.Is(), ast.NotEq: ast.IsNot()}
+                node.ops[place] = is_same.get(type(operator), operator)
+        return node
+
+    def visit_Call(self, node: ast.Call) -> ast.AST:
+        """Call what does the same as methods that are gone; give ``exec``, ``eval`` and ``float`` what they want."""
+        self.generic_visit(node)
+        if isinstance(node.func, ast.Attribute) and node.func.attr in methods.NAMES:
+            node.args[:0] = [node.func.value, ast.Constant(node.func.attr)]
+            node.func = ast.Name(METHOD, ast.Load())
+        elif isinstance(node.func, ast.Name) and node.args:
+            if node.func.id in {"exec", "eval"}:
+                node.args[0] = ast.Call(ast.Name(CODE, ast.Load()), [node.args[0], ast.Constant(node.func.id)], [])
+            elif node.func.id in {"float", "int", "long"}:
+                node.args[0] = ast.Call(ast.Name(ITEM, ast.Load()), [node.args[0]], [])
+        return node
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        """Read the ``message`` of exceptions."""
+        self.generic_visit(node)
+        if node.attr == "message" and isinstance(node.ctx, ast.Load):
+            return ast.Call(ast.Name(MESSAGE, ast.Load()), [node.value], [])
+        return node
+
+
+def _at(place: ast.stmt | ast.expr | ast.excepthandler, text: str) -> ast.stmt:
+    """Return the tree of a statement, as if it stood at a place."""
+    statement = ast.parse(text).body[0]
+    for node in ast.walk(statement):
+        ast.copy_location(node, place)
+    return statement

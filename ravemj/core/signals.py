@@ -1,0 +1,134 @@
+"""How a command ends on Ctrl-C (SIGINT), SIGTERM and SIGHUP: with the exit code 128 + the signal's number.
+
+It ends at once, whatever it imports, loads or draws, after the functions of ``on_signal``. An exception out of nowhere,
+which is Python's way, is not safe there: C code makes other errors of it, and threads may wait for ever. It is raised
+only where a command waits for its user, in ``signals_raised``.
+
+``ravemj/__init__.py`` imports this before all else, so that it holds from the first line on; therefore this imports
+next to nothing. Programs that import ravemj keep the handlers that they have.
+"""
+
+import os
+import sys
+
+
+def _is_command() -> bool:
+    """Return whether this process is ``ravemj …`` or ``python -m ravemj …``, before anything of that has run."""
+    program = sys.argv[0] if sys.argv else ""
+    if program == "-m":  # until Python has found the module to run, for which it imports the package
+        return sys.orig_argv[-len(sys.argv)] in ("ravemj", "-mravemj")
+    return os.path.basename(program) in ("ravemj", "ravemj.exe")
+
+
+_IS_COMMAND = _is_command()
+
+try:
+    import signal
+    from collections.abc import Callable, Generator
+    from contextlib import contextmanager
+except KeyboardInterrupt:
+    if _IS_COMMAND:
+        os._exit(130)
+    raise
+
+_functions: list[Callable[[], object]] = []
+_delays: list[object] = []
+_delayed: list[int] = []
+_raises = False
+
+
+class Terminated(SystemExit):
+    """SIGTERM or SIGHUP, where signals are raised."""
+
+    def __init__(self, number: int) -> None:
+        """Make one of the number of the signal."""
+        super().__init__(128 + number)
+        self.number = number
+
+
+@contextmanager
+def on_signal(function: Callable[[], object]) -> Generator[None]:
+    """Have a function called when a signal ends the process within the block."""
+    _functions.append(function)
+    try:
+        yield
+    finally:
+        _functions.remove(function)
+
+
+@contextmanager
+def signals_delayed() -> Generator[None]:
+    """Have signals wait for the end of the block, in whichever thread that runs."""
+    block = object()
+    _delays.append(block)
+    try:
+        yield
+    finally:
+        _delays.remove(block)
+        if _delayed:
+            signal.raise_signal(_delayed[0])
+
+
+@contextmanager
+def signals_raised() -> Generator[None]:
+    """Have a signal raise ``KeyboardInterrupt`` or ``Terminated`` in the block; a second one ends the process."""
+    global _raises  # noqa: PLW0603 - signals are the process's
+    _raises = True
+    try:
+        yield
+    finally:
+        _raises = False
+
+
+def heed_signals() -> None:
+    """Let signals end this process if it is a command, except those that it was started to ignore."""
+    for number in _signals() if _IS_COMMAND else ():
+        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
+            signal.signal(number, _end)
+
+
+def leave_interrupts_to_python() -> None:
+    """Let Ctrl-C raise ``KeyboardInterrupt`` anywhere, as scripts and people at a prompt expect."""
+    if signal.getsignal(signal.SIGINT) is _end:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def message(number: int) -> str:
+    """Return what is said when a signal has ended a command."""
+    return "ravemj: interrupted" if number == signal.SIGINT else f"ravemj: ended by {signal.Signals(number).name}"
+
+
+def _signals() -> list[signal.Signals]:
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    return [getattr(signal, name) for name in names if hasattr(signal, name)]  # Windows has no SIGHUP
+
+
+def _end(number: int, frame: object) -> None:
+    global _raises  # noqa: PLW0603
+    del frame
+    if _delays:
+        _delayed.append(number)
+        if _delays:  # still, for they may end in other threads
+            return
+    if _raises:
+        _raises = False
+        raise KeyboardInterrupt if number == signal.SIGINT else Terminated(number)
+    try:
+        for function in reversed(_functions):
+            function()
+        if sys.__stderr__ is not None:  # past its buffer, which this may have interrupted
+            os.write(sys.__stderr__.fileno(), f"{message(number)}\n".encode())
+    finally:
+        os._exit(128 + number)
+
+
+def _leave_children_to_python() -> None:
+    """Let signals end a forked process, which scripts may start, as in any Python program."""
+    for number in _signals():
+        if signal.getsignal(number) is _end:
+            signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_leave_children_to_python)
+heed_signals()

@@ -1,0 +1,70 @@
+"""What a caller gives with a file: attributes like those of the element of a body.
+
+They act on top of what the file says: a name replaces its name, a prefix goes before its names, factors of lengths
+multiply. OpenRAVE looks at them where the root of the file is a body, and not below an ``<Environment>``.
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
+
+from ravemj.core.transforms import Vec3
+from ravemj.errors import Source
+from ravemj.formats.openrave_xml.context import Context, did_you_mean
+from ravemj.formats.openrave_xml.prefix import Marks, add_prefix
+from ravemj.formats.openrave_xml.tree import Element
+from ravemj.formats.openrave_xml.values import hadamard, is_true, leading_numbers, scale_attribute
+from ravemj.model.builder import BodyBuilder
+
+Attributes = Mapping[str, str]
+"""Attributes by their names in lower case."""
+
+NOTHING: Attributes = MappingProxyType({})
+KNOWN = {"name", "prefix", "scalegeometry", "skipgeometry"}
+
+
+def check_given(given: Attributes, source: Source, context: Context, known: Collection[str] = KNOWN) -> None:
+    """Report what is left out of the attributes that a caller gave."""
+    for name in given:
+        if name in KNOWN and name not in known:
+            message = f"the attribute '{name}' that was given for the file is left out: its root is no body"
+            context.diagnostics.warn("ignored-attribute", message, source, "write it in the <Robot> or <KinBody>")
+        elif name not in known:
+            message = f"nothing reads the attribute '{name}' that was given for the file"
+            context.diagnostics.warn("unknown-attribute", message, source, did_you_mean(name, known))
+    factors = leading_numbers(given.get("scalegeometry", "1"))
+    if factors.rest or len(factors.values) not in {1, 3}:
+        message = f"scalegeometry was given as '{given['scalegeometry']}', and should be one number or three"
+        context.diagnostics.warn("bad-number", message, source)
+
+
+def with_given(root: Element, given: Attributes, context: Context) -> Element:
+    """Return the root element of an XML file with the attributes that a caller gave."""
+    if not given:
+        return root
+    is_body = root.tag in {"robot", "kinbody"}
+    check_given(given, root.source, context, KNOWN if is_body else ())
+    if not is_body:
+        return root
+    attributes = root.attributes | {name: text for name, text in given.items() if name in KNOWN and text}
+    attributes["prefix"] = given.get("prefix", "") + root.attributes.get("prefix", "")
+    if given.get("scalegeometry"):
+        factors = hadamard(given_scale(given), scale_attribute(root))
+        attributes["scalegeometry"] = " ".join(map(repr, factors))
+    return replace(root, attributes=attributes)
+
+
+def given_scale(given: Attributes) -> Vec3:
+    """Return the factors of lengths along x, y and z."""
+    return scale_attribute(Element("", "", dict(given), Source("")))
+
+
+def give(given: Attributes, bodies: Sequence[BodyBuilder]) -> None:
+    """Name the first of some bodies, prefix and strip all of them, as a caller asked; the scale is in them already."""
+    for body in bodies:
+        add_prefix(given.get("prefix", ""), body, Marks(), whole=True)
+        if is_true(given.get("skipgeometry", "")):
+            for link in body.links:
+                link.geometries = []
+    if bodies and given.get("name"):
+        bodies[0].name = given["name"]
