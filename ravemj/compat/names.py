@@ -8,6 +8,7 @@ import importlib
 import importlib.util
 import sys
 from collections.abc import Sequence
+from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 
@@ -17,7 +18,7 @@ PUBLIC = ("databases", "interfaces", "misc", "planningutils")
 ONLY_OPENRAVEPY = ("examples", "metaclass", "openravepy_int")
 
 
-class Renamed:
+class Renamed(MetaPathFinder, Loader):
     """A finder and loader of Python's import system: gives modules of ravemj for other names.
 
     Args:
@@ -28,7 +29,7 @@ class Renamed:
         self.root = root
 
     def find_spec(
-        self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         """Return a spec for a name that stands for another one, else None."""
         del path, target
@@ -36,9 +37,6 @@ class Renamed:
         if root != self.root or (real := real_name(root, rest)) == fullname or not _exists(real):
             return None
         return ModuleSpec(fullname, self)
-
-    def create_module(self, spec: ModuleSpec) -> None:
-        """Leave it to Python to make an empty module, which ``exec_module`` replaces."""
 
     def exec_module(self, module: ModuleType) -> None:
         """Put ravemj's module in place of the empty one."""

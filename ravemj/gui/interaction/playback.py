@@ -4,7 +4,7 @@ import math
 
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError
-from ravemj.trajectories.courses import Course
+from ravemj.trajectories.following import Course
 
 STEP = 1 / 30
 """How far ``step`` goes [s]: a frame of a video."""

@@ -7,8 +7,8 @@ from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import Playback
-from ravemj.gui.viewers.selecting import Selecting
-from ravemj.trajectories.courses import course_of_motion, course_of_waypoints
+from ravemj.gui.viewers.selection_callbacks import Selecting
+from ravemj.trajectories.following import course_of_motion, course_of_waypoints
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.motion import Motion
 from ravemj.trajectories.waypoints import Waypoints
