@@ -222,7 +222,7 @@ def test_a_body_that_goes_takes_its_motion_along(env, viewer, robot):
     env.Remove(robot)
     playback.advance(0.0)
     playback.advance(1.0)
-    assert (playback.course, playback.duration, playback.playing) == (None, 0.0, False)
+    assert (playback.motion, playback.duration, playback.playing) == (None, 0.0, False)
     playback.seek(1.0)
     playback.step()
     playback.play()
@@ -231,7 +231,7 @@ def test_a_body_that_goes_takes_its_motion_along(env, viewer, robot):
 
 def test_a_motion_that_fails_stops_once(viewer, robot):
     playback = viewer.play(SWING)
-    playback._course = playback.course.__class__(playback.course.bodies, 4.0, lambda time: 1 / 0)
+    playback._motion = playback.motion.__class__(playback.motion.bodies, 4.0, lambda time: 1 / 0)
     playback.advance(0.0)
     with pytest.raises(ZeroDivisionError):
         playback.advance(0.1)

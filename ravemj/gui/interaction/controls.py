@@ -127,9 +127,9 @@ class Controls:
 
     def _body(self) -> BodyState | None:
         """Return the body whose joints have sliders: the selected one, else one that plays, else the first robot."""
-        selection, course = self._selector.selection, self.playback.course
+        selection, motion = self._selector.selection, self.playback.motion
         bodies = [] if selection is None else [selection.body]
-        bodies += [] if course is None else course.bodies
+        bodies += [] if motion is None else motion.bodies
         bodies += sorted(self._simulation.bodies, key=lambda body: not body.scene.is_robot)
         return next((body for body in bodies if body.scene.dof_axes), None)
 
@@ -161,8 +161,8 @@ class Controls:
 
     def take(self, body: BodyState) -> None:
         """Pause a motion of a body, which a hand takes hold of."""
-        course = self.playback.course
-        if course is not None and body in course.bodies:
+        motion = self.playback.motion
+        if motion is not None and body in motion.bodies:
             self.playback.pause()
 
     def _move(self, dof: int, value: float) -> None:

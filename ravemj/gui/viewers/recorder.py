@@ -87,7 +87,7 @@ class Recorder:
             self._stop.set()
             return
         self._stop.clear()
-        times = self._frames_of_clock() if playback.course is None else _frames_of_motion(playback)
+        times = self._frames_of_clock() if playback.motion is None else _frames_of_motion(playback)
         self._notices.recording = True
         self._recorder = self._start(free_path(".mp4"), lambda path: self._write_video(path, times, source))
 
@@ -156,10 +156,10 @@ def _write_picture(path: Path, source: FrameSource) -> None:
 
 def _frames_of_motion(playback: Playback) -> Iterator[bool]:
     """Go through a motion frame by frame."""
-    course, step = playback.course, playback.speed / _FPS
+    motion, step = playback.motion, playback.speed / _FPS
     playback.pause()
     for count in range(math.ceil(playback.duration / step - 1e-6) + 1):
-        if playback.course is not course:
+        if playback.motion is not motion:
             return
         playback.seek(count * step)
         yield True
