@@ -12,7 +12,7 @@ from PIL import Image
 
 import ravemj
 from ravemj.graphics.rendering import Camera
-from ravemj.graphics.studio import Format
+from ravemj.graphics.simulation_renderer import Format
 from ravemj.gui.interaction import Button, Fingers, Interaction, Key, Leave, Move, Press, Release, Use, Wheel
 
 CHROMIUM = shutil.which("chromium")
@@ -151,7 +151,7 @@ class Desk:
     def _expected(self) -> np.ndarray:
         gizmos = self.viewer.interaction.overlay().shapes
         form = Format(*SIZE)
-        return self.viewer._studio.picture(self.core.view.camera, self.viewer.background, form, gizmos=gizmos)
+        return self.viewer._renderer.render(self.core.view.camera, self.viewer.background, form, gizmos=gizmos)
 
     def await_camera(self) -> None:
         """Wait until the page's camera is the core's, in numbers and in pixels."""

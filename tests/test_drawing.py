@@ -327,7 +327,7 @@ def test_tens_of_thousands_of_points(how):
 
 @pytest.mark.parametrize("how", [GL])
 def test_a_limit_of_opengl_is_said(how, caplog, monkeypatch):
-    monkeypatch.setattr("ravemj.graphics.rendering.stage._MAX_FIGURES", 1500)
+    monkeypatch.setattr("ravemj.graphics.rendering.gl_scene._MAX_FIGURES", 1500)
     columns = np.linspace(-0.5, 0.5, 3000)
     shapes = drawing.points(np.column_stack([columns, 0 * columns, 0 * columns + 2]), 1, many(RED, 3000))
     shown = mask_of(picture_of(how, shapes))

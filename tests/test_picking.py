@@ -8,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 
 import ravemj
 from ravemj.gui.interaction import pick
-from ravemj.gui.interaction.view import Ray
+from ravemj.gui.interaction.viewpoint import Ray
 
 HALF = np.array([0.1, 0.2, 0.3])
 RADIUS, HEIGHT = 0.15, 0.5

@@ -15,20 +15,20 @@ import ravemj
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import (
-    Board,
     Control,
+    ControlLayout,
     Interaction,
     Key,
     Leave,
     Mode,
     Move,
     Operate,
+    Request,
     Resize,
     Wheel,
-    Wish,
     tools,
 )
-from ravemj.gui.viewers.playing import camera_line
+from ravemj.gui.viewers.player import camera_line
 
 SWING = ravemj.Motion([1.0, 2.0, 5.0], [[0.0, 0.0], [1.0, 0.5], [2.5, -1.0]])
 """Four seconds; times of motions need not start at 0."""
@@ -54,14 +54,14 @@ class Panel(Hand):
     """Uses the controls with the mouse, where a window has them."""
 
     @property
-    def board(self) -> Board:
-        return self.gui._console.board(self.view.size)
+    def layout(self) -> ControlLayout:
+        return self.gui._panel.layout(self.view.size)
 
     def control(self, name) -> Control:
         return next(control for control in self.gui.overlay().controls if control.name == name)
 
     def rect(self, name):
-        return next(rect for control, rect in self.board.places.items() if control.name == name)
+        return next(rect for control, rect in self.layout.places.items() if control.name == name)
 
     def middle(self, name) -> tuple[float, float]:
         x, y, width, height = self.rect(name)
@@ -222,7 +222,7 @@ def test_a_body_that_goes_takes_its_motion_along(env, viewer, robot):
     env.Remove(robot)
     playback.advance(0.0)
     playback.advance(1.0)
-    assert (playback.course, playback.duration, playback.playing) == (None, 0.0, False)
+    assert (playback.motion, playback.duration, playback.playing) == (None, 0.0, False)
     playback.seek(1.0)
     playback.step()
     playback.play()
@@ -231,7 +231,7 @@ def test_a_body_that_goes_takes_its_motion_along(env, viewer, robot):
 
 def test_a_motion_that_fails_stops_once(viewer, robot):
     playback = viewer.play(SWING)
-    playback._course = playback.course.__class__(playback.course.bodies, 4.0, lambda time: 1 / 0)
+    playback._motion = playback.motion.__class__(playback.motion.bodies, 4.0, lambda time: 1 / 0)
     playback.advance(0.0)
     with pytest.raises(ZeroDivisionError):
         playback.advance(0.1)
@@ -431,8 +431,8 @@ def test_a_hand_on_what_plays_pauses_it(panel, viewer):
 def test_what_only_a_window_can_do_is_left_to_it(panel):
     for name in ("picture", "video", "camera", "picture"):
         panel.press(name)
-    assert panel.gui.controls.take_wishes() == [Wish.PICTURE, Wish.VIDEO, Wish.CAMERA, Wish.PICTURE]
-    assert panel.gui.controls.take_wishes() == []
+    assert panel.gui.controls.take_requests() == [Request.PICTURE, Request.VIDEO, Request.CAMERA, Request.PICTURE]
+    assert panel.gui.controls.take_requests() == []
 
 
 def test_controls_that_are_not_there_do_nothing(panel, viewer, robot):
@@ -441,7 +441,7 @@ def test_controls_that_are_not_there_do_nothing(panel, viewer, robot):
         panel.gui.handle(Operate(name, 1.0))
     assert panel.gui.overlay().controls == before.controls
     assert not robot.GetDOFValues().any()
-    assert not panel.gui.controls.wishes
+    assert not panel.gui.controls.requests
 
 
 def test_other_buttons_and_misses_press_nothing_and_reach_nothing_behind(panel, viewer):
@@ -525,8 +525,8 @@ def test_controls_are_on_the_view_apart_from_each_other_and_from_the_wheels(size
     playing = [Control(name, name) for name in ("back", "play", "forward")]
     playing += [Control("seek", "Time", "0", 0.0, 0.0, 1.0), Control("speed", "Speed", "1x")]
     others = [Control(name, name, name) for name in ("picture", "video", "camera", "joints")]
-    board = Board.of((*playing, *others, *sliders), size)
-    rects = [*board.places.values(), *tools(size).values()]
+    layout = ControlLayout.of((*playing, *others, *sliders), size)
+    rects = [*layout.places.values(), *tools(size).values()]
     for rect in rects:
         assert rect.width > 0
         assert rect.height > 0
@@ -538,10 +538,10 @@ def test_controls_are_on_the_view_apart_from_each_other_and_from_the_wheels(size
         assert one.x + one.width <= two.x or two.x + two.width <= one.x or (
             one.y + one.height <= two.y or two.y + two.height <= one.y
         )  # fmt: skip
-    for panel in board.panels():
+    for panel in layout.panels():
         assert panel.rect.x >= 0
         assert panel.rect.x + panel.rect.width <= size[0]
-    assert len(board.places) > 7 or size[1] < 430
+    assert len(layout.places) > 7 or size[1] < 430
 
 
 def test_many_joints_scroll():
@@ -549,7 +549,7 @@ def test_many_joints_scroll():
     long.LoadData(chain(60))
     panel = Panel(long)
     panel.press("joints")
-    seen = [control.name for control in panel.board.places if control.name.startswith("dof")]
+    seen = [control.name for control in panel.layout.places if control.name.startswith("dof")]
     assert seen == [f"dof {i}" for i in range(len(seen))]
     assert 10 < len(seen) < 30
     camera = panel.view.camera
@@ -564,9 +564,9 @@ def test_many_joints_scroll():
     tops = []
     for steps in (500, -500):
         panel.gui.handle(Wheel(steps))
-        (mark,) = (rect for rect, *_ in panel.board.panels() if rect.width == 4 and rect.height > 22)
+        (mark,) = (rect for rect, *_ in panel.layout.panels() if rect.width == 4 and rect.height > 22)
         tops.append(mark.y)
         bottom = mark.y + mark.height
     assert tops[0] == pytest.approx(104)
     assert bottom == pytest.approx(104 + 22 * len(seen))  # the mark shows which part is seen
-    assert all(len(text) <= 17 for *_, text in panel.board.panels())
+    assert all(len(text) <= 17 for *_, text in panel.layout.panels())

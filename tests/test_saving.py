@@ -12,7 +12,7 @@ import pytest
 from command_line import colour_of
 
 import ravemj
-from ravemj.gui.viewers.saving import Look, free_path
+from ravemj.gui.viewers.recorder import FrameSource, free_path
 
 SIZE = 320, 240
 SWING = ravemj.Motion.line([0, 0], [np.pi, 0], 0.4)
@@ -29,12 +29,12 @@ def viewer(env, tmp_path, monkeypatch):
     viewer.close()
 
 
-def look(viewer) -> Look:
-    return Look(viewer.interaction, viewer._studio, viewer.background)
+def look(viewer) -> FrameSource:
+    return FrameSource(viewer.interaction, viewer._renderer, viewer.background)
 
 
 def record(viewer) -> None:
-    viewer._saving.record(look(viewer), viewer.playback)
+    viewer._recorder.record(look(viewer), viewer.playback)
 
 
 def wait_for(viewer) -> str:
@@ -67,7 +67,7 @@ def test_names_are_free(tmp_path, monkeypatch):
 
 def test_a_picture_is_saved_whole_and_the_viewer_says_where(viewer, tmp_path):
     picture = viewer.render()
-    viewer._saving.save_picture(look(viewer))
+    viewer._recorder.save_picture(look(viewer))
     said = wait_for(viewer)
     (file,) = tmp_path.iterdir()
     assert said == f"Saved {file.name} in {tmp_path}"
@@ -80,7 +80,7 @@ def test_what_cannot_be_saved_is_said_and_leaves_nothing(viewer, tmp_path, monke
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("imageio.v3.imwrite", full)
-    viewer._saving.save_picture(look(viewer))
+    viewer._recorder.save_picture(look(viewer))
     assert re.fullmatch(r"cannot write ravemj-[-\d]+\.png: No space left on device", wait_for(viewer))
     assert not list(tmp_path.iterdir())
 
@@ -136,7 +136,7 @@ def test_another_motion_ends_a_video(viewer, tmp_path):
 def test_a_viewer_that_closes_ends_its_video_and_leaves_whole_files(viewer, tmp_path):
     record(viewer)
     time.sleep(0.2)
-    viewer._saving.save_picture(look(viewer))
+    viewer._recorder.save_picture(look(viewer))
     viewer.close()
     assert sorted(file.suffix for file in tmp_path.iterdir()) == [".mp4", ".png"]
     for file in tmp_path.iterdir():

@@ -260,7 +260,7 @@ def test_completion_neither_compiles_nor_draws(shell, objects, jedi, monkeypatch
     env = objects["fresh"]
     env.simulation.forget_model()
     monkeypatch.setattr(env.simulation, "compile", lambda: pytest.fail("completion compiles"))
-    monkeypatch.setattr(env.studio, "picture", lambda *rest: pytest.fail("completion draws"))
+    monkeypatch.setattr(env.renderer, "render", lambda *rest: pytest.fail("completion draws"))
     assert "model" in completions(shell, "fresh.", jedi)
     assert "render" in completions(shell, "fresh.re", jedi)
 

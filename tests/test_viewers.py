@@ -36,9 +36,9 @@ def opened(monkeypatch):
 
     def pretend(kind):
         class Pretended(Bare):
-            def __init__(self, simulation, studio, name, **more):
+            def __init__(self, simulation, renderer, name, **more):
                 kinds.append(kind)
-                super().__init__(simulation, studio, name)
+                super().__init__(simulation, renderer, name)
 
         return Pretended
 

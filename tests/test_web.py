@@ -28,7 +28,7 @@ from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import Button, Fingers, Key, Leave, Move, Press, Release, Resize, Tool, Use, Wheel
 from ravemj.gui.interaction.joint_handle import JointHandle
 from ravemj.gui.viewers.web import WebViewer
-from ravemj.gui.viewers.web.link import Link
+from ravemj.gui.viewers.web.frame_pacing import Link
 from ravemj.gui.viewers.web.messages import Ready, Shape, parse
 
 FROM_FRONT = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
@@ -435,7 +435,7 @@ def test_a_page_that_stands_still_does_not_keep_a_viewer_open(env, viewer):
 def test_a_port_that_cannot_be_had_is_an_error(env, viewer, port, reason):
     where = {"port": viewer.server.port} if port == "taken" else {"host": "no.such.host.invalid"}
     with pytest.raises(RenderingError, match=f"no page can be served at port .*({reason})"):
-        WebViewer(env.simulation, env.studio, "web", **where)
+        WebViewer(env.simulation, env.renderer, "web", **where)
 
 
 def test_a_script_ends_although_a_page_is_open(tmp_path):

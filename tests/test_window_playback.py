@@ -9,7 +9,7 @@ import pytest
 from command_line import on_terminal
 from screens import NEEDS_A_SCREEN, await_that
 
-from ravemj.gui.interaction import Board, Control
+from ravemj.gui.interaction import Control, ControlLayout
 
 pytestmark = NEEDS_A_SCREEN
 SIZE = 640, 480
@@ -63,7 +63,7 @@ class Desk:
         controls = tuple(
             Control(found, found, lower=lower, upper=upper) for found, lower, upper in ast.literal_eval(text)
         )
-        places = Board.of(controls, SIZE).places
+        places = ControlLayout.of(controls, SIZE).places
         return next(rect for control, rect in places.items() if control.name == name)
 
     def point(self, name, part: float = 0.5) -> tuple[str, str]:

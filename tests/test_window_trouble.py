@@ -48,12 +48,12 @@ def test_a_display_that_goes_away_takes_the_window_and_not_the_script(folder, st
 def test_opengl_that_fails_closes_the_window_and_not_the_script(display, folder):
     (folder / "fails.py").write_text("""
 import mujoco, time, ravemj
-from ravemj.gui.viewers import painter
+from ravemj.gui.viewers import window_renderer
 
 def fail(*arguments):
     raise mujoco.FatalError('OpenGL version 1.5 or higher required')
 
-painter.Stage = fail
+window_renderer.GlScene = fail
 env = ravemj.load('env.xml')
 env.SetViewer('window')
 viewer = env.GetViewer()

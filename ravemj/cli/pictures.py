@@ -17,7 +17,7 @@ from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering.camera_file import read_camera
 from ravemj.graphics.rendering.contexts import INSTALL, RAY, requested_backend
 from ravemj.graphics.rendering.doctor import probe_backends
-from ravemj.graphics.studio import Format
+from ravemj.graphics.simulation_renderer import Format
 from ravemj.graphics.video import check_picture, check_target, write_frames, write_picture
 from ravemj.gui.viewers import has_display
 from ravemj.gui.viewers.window import WindowViewer
@@ -78,7 +78,7 @@ def _write_video(path: str, env: Environment, body: KinBody, motion: Motion, sho
     count = motion.number_of_frames(shot.fps)
     with progress(f"drawing {path}", count) as advance:
         write_frames(path, draw_frames(env, body, motion, shot), shot.fps, on_frame=advance)
-    backend = env.studio.backend(shot.form)
+    backend = env.renderer.backend(shot.form)
     _explain_rays(backend)
     seconds = f"{motion.duration:g} s, {count} frames of {shot.form.width}x{shot.form.height} by {backend}"
     print(f"wrote {os.path.abspath(path)} ({seconds})")
@@ -95,7 +95,7 @@ def render(options: argparse.Namespace) -> int:
     width, height = options.size
     matrix = None if camera is None else camera.T_world_camera
     write_picture(options.output, env.render(width, height, camera=matrix, background=options.background))
-    _explain_rays(env.studio.backend(Format(width, height, shadows=True)))
+    _explain_rays(env.renderer.backend(Format(width, height, shadows=True)))
     print(f"wrote {options.output}")
     return 0
 

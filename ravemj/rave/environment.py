@@ -84,7 +84,7 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
         self.StopSimulation()
         self.SetViewer("")
         self.Reset()
-        self._studio.close()
+        self._renderer.close()
         self._is_destroyed = True
         _environments.pop(self._number, None)
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.graphics.rendering import Camera
-from ravemj.graphics.studio import Format, Frame, checked_colour, fitting_view
+from ravemj.graphics.simulation_renderer import Format, Frame, checked_colour, fitting_view
 from ravemj.rave import CheckLimitsAction, Environment, KinBody
 from ravemj.trajectories.motion import Motion
 
@@ -91,7 +91,7 @@ def draw_frames(env: Environment, body: KinBody, motion: Motion, shot: Shot) -> 
     for values in motion.frames(shot.fps):
         with env:
             body.SetDOFValues(values, None, CheckLimitsAction.Nothing)
-            frame = env.studio.picture(shot.camera, shot.background, shot.form)
+            frame = env.renderer.render(shot.camera, shot.background, shot.form)
         yield frame
 
 
@@ -141,15 +141,15 @@ def camera_for_motion(env: Environment, body: KinBody, motion: Motion, aspect: f
         motion: Its motion.
         aspect: Width of the picture divided by its height.
     """
-    chosen = env.studio.file_camera() if env.GetViewer() is None else env.default_camera()
+    chosen = env.renderer.file_camera() if env.GetViewer() is None else env.default_camera()
     if chosen is not None:
         return chosen
     before = body.GetDOFValues()
-    spheres = [env.studio.bounding_sphere()]
+    spheres = [env.renderer.bounding_sphere()]
     for step in range(_POSES_FOR_THE_VIEW):
         time = float(motion.times[0]) + motion.duration * step / (_POSES_FOR_THE_VIEW - 1)
         body.SetDOFValues(motion.sample(time), None, CheckLimitsAction.Nothing)
-        spheres.append(env.studio.bounding_sphere())
+        spheres.append(env.renderer.bounding_sphere())
     body.SetDOFValues(before, None, CheckLimitsAction.Nothing)
     lowest = np.min([center - radius for center, radius in spheres], axis=0)
     highest = np.max([center + radius for center, radius in spheres], axis=0)

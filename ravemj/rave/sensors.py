@@ -11,7 +11,7 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
 from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
-from ravemj.graphics.studio import Format
+from ravemj.graphics.simulation_renderer import Format
 from ravemj.model import scene
 from ravemj.rave.enums import SensorCommand, SensorType
 from ravemj.rave.infos import AttachedSensorInfo
@@ -159,7 +159,7 @@ class Sensor(Shown):
             transform = self.GetTransform()
             pinhole = Pinhole(camera.fx, camera.fy, camera.cx, camera.cy)
             form = Format(camera.width, camera.height)
-            picture = env.studio.picture(Camera(transform, calibration=pinhole), env.background, form, drawings=False)
+            picture = env.renderer.render(Camera(transform, calibration=pinhole), env.background, form, drawings=False)
             return CameraSensorData(transform, picture, geometry.intrinsics, env.clock.now)
 
     def GetSensorGeometry(self, type: SensorType | None = None) -> CameraGeomData | None:  # OpenRAVE's name

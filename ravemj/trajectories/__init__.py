@@ -1,6 +1,10 @@
-"""Configurations, how they are laid out, and how they change over time; without knowing robots.
+"""Joint values and other configurations over time.
 
-``groups`` say what values are; ``layout`` works on lists of them; ``extraction`` and ``conversion`` on data;
-``waypoints`` keep data over time, between which ``interpolation`` finds the rest; ``text`` and ``serialization`` write
-and read them.
+``Motion`` is the simplest form: the joint values of one body, with straight lines between given times. ``Waypoints``
+is the general one, with any layout and interpolation; OpenRAVE's ``Trajectory`` gives it OpenRAVE's names.
+``BodyMotion`` moves bodies by samples of either, for viewers.
+
+Layouts: ``groups`` say what the numbers of a configuration are, ``layout`` works on lists of groups, ``extraction`` and
+``conversion`` on the numbers. ``interpolation`` finds what lies between two waypoints, ``text`` and ``serialization``
+write and read files.
 """

@@ -23,8 +23,8 @@ from benchmarks.measure import CAMERA, MODEL, Row, run_python, take_turns
 from ravemj.graphics.rendering import Renderer, open_renderer
 from ravemj.graphics.rendering.camera_file import read_camera
 from ravemj.graphics.rendering.contexts import RAY, OffscreenContext
-from ravemj.graphics.rendering.stage import Quality, Stage
-from ravemj.graphics.studio import Format, Frame
+from ravemj.graphics.rendering.gl_scene import GlScene, Quality
+from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.graphics.video import write_frames
 from ravemj.rave.recording import Shot, draw_frames
 
@@ -88,7 +88,7 @@ class _Play:
         form = self.shot.form
         context = OffscreenContext(backend)
         with context.current():
-            stage = Stage(self.env.model, Quality(form.width, form.height, form.shadows))
+            stage = GlScene(self.env.model, Quality(form.width, form.height, form.shadows))
             mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, stage.context)
         try:
             yield functools.partial(_rate, lambda: self.drawn_bare(context, stage))
@@ -124,7 +124,7 @@ class _Play:
             mujoco.mj_kinematics(model, data)
             yield renderer.render(data, self.shot.camera, self.shot.background)
 
-    def drawn_bare(self, context: OffscreenContext, stage: Stage) -> Iterator[Frame]:
+    def drawn_bare(self, context: OffscreenContext, stage: GlScene) -> Iterator[Frame]:
         """Draw the frames with one call after the other into MuJoCo."""
         model, data, form = self.env.model, self.env.data, self.shot.form
         stage.fill(data, self.shot.camera, form.width, form.height)  # leaves the camera in the scene

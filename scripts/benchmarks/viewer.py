@@ -18,8 +18,8 @@ from benchmarks.measure import CAMERA, MODEL, Row, take_turns
 from ravemj.graphics.rendering import Camera
 from ravemj.graphics.rendering.camera_file import read_camera
 from ravemj.graphics.rendering.contexts import RAY, OffscreenContext
-from ravemj.graphics.rendering.stage import Quality, Stage
-from ravemj.graphics.studio import Format
+from ravemj.graphics.rendering.gl_scene import GlScene, Quality
+from ravemj.graphics.simulation_renderer import Format
 
 _SIZE = 800, 600
 _FRAMES = 60
@@ -61,7 +61,7 @@ def _connection_rows(env: ravemj.Environment, url: str) -> list[Row]:
         _send(connection, type="shape", width=_SIZE[0], height=_SIZE[1], ratio=1)
         _send(connection, type="ready")
         _receive(connection)
-        backend = env.studio.backend(Format(*_SIZE))
+        backend = env.renderer.backend(Format(*_SIZE))
         with _bare_drawing(env, backend) as bare:
             drawing = [lambda: _rate(lambda: _turn(connection)), *([lambda: _rate(bare)] if bare else [])]
             ours, *floor = take_turns(drawing, _ROUNDS)
@@ -109,7 +109,7 @@ def _bare_drawing(env: ravemj.Environment, backend: str) -> Generator[Callable[[
     viewport = mujoco.MjrRect(0, 0, *_SIZE)
     picture = np.empty((_SIZE[1], _SIZE[0], 3), dtype=np.uint8)
     with context.current():
-        stage = Stage(env.model, Quality(*_SIZE))
+        stage = GlScene(env.model, Quality(*_SIZE))
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, stage.context)
 
     def draw() -> None:

@@ -25,7 +25,7 @@ from ravemj.graphics.rendering.camera import (
     three_quarter_view,
     view_from_above,
 )
-from ravemj.graphics.rendering.frame import WHITE
+from ravemj.graphics.rendering.checks import WHITE
 from ravemj.graphics.rendering.visibility import drawn_geoms
 from ravemj.model.drawing import NOTHING, Shapes
 
@@ -122,8 +122,8 @@ def open_renderer(
         ArgumentError: a size that is not positive, or an argument that is not among those named here.
         RenderingError: the backend that was asked for does not work here; the message says why.
     """
-    from ravemj.graphics.rendering.opening import opened  # noqa: PLC0415 - slow to import
-    from ravemj.graphics.rendering.stage import Quality  # noqa: PLC0415
+    from ravemj.graphics.rendering.backends import opened  # noqa: PLC0415 - slow to import
+    from ravemj.graphics.rendering.gl_scene import Quality  # noqa: PLC0415
 
     renderer = opened(model, Quality(width, height, shadows, samples), backend)
     _LOG.info("pictures of %d x %d are drawn by %s", width, height, renderer.backend)

@@ -11,7 +11,7 @@ import mujoco
 
 from ravemj.graphics.rendering.contexts import GL_BACKENDS, INSTALL, RAY, OffscreenContext, attempt
 from ravemj.graphics.rendering.gl import GlRenderer
-from ravemj.graphics.rendering.stage import Quality
+from ravemj.graphics.rendering.gl_scene import Quality
 
 _TIMEOUT = 60.0
 _CHILD = """\

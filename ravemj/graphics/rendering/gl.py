@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ravemj.errors import RenderingError
 from ravemj.graphics.rendering.camera import Camera
+from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
 from ravemj.graphics.rendering.contexts import OffscreenContext, close_at_exit
-from ravemj.graphics.rendering.frame import WHITE, check_data, color_bytes
-from ravemj.graphics.rendering.stage import Quality, Stage
+from ravemj.graphics.rendering.gl_scene import GlScene, Quality
 from ravemj.model.drawing import NOTHING, Shapes
 
 
@@ -24,14 +24,14 @@ class GlRenderer:
     """
 
     def __init__(self, model: mujoco.MjModel, context: OffscreenContext, quality: Quality) -> None:
-        self._stage: Stage | None = None
+        self._gl_scene: GlScene | None = None
         self.backend = context.backend
         self._model = model
         self._size = quality.width, quality.height
         self._viewport = mujoco.MjrRect(0, 0, quality.width, quality.height)
         self._context = context
         with context.current():
-            self._stage = _offscreen_stage(model, quality)
+            self._gl_scene = _offscreen_stage(model, quality)
         close_at_exit(self)
 
     def render(
@@ -54,7 +54,7 @@ class GlRenderer:
 
     def close(self) -> None:
         """Free the context and what is in it; a second call does nothing."""
-        stage, self._stage = self._stage, None
+        stage, self._gl_scene = self._gl_scene, None
         if stage is not None:
             try:
                 with self._context.current():
@@ -72,27 +72,27 @@ class GlRenderer:
     def __del__(self) -> None:
         self.close()
 
-    def _codes(self, stage: Stage) -> NDArray[np.uint8]:
+    def _codes(self, stage: GlScene) -> NDArray[np.uint8]:
         with self._context.current():
             stage.draw_ids(self._viewport)
             return self._read(stage)
 
-    def _filled_stage(self, data: mujoco.MjData, camera: Camera, shapes: Shapes) -> Stage:
-        if self._stage is None:
+    def _filled_stage(self, data: mujoco.MjData, camera: Camera, shapes: Shapes) -> GlScene:
+        if self._gl_scene is None:
             raise RenderingError("this renderer is closed")
         check_data(self._model, data)
-        self._stage.fill(data, camera, *self._size, shapes)
-        return self._stage
+        self._gl_scene.fill(data, camera, *self._size, shapes)
+        return self._gl_scene
 
-    def _read(self, stage: Stage) -> NDArray[np.uint8]:
+    def _read(self, stage: GlScene) -> NDArray[np.uint8]:
         width, height = self._size
         pixels = np.empty((height, width, 3), dtype=np.uint8)
         mujoco.mjr_readPixels(pixels, None, self._viewport, stage.context)
         return pixels[::-1].copy()
 
 
-def _offscreen_stage(model: mujoco.MjModel, quality: Quality) -> Stage:
-    stage = Stage(model, quality)
+def _offscreen_stage(model: mujoco.MjModel, quality: Quality) -> GlScene:
+    stage = GlScene(model, quality)
     offscreen = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
     mujoco.mjr_setBuffer(offscreen, stage.context)
     if stage.context.currentBuffer != offscreen:  # MuJoCo would draw into a window, and there is none
@@ -101,4 +101,4 @@ def _offscreen_stage(model: mujoco.MjModel, quality: Quality) -> Stage:
     return stage
 
 
-_never_freed: list[Stage] = []
+_never_freed: list[GlScene] = []

@@ -5,7 +5,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera
-from ravemj.graphics.rendering.stage import aim
+from ravemj.graphics.rendering.gl_scene import aim
 
 
 class Lights:

@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike, NDArray
 from ravemj.core.transforms import Floats
 from ravemj.errors import RenderingError
 from ravemj.graphics.rendering.camera import Camera
+from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
 from ravemj.graphics.rendering.fragments import Fragments, Raster
-from ravemj.graphics.rendering.frame import WHITE, check_data, color_bytes
+from ravemj.graphics.rendering.gl_scene import near_and_far
 from ravemj.graphics.rendering.lights import Lights
-from ravemj.graphics.rendering.stage import near_and_far
 from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms, geom_rgba
 from ravemj.model.drawing import NOTHING, Shapes
 

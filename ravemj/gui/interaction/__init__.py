@@ -9,8 +9,8 @@
     interaction.overlay().lines
 """
 
-from ravemj.gui.interaction.board import Board
-from ravemj.gui.interaction.controls import Control, Controls, Wish
+from ravemj.gui.interaction.control_layout import ControlLayout
+from ravemj.gui.interaction.controls import Control, Controls, Request
 from ravemj.gui.interaction.core import Interaction, Mode, Overlay
 from ravemj.gui.interaction.events import (
     Button,
@@ -26,17 +26,17 @@ from ravemj.gui.interaction.events import (
     Use,
     Wheel,
 )
-from ravemj.gui.interaction.layout import Panel, Rect, Tool, tools
+from ravemj.gui.interaction.mode_buttons import Panel, Rect, Tool, tools
 from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.picking import Hit, pick
 from ravemj.gui.interaction.playback import Playback
-from ravemj.gui.interaction.selecting import Selection
-from ravemj.gui.interaction.view import Ray, View
+from ravemj.gui.interaction.selection import Selection
+from ravemj.gui.interaction.viewpoint import Ray, View
 
 __all__ = [
-    "Board",
     "Button",
     "Control",
+    "ControlLayout",
     "Controls",
     "Event",
     "Fingers",
@@ -55,13 +55,13 @@ __all__ = [
     "Ray",
     "Rect",
     "Release",
+    "Request",
     "Resize",
     "Selection",
     "Tool",
     "Use",
     "View",
     "Wheel",
-    "Wish",
     "pick",
     "tools",
 ]

@@ -1,6 +1,6 @@
 """The buttons and sliders of a view: playing a motion, saving what is seen, and one slider for each joint.
 
-They are plain data, which a window draws (``board``) and a page makes its own buttons and sliders of.
+They are plain data, which a window draws (``layout``) and a page makes its own buttons and sliders of.
 """
 
 import math
@@ -12,7 +12,7 @@ from ravemj.gui.interaction.dragging import set_dof
 from ravemj.gui.interaction.joint_handle import joint_and_axis
 from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.playback import SPEEDS, Playback
-from ravemj.gui.interaction.selecting import Selector
+from ravemj.gui.interaction.selection import Selector
 
 _WIDEST = {"slider": (1.0, "m"), "other": (math.pi, "rad")}
 """How far a slider goes to each side where the joint's limits are much wider, and its unit."""
@@ -21,7 +21,7 @@ _MUCH = 4.0
 """How many times wider than that limits are that no slider can cover."""
 
 
-class Wish(Enum):
+class Request(Enum):
     """What only the one who draws the view can do; the values are the names of the controls."""
 
     PICTURE = "picture"
@@ -64,7 +64,7 @@ class Controls:
         playback: The motion, which all views share.
         notices: What the viewer tells; all views share it.
         shows_joints: Whether the sliders of the joints are unfolded.
-        wishes: What was asked of the one who draws, and is not done yet.
+        requests: What was asked of the one who draws, and is not done yet.
     """
 
     def __init__(self, simulation: Simulation, selector: Selector, playback: Playback, notices: Notices) -> None:
@@ -73,7 +73,7 @@ class Controls:
         self.playback = playback
         self.notices = notices
         self.shows_joints = False
-        self.wishes: list[Wish] = []
+        self.requests: list[Request] = []
 
     def another(self) -> "Controls":
         """Return the controls of another view."""
@@ -100,9 +100,9 @@ class Controls:
         video = "Stop recording" if recording else "Record a video (MP4)"
         controls = [
             *self._playing(),
-            Control(Wish.PICTURE.value, "Save a picture (PNG)", "PNG"),
-            Control(Wish.VIDEO.value, video, "Stop" if recording else "MP4", is_on=recording),
-            Control(Wish.CAMERA.value, "Copy the camera as a line of Python", "Copy"),
+            Control(Request.PICTURE.value, "Save a picture (PNG)", "PNG"),
+            Control(Request.VIDEO.value, video, "Stop" if recording else "MP4", is_on=recording),
+            Control(Request.CAMERA.value, "Copy the camera as a line of Python", "Copy"),
         ]
         if body is not None:
             label = f"DOFs of {body.scene.name}: a slider for each"
@@ -127,9 +127,9 @@ class Controls:
 
     def _body(self) -> BodyState | None:
         """Return the body whose joints have sliders: the selected one, else one that plays, else the first robot."""
-        selection, course = self._selector.selection, self.playback.course
+        selection, motion = self._selector.selection, self.playback.motion
         bodies = [] if selection is None else [selection.body]
-        bodies += [] if course is None else course.bodies
+        bodies += [] if motion is None else motion.bodies
         bodies += sorted(self._simulation.bodies, key=lambda body: not body.scene.is_robot)
         return next((body for body in bodies if body.scene.dof_axes), None)
 
@@ -138,8 +138,8 @@ class Controls:
         if name not in {control.name for control in self.all()}:
             return
         playback = self.playback
-        if name in {wish.value for wish in Wish}:
-            self.wishes.append(Wish(name))
+        if name in {request.value for request in Request}:
+            self.requests.append(Request(name))
         elif name == "play":
             (playback.pause if playback.playing else playback.play)()
         elif name in {"back", "forward"}:
@@ -154,15 +154,15 @@ class Controls:
         else:
             self._move(int(name.removeprefix("dof ")), value)
 
-    def take_wishes(self) -> list[Wish]:
+    def take_requests(self) -> list[Request]:
         """Return what was asked of the one who draws, and forget it."""
-        wishes, self.wishes = self.wishes, []
-        return wishes
+        requests, self.requests = self.requests, []
+        return requests
 
     def take(self, body: BodyState) -> None:
         """Pause a motion of a body, which a hand takes hold of."""
-        course = self.playback.course
-        if course is not None and body in course.bodies:
+        motion = self.playback.motion
+        if motion is not None and body in motion.bodies:
             self.playback.pause()
 
     def _move(self, dof: int, value: float) -> None:

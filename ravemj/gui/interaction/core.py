@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 from ravemj.engine.simulation import Simulation
 from ravemj.graphics.rendering import Camera, bounding_sphere
-from ravemj.gui.interaction import layout
-from ravemj.gui.interaction.board import Board
-from ravemj.gui.interaction.console import Console
+from ravemj.gui.interaction import mode_buttons
+from ravemj.gui.interaction.control_layout import ControlLayout
+from ravemj.gui.interaction.control_panel import ControlPanel
 from ravemj.gui.interaction.controls import Control, Controls
 from ravemj.gui.interaction.events import (
     Button,
@@ -30,12 +30,12 @@ from ravemj.gui.interaction.events import (
     Use,
     Wheel,
 )
-from ravemj.gui.interaction.layout import Panel, Tool
+from ravemj.gui.interaction.mode_buttons import Panel, Tool
 from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.picking import Hit, pick
 from ravemj.gui.interaction.playback import Playback
-from ravemj.gui.interaction.selecting import OnSelect, Selection, Selector, point_line
-from ravemj.gui.interaction.view import View
+from ravemj.gui.interaction.selection import OnSelect, Selection, Selector, point_line
+from ravemj.gui.interaction.viewpoint import View
 from ravemj.model.drawing import Shapes
 
 _CLICK = 4.0
@@ -96,7 +96,7 @@ class Interaction:
         self.mode = Mode.CAMERA
         self._selector = Selector(simulation, on_select)
         self.controls = Controls(simulation, self._selector, Playback(simulation), Notices())
-        self._console = Console(self.controls)
+        self._panel = ControlPanel(self.controls)
         self._has_tools = True
         self._changes = 0
         self._pointer: tuple[float, float] | None = None
@@ -116,7 +116,7 @@ class Interaction:
         other.view, other.mode = self.view, self.mode
         other._selector = self._selector
         other.controls = self.controls.another()
-        other._console = Console(other.controls, is_drawn=has_tools)
+        other._panel = ControlPanel(other.controls, is_drawn=has_tools)
         other._has_tools = has_tools
         return other
 
@@ -143,8 +143,8 @@ class Interaction:
         with self._simulation.lock:
             self._forget_what_is_gone()
             self._do(event)
-            board = self._console.board(self.view.size)
-            hovers = board.covers(self._pointer) or self._hit(board) is not None
+            layout = self._panel.layout(self.view.size)
+            hovers = layout.covers(self._pointer) or self._hit(layout) is not None
             if not isinstance(event, Move) or self._buttons or hovers or self._hovered:
                 self._changes += 1
             self._hovered = hovers
@@ -160,11 +160,11 @@ class Interaction:
     def hover(self) -> Hit | None:
         """What is under the pointer now; None while a button is held."""
         with self._simulation.lock:
-            return self._hit(self._console.board(self.view.size))
+            return self._hit(self._panel.layout(self.view.size))
 
-    def _hit(self, board: Board) -> Hit | None:
+    def _hit(self, layout: ControlLayout) -> Hit | None:
         at = self._pointer
-        if at is None or self._buttons or board.covers(at):
+        if at is None or self._buttons or layout.covers(at):
             return None
         if not all(0 <= place < length for place, length in zip(at, self.view.size, strict=True)):
             return None
@@ -183,15 +183,15 @@ class Interaction:
         with self._simulation.lock:
             self._forget_what_is_gone()
             chosen = Tool.CAMERA if self.mode is Mode.CAMERA else Tool.INTERACT
-            at, board = self._selector.point_line(), self._console.board(self.view.size)
-            hit, control = self._hit(board), board.at(self._pointer)
+            at, layout = self._selector.point_line(), self._panel.layout(self.view.size)
+            hit, control = self._hit(layout), layout.at(self._pointer)
             if hit is not None:
                 at = point_line(hit.body, hit.link, hit.position, hit.normal)
             elif control is not None:
                 at = control.label
             lines = (*([at] if at else []), *self._selector.lines(), *self.controls.notices.lines)
-            tools = layout.panels(self.view.size, chosen) if self._has_tools else ()
-            panels = *tools, *board.panels()
+            tools = mode_buttons.panels(self.view.size, chosen) if self._has_tools else ()
+            panels = *tools, *layout.panels()
             return Overlay(self._selector.shapes(), lines, panels, self.controls.all())
 
     def _forget_what_is_gone(self) -> None:
@@ -232,10 +232,10 @@ class Interaction:
         self._buttons.add(press.button)
         self._press = self._follow = None
         self._pointer = press.x, press.y
-        tool = layout.tool_at(self.view.size, press.x, press.y) if self._has_tools else None
-        board = self._console.board(self.view.size)
-        if board.covers(self._pointer):
-            self._follow = self._console.press(press, board)
+        tool = mode_buttons.tool_at(self.view.size, press.x, press.y) if self._has_tools else None
+        layout = self._panel.layout(self.view.size)
+        if layout.covers(self._pointer):
+            self._follow = self._panel.press(press, layout)
         elif tool is not None:
             self._press_tool(tool, press)
         elif press.touch:
@@ -265,9 +265,9 @@ class Interaction:
                 self._set_mode(Mode.INTERACTION)  # what has appeared can be dragged
 
     def _on_wheel(self, steps: float) -> None:
-        board = self._console.board(self.view.size)
-        if board.covers(self._pointer):
-            self._console.scroll(board, steps)
+        layout = self._panel.layout(self.view.size)
+        if layout.covers(self._pointer):
+            self._panel.scroll(layout, steps)
         elif self.mode is Mode.CAMERA:
             self.view = self._focused().zoomed(math.log(_STEP) * steps)
 
@@ -278,7 +278,7 @@ class Interaction:
         if name == "escape" and name not in self._keys:
             self._set_mode(Mode.INTERACTION if self.mode is Mode.CAMERA else Mode.CAMERA)
         elif name not in self._keys:
-            self._console.key(name)
+            self._panel.key(name)
         self._keys.add(name)
 
     def _on_leave(self) -> None:

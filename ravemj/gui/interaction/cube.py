@@ -10,7 +10,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.simulation import BodyState
 from ravemj.gui.interaction.picking import visible_box
-from ravemj.gui.interaction.view import Ray, View
+from ravemj.gui.interaction.viewpoint import Ray, View
 from ravemj.model import drawing
 from ravemj.model.drawing import Shapes
 

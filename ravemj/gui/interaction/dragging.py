@@ -10,7 +10,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.geometry_functions import matrixFromAxisAngle
 from ravemj.gui.interaction.cube import Cube, Grip, nearest_on_line
 from ravemj.gui.interaction.joint_handle import JointHandle, joint_and_axis
-from ravemj.gui.interaction.view import Ray
+from ravemj.gui.interaction.viewpoint import Ray
 
 Follow = Callable[[Ray], None]
 """Takes the pointer's ray as it is now."""

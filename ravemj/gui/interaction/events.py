@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from ravemj.gui.interaction.layout import Tool
+from ravemj.gui.interaction.mode_buttons import Tool
 
 
 class Button(Enum):

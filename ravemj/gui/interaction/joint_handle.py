@@ -9,7 +9,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.gui.interaction.picking import visible_box
-from ravemj.gui.interaction.view import Ray
+from ravemj.gui.interaction.viewpoint import Ray
 from ravemj.model import drawing
 from ravemj.model.chains import all_joints, joints_above
 from ravemj.model.drawing import Shapes

@@ -8,7 +8,7 @@ from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.rays import first_hit
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.graphics.rendering import bounding_sphere, drawn_geoms, geom_corners
-from ravemj.gui.interaction.view import Ray
+from ravemj.gui.interaction.viewpoint import Ray
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ import math
 
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError
-from ravemj.trajectories.courses import Course
+from ravemj.trajectories.body_motion import BodyMotion
 
 STEP = 1 / 30
 """How far ``step`` goes [s]: a frame of a video."""
@@ -35,7 +35,7 @@ class Playback:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._course: Course | None = None
+        self._motion: BodyMotion | None = None
         self._time = 0.0
         self._speed = 1.0
         self._playing = False
@@ -43,18 +43,18 @@ class Playback:
         self.changes = 0
 
     @property
-    def course(self) -> Course | None:
+    def motion(self) -> BodyMotion | None:
         """What is played, or None; a body that is taken out of the world takes its motion along."""
         with self._simulation.lock:
-            if self._course is not None and not all(map(self._simulation.holds, self._course.bodies)):
+            if self._motion is not None and not all(map(self._simulation.holds, self._motion.bodies)):
                 self.clear()
-            return self._course
+            return self._motion
 
     @property
     def duration(self) -> float:
         """How long the motion is [s]; 0 where there is none."""
-        course = self.course
-        return 0.0 if course is None else course.duration
+        motion = self.motion
+        return 0.0 if motion is None else motion.duration
 
     @property
     def time(self) -> float:
@@ -79,18 +79,18 @@ class Playback:
             self._speed = float(speed)
             self.changes += 1
 
-    def load(self, course: Course) -> None:
+    def load(self, motion: BodyMotion) -> None:
         """Take another motion, in place of the one before, and go to its start."""
         with self._simulation.lock:
             self.pause()
-            course.place(0.0)
-            self._course, self._time = course, 0.0
+            motion.place(0.0)
+            self._motion, self._time = motion, 0.0
 
     def clear(self) -> None:
         """Forget the motion; the bodies stay where they are."""
         with self._simulation.lock:
             self.pause()
-            self._course, self._time = None, 0.0
+            self._motion, self._time = None, 0.0
 
     def play(self) -> None:
         """Go on; from the end, go on from the start."""
@@ -117,9 +117,9 @@ class Playback:
         with self._simulation.lock:
             self.changes += 1
             self._time = min(max(float(time), 0.0), self.duration)
-            if self._course is not None:
+            if self._motion is not None:
                 try:
-                    self._course.place(self._time)
+                    self._motion.place(self._time)
                 except Exception:
                     self._playing = False  # what fails now would fail with every picture
                     raise
@@ -137,7 +137,7 @@ class Playback:
             now: What the clock shows [s], any clock that never goes back.
         """
         with self._simulation.lock:
-            if self.course is None or not self._playing:
+            if self.motion is None or not self._playing:
                 return
             elapsed = 0.0 if self._last is None else min(max(now - self._last, 0.0), _LONGEST_PAUSE)
             self._last = now

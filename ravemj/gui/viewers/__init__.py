@@ -9,7 +9,7 @@ import sys
 
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RenderingError
-from ravemj.graphics.studio import Studio
+from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.gui.viewers import notebook
 from ravemj.gui.viewers.viewer import Viewer
 
@@ -28,12 +28,12 @@ def has_display() -> bool:
     return sys.platform == "win32" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -> Viewer | None:
+def open_viewer(simulation: Simulation, renderer: SimulationRenderer, name: str, show: bool) -> Viewer | None:
     """Open the viewer that a name asks for.
 
     Args:
         simulation: What it shows.
-        studio: What draws pictures of it.
+        renderer: What draws pictures of it.
         name: One of ``VIEWERS``: ``window``, ``web`` for a page in a browser, ``offscreen``; another is the best of
             these that works here.
         show: False for a viewer without a window.
@@ -48,12 +48,12 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
     if kind == "web":
         if reason:
             _LOG.info("viewer '%s' is a page in a browser: %s", name, reason)
-        return _open_page(simulation, studio, name)
+        return _open_page(simulation, renderer, name)
     if kind == "window":
         from ravemj.gui.viewers.window import WindowViewer  # noqa: PLC0415 - slow to import
 
         try:
-            viewer = WindowViewer(simulation, studio, name)
+            viewer = WindowViewer(simulation, renderer, name)
         except RenderingError as error:
             _LOG.warning("%s; pictures are drawn without a window", error)
         else:
@@ -62,7 +62,7 @@ def open_viewer(simulation: Simulation, studio: Studio, name: str, show: bool) -
     elif name == "window" and show:
         _LOG.warning("no window can be opened: %s; pictures are drawn without a window", reason)
     _LOG.info("viewer '%s' has no window", name)
-    return Viewer(simulation, studio, name)
+    return Viewer(simulation, renderer, name)
 
 
 def _choice(name: str) -> tuple[str, str]:
@@ -78,10 +78,10 @@ def _choice(name: str) -> tuple[str, str]:
     return "offscreen", "there is no display"
 
 
-def _open_page(simulation: Simulation, studio: Studio, name: str) -> Viewer:
+def _open_page(simulation: Simulation, renderer: SimulationRenderer, name: str) -> Viewer:
     from ravemj.gui.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
 
-    viewer = WebViewer(simulation, studio, name, any_name=notebook.is_proxied())
+    viewer = WebViewer(simulation, renderer, name, any_name=notebook.is_proxied())
     if notebook.in_notebook():
         notebook.show(viewer)
     else:

@@ -177,7 +177,7 @@ class GlfwWindow:
 
     def copy_text(self, text: str) -> None:
         """Put a text on the clipboard."""
-        with _dispatching:  # in whose course others ask for it
+        with _dispatching:  # while it lasts, others ask for it, too
             self._glfw.set_clipboard_string(self._window, text)
 
     def wait(self, seconds: float) -> None:

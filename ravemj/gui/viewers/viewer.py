@@ -12,11 +12,11 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
-from ravemj.graphics.studio import Format, Frame, Studio, checked_colour
+from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer, checked_colour
 from ravemj.gui.interaction import Resize
 from ravemj.gui.viewers.callbacks import Callback, Callbacks
-from ravemj.gui.viewers.playing import Playing
-from ravemj.gui.viewers.saving import Saving
+from ravemj.gui.viewers.player import Playing
+from ravemj.gui.viewers.recorder import Recorder
 from ravemj.model.scene import View
 
 _SIZE = 640, 480
@@ -45,14 +45,14 @@ class Viewer(Playing):
 
     _internal = ("environment", "take_over")
 
-    def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
+    def __init__(self, simulation: Simulation, renderer: SimulationRenderer, name: str) -> None:
         self._simulation = simulation
-        self._studio = studio
+        self._renderer = renderer
         self._name = name
-        super().__init__(simulation, studio.file_camera() or studio.camera_from_above(), _SIZE)
+        super().__init__(simulation, renderer.file_camera() or renderer.camera_from_above(), _SIZE)
         self._background = simulation.view.background
-        self._saving = Saving(self.interaction.controls.notices)
-        weakref.finalize(self, self._saving.end)
+        self._recorder = Recorder(self.interaction.controls.notices)
+        weakref.finalize(self, self._recorder.end)
         self._title = name
         self._size = _SIZE
         self._figures_in_camera = False
@@ -252,7 +252,7 @@ class Viewer(Playing):
             raise ArgumentError(f"K: the focal lengths are {fx:g} and {fy:g}, and should be positive")
         camera = Camera(Camera.from_matrix(transform).T_world_camera, calibration=Pinhole(fx, fy, cx, cy))
         form = self._format(width, height, "GetCameraImage")
-        return self._studio.picture(camera, self._background, form, self._figures_in_camera)
+        return self._renderer.render(camera, self._background, form, self._figures_in_camera)
 
     def SetBkgndColor(self, color: ArrayLike) -> None:
         """Set the colour behind everything.
@@ -278,7 +278,7 @@ class Viewer(Playing):
             self.SetCamera(view.T_world_camera.matrix())
         elif self.camera is self._camera_of_nothing and self._simulation.bodies:
             with contextlib.suppress(RavemjError):  # bodies that MuJoCo refuses; whoever asks for them next is told
-                self.SetCamera(self._studio.camera_from_above().T_world_camera)
+                self.SetCamera(self._renderer.camera_from_above().T_world_camera)
 
     @property
     def camera(self) -> Camera:
@@ -306,7 +306,7 @@ class Viewer(Playing):
         """
         form = self._format(width, height, "render")
         gizmos = self.interaction.overlay().shapes
-        picture = self._studio.picture(self.camera, self._background, form, gizmos=gizmos)
+        picture = self._renderer.render(self.camera, self._background, form, gizmos=gizmos)
         self._image_callbacks.call(picture)
         return picture
 
@@ -316,8 +316,8 @@ class Viewer(Playing):
 
     def close(self) -> None:
         """Close the viewer."""
-        self._saving.end()
-        self._studio.close()
+        self._recorder.end()
+        self._renderer.close()
 
     def __repr__(self) -> str:
         return f"<viewer:{self._name}>"

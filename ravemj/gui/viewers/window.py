@@ -13,13 +13,13 @@ import numpy as np
 from ravemj.core.arrays import checked_vector
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError, RavemjError, RenderingError
-from ravemj.graphics.studio import Studio
-from ravemj.gui.interaction import Resize, Wish
+from ravemj.graphics.simulation_renderer import SimulationRenderer
+from ravemj.gui.interaction import Request, Resize
 from ravemj.gui.viewers.glfw_window import GlfwWindow
-from ravemj.gui.viewers.painter import Painter
-from ravemj.gui.viewers.playing import camera_line
-from ravemj.gui.viewers.saving import Look
+from ravemj.gui.viewers.player import camera_line
+from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.viewer import Viewer
+from ravemj.gui.viewers.window_renderer import WindowRenderer
 
 _LOG = logging.getLogger("ravemj")
 _WIDTH, _HEIGHT = 960, 720
@@ -43,8 +43,8 @@ class WindowViewer(Viewer):
 
     _internal = ("open_window", "turn")
 
-    def __init__(self, simulation: Simulation, studio: Studio, name: str) -> None:
-        super().__init__(simulation, studio, name)
+    def __init__(self, simulation: Simulation, renderer: SimulationRenderer, name: str) -> None:
+        super().__init__(simulation, renderer, name)
         self._size = _WIDTH, _HEIGHT
         self._requests: SimpleQueue[_Request] = SimpleQueue()
         self._awaited: SimpleQueue[threading.Event] = SimpleQueue()
@@ -157,7 +157,7 @@ class WindowViewer(Viewer):
         finally:
             self._opened.set()
 
-    def turn(self, window: GlfwWindow, painter: Painter) -> bool:
+    def turn(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
         """Do what was asked for, and draw if anything has changed; return False once the window should close."""
         if self._closing.is_set() or window.is_broken or window.is_closed:
             return False
@@ -173,8 +173,8 @@ class WindowViewer(Viewer):
                 self._simulation.lock.release()
             if is_changed:
                 self._draw(window, painter)
-            for wish in self.interaction.controls.take_wishes():
-                self._grant(wish, window)
+            for request in self.interaction.controls.take_requests():
+                self._grant(request, window)
             for drawn in waiting:
                 drawn.set()
         else:
@@ -182,7 +182,7 @@ class WindowViewer(Viewer):
                 self._awaited.put(drawn)
         return True
 
-    def _take_in(self, window: GlfwWindow, painter: Painter) -> bool:
+    def _take_in(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
         """Do what people did, and return whether the window has to be drawn."""
         try:
             if self.interaction.view.size != window.points:
@@ -202,7 +202,7 @@ class WindowViewer(Viewer):
                 self._complaint = error.message
             return False
 
-    def _draw(self, window: GlfwWindow, painter: Painter) -> None:
+    def _draw(self, window: GlfwWindow, painter: WindowRenderer) -> None:
         pixels, ratio = window.pixels, window.pixel_ratio
         painter.draw(self._background, pixels)
         if self._image_callbacks:
@@ -210,13 +210,13 @@ class WindowViewer(Viewer):
         painter.draw_overlay(pixels, ratio)
         window.swap()
 
-    def _grant(self, wish: Wish, window: GlfwWindow) -> None:
+    def _grant(self, request: Request, window: GlfwWindow) -> None:
         """Do what a button asked for that needs the window."""
-        look = Look(self.interaction, self._studio, self._background, window.pixel_ratio)
-        if wish is Wish.PICTURE:
-            self._saving.save_picture(look)
-        elif wish is Wish.VIDEO:
-            self._saving.record(look, self.playback)
+        source = FrameSource(self.interaction, self._renderer, self._background, window.pixel_ratio)
+        if request is Request.PICTURE:
+            self._recorder.save_picture(source)
+        elif request is Request.VIDEO:
+            self._recorder.record(source, self.playback)
         else:
             line = camera_line(self.camera)
             window.copy_text(line)
@@ -239,7 +239,7 @@ def _show(reference: "weakref.ref[WindowViewer]") -> None:
     window = None if viewer is None else viewer.open_window()
     if window is None:
         return
-    painter = Painter()
+    painter = WindowRenderer()
     try:
         begin = time.monotonic()
         while viewer is not None and viewer.turn(window, painter):

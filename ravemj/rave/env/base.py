@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, cast
 
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import Diagnostic, ErrorCode, RavemjError
-from ravemj.graphics.studio import Studio
+from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.rave.interface import Annotations, UserData
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
@@ -21,7 +21,7 @@ class EnvironmentPart(UserData):
 
     def __init__(self) -> None:
         self._simulation = Simulation()
-        self._studio = Studio(self._simulation)
+        self._renderer = SimulationRenderer(self._simulation)
         self._viewers: list[Viewer] = []
         self._found: dict[Diagnostic, None] = {}  # as ordered sets, which loading a file again does not let grow
         self._files: dict[str, None] = {}

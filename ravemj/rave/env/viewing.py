@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from ravemj.graphics.rendering import Camera
-from ravemj.graphics.studio import Format, Frame, Studio, checked_colour
+from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer, checked_colour
 from ravemj.rave.env.base import EnvironmentPart
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class Viewing(EnvironmentPart):
     """Shows the environment."""
 
-    _internal = ("open_viewer", "studio")
+    _internal = ("open_viewer", "renderer")
 
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
         """Attach a viewer, in place of those before; ``RaveCreateViewer`` attaches further ones.
@@ -59,7 +59,7 @@ class Viewing(EnvironmentPart):
         from ravemj.gui.viewers import open_viewer  # noqa: PLC0415 - slow to import
 
         self._check_alive()
-        viewer = open_viewer(self._simulation, self._studio, name, show)
+        viewer = open_viewer(self._simulation, self._renderer, name, show)
         if viewer is not None:
             self._attach(viewer)
         return viewer
@@ -84,7 +84,7 @@ class Viewing(EnvironmentPart):
         from ravemj.gui.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
 
         self._check_alive()
-        viewer = WebViewer(self._simulation, self._studio, "web", host, port)
+        viewer = WebViewer(self._simulation, self._renderer, "web", host, port)
         self._close_viewers()
         self._attach(viewer)
         return viewer
@@ -163,7 +163,7 @@ class Viewing(EnvironmentPart):
         self._check_alive()
         view = self.default_camera(width / height) if camera is None else Camera.from_matrix(camera)
         colour = self.background if background is None else checked_colour(background)
-        return self._studio.picture(view, colour, Format(width, height, shadows=True))
+        return self._renderer.render(view, colour, Format(width, height, shadows=True))
 
     def default_camera(self, aspect: float = 4 / 3) -> Camera:
         """Return the camera of pictures that name none: the viewer's, else the file's, else one that shows all.
@@ -171,7 +171,7 @@ class Viewing(EnvironmentPart):
         Args:
             aspect: Width of the picture divided by its height.
         """
-        return self._studio.camera_for_stills(aspect) if self._viewer is None else self._viewer.camera
+        return self._renderer.camera_for_stills(aspect) if self._viewer is None else self._viewer.camera
 
     @property
     def background(self) -> tuple[float, float, float]:
@@ -179,9 +179,9 @@ class Viewing(EnvironmentPart):
         return self._simulation.view.background if self._viewer is None else self._viewer.background
 
     @property
-    def studio(self) -> Studio:
+    def renderer(self) -> SimulationRenderer:
         """What draws the environment."""
-        return self._studio
+        return self._renderer
 
     def _repr_png_(self) -> bytes:
         """Return the picture that notebooks show for an environment."""

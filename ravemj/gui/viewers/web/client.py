@@ -11,14 +11,14 @@ from typing import NamedTuple, Protocol
 
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
-from ravemj.graphics.studio import Format, Frame, Studio
+from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Interaction, Leave, Move, Overlay
-from ravemj.gui.viewers.painter import appearance
-from ravemj.gui.viewers.saving import free_path
+from ravemj.gui.viewers.recorder import free_path
 from ravemj.gui.viewers.web import encoding
-from ravemj.gui.viewers.web.complaints import Complaints
-from ravemj.gui.viewers.web.link import Link
+from ravemj.gui.viewers.web.frame_pacing import Link
 from ravemj.gui.viewers.web.messages import Message, Ready, Shape, parse
+from ravemj.gui.viewers.web.rejections import Rejections
+from ravemj.gui.viewers.window_renderer import appearance
 
 _LOG = logging.getLogger("ravemj")
 _PERIOD = 1 / 60
@@ -42,7 +42,7 @@ class Connection(Protocol):
         ...
 
 
-class Look(NamedTuple):
+class PageStyle(NamedTuple):
     """How all pages of a viewer look.
 
     Attributes:
@@ -74,11 +74,11 @@ class Client:
         looks: How often it was found, or seen to, that the page was sent how everything is.
     """
 
-    def __init__(self, simulation: Simulation, studio: Studio, interaction: Interaction) -> None:
+    def __init__(self, simulation: Simulation, renderer: SimulationRenderer, interaction: Interaction) -> None:
         self.interaction = interaction
         self.looks = 0
         self._simulation = simulation
-        self._studio = studio
+        self._renderer = renderer
         self._link = Link()
         self._ratio = 1.0
         self._waiting: deque[Message] = deque([Leave()])  # of what an earlier connection of the page has left
@@ -92,7 +92,7 @@ class Client:
         """Whether there is enough to do before more messages are received."""
         return len(self._waiting) > _MOST_AT_ONCE
 
-    def take_in(self, messages: Iterable[str | bytes], complain: Complaints) -> None:
+    def take_in(self, messages: Iterable[str | bytes], complain: Rejections) -> None:
         """Read messages, which ``attend`` acts upon; nonsense is left out."""
         for text in messages:
             try:
@@ -107,15 +107,15 @@ class Client:
                 self._waiting.pop()  # only where the pointer is now counts
             self._waiting.append(message)
 
-    def attend(self, connection: Connection, look: Look) -> Frame | None:
+    def attend(self, connection: Connection, style: PageStyle) -> Frame | None:
         """Do what the page said, and send it a picture if it takes one and anything has changed or come to rest.
 
         Returns:
             The picture; None if there was none to be sent.
         """
         try:
-            overlay = self._overlay_if_due(look)
-            picture = None if overlay is None else self._picture(overlay, look)
+            overlay = self._overlay_if_due(style)
+            picture = None if overlay is None else self._picture(overlay, style)
         except RavemjError as error:
             if error.message != self._complaint:
                 _LOG.error("a page cannot show the environment: %s", error)
@@ -124,11 +124,11 @@ class Client:
             return None
         if overlay is None or picture is None:
             return None
-        self._send(connection, overlay, picture, look)
+        self._send(connection, overlay, picture, style)
         self.looks += 1
         return picture
 
-    def _overlay_if_due(self, look: Look) -> Overlay | None:
+    def _overlay_if_due(self, style: PageStyle) -> Overlay | None:
         """Do what the page said; return what is to be drawn over the bodies if a picture is due, else None."""
         if not self._simulation.lock.acquire(timeout=_PERIOD):  # who holds it may wait for this thread to end
             return None
@@ -138,7 +138,7 @@ class Client:
                 self._do(self._waiting.popleft())
             if not self._link.is_free:
                 return None
-            seen = appearance(self._simulation), self.interaction.version, look, self._ratio
+            seen = appearance(self._simulation), self.interaction.version, style, self._ratio
             now = time.monotonic()
             if seen != self._seen:
                 self._seen, self._changed_at, self._is_crisp = seen, now, False
@@ -158,15 +158,15 @@ class Client:
         elif not isinstance(message, Ready):
             self.interaction.handle(message)
 
-    def _picture(self, overlay: Overlay, look: Look) -> Frame:
+    def _picture(self, overlay: Overlay, style: PageStyle) -> Frame:
         width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
         shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, 1.0)
         form = Format(max(int(width * shrink), 1), max(int(height * shrink), 1))
-        return self._studio.picture(self.interaction.view.camera, look.background, form, gizmos=overlay.shapes)
+        return self._renderer.render(self.interaction.view.camera, style.background, form, gizmos=overlay.shapes)
 
-    def send_file(self, connection: Connection, look: Look) -> None:
+    def send_file(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""
-        content = encoding.resting(self._picture(self.interaction.overlay(), look), is_exact=True)
+        content = encoding.resting(self._picture(self.interaction.overlay(), style), is_exact=True)
         file = {"task": "save", "name": free_path(".png").name, "data": base64.b64encode(content).decode()}
         connection.send(json.dumps(file))
 
@@ -174,12 +174,12 @@ class Client:
         """Have the browser put a text on the clipboard."""
         connection.send(json.dumps({"task": "copy", "text": text}))
 
-    def _send(self, connection: Connection, overlay: Overlay, picture: Frame, look: Look) -> None:
+    def _send(self, connection: Connection, overlay: Overlay, picture: Frame, style: PageStyle) -> None:
         link = self._link
         link.sent(is_moving=not self._is_crisp)
         mode = self.interaction.mode.value
         controls = [asdict(control) for control in overlay.controls]
-        text = {"lines": overlay.lines, "mode": mode, "title": look.title, "crisp": self._is_crisp}
+        text = {"lines": overlay.lines, "mode": mode, "title": style.title, "crisp": self._is_crisp}
         connection.send(json.dumps({**text, "controls": controls}))
         if self._is_crisp:
             connection.send(encoding.resting(picture, is_exact=link.is_good))

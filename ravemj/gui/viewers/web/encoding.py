@@ -3,7 +3,7 @@
 import io
 from typing import TYPE_CHECKING
 
-from ravemj.graphics.studio import Frame
+from ravemj.graphics.simulation_renderer import Frame
 
 if TYPE_CHECKING:
     from PIL import Image

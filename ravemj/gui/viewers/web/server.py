@@ -17,8 +17,8 @@ from websockets.http11 import Request, Response
 from websockets.sync.server import ServerConnection, serve
 
 from ravemj.errors import RenderingError
-from ravemj.gui.viewers.web.complaints import Complaints
 from ravemj.gui.viewers.web.messages import LONGEST
+from ravemj.gui.viewers.web.rejections import Rejections
 
 LOOPBACK = "127.0.0.1"
 _LOCAL_NAMES = {LOOPBACK, "localhost", "::1"}
@@ -71,7 +71,7 @@ class PageServer:
             RenderingError: this port cannot be had.
         """
         self.token = secrets.token_urlsafe(16)
-        self.complain = Complaints()
+        self.complain = Rejections()
         self.closed = threading.Event()
         self._may_stop = threading.Lock()  # once, by whoever comes first
         self._any_name = any_name

@@ -14,13 +14,13 @@ from websockets.sync.server import ServerConnection
 
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
-from ravemj.graphics.studio import Studio
-from ravemj.gui.interaction import Interaction, Wish
-from ravemj.gui.viewers import saving
+from ravemj.graphics.simulation_renderer import SimulationRenderer
+from ravemj.gui.interaction import Interaction, Request
 from ravemj.gui.viewers.notebook import frame
-from ravemj.gui.viewers.playing import camera_line
+from ravemj.gui.viewers.player import camera_line
+from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.viewer import Viewer
-from ravemj.gui.viewers.web.client import Client, Look, receive
+from ravemj.gui.viewers.web.client import Client, PageStyle, receive
 from ravemj.gui.viewers.web.server import LOOPBACK, PageServer, is_local
 
 _LOG = logging.getLogger("ravemj")
@@ -44,7 +44,7 @@ class WebViewer(Viewer):
     def __init__(
         self,
         simulation: Simulation,
-        studio: Studio,
+        renderer: SimulationRenderer,
         name: str,
         host: str = LOOPBACK,
         port: int = 0,
@@ -55,7 +55,7 @@ class WebViewer(Viewer):
 
         Args:
             simulation: What it shows.
-            studio: What draws the pictures.
+            renderer: What draws the pictures.
             name: Name of the viewer.
             host: Interface that browsers come to; another than the default lets those of other machines in.
             port: Number of the port; 0: any that is free.
@@ -64,7 +64,7 @@ class WebViewer(Viewer):
         Raises:
             RenderingError: this port cannot be had.
         """
-        super().__init__(simulation, studio, name)
+        super().__init__(simulation, renderer, name)
         self._clients: dict[ServerConnection, Client] = {}
         self._views: dict[str, Interaction] = {}
         self._lock = threading.Lock()
@@ -134,7 +134,7 @@ class WebViewer(Viewer):
             self._views[tab] = view
             for oldest in list(self._views)[:-_MOST_TABS]:
                 del self._views[oldest]
-            self._clients[connection] = Client(self._simulation, self._studio, view)
+            self._clients[connection] = Client(self._simulation, self._renderer, view)
 
     def attend(self, connection: ServerConnection, messages: Iterable[str | bytes]) -> bool:
         """Do what a page says and send it a picture if one is due; return whether it may say more.
@@ -144,26 +144,26 @@ class WebViewer(Viewer):
         client = self._clients[connection]
         before = client.interaction.view
         client.take_in(messages, self.server.complain)
-        look = Look(self._background, self._title)
-        picture = client.attend(connection, look)
+        style = PageStyle(self._background, self._title)
+        picture = client.attend(connection, style)
         view = client.interaction.view
         if messages and view.camera is not before.camera:
             self.interaction.look_from(view.camera, view.distance)
         if picture is not None:
             self._image_callbacks.call(picture)
-        for wish in client.interaction.controls.take_wishes():
-            self._grant(wish, client, connection, look)
+        for request in client.interaction.controls.take_requests():
+            self._grant(request, client, connection, style)
         return not client.is_behind
 
-    def _grant(self, wish: Wish, client: Client, connection: ServerConnection, look: Look) -> None:
+    def _grant(self, request: Request, client: Client, connection: ServerConnection, style: PageStyle) -> None:
         """Do what a button asked for that needs the page, or writes here."""
-        if wish is Wish.PICTURE:
+        if request is Request.PICTURE:
             try:
-                client.send_file(connection, look)
+                client.send_file(connection, style)
             except RavemjError as error:
                 client.interaction.controls.notices.say(error.message)
-        elif wish is Wish.VIDEO:
-            self._saving.record(saving.Look(client.interaction, self._studio, self._background), self.playback)
+        elif request is Request.VIDEO:
+            self._recorder.record(FrameSource(client.interaction, self._renderer, self._background), self.playback)
         else:
             line = camera_line(client.interaction.view.camera)
             client.send_text(connection, line)
@@ -173,7 +173,7 @@ class WebViewer(Viewer):
         """Forget a page that has left, in the thread that drew for it."""
         with self._lock:
             self._clients.pop(connection, None)
-        self._studio.close()
+        self._renderer.close()
 
 
 def _serve(reference: "weakref.ref[WebViewer]", connection: ServerConnection) -> None:

@@ -12,8 +12,8 @@ from ravemj.graphics.rendering.contexts import (
     requested_backend,
 )
 from ravemj.graphics.rendering.gl import GlRenderer
+from ravemj.graphics.rendering.gl_scene import Quality
 from ravemj.graphics.rendering.ray import RayRenderer
-from ravemj.graphics.rendering.stage import Quality
 
 
 def opened(model: mujoco.MjModel, quality: Quality, backend: str | None) -> Renderer:

@@ -7,8 +7,8 @@ from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import Playback
-from ravemj.gui.viewers.selecting import Selecting
-from ravemj.trajectories.courses import course_of_motion, course_of_waypoints
+from ravemj.gui.viewers.selection_callbacks import Selecting
+from ravemj.trajectories.body_motion import BodyMotion
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.motion import Motion
 from ravemj.trajectories.waypoints import Waypoints
@@ -75,13 +75,13 @@ class Playing(Selecting):
             playback = self.playback
             if isinstance(motion, Motion):
                 body = self._first_robot() if robot is None else robot.simulation_state
-                course = course_of_motion(body, motion)
+                followed = BodyMotion.of_motion(body, motion)
             else:
                 groups = motion.GetConfigurationSpecification().GetGroups()
-                course = course_of_waypoints(self._simulation, Waypoints(groups, motion.GetAllWaypoints2D()))
+                followed = BodyMotion.of_waypoints(self._simulation, Waypoints(groups, motion.GetAllWaypoints2D()))
             before, playback.speed = playback.speed, speed
             try:
-                playback.load(course)
+                playback.load(followed)
             except Exception:
                 playback.speed = before
                 raise

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ravemj.gui.interaction.controls import Control
-from ravemj.gui.interaction.layout import Panel, Rect
+from ravemj.gui.interaction.mode_buttons import Panel, Rect
 
 _MARGIN, _GAP = 8.0, 4.0
 _LEFT, _RIGHT = 212.0, 62.0
@@ -36,7 +36,7 @@ _Point = tuple[float, float]
 _PLAYING = ("back", "play", "forward", "seek", "speed")
 
 
-class Board(NamedTuple):
+class ControlLayout(NamedTuple):
     """The controls of a view with their places.
 
     Attributes:
@@ -52,7 +52,7 @@ class Board(NamedTuple):
     last_joint: int
 
     @classmethod
-    def of(cls, controls: tuple[Control, ...], size: tuple[int, int], first_joint: int = 0) -> "Board":
+    def of(cls, controls: tuple[Control, ...], size: tuple[int, int], first_joint: int = 0) -> "ControlLayout":
         """Lay controls out.
 
         Args:
@@ -85,7 +85,7 @@ class Board(NamedTuple):
         return next(found, None)
 
     def covers(self, point: _Point | None) -> bool:
-        """Return whether a point of the view [points] is on the board, be it between the controls."""
+        """Return whether a point of the view [points] is on the layout, be it between the controls."""
         if point is None:
             return False
         return self.at(point) is not None or any(back.contains(*point) for back in self.backs)

@@ -1,6 +1,6 @@
 """MuJoCo's classic drawing, wherever it goes: into an offscreen buffer or into a window.
 
-A ``Stage`` belongs to one model and one OpenGL context. Its methods need that context to be current in the
+A ``GlScene`` belongs to one model and one OpenGL context. Its methods need that context to be current in the
 calling thread; making it current is the caller's business, which is why a window can use the same code.
 """
 
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera, bounding_sphere
-from ravemj.graphics.rendering.figures import add_figures
+from ravemj.graphics.rendering.drawing_geoms import add_drawing_geoms
 from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms
 from ravemj.model.drawing import NOTHING, Shapes
 
@@ -59,7 +59,7 @@ class Quality:
     samples: int = 4
 
 
-class Stage:
+class GlScene:
     """Draws one model with OpenGL.
 
     Attributes:
@@ -112,7 +112,7 @@ class Stage:
         mujoco.mjv_updateScene(self._model, data, self._option, None, user_camera, everything, self.scene)
         if self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW]:
             self._cover_with_shadows(data, near=depths[0])
-        add_figures(self.scene, shapes, camera, width, height)
+        add_drawing_geoms(self.scene, shapes, camera, width, height)
 
     def _make_room(self, figures: int) -> None:
         if figures > _MAX_FIGURES and not self._has_warned:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from ravemj.errors import RavemjError
-from ravemj.graphics.studio import Format, Frame, Studio
+from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Interaction, Notices, Playback
 
 _FPS = 30
@@ -23,39 +23,41 @@ _LOG = logging.getLogger("ravemj")
 _Colour = tuple[float, float, float]
 
 
-class Look:
-    """What is seen in a view. Views do not live longer for it."""
+class FrameSource:
+    """Draws what a view shows, frame by frame. It holds the view weakly, so that a closed view is freed."""
 
-    def __init__(self, interaction: Interaction, studio: Studio, background: _Colour, ratio: float = 1.0) -> None:
-        """Look at a view.
+    def __init__(
+        self, interaction: Interaction, renderer: SimulationRenderer, background: _Colour, ratio: float = 1.0
+    ) -> None:
+        """Watch a view.
 
         Args:
             interaction: The view.
-            studio: What draws it.
+            renderer: What draws it.
             background: Colour where nothing is, in 0..1.
             ratio: How many pixels a point has.
         """
-        self._interaction, self._studio = weakref.ref(interaction), weakref.ref(studio)
+        self._interaction, self._renderer = weakref.ref(interaction), weakref.ref(renderer)
         self._background = background
         width, height = (max(round(ratio * length), 1) for length in interaction.view.size)
         self._form = Format(width, height)
 
     def frame(self) -> Frame | None:
         """Return what the view shows now, always of one size; None once there is none."""
-        interaction, studio = self._interaction(), self._studio()
-        if interaction is None or studio is None:
+        interaction, renderer = self._interaction(), self._renderer()
+        if interaction is None or renderer is None:
             return None
         gizmos = interaction.overlay().shapes
-        return studio.picture(interaction.view.camera, self._background, self._form, gizmos=gizmos)
+        return renderer.render(interaction.view.camera, self._background, self._form, gizmos=gizmos)
 
     def close(self) -> None:
         """Free what this thread has drawn with."""
-        studio = self._studio()
-        if studio is not None:
-            studio.close()
+        renderer = self._renderer()
+        if renderer is not None:
+            renderer.close()
 
 
-class Saving:
+class Recorder:
     """Saves what a viewer shows, and tells in its notices where.
 
     A video of a motion has every frame at its time, however long drawing takes: it goes from the start of the motion to
@@ -70,24 +72,24 @@ class Saving:
         self._recorder: threading.Thread | None = None
         self._threads: set[threading.Thread] = set()
 
-    def save_picture(self, look: Look) -> None:
+    def save_picture(self, source: FrameSource) -> None:
         """Save a picture."""
-        self._start(free_path(".png"), lambda path: _write_picture(path, look))
+        self._start(free_path(".png"), lambda path: _write_picture(path, source))
 
-    def record(self, look: Look, playback: Playback) -> None:
+    def record(self, source: FrameSource, playback: Playback) -> None:
         """Begin a video, or end the one that is under way.
 
         Args:
-            look: What is seen in it.
+            source: What is seen in it.
             playback: The motion that it is of, if there is one.
         """
         if self._recorder is not None and self._recorder.is_alive():
             self._stop.set()
             return
         self._stop.clear()
-        times = self._frames_of_clock() if playback.course is None else _frames_of_motion(playback)
+        times = self._frames_of_clock() if playback.motion is None else _frames_of_motion(playback)
         self._notices.recording = True
-        self._recorder = self._start(free_path(".mp4"), lambda path: self._write_video(path, times, look))
+        self._recorder = self._start(free_path(".mp4"), lambda path: self._write_video(path, times, source))
 
     def end(self) -> None:
         """End a video, and wait until all is written; not for long, since a script may hold what is drawn."""
@@ -115,19 +117,19 @@ class Saving:
         thread.start()
         return thread
 
-    def _write_video(self, path: Path, times: Iterator[bool], look: Look) -> None:
+    def _write_video(self, path: Path, times: Iterator[bool], source: FrameSource) -> None:
         from ravemj.graphics.video import write_frames  # noqa: PLC0415 - slow to import
 
         try:
-            write_frames(path, self._frames(times, look), _FPS)
+            write_frames(path, self._frames(times, source), _FPS)
         finally:
             self._notices.recording = False
-            look.close()
+            source.close()
 
-    def _frames(self, times: Iterator[bool], look: Look) -> Iterator[Frame]:
+    def _frames(self, times: Iterator[bool], source: FrameSource) -> Iterator[Frame]:
         frame = None
         for is_new in times:
-            frame = look.frame() if is_new or frame is None else frame
+            frame = source.frame() if is_new or frame is None else frame
             if frame is None:
                 return
             yield frame
@@ -143,21 +145,21 @@ class Saving:
             yield late < 1 / _FPS
 
 
-def _write_picture(path: Path, look: Look) -> None:
+def _write_picture(path: Path, source: FrameSource) -> None:
     from ravemj.graphics.video import write_picture  # noqa: PLC0415 - slow to import
 
-    frame = look.frame()
-    look.close()
+    frame = source.frame()
+    source.close()
     if frame is not None:
         write_picture(path, frame)
 
 
 def _frames_of_motion(playback: Playback) -> Iterator[bool]:
     """Go through a motion frame by frame."""
-    course, step = playback.course, playback.speed / _FPS
+    motion, step = playback.motion, playback.speed / _FPS
     playback.pause()
     for count in range(math.ceil(playback.duration / step - 1e-6) + 1):
-        if playback.course is not course:
+        if playback.motion is not motion:
             return
         playback.seek(count * step)
         yield True

@@ -2,14 +2,14 @@
 
 from collections.abc import Callable
 
-from ravemj.gui.interaction.board import Board
+from ravemj.gui.interaction.control_layout import ControlLayout
 from ravemj.gui.interaction.controls import Controls
 from ravemj.gui.interaction.events import Button, Press
 
 _KEYS = {" ": "play", "arrowleft": "back", "arrowright": "forward"}
 
 
-class Console:
+class ControlPanel:
     """The controls of one view, where a window has them.
 
     Attributes:
@@ -27,13 +27,13 @@ class Console:
         self._is_drawn = is_drawn
         self._first_joint = 0.0
 
-    def board(self, size: tuple[int, int]) -> Board:
+    def layout(self, size: tuple[int, int]) -> ControlLayout:
         """Return where everything is now on a view of some size [points]."""
-        return Board.of(self.controls.all() if self._is_drawn else (), size, round(self._first_joint))
+        return ControlLayout.of(self.controls.all() if self._is_drawn else (), size, round(self._first_joint))
 
-    def press(self, press: Press, board: Board) -> Callable[[float, float], None] | None:
+    def press(self, press: Press, layout: ControlLayout) -> Callable[[float, float], None] | None:
         """Press a button, or take hold of a slider: what is returned lets it follow the pointer."""
-        control = board.at((press.x, press.y))
+        control = layout.at((press.x, press.y))
         if press.button is not Button.LEFT or control is None:
             return None
         if not control.is_slider:
@@ -42,14 +42,14 @@ class Console:
 
         def slide(x: float, y: float) -> None:
             del y
-            self.controls.operate(control.name, board.value_at(control, x))
+            self.controls.operate(control.name, layout.value_at(control, x))
 
         slide(press.x, press.y)
         return slide
 
-    def scroll(self, board: Board, steps: float) -> None:
+    def scroll(self, layout: ControlLayout, steps: float) -> None:
         """Show others of the sliders that have no room all at once."""
-        self._first_joint = min(max(self._first_joint - steps, 0.0), board.last_joint)
+        self._first_joint = min(max(self._first_joint - steps, 0.0), layout.last_joint)
 
     def key(self, name: str) -> None:
         """Do what a key is for while there is a motion."""

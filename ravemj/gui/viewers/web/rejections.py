@@ -5,7 +5,7 @@ import logging
 _LOG = logging.getLogger("ravemj")
 
 
-class Complaints:
+class Rejections:
     """Logs each kind of trouble once, so that nobody can fill the log."""
 
     def __init__(self) -> None:

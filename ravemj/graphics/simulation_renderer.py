@@ -37,7 +37,7 @@ class Format(NamedTuple):
     shadows: bool = False
 
 
-class Studio:
+class SimulationRenderer:
     """Draws a simulation; each thread keeps the renderer of its last picture, for the next one.
 
     The simulation is locked while its state is copied, and free while OpenGL draws.
@@ -47,7 +47,7 @@ class Studio:
         self._simulation = simulation
         self._kept = threading.local()
 
-    def picture(
+    def render(
         self, camera: Camera, background: ArrayLike, form: Format, drawings: bool = True, gizmos: Shapes = NOTHING
     ) -> Frame:
         """Draw the bodies and the drawings as they are now.
@@ -69,7 +69,7 @@ class Studio:
             compiled = self._simulation.compile()
             shapes = self._simulation.drawings.shapes() if drawings else NOTHING
             shown = merge([shapes, gizmos]) if len(gizmos) else shapes
-            renderer = self._renderer(form)
+            renderer = self._current(form)
             if renderer.backend == RAY:  # it hides geoms of the model while it draws
                 return renderer.render(compiled.data, camera, background, shown)
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
@@ -78,9 +78,9 @@ class Studio:
     def backend(self, form: Format) -> str:
         """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""
         with self._simulation.lock:
-            return self._renderer(form).backend
+            return self._current(form).backend
 
-    def _renderer(self, form: Format) -> Renderer:
+    def _current(self, form: Format) -> Renderer:
         key = (self._simulation.version, form)
         if getattr(self._kept, "key", None) != key:
             self.close()

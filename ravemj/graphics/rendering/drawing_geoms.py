@@ -15,7 +15,7 @@ _WHITE = np.ones(4, dtype=np.float32)
 _Floats32 = NDArray[np.float32]
 
 
-def add_figures(scene: mujoco.MjvScene, shapes: Shapes, camera: Camera, width: int, height: int) -> None:
+def add_drawing_geoms(scene: mujoco.MjvScene, shapes: Shapes, camera: Camera, width: int, height: int) -> None:
     """Append drawings to a scene that has been updated; what does not fit is left out.
 
     Args:

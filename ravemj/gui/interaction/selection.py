@@ -11,9 +11,9 @@ from ravemj.gui.interaction import dragging
 from ravemj.gui.interaction.cube import Cube, Grip
 from ravemj.gui.interaction.events import Press
 from ravemj.gui.interaction.joint_handle import SIZES, JointHandle, driving_dof, joint_and_axis
-from ravemj.gui.interaction.overlay import body_line, joint_line, point_line
+from ravemj.gui.interaction.labels import body_line, joint_line, point_line
 from ravemj.gui.interaction.picking import Hit, pick
-from ravemj.gui.interaction.view import Ray, View
+from ravemj.gui.interaction.viewpoint import Ray, View
 from ravemj.model.drawing import NOTHING, Shapes
 
 OnSelect = Callable[[Hit, Ray], bool]

@@ -9,7 +9,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, rows_from_wxyz, wxyz_from_axis_angle
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction.events import Fingers
-from ravemj.gui.interaction.layout import Tool
+from ravemj.gui.interaction.mode_buttons import Tool
 
 _NEAREST, _FARTHEST = 1e-3, 1e6
 """How near and how far zooming brings the focus [m]."""

@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ravemj.engine.simulation import Simulation
-from ravemj.graphics.rendering.stage import Quality, Stage
+from ravemj.graphics.rendering.gl_scene import GlScene, Quality
 from ravemj.gui.interaction import Interaction, Overlay, Panel
 from ravemj.model.drawing import merge
 
@@ -21,12 +21,12 @@ def appearance(simulation: Simulation) -> object:
     return simulation.version, state, simulation.drawings.shapes()
 
 
-class Painter:
+class WindowRenderer:
     """Draws into a window, whenever something has changed."""
 
     def __init__(self) -> None:
-        self._stage: Stage | None = None
-        self._stage_key: object = None
+        self._gl_scene: GlScene | None = None
+        self._scene_key: object = None
         self._seen: object = None
         self._overlay: Overlay | None = None
 
@@ -56,42 +56,42 @@ class Painter:
             return False
         self._seen = seen
         self._overlay = interaction.overlay()
-        stage = self._prepared_stage(compiled.model, (simulation.version, ratio), ratio)
+        stage = self._prepared_scene(compiled.model, (simulation.version, ratio), ratio)
         shapes = merge([simulation.drawings.shapes(), self._overlay.shapes])
         stage.fill(compiled.data, interaction.view.camera, *pixels, shapes)
         return True
 
-    def _prepared_stage(self, model: mujoco.MjModel, key: object, ratio: float) -> Stage:
-        if self._stage is None or self._stage_key != key:
+    def _prepared_scene(self, model: mujoco.MjModel, key: object, ratio: float) -> GlScene:
+        if self._gl_scene is None or self._scene_key != key:
             self.close()
-            self._stage, self._stage_key = Stage(model, Quality(1, 1)), key
-            mujoco.mjr_changeFont(_font_scale(ratio), self._stage.context)
-        return self._stage
+            self._gl_scene, self._scene_key = GlScene(model, Quality(1, 1)), key
+            mujoco.mjr_changeFont(_font_scale(ratio), self._gl_scene.context)
+        return self._gl_scene
 
     def draw(self, background: ArrayLike, pixels: tuple[int, int]) -> None:
         """Draw what was seen last, without text and buttons; arguments as for ``look``."""
-        if self._stage is not None:
-            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_WINDOW.value, self._stage.context)
-            self._stage.draw(mujoco.MjrRect(0, 0, *pixels), np.rint(np.multiply(background, 255)).astype(np.uint8))
+        if self._gl_scene is not None:
+            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_WINDOW.value, self._gl_scene.context)
+            self._gl_scene.draw(mujoco.MjrRect(0, 0, *pixels), np.rint(np.multiply(background, 255)).astype(np.uint8))
 
     def read(self, pixels: tuple[int, int]) -> NDArray[np.uint8]:
         """Return what was drawn, (height, width, 3), top row first."""
         picture = np.zeros((pixels[1], pixels[0], 3), dtype=np.uint8)
-        if self._stage is not None:
-            mujoco.mjr_readPixels(picture, None, mujoco.MjrRect(0, 0, *pixels), self._stage.context)
+        if self._gl_scene is not None:
+            mujoco.mjr_readPixels(picture, None, mujoco.MjrRect(0, 0, *pixels), self._gl_scene.context)
         return picture[::-1].copy()
 
     def draw_overlay(self, pixels: tuple[int, int], ratio: float) -> None:
         """Draw text and buttons over the picture."""
-        if self._stage is None or self._overlay is None:
+        if self._gl_scene is None or self._overlay is None:
             return
         if self._overlay.lines:
             text = "\n".join(self._overlay.lines)
             for _ in range(2):  # its background is half transparent; twice, white text can be read on white
                 viewport = mujoco.MjrRect(0, 0, *pixels)
-                mujoco.mjr_overlay(_FONT, _TOP_LEFT, viewport, text, "", self._stage.context)
+                mujoco.mjr_overlay(_FONT, _TOP_LEFT, viewport, text, "", self._gl_scene.context)
         for panel in self._overlay.panels:
-            self._draw_panel(panel, pixels[1], ratio, self._stage.context)
+            self._draw_panel(panel, pixels[1], ratio, self._gl_scene.context)
 
     def _draw_panel(self, panel: Panel, height: int, ratio: float, context: mujoco.MjrContext) -> None:
         x, y, width, rows = panel.rect
@@ -104,9 +104,9 @@ class Painter:
 
     def close(self) -> None:
         """Free what OpenGL holds."""
-        if self._stage is not None:
-            self._stage.close()
-            self._stage = None
+        if self._gl_scene is not None:
+            self._gl_scene.close()
+            self._gl_scene = None
 
 
 def _font_scale(ratio: float) -> int:

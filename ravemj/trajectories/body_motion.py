@@ -1,0 +1,92 @@
+"""Bodies that follow a motion or a trajectory: what viewers play."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.errors import ArgumentError
+from ravemj.trajectories import extraction
+from ravemj.trajectories.groups import AFFINE, JOINTS, Group
+from ravemj.trajectories.motion import Motion
+from ravemj.trajectories.waypoints import Waypoints
+
+
+@dataclass(frozen=True, eq=False)
+class BodyMotion:
+    """Where bodies are at each time.
+
+    Attributes:
+        bodies: Those that move.
+        duration: When it ends [s]; it starts at 0.
+        place: Puts the bodies where they are at a time [s].
+    """
+
+    bodies: tuple[BodyState, ...]
+    duration: float
+    place: Callable[[float], None]
+
+    @classmethod
+    def of_motion(cls, body: BodyState, motion: Motion) -> "BodyMotion":
+        """Let a body follow the joint values of a motion, as far as its limits go.
+
+        Raises:
+            ArgumentError: the motion has another number of joints than the body.
+        """
+        name, dof = body.scene.name, body.kinematics.dof
+        if motion.dof != dof:
+            raise ArgumentError(f"the motion has {motion.dof} joints, and '{name}' has {dof} DOFs")
+        start = float(motion.times[0])
+        return cls((body,), motion.duration, lambda time: set_within_limits(body, motion.sample(start + time)))
+
+    @classmethod
+    def of_waypoints(cls, simulation: Simulation, waypoints: Waypoints) -> "BodyMotion":
+        """Let all bodies that a trajectory names follow its joint values and poses.
+
+        Args:
+            simulation: Where the bodies are.
+            waypoints: The trajectory; it is not copied.
+
+        Raises:
+            ArgumentError: it has no waypoint or no time, or names no body that is there, or joints that a body lacks.
+        """
+        waypoints.sample(0.0, restamped=True)
+        groups = [group for group in waypoints.groups if group.kind in {JOINTS[0], AFFINE[0]}]
+        named = [simulation.body(name) for name in extraction.used_bodies(groups)]
+        bodies = tuple(body for body in named if body is not None)
+        if not bodies:
+            raise ArgumentError("the trajectory moves no body of this environment")
+        dofs = {body: extraction.used_indices(groups, body.scene.name)[0] for body in bodies}
+        for body in bodies:
+            if any(not 0 <= dof < body.kinematics.dof for dof in dofs[body]):
+                raise ArgumentError(f"the trajectory names joints that '{body.scene.name}' does not have")
+
+        def place(time: float) -> None:
+            numbers = waypoints.sample(time, restamped=True)
+            for body in bodies:
+                _place(body, dofs[body], groups, numbers)
+
+        return cls(bodies, waypoints.duration(), place)
+
+
+def _place(body: BodyState, dofs: list[int], groups: list[Group], numbers: Floats) -> None:
+    name = body.scene.name
+    values = extraction.joint_values(groups, numbers, name, dofs, 0)
+    if values is not None:
+        configuration = body.kinematics.values()
+        configuration[dofs] = values
+        set_within_limits(body, configuration)
+    pose = extraction.pose(groups, numbers, name, body.pose())
+    if pose is not None:
+        body.set_pose(pose)
+
+
+def set_within_limits(body: BodyState, values: Floats) -> None:
+    """Set the joint values of a body, shape (dof,), moved into the limits; circular joints have none."""
+    kinematics = body.kinematics
+    if len(values) != kinematics.dof:
+        raise ArgumentError(f"'{body.scene.name}' has {kinematics.dof} DOFs, and no more {len(values)}")
+    allowed = np.clip(values, kinematics.lower, kinematics.upper)
+    body.set_values(np.where(kinematics.circular, values, allowed))
