@@ -147,7 +147,7 @@ class BodyKinematics:
         self._highest = np.where(self.circular, LARGEST, self.upper)
         bounds = list(zip(self._lowest.tolist(), self._highest.tolist(), strict=True))
         self._bounds = bounds if self.dof <= FEW else None
-        self._joints = (*body.joints, *body.passive_joints)
+        self._joints = body.all_joints
         self.followers = [one._replace(axis=self._joints[one.joint].axes[0]) for one in self.followers]
 
     def _find_balls(self, names: "BodyNames") -> list[Ball]:

@@ -79,7 +79,7 @@ def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[Joi
     """
     followers: list[Follower] = []
     dof = 0
-    for place, joint in enumerate((*body.joints, *body.passive_joints)):
+    for place, joint in enumerate(body.all_joints):
         count = len(joint.axes) if place < len(body.joints) else 0
         mimic = joint.mimic
         own = None if mimic is None else Equations(mimic.position, mimic.velocity, mimic.acceleration)

@@ -60,7 +60,7 @@ class Chain:
         count = len(kinematics.body_ids)
         self._step_of: list[int] = [ROOT] * count
         self.T_step_links = np.tile(np.eye(4), (count, 1, 1))
-        joints = (*kinematics.body.joints, *kinematics.body.passive_joints)
+        joints = kinematics.body.all_joints
         placing = {joint.child: index for index, joint in enumerate(joints) if joint.places_child}
         order: list[int] = np.argsort(kinematics.body_ids).tolist()
         for link in order:
@@ -152,7 +152,7 @@ class Chain:
         if not kinematics.followers:
             return {}
         known = first_values(kinematics, values)
-        joints = (*kinematics.body.joints, *kinematics.body.passive_joints)
+        joints = kinematics.body.all_joints
         for follower in kinematics.followers:
             mimic, axis = joints[follower.joint].mimic, follower.axis
             assert mimic is not None

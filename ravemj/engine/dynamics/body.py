@@ -157,14 +157,9 @@ class BodyDynamics:
 
     def _two_axes(self, joint: Joint) -> Floats:
         """Return the axes of a ``hinge2`` as columns, shape (3, 2)."""
-        names = self._kinematics.names.joints[(*self._all_joints,).index(joint)]
+        names = self._kinematics.names.joints[self._kinematics.body.all_joints.index(joint)]
         ids = [mujoco.mj_name2id(self._model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in names]
         return self._data.xaxis[ids].T if ids else np.zeros((3, 2))
-
-    @property
-    def _all_joints(self) -> tuple[Joint, ...]:
-        body = self._kinematics.body
-        return (*body.joints, *body.passive_joints)
 
     def _ball_velocity(self, joint: Joint, turned: Floats) -> Floats:
         """Return the rate of a rotation vector, for an angular velocity in the parent's axes."""

@@ -92,7 +92,7 @@ class VelocityMap:
 
     def _expression(self, follower: Follower) -> "Expression":
         body = self._kinematics.body
-        mimic = (*body.joints, *body.passive_joints)[follower.joint].mimic
+        mimic = body.all_joints[follower.joint].mimic
         assert mimic is not None
         assert mimic.expression is not None
         return mimic.expression

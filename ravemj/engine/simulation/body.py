@@ -380,7 +380,7 @@ class BodyState:
 
     def edit_joint(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Joint
         """Change the description of a joint; the index counts active joints and then passive ones."""
-        joints = [*self.scene.joints, *self.scene.passive_joints]
+        joints = list(self.scene.all_joints)
         joints[index] = replace(joints[index], **changes)
         count = len(self.scene.joints)
         self.edit(joints=tuple(joints[:count]), passive_joints=tuple(joints[count:]))

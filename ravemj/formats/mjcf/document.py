@@ -168,7 +168,7 @@ class _Writer:
 
     def write_body(self, index: int, body: KinBody) -> None:
         """Write the tree of links of a body, root links first, and what belongs to it in other sections."""
-        joints = (*body.joints, *body.passive_joints)
+        joints = body.all_joints
         names = BodyNames(
             links=tuple(self._given.give("body", body, link.name or f"link{i}") for i, link in enumerate(body.links)),
             joints=tuple(

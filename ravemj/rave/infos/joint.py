@@ -143,7 +143,7 @@ class JointInfo(ParameterFields):
             index: Index of the joint among the active joints followed by the passive ones.
             values: The values of its axes [rad or m].
         """
-        joint = (*body.joints, *body.passive_joints)[index]
+        joint = body.all_joints[index]
         mimic = joint.mimic
         axes = joint.axes
         return cls(
