@@ -21,7 +21,7 @@ from ravemj.core.transforms import (
     rows_from_wxyz,
     wxyz_from_rows,
 )
-from ravemj.model.following import evaluation_order
+from ravemj.model.mimic import evaluation_order
 from ravemj.model.joints import measured_values, rotation_vector, wxyz_from_rotation_vector
 from ravemj.model.scene import Axis, Joint, KinBody
 

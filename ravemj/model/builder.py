@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from ravemj.core.transforms import UNMOVED, ZERO, Pose, Vec3, Wxyz, rotate, scale
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.model import hierarchy, scene
-from ravemj.model.following import Equations, Follower, evaluation_order, leaders, resolve
+from ravemj.model.mimic import Equations, Follower, evaluation_order, leaders, resolve
 from ravemj.model.joints import measured_values, place_links
 from ravemj.model.manipulators import ManipulatorBuilder, freeze_manipulator
 

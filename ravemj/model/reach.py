@@ -7,7 +7,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.model.bounds import link_bounds
 from ravemj.model.chains import joints_above
-from ravemj.model.following import evaluation_order, leaders
+from ravemj.model.mimic import evaluation_order, leaders
 from ravemj.model.scene import Joint, KinBody
 
 _SAMPLES = 1000

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.transforms import Vec3, add, conjugate, dot, rotate, scale
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.model import scene
-from ravemj.model.following import Equations
+from ravemj.model.mimic import Equations
 from ravemj.model.joints import about, directions_at, reported_anchor, wxyz_from_rotation_vector
 from ravemj.model.making import MADE
 from ravemj.rave.enums import JointType
