@@ -6,7 +6,7 @@
 
 from ravemj.engine.dynamics.body import BodyDynamics
 from ravemj.engine.dynamics.posture import Inertias, Posture, cross
-from ravemj.engine.dynamics.slopes import VelocityMap, first_values, rotation_rate
+from ravemj.engine.dynamics.coupling import VelocityMap, first_values, rotation_rate
 from ravemj.engine.dynamics.tree import Tree
 
 __all__ = ["BodyDynamics", "Inertias", "Posture", "Tree", "VelocityMap", "cross", "first_values", "rotation_rate"]

@@ -7,7 +7,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.dynamics.posture import Inertias, Posture, cross
-from ravemj.engine.dynamics.slopes import VelocityMap, rotation_rate
+from ravemj.engine.dynamics.coupling import VelocityMap, rotation_rate
 from ravemj.engine.dynamics.tree import Tree
 from ravemj.engine.kinematics import BodyKinematics
 from ravemj.model.scene import Joint

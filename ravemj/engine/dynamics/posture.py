@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.engine.dynamics.slopes import Slopes
+from ravemj.engine.dynamics.coupling import Slopes
 from ravemj.engine.dynamics.tree import NONE, Tree
 from ravemj.model.scene import Link
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Pose, inverse, pose_of
 from ravemj.engine.kinematics import BodyKinematics, Configuration
-from ravemj.engine.placement import place_links
-from ravemj.engine.simulation.compiled import write_inertial
+from ravemj.engine.kinematics.displacement import place_links
+from ravemj.engine.compiled import write_inertial
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.scene import Axis, Geometry, Inertial, KinBody, Link
 

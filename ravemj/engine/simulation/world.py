@@ -7,7 +7,7 @@ import mujoco
 from ravemj.core.transforms import Vec3
 from ravemj.engine.kinematics import BodyKinematics
 from ravemj.engine.simulation.body import BodyState
-from ravemj.engine.simulation.compiled import Compiled
+from ravemj.engine.compiled import Compiled
 from ravemj.errors import Diagnostics, ErrorCode, RavemjError, send_warnings
 from ravemj.model.drawing import Drawings
 from ravemj.model.scene import KinBody, Scene, View

@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 
 from ravemj.core.transforms import Floats, inverse, pose_of
-from ravemj.engine.kinematics import BodyKinematics
+from ravemj.engine.kinematics.body import BodyKinematics
 from ravemj.model.joints import measured_values
 from ravemj.model.scene import Joint
 
