@@ -1,4 +1,4 @@
-"""The runtime: bodies, and the MuJoCo model made of them."""
+"""Bodies, and the MuJoCo model made of them."""
 
 from ravemj.engine.simulation.body import BodyState
 from ravemj.engine.compiled import Compiled

@@ -66,5 +66,4 @@ class JointFollowing(JointPart):
             raise RavemjError(message, ErrorCode.NotImplemented)
         with self._state.simulation.lock:
             passive = with_equations(self._state.scene, self._index, Equations(poseq, veleq, acceleq))
-            self._state.simulation.forget_model()
-            self._state.edit(passive_joints=passive)
+            self._state.edit_mimic(passive)
