@@ -393,13 +393,13 @@ class Trial:
         for body in bodies:
             simulation.add(body)
         try:
-            simulation.compile()
+            simulation.compiled()
         except RavemjError as error:
             return error.message
         for state in simulation.bodies:
             kinematics = state.kinematics
             assert kinematics.link_transforms().shape == (len(state.scene.links), 4, 4)
-            kinematics.set_values(np.clip(np.full(kinematics.dof, 0.1), kinematics.lower, kinematics.upper))
+            kinematics.set_values(kinematics.limits.clamp(np.full(kinematics.dof, 0.1)))
             assert kinematics.values().shape == (kinematics.dof,)
         return ""
 

@@ -119,7 +119,7 @@ class World(RuleBasedStateMachine):
         return [one for one in self.known if one.added]
 
     def compiled(self):
-        """A query that needs joints has been made: one compilation if the bodies are others than before, else none."""
+        """A query that needs shapes has been made: one compilation if the bodies are others than before, else none."""
         assert self.env.simulation.version == self.version + self.stale
         self.version, self.stale = self.env.simulation.version, False
 
@@ -167,7 +167,6 @@ class World(RuleBasedStateMachine):
             one.body.SetDOFValues(given)
             one.values = given
             one.place(chain(one.links[0], given))
-            self.compiled()
         else:
             with pytest.raises(ravemj.openrave_exception):
                 one.body.SetDOFValues(given)
@@ -268,7 +267,7 @@ class World(RuleBasedStateMachine):
             body.SetDOFValues(values[: len(expected.values)])
             body.Enable(False)
             body.ReleaseAllGrabbed()
-        assert copy.simulation.version == 1
+        assert copy.simulation.version == 0
         copy.Destroy()
 
     @rule(one=bodies, other=bodies)
@@ -304,7 +303,6 @@ class World(RuleBasedStateMachine):
     def ask_for_values(self, one):
         if one.added:
             np.testing.assert_allclose(one.body.GetDOFValues(), one.values, atol=1e-9)
-            self.compiled()
 
     @rule(one=bodies)
     def ask_for_room(self, one):
@@ -356,7 +354,7 @@ class TestWorldForLonger(World.TestCase):
 
 
 def test_a_hundred_added_bodies_are_compiled_once():
-    """What asks for poses and bounds between needs no model; the first question for joint values makes one."""
+    """What asks for joint values, poses and bounds needs no model of the world; the first collision makes one."""
     env = ravemj.Environment()
     env.LoadData(ARM.replace("NAME", "arm"))
     arm = env.GetRobot("arm")
@@ -372,8 +370,9 @@ def test_a_hundred_added_bodies_are_compiled_once():
         assert body.GetTransform()[0, 3] == number
         body.Enable(False)
         np.testing.assert_allclose(body.ComputeAABB().pos(), [number, 1, 0], atol=1e-9)
-    assert env.simulation.version == version
     np.testing.assert_array_equal(arm.GetDOFValues(), [0.3, -0.4])
+    assert env.simulation.version == version
+    assert not env.CheckCollision(arm)
     assert env.simulation.version == version + 1
     np.testing.assert_array_equal(arm.GetLinkVelocities(), before)
     np.testing.assert_array_equal(arm.link_transforms(), poses)

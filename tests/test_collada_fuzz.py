@@ -102,7 +102,7 @@ def meaning(data: bytes, deep: bool = False) -> tuple[int, str, list[str]]:
             for body in reading.scene.bodies:
                 simulation.add(body)
             with suppress(RavemjError):
-                simulation.compile()
+                simulation.compiled()
         links = sum(len(body.links) for body in reading.scene.bodies)
         return links, PLACE.sub("", text), [str(finding) for finding in reading.diagnostics]
 

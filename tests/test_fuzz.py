@@ -287,7 +287,7 @@ class TestFound:
     def test_strange_paths(self, tmp_path, name):
         (tmp_path / name).write_text(body(LINK))
         env = ravemj.load(tmp_path / name)
-        compiled = env.simulation.compile().mjcf
+        compiled = env.simulation.compiled().mjcf
         assert len(compiled.sources) == compiled.text.count("\n")
         root = etree.fromstring(compiled.text.encode())
         assert "".join(root.itertext()).strip() == ""

@@ -151,7 +151,7 @@ def test_mujoco_s_complaints_name_the_user_s_line(monkeypatch, models, tmp_path)
     (body,) = read(models / "double-pendulum.xml").scene.bodies
     simulation.add(body)
     with pytest.raises(ravemj.CompileError, match=r"MuJoCo refuses .*mass") as caught:
-        simulation.compile()
+        simulation.compiled()
     assert caught.value.source.file == str(models / "double-pendulum.xml")
     assert caught.value.source.line == 16
 

@@ -153,7 +153,7 @@ class TestModel:
     def test_every_scene_compiles(self, load, scene):
         bodies = load(scene)
         simulation = bodies[0].GetEnv().simulation
-        compiled = simulation.compile()
+        compiled = simulation.compiled()
         model = compiled.model
         links = [name for names in compiled.mjcf.names for name in names.links]
         joints = [name for names in compiled.mjcf.names for joint in names.joints for name in joint]

@@ -259,7 +259,7 @@ def test_completion_lists_what_a_user_may_call(shell, objects, name, jedi):
 def test_completion_neither_compiles_nor_draws(shell, objects, jedi, monkeypatch):
     env = objects["fresh"]
     env.simulation.forget_model()
-    monkeypatch.setattr(env.simulation, "compile", lambda: pytest.fail("completion compiles"))
+    monkeypatch.setattr(env.simulation, "compiled", lambda: pytest.fail("completion compiles"))
     monkeypatch.setattr(env.renderer, "render", lambda *rest: pytest.fail("completion draws"))
     assert "model" in completions(shell, "fresh.", jedi)
     assert "render" in completions(shell, "fresh.re", jedi)

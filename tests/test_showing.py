@@ -147,7 +147,7 @@ def test_dir_lists_what_users_call(env):
 
 def test_dir_runs_nothing(env):
     dir(env), dir(env.GetRobots()[0]), repr(env.GetRobots()[0].GetLinks()), str(env)
-    assert env.simulation._compiled is None
+    assert env.simulation._world is None
 
 
 class Page(HTMLParser):

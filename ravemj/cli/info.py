@@ -44,7 +44,7 @@ class _Tree:
         self._body = body
         self._width = width
         self._first_dofs = [*dof_starts(body), *(None for _ in body.passive_joints)]
-        self._joints = (*body.joints, *body.passive_joints)
+        self._joints = body.all_joints
         self._placing = {joint.child: index for index, joint in enumerate(self._joints) if joint.places_child}
 
     def lines(self) -> Iterator[str]:

@@ -49,8 +49,7 @@ def _motion(options: argparse.Namespace, body: KinBody) -> Motion:
         motion = read_motion(options.trajectory, [joint.GetName() for joint in body.GetJoints()], start)
         return motion if options.duration is None else motion.rescaled(options.duration)
     if options.to is None:
-        lower, upper = body.GetDOFLimits()
-        goal = np.clip([math.pi] + [0.0] * (len(start) - 1), lower, upper)
+        goal = body.simulation_state.kinematics.limits.clamp(np.array([math.pi] + [0.0] * (len(start) - 1)))
     elif len(options.to) != len(start):
         raise ArgumentError(f"--to has {len(options.to)} values, and '{body.GetName()}' has {len(start)} DOFs")
     else:

@@ -44,7 +44,7 @@ def translate(simulation: Simulation, diagnostics: Diagnostics, options: Options
     """
     scene = Scene(tuple(body.scene for body in simulation.bodies), simulation.view, simulation.gravity)
     compiled = Compiled(scene, diagnostics, options)
-    start = _qpos(compiled.model, simulation.compile())
+    start = _qpos(compiled.model, simulation.compiled())
     if np.array_equal(start, compiled.model.qpos0):
         return compiled.mjcf
     keyframe = Lines(indent=1)

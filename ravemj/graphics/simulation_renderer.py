@@ -66,7 +66,7 @@ class SimulationRenderer:
             RenderingError: nothing can draw here, or ``MUJOCO_GL`` names what does not work.
         """
         with self._simulation.lock:
-            compiled = self._simulation.compile()
+            compiled = self._simulation.compiled()
             shapes = self._simulation.drawings.shapes() if drawings else NOTHING
             shown = merge([shapes, gizmos]) if len(gizmos) else shapes
             renderer = self._current(form)
@@ -84,7 +84,7 @@ class SimulationRenderer:
         key = (self._simulation.version, form)
         if getattr(self._kept, "key", None) != key:
             self.close()
-            model = self._simulation.compile().model
+            model = self._simulation.compiled().model
             self._kept.data = mujoco.MjData(model)
             self._kept.renderer = open_renderer(model, form.width, form.height, shadows=form.shadows)
             self._kept.key = (self._simulation.version, form)
@@ -116,7 +116,7 @@ class SimulationRenderer:
     def bounding_sphere(self) -> tuple[NDArray[np.float64], float]:
         """Return centre (3,) and radius [m] of a sphere around all that is drawn."""
         with self._simulation.lock:
-            compiled = self._simulation.compile()
+            compiled = self._simulation.compiled()
             return bounding_sphere(compiled.model, compiled.data)
 
 

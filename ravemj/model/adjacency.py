@@ -18,7 +18,7 @@ def adjacent_pairs(body: KinBody) -> set[Pair]:
     """
     if len(body.links) < 2:
         return set()
-    joints = (*body.joints, *body.passive_joints)
+    joints = body.all_joints
     rigid = components(len(body.links), ((joint.parent, joint.child) for joint in joints if joint.static))
     connected = components(len(body.links), ((joint.parent, joint.child) for joint in joints))
     one_joint = {ordered(rigid[joint.parent], rigid[joint.child]) for joint in joints}

@@ -12,9 +12,10 @@ from dataclasses import dataclass, field, replace
 from ravemj.core.transforms import UNMOVED, ZERO, Pose, Vec3, Wxyz, rotate, scale
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.model import hierarchy, scene
-from ravemj.model.following import Equations, Follower, evaluation_order, leaders, resolve
 from ravemj.model.joints import measured_values, place_links
+from ravemj.model.limits import clamp
 from ravemj.model.manipulators import ManipulatorBuilder, freeze_manipulator
+from ravemj.model.mimic import Equations, MimicJoints, NamedJoint, leaders, resolve
 
 _ROUNDING = 1e-9  # of values that were degrees
 
@@ -117,7 +118,7 @@ class BodyBuilder:
             return self._frozen([link.pose for link in self.links], [], 0)
         listed = self._in_order()
         has_dofs = bool(listed and listed[0].active)
-        mimics = _with_welds(listed, resolve(_followers(listed), diagnostics))
+        mimics = _with_welds(listed, resolve(_named(listed), diagnostics))
         decided = self._decide(listed, mimics)
         poses = [link.pose for link in self.links]
         joints = [
@@ -171,7 +172,11 @@ class BodyBuilder:
         values = _limited(joints, values, findings)
         active = sum(1 for joint in self.joints if joint.active)
         values = self._asked(joints[:active], values, diagnostics)
-        follow(joints, values)
+        firsts = [joint_values[0] for joint_values in values]
+        mimic_joints = MimicJoints(joints)
+        mimic_joints.evaluate(firsts)
+        for mimic in mimic_joints.joints:
+            values[mimic.index][0] = firsts[mimic.index]
         return [
             replace(
                 joint,
@@ -197,29 +202,14 @@ class BodyBuilder:
         return _limited(active, still, diagnostics) + values[len(active) :]
 
 
-def follow(joints: Sequence[scene.Joint], values: list[list[float]]) -> None:
-    """Compute the values of the followers from those of the others, in place, inside their limits."""
-    mimics = {index: joint.mimic for index, joint in enumerate(joints) if joint.mimic is not None}
-    for index in evaluation_order(mimics):
-        expression = mimics[index].expression
-        axis = joints[index].axes[0]
-        if expression is not None:
-            named = {f"joint{leader}": values[leader][0] for leader in leaders(expression)}
-            values[index][0] = _inside(axis, expression.evaluate(named))
-
-
-def _inside(axis: scene.Axis, value: float) -> float:
-    return value if axis.circular else min(max(value, axis.lower), axis.upper)
-
-
-def _followers(listed: Sequence[JointBuilder]) -> list[Follower]:
-    followers: list[Follower] = []
+def _named(listed: Sequence[JointBuilder]) -> list[NamedJoint]:
+    named: list[NamedJoint] = []
     dof = 0
     for joint in listed:
         count = len(joint.axes) if joint.active else 0
-        followers.append(Follower(joint.name, tuple(range(dof, dof + count)), joint.equations, joint.source))
+        named.append(NamedJoint(joint.name, tuple(range(dof, dof + count)), joint.equations, joint.source))
         dof += count
-    return followers
+    return named
 
 
 def _with_welds(listed: Sequence[JointBuilder], mimics: dict[int, scene.Mimic]) -> dict[int, scene.Mimic]:
@@ -270,7 +260,7 @@ def _limited(
         if joint.mimic is not None:  # its value will be computed
             limited.append(joint_values)
             continue
-        limited.append([_inside(axis, value) for axis, value in zip(joint.axes, joint_values, strict=True)])
+        limited.append([clamp(axis, value) for axis, value in zip(joint.axes, joint_values, strict=True)])
         for axis, value, inside in zip(joint.axes, joint_values, limited[-1], strict=True):
             if abs(value - inside) > _ROUNDING:
                 diagnostics.warn(

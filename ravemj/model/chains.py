@@ -10,14 +10,9 @@ from ravemj.model.manipulators import joint_dofs
 from ravemj.model.scene import Joint, KinBody, Manipulator
 
 
-def all_joints(body: KinBody) -> tuple[Joint, ...]:
-    """Return the active joints, then the passive ones."""
-    return (*body.joints, *body.passive_joints)
-
-
 def parents(body: KinBody, link: int) -> list[int]:
     """Return the links that joints hang a link on."""
-    return list(dict.fromkeys(joint.parent for joint in all_joints(body) if joint.child == link))
+    return list(dict.fromkeys(joint.parent for joint in body.all_joints if joint.child == link))
 
 
 def rigidly_attached(body: KinBody, link: int) -> list[int]:
@@ -41,7 +36,7 @@ def chain(body: KinBody, first: int, last: int) -> tuple[list[int], list[int]]:
 def _search(body: KinBody, start: int, passes: Callable[[Joint], bool]) -> dict[int, tuple[int, int]]:
     """Walk the graph breadth first; return for each link the joint and the link that it was reached by."""
     neighbours: dict[int, list[tuple[int, int]]] = {}
-    for index, joint in enumerate(all_joints(body)):
+    for index, joint in enumerate(body.all_joints):
         if passes(joint):
             neighbours.setdefault(joint.parent, []).append((index, joint.child))
             neighbours.setdefault(joint.child, []).append((index, joint.parent))
@@ -67,7 +62,7 @@ def _way_back(reached: dict[int, tuple[int, int]], first: int, last: int) -> tup
 
 def joints_above(body: KinBody, link: int) -> list[int]:
     """Return the joints that place a link and the links that it hangs on, the nearest first."""
-    joints = all_joints(body)
+    joints = body.all_joints
     placing = {joint.child: index for index, joint in enumerate(joints) if joint.places_child}
     above: list[int] = []
     while link in placing:
@@ -78,7 +73,7 @@ def joints_above(body: KinBody, link: int) -> list[int]:
 
 def dofs_moving(body: KinBody, link: int) -> set[int]:
     """Return the DOFs that move a link, also through joints that follow them."""
-    joints = all_joints(body)
+    joints = body.all_joints
     moving: set[int] = set()
     for index in joints_above(body, link):
         mimic = joints[index].mimic
@@ -103,7 +98,7 @@ def dependency_order(body: KinBody) -> list[int]:
 def closed_loops(body: KinBody) -> list[list[tuple[int, int]]]:
     """Return for each joint that closes a loop the loop: links, each with the joint that leads on from it."""
     loops: list[list[tuple[int, int]]] = []
-    for index, joint in enumerate(all_joints(body)):
+    for index, joint in enumerate(body.all_joints):
         if not joint.places_child:
             reached = _search(body, joint.child, lambda other: other.places_child)
             if joint.parent in reached:
@@ -116,7 +111,7 @@ def links_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:
     """Return the effector of a manipulator, what is fixed to it, and what hangs on these."""
     if manipulator.effector is None:
         return []
-    joints = all_joints(body)
+    joints = body.all_joints
     fixed = set(rigidly_attached(body, manipulator.effector))
 
     def hangs(link: int) -> bool:

@@ -14,7 +14,7 @@ DIGITS = 8
 
 def of_body(body: KinBody) -> str:
     """Return the fingerprint of links, their shapes and joints: 32 hexadecimal digits. Names do not matter."""
-    return _digest(_links(body), [_joint(joint) for joint in (*body.joints, *body.passive_joints)])
+    return _digest(_links(body), [_joint(joint) for joint in body.all_joints])
 
 
 def of_robot(body: KinBody) -> str:
@@ -40,7 +40,7 @@ def _tool(arm: Manipulator) -> tuple[object, ...]:
 
 def _links(body: KinBody) -> list[object]:
     """Return the shapes of all links, and where those are that no joint places."""
-    placed = {joint.child for joint in (*body.joints, *body.passive_joints) if joint.places_child}
+    placed = {joint.child for joint in body.all_joints if joint.places_child}
     found: list[object] = []
     for index, link in enumerate(body.links):
         at_root = None if index in placed else body.links[0].T_world_link.inverse() @ link.T_world_link

@@ -1,9 +1,37 @@
-"""Mass properties: from a tensor to principal axes, and back."""
+"""Mass properties: of several links as arrays, and from a tensor to principal axes and back."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ravemj.core.transforms import UNIT_WXYZ, Floats, Pose, Vec3, Wxyz, rows_from_wxyz, wxyz_from_rows
-from ravemj.model.scene import Inertial
+from ravemj.model.scene import Inertial, Link
+
+
+@dataclass(frozen=True, slots=True)
+class Inertias:
+    """Mass properties of the links.
+
+    Attributes:
+        masses: Masses [kg], shape (links,).
+        coms: Centres of mass in the links' frames [m], shape (links, 3).
+        tensors: Inertia about them, in axes parallel to the links' [kg m^2], shape (links, 3, 3).
+    """
+
+    masses: Floats
+    coms: Floats
+    tensors: Floats
+
+    @classmethod
+    def of(cls, links: Sequence[Link]) -> "Inertias":
+        """Return those of the links of a scene."""
+        count = len(links)
+        return cls(
+            np.array([link.inertial.mass for link in links], dtype=np.float64),
+            np.array([link.inertial.com for link in links], dtype=np.float64).reshape(count, 3),
+            np.array([link.inertial.inertia for link in links], dtype=np.float64).reshape(count, 3, 3),
+        )
 
 
 def principal_frame(inertial: Inertial) -> Pose:

@@ -61,7 +61,7 @@ def chain(body: scene.KinBody, base: int, effector: int) -> list[int] | None:
     Returns:
         Indices into the active joints followed by the passive ones.
     """
-    joints = (*body.joints, *body.passive_joints)
+    joints = body.all_joints
     placing = {joint.child: index for index, joint in enumerate(joints) if joint.places_child}
     way: list[int] = []
     link = effector
@@ -74,7 +74,7 @@ def chain(body: scene.KinBody, base: int, effector: int) -> list[int] | None:
 
 
 def _arm_dofs(built: ManipulatorBuilder, body: scene.KinBody, base: int, effector: int) -> tuple[int, ...]:
-    joints = (*body.joints, *body.passive_joints)
+    joints = body.all_joints
     way = chain(body, base, effector)
     if way is None:
         message = f"manipulator '{built.name}': no joints lead from '{built.base}' out to '{built.effector}'"

@@ -6,8 +6,8 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.model.bounds import link_bounds
-from ravemj.model.chains import all_joints, joints_above
-from ravemj.model.following import evaluation_order, leaders
+from ravemj.model.chains import joints_above
+from ravemj.model.mimic import evaluation_order, leaders
 from ravemj.model.scene import Joint, KinBody
 
 _SAMPLES = 1000
@@ -22,7 +22,7 @@ def travel(body: KinBody) -> Floats:
     Returns:
         Metres per radian, for sliders per metre, shape (dof,); 0 for a DOF that moves no shape.
     """
-    reaches = [_joint_reach(body, joint) for joint in all_joints(body)]
+    reaches = [_joint_reach(body, joint) for joint in body.all_joints]
     rates = _rates(body)
     found = np.zeros(len(body.dof_axes))
     for link in range(len(body.links)):
@@ -58,7 +58,7 @@ def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
     if bounds is not None:
         corners = np.stack(np.meshgrid(*zip(*bounds, strict=True), indexing="ij"), axis=-1).reshape(-1, 3)
         found.append(float(np.linalg.norm((corners - point) @ across, axis=1).max()))
-    for joint in all_joints(body):
+    for joint in body.all_joints:
         if joint.parent != link or not joint.places_child:
             continue
         if joint.static or joint.kind == "slider":
@@ -91,7 +91,7 @@ def _turned(joint: Joint, direction: Floats) -> Floats:
 
 def _rates(body: KinBody) -> list[Floats]:
     """Return how fast each axis of each joint moves at most per unit of each DOF: arrays of shape (axes, dof)."""
-    joints, numbers, dof = all_joints(body), np.random.default_rng(0), 0
+    joints, numbers, dof = body.all_joints, np.random.default_rng(0), 0
     rates = [np.zeros((len(joint.axes), len(body.dof_axes))) for joint in joints]
     samples: dict[str, Floats] = {}
     for index, joint in enumerate(joints):

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.questions import body_and_others, held_with, itself
-from ravemj.engine.collision.world import CollisionWorld, world_of
+from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.model import chains, scene
 from ravemj.rave.ikparameterization import IkParameterization
@@ -61,7 +61,7 @@ class ArmCollision:
         target, report = _sorted_out(transform, report)
         beyond = self._links_beyond()
         with self._state.simulation.lock:
-            world = world_of(self._state.simulation)
+            world = self._state.simulation.collisions()
             with self._moved(world, target):
                 checker = self._robot.GetEnv().GetCollisionChecker()
                 return checker.answer(world, body_and_others(world, self._state, beyond), report)
@@ -88,7 +88,7 @@ class ArmCollision:
             others = set(chains.independent_links(self._state.scene, self._scene))
         asked = frozenset((min(a, b), max(a, b)) for a in beyond for b in others - beyond)
         with self._state.simulation.lock:
-            world = world_of(self._state.simulation)
+            world = self._state.simulation.collisions()
             with self._moved(world, target):
                 checker = self._robot.GetEnv().GetCollisionChecker()
                 return checker.answer(world, itself(world, self._state, asked), report)
@@ -101,7 +101,7 @@ class ArmCollision:
         """
         links = frozenset(chains.independent_links(self._state.scene, self._scene))
         with self._state.simulation.lock:
-            world = world_of(self._state.simulation)
+            world = self._state.simulation.collisions()
             checker = self._robot.GetEnv().GetCollisionChecker()
             return checker.answer(world, body_and_others(world, self._state, links), report)
 

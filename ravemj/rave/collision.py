@@ -11,7 +11,7 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.collision import questions
 from ravemj.engine.collision.questions import LinkOf, Links, MovedBy
 from ravemj.engine.collision.rays import RayHit
-from ravemj.engine.collision.world import CollisionWorld, Pairs, world_of
+from ravemj.engine.collision.world import CollisionWorld, Pairs
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import Ray
@@ -115,7 +115,7 @@ class CollisionChecker(Interface):
             checked_kind(report, CollisionReport, "CheckCollision: report")
         simulation = self._simulation
         with simulation.lock:
-            world = world_of(simulation)
+            world = simulation.collisions()
             if len(arguments) == 1 and isinstance(arguments[0], BodyPart):  # planners ask this most
                 pairs = self._pairs_without(world, arguments[0], _NO_BODIES, _NO_LINKS)
             elif arguments and isinstance(arguments[0], Ray):
@@ -134,7 +134,7 @@ class CollisionChecker(Interface):
         if report is not None:
             checked_kind(report, CollisionReport, "CheckSelfCollision: report")
         with self._simulation.lock:
-            world = world_of(self._simulation)
+            world = self._simulation.collisions()
             if isinstance(linkbody, Link):
                 state, link = _key(linkbody)
                 others = range(len(state.scene.links))

@@ -68,7 +68,7 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
 
     def Reset(self) -> None:
         """Remove all bodies."""
-        self._simulation.clear()
+        self._remove_all()
 
     def Destroy(self) -> None:
         """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm.
@@ -96,22 +96,22 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
     @property
     def mjcf(self) -> str:
         """The environment as MJCF, the text that is compiled."""
-        return self._simulation.compile().mjcf.text
+        return self._simulation.compiled().mjcf.text
 
     @property
     def spec(self) -> mujoco.MjSpec:
         """MuJoCo's editable form of the environment, for cameras and actuators of your own."""
-        return self._simulation.compile().spec
+        return self._simulation.compiled().spec
 
     @property
     def model(self) -> mujoco.MjModel:
         """The compiled MuJoCo model; a new one after bodies were added."""
-        return self._simulation.compile().model
+        return self._simulation.compiled().model
 
     @property
     def data(self) -> mujoco.MjData:
         """The state of the MuJoCo model."""
-        return self._simulation.compile().data
+        return self._simulation.compiled().data
 
     def __repr__(self) -> str:
         return f"RaveGetEnvironment({self._number})"
@@ -176,7 +176,7 @@ def load(path: str | os.PathLike[str]) -> Environment:
         if reading.failure is not None:
             raise reading.failure
         env._add(reading)  # pyright: ignore[reportPrivateUsage]
-        env.simulation.compile()
+        env.simulation.compiled()
     except SourceError as error:
         error.diagnostics = (*reading.diagnostics, *env.simulation.diagnostics)
         if error.cause is not None:

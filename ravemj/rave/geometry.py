@@ -32,7 +32,8 @@ class Geometry(Shown):
 
     Type = GeometryType
 
-    def __init__(self, state: BodyState, link: int, index: int, group: str | None = None) -> None:
+    def __init__(self, parent: object, state: BodyState, link: int, index: int, group: str | None = None) -> None:
+        self._parent = parent  # the link; only its text is wanted
         self._state = state
         self._link = link
         self._index = index
@@ -289,9 +290,8 @@ class Geometry(Shown):
         return self._link, self._index, self._group
 
     def __repr__(self) -> str:
-        body: Any = self._state.api_object
         chosen = "GetGeometries()" if self._group is None else f"GetGeometriesFromGroup({self._group!r})"
-        return f"{body.GetLinks()[self._link]!r}.{chosen}[{self._index}]"
+        return f"{self._parent!r}.{chosen}[{self._index}]"
 
     def __str__(self) -> str:
         return f"<geometry:{self.GetName()}, type={self.GetType().name}>"

@@ -153,7 +153,7 @@ class Joint(JointLimits, JointFollowing):
                 values = self._state.kinematics.values()
                 dof = self.GetDOFIndex() + axis
                 values[dof] -= 2 * np.pi * np.round((values[dof] - chosen) / (2 * np.pi))
-                self._state.set_values(values, limit_followers=False)
+                self._state.set_values(values, clamp_mimic=False)
 
     def IsActive(self) -> bool:
         """Return whether the joint has DOFs of its own: it is enabled and follows no other."""

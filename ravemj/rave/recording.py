@@ -116,9 +116,8 @@ def within_limits(body: KinBody, motion: Motion) -> Motion:
     """
     if motion.dof != body.GetDOF():
         raise ArgumentError(f"the motion has {motion.dof} joints, and '{body.GetName()}' has {body.GetDOF()} DOFs")
-    circular = body.simulation_state.kinematics.circular
     lower, upper = body.GetDOFLimits()
-    values = np.where(circular, motion.values, np.clip(motion.values, lower, upper))
+    values = body.simulation_state.kinematics.limits.clamp(motion.values)
     for joint in body.GetJoints():
         dof = joint.GetDOFIndex()
         if np.any(values[:, dof] != motion.values[:, dof]):

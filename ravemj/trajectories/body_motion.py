@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError
@@ -88,5 +86,4 @@ def set_within_limits(body: BodyState, values: Floats) -> None:
     kinematics = body.kinematics
     if len(values) != kinematics.dof:
         raise ArgumentError(f"'{body.scene.name}' has {kinematics.dof} DOFs, and no more {len(values)}")
-    allowed = np.clip(values, kinematics.lower, kinematics.upper)
-    body.set_values(np.where(kinematics.circular, values, allowed))
+    body.set_values(kinematics.limits.clamp(values))

@@ -10,8 +10,10 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.batch.chain import Chain
-from ravemj.engine.dynamics import BodyDynamics, Inertias, Posture
+from ravemj.engine.batch.kinematic_state import KinematicState
+from ravemj.engine.dynamics import BodyDynamics
 from ravemj.engine.kinematics import BodyKinematics
+from ravemj.model.inertia import Inertias
 
 POSES, MOTIONS = 60_000, 8_000
 """Poses of links, and their motions, that are worked out together: few enough for the cache, enough for numpy."""
@@ -20,8 +22,8 @@ POSES, MOTIONS = 60_000, 8_000
 class Batch:
     """A body's chain of links, ready for many joint values. The body's state is neither used nor changed.
 
-    Poses are those that ``SetDOFValues`` gives within the limits: joint limits are not looked at, but followers stop at
-    theirs.
+    Poses are those that ``SetDOFValues`` gives within the limits: joint limits are not looked at, but mimic joints stop
+    at theirs.
     """
 
     def __init__(self, kinematics: BodyKinematics, dynamics: BodyDynamics) -> None:
@@ -50,12 +52,12 @@ class Batch:
                     np.matmul(axes_last, self._chain.T_step_links[link], out=poses[:, link, :3].transpose(1, 0, 2))
                     poses[:, link, 3] = (0.0, 0.0, 0.0, 1.0)
 
-    def _posture(self, values: Floats, *, second: bool = False) -> Posture:
+    def _state(self, values: Floats, *, second: bool = False) -> KinematicState:
         """Return where links and axes are.
 
         Args:
             values: Joint values [rad or m], shape (dof, N).
-            second: Whether second derivatives of followers and spherical joints are wanted.
+            second: Whether second derivatives of mimic and spherical joints are wanted.
         """
         tree, count = self._dynamics.tree, values.shape[1]
         axes, anchors = np.zeros((tree.count, 3, count)), np.zeros((tree.count, 3, count))
@@ -63,14 +65,15 @@ class Batch:
         for step, frame in self._chain.frames(values):
             for link in step.links:
                 np.matmul(self._chain.T_step_links[link].T, frame.reshape(4, -1), out=links[link].reshape(4, -1))
-            if step.kind == "spherical":  # its movers turn about the child's axes
-                axes[step.mover : step.mover + 3] = links[step.child, :3]
-                anchors[step.mover : step.mover + 3] = frame[3]
+            first = step.coordinate
+            if step.kind == "spherical":  # its coordinates turn about the child's axes
+                axes[first : first + 3] = links[step.child, :3]
+                anchors[first : first + 3] = frame[3]
             elif step.kind != "root":
-                axes[step.mover], anchors[step.mover] = frame[2], frame[3]
-        reference = self._dynamics.reference.reshape(3, 1)
-        slopes = self._dynamics.map.at(values, second=second)
-        return Posture(tree, slopes, axes, anchors - reference, links[:, 3] - reference, links[:, :3])
+                axes[first], anchors[first] = frame[2], frame[3]
+        reference = self._kinematics.link_transform(0)[:3, 3:]  # near the body, so that no digits are lost far away
+        coupling = self._dynamics.couplings.at(values, second=second)
+        return KinematicState(tree, coupling, axes, anchors - reference, links[:, 3] - reference, links[:, :3])
 
     def jacobians(self, values: Floats, link: int, point: Floats, out: Floats) -> None:
         """Write the Jacobians of a link.
@@ -82,28 +85,29 @@ class Batch:
             out: Takes the derivatives of the point's position and the link's angular velocity, shape (N, 6, dof).
         """
         for part in self._chunks(len(values), MOTIONS):
-            posture = self._posture(np.ascontiguousarray(values[part].T))
-            place = posture.positions[link] + np.tensordot(point, posture.rotations[link], 1)
-            out[part] = posture.jacobian(link, place).transpose(2, 1, 0)
+            state = self._state(np.ascontiguousarray(values[part].T))
+            place = state.positions[link] + np.tensordot(point, state.rotations[link], 1)
+            out[part] = state.jacobian(link, place).transpose(2, 1, 0)
 
-    def inverse_dynamics(self, values: Floats, rates: Floats, growths: Floats, inertias: Inertias, out: Floats) -> None:
+    def inverse_dynamics(
+        self, values: Floats, rates: Floats, accelerations: Floats, inertias: Inertias, gravity: Floats, out: Floats
+    ) -> None:
         """Write the generalised forces that move the body as given, with its base at rest.
 
         Args:
             values: Joint values [rad or m], shape (N, dof).
             rates: Joint velocities, shape (N, dof).
-            growths: Joint accelerations, shape (N, dof).
+            accelerations: Joint accelerations, shape (N, dof).
             inertias: Mass properties of the links.
+            gravity: Acceleration of free fall [m/s^2], shape (3,).
             out: Takes torques [N m], for sliders forces [N], shape (N, dof).
         """
-        armature, gravity = self._dynamics.armature[:, None], self._kinematics.model.opt.gravity.copy()
         for part in self._chunks(len(values), MOTIONS):
-            now, speed, growth = (np.ascontiguousarray(one[part].T) for one in (values, rates, growths))
-            posture = self._posture(now, second=True)
-            slopes = posture.slopes
-            movers, bent = slopes.forward(speed), slopes.forward(growth) + slopes.bend(speed)
-            twists = posture.twists(movers, None)
-            change = posture.accelerations(twists, movers, bent, None)
-            motion = posture.of_links(twists, None), posture.of_links(change, None)
-            forces = posture.forces(posture.needed_forces(inertias, *motion, gravity)) + armature * bent
-            out[part] = slopes.backward(forces).T
+            now, speed, change = (np.ascontiguousarray(one[part].T) for one in (values, rates, accelerations))
+            state = self._state(now, second=True)
+            coupling = state.coupling
+            velocities = coupling.forward(speed)
+            twists = state.twists(velocities)
+            changes = state.accelerations(twists, velocities, coupling.forward(change) + coupling.bias(speed))
+            wrenches = state.needed_forces(inertias, state.of_links(twists), state.of_links(changes), gravity)
+            out[part] = coupling.backward(state.forces(wrenches)).T

@@ -7,10 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
-import mujoco
 import numpy as np
 
-from ravemj.core.transforms import Floats, inverse, rows_from_wxyz
+from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.dynamics import Tree, first_values
 from ravemj.engine.kinematics import BodyKinematics
 from ravemj.model.scene import Joint
@@ -26,9 +25,9 @@ class Step:
         kind: ``root``, ``hinge``, ``slider`` or ``spherical``.
         parent: The step that it hangs on.
         T_parent_frame: Its frame in the parent's at the value ``reference``, shape (4, 4).
-        source: Where its value comes from: a DOF, a follower by its joint, or what ``qpos`` has now.
+        source: Where its value comes from: a DOF, a mimic joint, or what ``qpos`` has now.
         reference: What is subtracted from the value.
-        mover: Its first mover.
+        coordinate: Its first velocity coordinate.
         child: The link that it moves.
         links: The links that are fixed to its frame, in which they are at ``Chain.T_step_links``.
         last: The last step that hangs on it.
@@ -37,9 +36,9 @@ class Step:
     kind: str
     parent: int
     T_parent_frame: Floats
-    source: tuple[Literal["dof", "follower", "qpos"], int]
+    source: tuple[Literal["dof", "mimic", "qpos"], int]
     reference: float
-    mover: int
+    coordinate: int
     child: int
     links: list[int] = field(default_factory=list[int])
     last: int = ROOT
@@ -55,12 +54,12 @@ class Chain:
 
     def __init__(self, kinematics: BodyKinematics, tree: Tree) -> None:
         self._kinematics = kinematics
-        self._mover_of = tree.mover_of_qpos(kinematics.model)
+        self._coordinate_of_qpos = tree.of_qpos
         self.steps: list[Step] = []
         count = len(kinematics.body_ids)
         self._step_of: list[int] = [ROOT] * count
         self.T_step_links = np.tile(np.eye(4), (count, 1, 1))
-        joints = (*kinematics.body.joints, *kinematics.body.passive_joints)
+        joints = kinematics.body.all_joints
         placing = {joint.child: index for index, joint in enumerate(joints) if joint.places_child}
         order: list[int] = np.argsort(kinematics.body_ids).tolist()
         for link in order:
@@ -74,21 +73,20 @@ class Chain:
     def _hang(self, index: int, joint: Joint) -> None:
         """Add the steps of a joint, and place its child behind them."""
         kinematics = self._kinematics
-        names = kinematics.names.joints[index]  # none for a joint that never moves
+        places = kinematics.joint_qpos[index]  # none for a joint that never moves
         step, T_step_parent = self._step_of[joint.parent], self.T_step_links[joint.parent]
-        for axis, name in enumerate(names):
+        for axis, qpos in enumerate(places):
             T_parent_frame = _axis_frame(joint, axis)
-            qpos = int(kinematics.model.jnt_qposadr[mujoco.mj_name2id(kinematics.model, _JOINT, name)])
-            source: tuple[Literal["dof", "follower", "qpos"], int] = ("qpos", qpos)
+            source: tuple[Literal["dof", "mimic", "qpos"], int] = ("qpos", qpos)
             if index < len(kinematics.body.joints):
                 source = ("dof", kinematics.first_dofs[index] + axis)
-            elif any(follower.joint == index for follower in kinematics.followers):
-                source = ("follower", index)
+            elif any(mimic.index == index for mimic in kinematics.mimic.joints):
+                source = ("mimic", index)
             kind = "hinge" if joint.kind == "hinge2" else joint.kind
             frame, reference = T_step_parent @ T_parent_frame, joint.axes[axis].reference
-            step = self._append(Step(kind, step, frame, source, reference, self._mover_of[qpos], joint.child))
+            step = self._append(Step(kind, step, frame, source, reference, self._coordinate_of_qpos[qpos], joint.child))
             T_step_parent = inverse(T_parent_frame)
-        T_parent_child = joint.T_parent_child.matrix() if names else kinematics.rest_transform(joint.child)
+        T_parent_child = joint.T_parent_child.matrix() if places else kinematics.rest_transform(joint.child)
         self._step_of[joint.child], self.T_step_links[joint.child] = step, T_step_parent @ T_parent_child
 
     def _append(self, step: Step) -> int:
@@ -127,43 +125,31 @@ class Chain:
             yield step, frame
 
     def _root_frame(self, link: int, count: int) -> Floats:
-        model, body_id = self._kinematics.model, self._kinematics.body_ids[link]
-        w, x, y, z = model.body_quat[body_id].tolist()
-        frame = np.vstack((np.array(rows_from_wxyz((w, x, y, z))).T, model.body_pos[body_id]))
+        frame = self._kinematics.link_transform(link)[:3].T
         return np.repeat(frame[:, :, None], count, axis=2)
 
     def _ways(self, values: Floats) -> Floats:
         """Return how far each joint is from where its frame is given, shape (steps, N)."""
         ways = np.zeros((len(self.steps), values.shape[1]))
-        followed = self._followed(values)
+        first_values = self._first_values(values)
         for index, step in enumerate(self.steps):
             kind, place = step.source
             if kind == "dof":
                 ways[index] = values[place]
             elif step.kind != "root":
-                ways[index] = followed[place] if kind == "follower" else self._kinematics.data.qpos[place]
+                ways[index] = first_values[place] if kind == "mimic" else self._kinematics.data.qpos[place]
             if step.reference:
                 ways[index] -= step.reference
         return ways
 
-    def _followed(self, values: Floats) -> dict[int, Floats]:
-        """Return the values of the followers by their joints, each of shape (N,)."""
-        kinematics = self._kinematics
-        if not kinematics.followers:
-            return {}
-        known = first_values(kinematics, values)
-        joints = (*kinematics.body.joints, *kinematics.body.passive_joints)
-        for follower in kinematics.followers:
-            mimic, axis = joints[follower.joint].mimic, follower.axis
-            assert mimic is not None
-            assert mimic.expression is not None
-            named = {name: known[int(name.removeprefix("joint"))] for name in mimic.expression.variables}
-            value = np.broadcast_to(mimic.expression.evaluate_many(named), values.shape[1:])
-            known[follower.joint] = value if axis.circular else np.clip(value, axis.lower, axis.upper)
-        return {follower.joint: known[follower.joint] for follower in kinematics.followers}
-
-
-_JOINT = mujoco.mjtObj.mjOBJ_JOINT
+    def _first_values(self, values: Floats) -> list[Floats]:
+        """Return the first values of all joints where there are mimic joints, each of shape (N,)."""
+        mimic = self._kinematics.mimic
+        if not mimic.joints:
+            return []
+        known = first_values(self._kinematics, values)
+        mimic.evaluate_many(known)
+        return known
 
 
 def _crosswise(T_parent_frame: Floats) -> tuple[Floats, Floats]:

@@ -4,7 +4,6 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.questions import body_and_others, itself
-from ravemj.engine.collision.world import world_of
 from ravemj.engine.simulation import BodyState
 
 
@@ -19,7 +18,7 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> np.n
     Returns:
         Shape (n,).
     """
-    world = world_of(body.simulation)
+    world = body.simulation.collisions()
     pairs = [body_and_others(world, body)] + ([itself(world, body)] if itself_too else [])
     found = np.zeros(len(values), dtype=bool)
     before, stamp = body.configuration(), body.stamp
@@ -27,6 +26,7 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> np.n
     try:
         for number, one in enumerate(values):
             body.set_values(one)
+            world.model.synchronise()
             found[number] = any(world.collide(some) for some in pairs)
     finally:
         body.restore(before)

@@ -9,7 +9,8 @@ import numpy as np
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.rays import RayHit, first_hit
 from ravemj.engine.collision.shapes import TOUCHING, ShapeTests
-from ravemj.engine.simulation import BodyState, Compiled, Simulation
+from ravemj.engine.simulation import BodyState
+from ravemj.engine.simulation.world_model import WorldModel
 
 MOST_PAIRS = 1_000_000
 """Pairs of geoms that are kept for all questions together."""
@@ -59,24 +60,26 @@ class Pairs:
 class CollisionWorld:
     """The geoms of all bodies in the present model, and the pairs that were asked for before.
 
-    ``world_of`` returns it, up to date. Bodies may move in the meantime; whatever else changes makes a new one.
+    ``Simulation.collisions`` returns it, up to date. Bodies may move in the meantime; whatever else changes makes a new
+    one.
 
     Attributes:
-        version: What it was made for.
+        bodies: The bodies of the world.
+        model: The model that it was made for.
+        stamp: ``Simulation.collision_stamp`` of that time.
         shapes: Exact tests.
         collides: For each geom, whether it collides: it belongs to an enabled link and is no mere picture.
     """
 
-    def __init__(self, simulation: Simulation, compiled: Compiled) -> None:
-        self.version = (simulation.version, simulation.collision_stamp)
-        self.bodies = simulation.bodies
-        self._model, self._data = compiled.model, compiled.data
-        self._positions = compiled.data.geom_xpos
-        self.shapes = ShapeTests(compiled.model, compiled.data)
+    def __init__(self, bodies: tuple[BodyState, ...], model: WorldModel, stamp: int) -> None:
+        self.bodies, self.model, self.stamp = bodies, model, stamp
+        self._model, self._data = model.model, model.data
+        self._positions = model.data.geom_xpos
+        self.shapes = ShapeTests(model.model, model.data)
         self._number = {body: number for number, body in enumerate(self.bodies)}
         self._pairs: dict[Hashable, Pairs] = {}
         self._pair_count = 0
-        self._find_owners(compiled.model)
+        self._find_owners(model.model)
         self._groups = _groups(self.bodies)
 
     def _find_owners(self, model: mujoco.MjModel) -> None:
@@ -84,7 +87,7 @@ class CollisionWorld:
         owners, links = np.full(model.nbody, -1), np.zeros(model.nbody, dtype=int)
         enabled = np.zeros(model.nbody, dtype=bool)
         for number, body in enumerate(self.bodies):
-            ids = body.kinematics.body_ids
+            ids = self.model.part(body).body_ids
             owners[ids], links[ids], enabled[ids] = number, np.arange(len(ids)), body.link_enabled
         of_geom = model.geom_bodyid
         self._owner, self._link = owners[of_geom], links[of_geom]
@@ -124,9 +127,9 @@ class CollisionWorld:
     def geometry(self, geom: int) -> int:
         """Return which of its link's geometries a geom belongs to."""
         body, link = self.owner(geom)
-        kinematics = body.kinematics
-        number = geom - int(self._model.body_geomadr[kinematics.body_ids[link]])
-        return int(np.searchsorted(np.cumsum(kinematics.names.geoms[link]), number, side="right"))
+        part = self.model.part(body)
+        number = geom - int(self._model.body_geomadr[part.body_ids[link]])
+        return int(np.searchsorted(np.cumsum(part.names.geoms[link]), number, side="right"))
 
     def pairs(self, question: Hashable, find: Callable[[], tuple[Ints, Ints]]) -> Pairs:
         """Return the pairs that a question is about.
@@ -196,16 +199,6 @@ class CollisionWorld:
             yield
         finally:
             mujoco.mj_kinematics(self._model, self._data)
-
-
-def world_of(simulation: Simulation) -> CollisionWorld:
-    """Return what collision checking knows of the present world. The caller holds ``simulation.lock``."""
-    world = simulation.collision_world
-    compiled = simulation.compile()
-    if isinstance(world, CollisionWorld) and world.version == (simulation.version, simulation.collision_stamp):
-        return world
-    simulation.collision_world = world = CollisionWorld(simulation, compiled)
-    return world
 
 
 def cross(first: Ints, second: Ints) -> tuple[Ints, Ints]:

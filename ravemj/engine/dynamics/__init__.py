@@ -1,12 +1,11 @@
-"""Velocities, derivatives and dynamics of one body, in one configuration or in many at once.
+"""Velocities, derivatives and dynamics of one body in its present configuration.
 
-``tree`` knows which joint carries which, ``slopes`` how the joints follow the DOFs, ``posture`` does the mechanics, and
-``body`` feeds it with the present state. Nothing here spans the rest of the world.
+``tree`` knows which joint carries which, ``coupling`` how velocities follow the DOFs, and ``body`` calls MuJoCo's
+functions with both.
 """
 
 from ravemj.engine.dynamics.body import BodyDynamics
-from ravemj.engine.dynamics.posture import Inertias, Posture, cross
-from ravemj.engine.dynamics.slopes import VelocityMap, first_values, rotation_rate
-from ravemj.engine.dynamics.tree import Tree
+from ravemj.engine.dynamics.coupling import Coupling, CouplingMap, first_values, rotation_rate
+from ravemj.engine.dynamics.tree import NONE, Tree
 
-__all__ = ["BodyDynamics", "Inertias", "Posture", "Tree", "VelocityMap", "cross", "first_values", "rotation_rate"]
+__all__ = ["NONE", "BodyDynamics", "Coupling", "CouplingMap", "Tree", "first_values", "rotation_rate"]

@@ -1,4 +1,9 @@
-"""Velocities, derivatives and dynamics of a body in its present configuration."""
+"""Velocities, derivatives and dynamics of a body in its present configuration, by MuJoCo.
+
+The body's own model has a free joint at each root, so a moving base is a velocity like others. What differs from MuJoCo
+is arranged around its functions: the coupling of velocity coordinates to DOFs, and the velocities of links, which are
+the state in OpenRAVE.
+"""
 
 from collections.abc import Mapping, Sequence
 
@@ -6,104 +11,142 @@ import mujoco
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.engine.dynamics.posture import Inertias, Posture, cross
-from ravemj.engine.dynamics.slopes import VelocityMap, rotation_rate
+from ravemj.engine.dynamics.coupling import Coupling, CouplingMap, rotation_rate
 from ravemj.engine.dynamics.tree import Tree
-from ravemj.engine.kinematics import BodyKinematics
+from ravemj.engine.kinematics import BodyKinematics, index_range
 from ravemj.model.scene import Joint
 
 
 class BodyDynamics:
-    """Derivatives of one body's motion in a compiled model.
+    """Derivatives of one body's motion.
 
     Velocities of links are six numbers in world axes: that of the link's origin [m/s] and the angular one [rad/s].
 
     Attributes:
         tree: Which joint carries which.
-        map: How the joints follow the DOFs.
+        couplings: How the velocity coordinates follow the DOFs.
     """
 
     def __init__(self, kinematics: BodyKinematics) -> None:
         self._kinematics = kinematics
-        self._model, self._data = kinematics.model, kinematics.data
+        self._model, self._data = model, _ = kinematics.model, kinematics.data
         self.tree = Tree(kinematics)
-        self.map = VelocityMap(kinematics, self.tree)
+        self.couplings = CouplingMap(kinematics, self.tree)
+        self._body_ids: list[int] = kinematics.body_ids.tolist()
+        self._inner = np.arange(model.nv)[kinematics.inner_qvel]
+        self._moving, self._turning = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+        self._forces = np.zeros(model.nv)
+        self._of_dofs = _JointAxes(kinematics.body.joints)
+        self._plain_columns: slice | None = None
+        self._coupling_matrix: Floats | None = None
+        if self.couplings.constant is not None:
+            self._coupling_matrix = self._matrix(self.couplings.constant)
+            if self.couplings.is_one_to_one and self.tree.count == kinematics.dof:
+                columns = index_range(self._inner[self.couplings.constant.coordinates])
+                self._plain_columns = columns if isinstance(columns, slice) else None
 
-    @property
-    def armature(self) -> Floats:
-        """Inertia of the motors behind their gears, for each mover, shape (movers,)."""
-        return self._model.dof_armature[self.tree.dofs]
+    def _matrix(self, coupling: Coupling) -> Floats:
+        """Return the coupling matrix with a row for each of MuJoCo's velocities, shape (nv, dof)."""
+        matrix = np.zeros((self._model.nv, self._kinematics.dof))
+        matrix[self._inner] = coupling.forward(np.eye(self._kinematics.dof))
+        return matrix
 
-    @property
-    def reference(self) -> Floats:
-        """The reference point in the world [m], shape (3,): near the body, so that no digits are lost far away."""
-        return self._data.xpos[self._kinematics.body_ids[0]].copy()
+    def _coupling(self, *, second: bool = False) -> Coupling:
+        """Return the coupling in the present configuration."""
+        return self.couplings.constant or self.couplings.at(self._kinematics.values(), second=second)
 
-    def posture(self, *, second: bool = False) -> Posture:
-        """Return where links and axes are now.
+    def _of_dof_values(self, jacobian: Floats) -> Floats:
+        """Return a derivative by MuJoCo's velocities, shape (..., nv), as one by the DOF values, shape (..., dof)."""
+        if self._plain_columns is not None:
+            return jacobian[..., self._plain_columns].copy()
+        matrix = self._coupling_matrix
+        return jacobian @ (self._matrix(self._coupling()) if matrix is None else matrix)
 
-        Args:
-            second: Whether second derivatives of followers and spherical joints are wanted.
-        """
-        kinematics, data, tree = self._kinematics, self._data, self.tree
-        axes = data.xaxis[tree.joints]
-        for mover, body_id in tree.balls:
-            axes[mover : mover + 3] = data.xmat[body_id].reshape(3, 3).T
-        reference = self.reference
-        values = np.zeros(0) if self.map.is_constant else kinematics.values()
-        return Posture(
-            tree,
-            self.map.at(values, second=second),
-            axes,
-            data.xanchor[tree.joints] - reference,
-            data.xpos[kinematics.body_ids] - reference,
-            data.xmat[kinematics.body_ids].reshape(-1, 3, 3).transpose(0, 2, 1),
-        )
-
-    def jacobian(self, link: int, point: Floats) -> tuple[Floats, Floats]:
-        """Return the derivatives of a link's motion by the DOF values.
+    def translation_jacobian(self, link: int, point: Floats) -> Floats:
+        """Return the derivative of the position of a link's point by the DOF values.
 
         Args:
             link: Index of the link.
-            point: A point of the link, in world coordinates [m], shape (3,).
+            point: The point, in world coordinates [m], shape (3,).
 
         Returns:
-            Of the point's position and of the link's angular velocity, in world axes, each of shape (3, dof).
+            Shape (3, dof).
         """
-        columns = self.posture().jacobian(link, point - self.reference).T
-        return columns[:3].copy(), columns[3:].copy()
+        self._kinematics.place_coms()
+        mujoco.mj_jac(self._model, self._data, self._moving, None, point, self._body_ids[link])
+        return self._of_dof_values(self._moving)
+
+    def rotation_jacobian(self, link: int) -> Floats:
+        """Return a link's angular velocity, in world axes, for each DOF's unit velocity, shape (3, dof)."""
+        self._kinematics.place_coms()
+        mujoco.mj_jacBody(self._model, self._data, None, self._turning, self._body_ids[link])
+        return self._of_dof_values(self._turning)
 
     def hessian(self, link: int, point: Floats) -> tuple[Floats, Floats]:
-        """Return the derivatives of ``jacobian`` by the DOF values.
+        """Return the derivatives of ``translation_jacobian`` and ``rotation_jacobian`` by the DOF values.
 
         Returns:
             Two arrays of shape (dof, 3, dof): ``[i, :, j]`` is the derivative of the Jacobian's column j by DOF i.
         """
-        posture = self.posture(second=True)
-        count, slopes = self.tree.count, posture.slopes
-        columns = posture.columns(link, point - self.reference)
-        moving, turning = columns[:, :3], columns[:, 3:]
-        pairs = _outer_cross(turning, np.stack((moving, turning)))
-        before = np.arange(count)[:, None] <= self.tree.carriers  # the first moves the axis of the second
-        by_movers = np.zeros((count, 6, count))
-        by_movers[:, :3] = np.where(before[:, None], pairs[0], pairs[0].transpose(2, 1, 0))
-        by_movers[:, 3:] = np.where(before[:, None], pairs[1], 0.0)
-        by_columns = slopes.backward(by_movers.transpose(2, 1, 0))
-        hessian = slopes.backward(by_columns.transpose(2, 1, 0))
-        for mover, along, dof, value in slopes.second:
-            hessian[along, :, dof] += value * columns[mover]
-        return hessian[:, :3].copy(), hessian[:, 3:].copy()
+        self._kinematics.place_coms()
+        mujoco.mj_jac(self._model, self._data, self._moving, self._turning, point, self._body_ids[link])
+        columns = np.stack((self._moving, self._turning))[:, :, self._inner].transpose(2, 0, 1)
+        moved = _cross(columns[:, None, 1, :], columns[None, :, 0, :])  # w_a x v_b as [a, b]
+        turned = _cross(columns[:, None, 1, :], columns[None, :, 1, :])
+        order = np.arange(self.tree.count)
+        before = (order[:, None] <= self.tree.carriers)[..., None]  # the first moves the axis of the second
+        by_coordinates = np.concatenate(
+            (np.where(before, moved, moved.transpose(1, 0, 2)), np.where(before, turned, 0.0)), axis=2
+        )
+        coupling = self._coupling(second=True)
+        by_columns = coupling.backward(by_coordinates.transpose(1, 0, 2))
+        hessian = coupling.backward(by_columns.transpose(1, 0, 2))
+        for coordinate, along, dof, value in coupling.second:
+            hessian[along, dof] += value * columns[coordinate].ravel()
+        return hessian[:, :, :3].transpose(0, 2, 1).copy(), hessian[:, :, 3:].transpose(0, 2, 1).copy()
 
-    def com_jacobian(self, inertias: Inertias) -> Floats:
+    def com_jacobian(self) -> Floats:
         """Return the derivative of the body's centre of mass by the DOF values, shape (3, dof)."""
-        posture = self.posture()
-        weights = inertias.masses[:, None] / inertias.masses.sum()
-        columns = np.zeros((3, self._kinematics.dof))
-        coms = posture.coms(inertias)
-        for row, direction in zip(columns, np.eye(3), strict=True):
-            forces = np.tile(direction, (len(coms), 1)) * weights
-            row[:] = posture.slopes.backward(posture.forces(np.concatenate((cross(coms, forces), forces), axis=1)))
-        return columns
+        self._kinematics.place_coms()
+        total, masses = np.zeros_like(self._moving), self._model.body_subtreemass
+        for root in self._kinematics.roots:
+            body_id = self._body_ids[root]
+            mujoco.mj_jacSubtreeCom(self._model, self._data, self._moving, body_id)
+            total += masses[body_id] / masses[0] * self._moving
+        return self._of_dof_values(total)
+
+    def qvel(self, velocities: Floats, rates: Floats) -> Floats:
+        """Return MuJoCo's velocities in the body's own model, shape (nv,).
+
+        Args:
+            velocities: Those of the links, of which those of the roots count, shape (links, 6).
+            rates: Those of the DOFs [rad/s or m/s], shape (dof,).
+        """
+        qvel = np.zeros(self._model.nv)
+        if rates.any():
+            qvel[self._inner] = self._coupling().forward(rates)
+        self._set_roots(qvel, velocities)
+        return qvel
+
+    def _set_roots(self, target: Floats, values: Mapping[int, Floats] | Floats) -> None:
+        """Write velocities or accelerations of roots, by link: linear ones in the world, angular ones in the link."""
+        self._kinematics.place()
+        for root, first in zip(self._kinematics.roots, self._kinematics.root_qvel, strict=True):
+            target[first : first + 3] = values[root][:3]
+            rotation = self._data.xmat[self._body_ids[root]].reshape(3, 3)
+            target[first + 3 : first + 6] = values[root][3:] @ rotation
+
+    def _arms(self) -> Floats:
+        """Return the links' origins from the points that MuJoCo's spatial velocities are about [m], shape (links, 3)."""
+        ids = self._kinematics.body_ids
+        return self._data.xpos[ids] - self._data.subtree_com[self._model.body_rootid[ids]]
+
+    def _present_velocities(self) -> Floats:
+        """Return the velocities of the links for the velocities in MuJoCo's data, shape (links, 6)."""
+        mujoco.mj_comVel(self._model, self._data)
+        motions = self._data.cvel[self._kinematics.body_ids]
+        spins = motions[:, :3]
+        return np.concatenate((motions[:, 3:] + _cross(spins, self._arms()), spins), axis=1)
 
     def link_velocities(self, rates: Floats, base: Floats) -> Floats:
         """Return the velocities of the links.
@@ -115,12 +158,11 @@ class BodyDynamics:
         Returns:
             Shape (links, 6).
         """
-        posture = self.posture()
-        velocities = np.zeros((len(posture.positions), 6))
+        velocities = np.zeros((len(self._body_ids), 6))
         velocities[0] = base
-        bases = _moved_to_reference(velocities, posture.positions)
-        twists = posture.twists(posture.slopes.forward(rates), bases)
-        return _moved_to_origins(posture.of_links(twists, bases), posture.positions)
+        self._kinematics.place_coms()
+        self._data.qvel[:] = self.qvel(velocities, rates)
+        return self._present_velocities()
 
     def joint_velocities(self, velocities: Floats, joints: Sequence[Joint]) -> list[Floats]:
         """Return the velocities of joints, active or passive, that velocities of links show.
@@ -132,51 +174,48 @@ class BodyDynamics:
         Returns:
             For each joint those of its axes [rad/s or m/s], shape (axes,).
         """
-        transforms = self._kinematics.link_transforms()
-        parents, children = [joint.parent for joint in joints], [joint.child for joint in joints]
-        before, after = velocities[parents], velocities[children]
-        arms = transforms[children, :3, 3] - transforms[parents, :3, 3]
-        moving = after[:, :3] - before[:, :3] - cross(before[:, 3:], arms)
-        turning = after[:, 3:] - before[:, 3:]
-        directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3)
-        slides = np.array([joint.kind == "slider" for joint in joints], dtype=bool).reshape(-1, 1)
-        axes = (transforms[parents, :3, :3] @ directions[:, :, None])[:, :, 0]
-        shown = list((axes * np.where(slides, moving, turning)).sum(axis=1, keepdims=True))
-        for index, joint in enumerate(joints):
-            if joint.kind == "spherical":
-                shown[index] = self._ball_velocity(joint, transforms[joint.parent, :3, :3].T @ turning[index])
-            elif joint.kind == "hinge2":
-                shown[index] = np.linalg.pinv(self._two_axes(joint)) @ turning[index]
-        return shown
+        return self._shown(velocities, _JointAxes(joints))
 
     def dof_velocities(self, velocities: Floats) -> Floats:
         """Return the velocities of the DOFs that velocities of links show, shape (links, 6) to (dof,)."""
         if not velocities.any():
             return np.zeros(self._kinematics.dof)
-        return np.concatenate([np.zeros(0), *self.joint_velocities(velocities, self._kinematics.body.joints)])
+        return np.concatenate([np.zeros(0), *self._shown(velocities, self._of_dofs)])
+
+    def _shown(self, velocities: Floats, of: "_JointAxes") -> list[Floats]:
+        self._kinematics.place()
+        positions = self._data.xpos[self._kinematics.body_ids]
+        rotations = self._data.xmat[self._kinematics.body_ids].reshape(-1, 3, 3)
+        before, after = velocities[of.parents], velocities[of.children]
+        turning = after[:, 3:] - before[:, 3:]
+        moving = after[:, :3] - before[:, :3]
+        moving -= _cross(before[:, 3:], positions[of.children] - positions[of.parents])
+        axes = (rotations[of.parents] @ of.directions[:, :, None])[:, :, 0]
+        shown = list((axes * np.where(of.slides, moving, turning)).sum(axis=1, keepdims=True))
+        for index, joint in of.special:
+            if joint.kind == "spherical":
+                shown[index] = self._spherical_velocity(joint, rotations[joint.parent].T @ turning[index])
+            else:
+                shown[index] = np.linalg.pinv(self._two_axes(joint)) @ turning[index]
+        return shown
 
     def _two_axes(self, joint: Joint) -> Floats:
         """Return the axes of a ``hinge2`` as columns, shape (3, 2)."""
-        names = self._kinematics.names.joints[(*self._all_joints,).index(joint)]
-        ids = [mujoco.mj_name2id(self._model, mujoco.mjtObj.mjOBJ_JOINT, name) for name in names]
-        return self._data.xaxis[ids].T if ids else np.zeros((3, 2))
+        places = self._kinematics.joint_qpos[self._kinematics.body.all_joints.index(joint)]
+        ids = np.flatnonzero(np.isin(self._model.jnt_qposadr, places))
+        return self._data.xaxis[ids].T if places else np.zeros((3, 2))
 
-    @property
-    def _all_joints(self) -> tuple[Joint, ...]:
-        body = self._kinematics.body
-        return (*body.joints, *body.passive_joints)
-
-    def _ball_velocity(self, joint: Joint, turned: Floats) -> Floats:
+    def _spherical_velocity(self, joint: Joint, turning: Floats) -> Floats:
         """Return the rate of a rotation vector, for an angular velocity in the parent's axes."""
-        ball = next((ball for ball in self._kinematics.balls if ball.joint.child == joint.child), None)
-        if ball is None:
-            return turned
-        vector = np.array(ball.to_values(self._data.qpos[ball.qpos].tolist()))
+        found = next((one for one in self._kinematics.spherical if one.joint.child == joint.child), None)
+        if found is None:
+            return turning
+        vector = np.array(found.to_values(self._data.qpos[found.qpos].tolist()))
         rate, _ = rotation_rate(vector)
-        return np.linalg.inv(rate.T) @ turned  # the left Jacobian is the right one's transpose
+        return np.linalg.inv(rate.T) @ turning  # the left Jacobian is the right one's transpose
 
     def link_accelerations(
-        self, velocities: Floats, growths: Floats, pushes: Mapping[int, Floats] | None = None
+        self, velocities: Floats, accelerations: Floats, external: Mapping[int, Floats] | None = None
     ) -> Floats:
         """Return the accelerations of the links, of their origins and angular, shape (links, 6).
 
@@ -184,109 +223,135 @@ class BodyDynamics:
 
         Args:
             velocities: Those of the links, shape (links, 6).
-            growths: Accelerations of the DOFs [rad/s^2 or m/s^2], shape (dof,).
-            pushes: Further accelerations of links that no joint places, shape (6,), linear first.
+            accelerations: Those of the DOFs [rad/s^2 or m/s^2], shape (dof,).
+            external: Further accelerations of links that no joint places, shape (6,), linear first.
         """
-        posture = self.posture(second=True)
-        rates = self.dof_velocities(velocities)
-        motion, change = _motion(posture, velocities, rates, growths, pushes)
-        spins, origins = motion[:, :3], posture.positions
-        moving = motion[:, 3:] + cross(spins, origins)
-        linear = change[:, 3:] + cross(change[:, :3], origins) + cross(spins, moving)
-        return np.concatenate((linear, change[:, :3]), axis=1)
+        model, data = self._model, self._data
+        self._set_motion(velocities, self.dof_velocities(velocities), accelerations, external)
+        model.opt.gravity[:] = 0.0
+        speeds = self._present_velocities()
+        mujoco.mj_rnePostConstraint(model, data)
+        motions = data.cacc[self._kinematics.body_ids]
+        turning = motions[:, :3]
+        linear = motions[:, 3:] + _cross(turning, self._arms()) + _cross(speeds[:, 3:], speeds[:, :3])
+        return np.concatenate((linear, turning), axis=1)
+
+    def _set_motion(
+        self,
+        velocities: Floats,
+        rates: Floats,
+        accelerations: Floats | None,
+        external: Mapping[int, Floats] | None = None,
+    ) -> None:
+        """Write velocities and accelerations into MuJoCo's data.
+
+        Args:
+            velocities: Those of the links, of which those of the roots count, shape (links, 6).
+            rates: Those of the DOFs, shape (dof,).
+            accelerations: Those of the DOFs, shape (dof,); None: none.
+            external: Further accelerations of roots, by link, shape (6,).
+        """
+        kinematics, data = self._kinematics, self._data
+        kinematics.place_coms()
+        data.qvel[:] = data.qacc[:] = 0.0
+        if accelerations is not None and accelerations.any():
+            data.qacc[self._inner] = self._coupling().forward(accelerations)
+        if rates.any():
+            coupling = self._coupling(second=True)
+            data.qvel[self._inner] = coupling.forward(rates)
+            if coupling.second:
+                data.qacc[self._inner] += coupling.bias(rates)
+        if velocities.any() or external:
+            self._set_roots(data.qvel, velocities)
+            added = external or {}
+            at_roots: dict[int, Floats] = {}
+            for root in kinematics.roots:
+                at_roots[root] = np.array(added.get(root, np.zeros(6)), dtype=np.float64)
+                at_roots[root][:3] += np.cross(velocities[root, 3:], velocities[root, :3])
+            self._set_roots(data.qacc, at_roots)
 
     def inverse(
-        self, velocities: Floats, growths: Floats, inertias: Inertias, pushes: Mapping[int, Floats] | None = None
+        self,
+        velocities: Floats,
+        accelerations: Floats,
+        gravity: Sequence[float],
+        external: Mapping[int, Floats] | None = None,
     ) -> Floats:
-        """Return the generalised forces for given accelerations, against the model's gravity.
+        """Return the generalised forces for given accelerations.
 
         Args:
             velocities: Those of the links, shape (links, 6).
-            growths: Accelerations of the DOFs [rad/s^2 or m/s^2], shape (dof,).
-            inertias: Mass properties of the links.
-            pushes: Forces and moments on links at their centres of mass, in world axes, shape (6,), that are added.
+            accelerations: Those of the DOFs [rad/s^2 or m/s^2], shape (dof,).
+            gravity: Acceleration of free fall [m/s^2], shape (3,).
+            external: Forces and moments on links at their centres of mass, in world axes, shape (6,), that are added.
 
         Returns:
             Torques and forces [N m or N], shape (dof,).
         """
-        rates = self.dof_velocities(velocities)
-        gravity = self._model.opt.gravity.copy()
-        return self._inverse(self.posture(second=True), inertias, velocities, rates, growths, gravity, pushes)
+        self._set_motion(velocities, self.dof_velocities(velocities), accelerations)
+        forces = self._needed_forces(gravity)
+        self._add_external(forces, external)
+        return self._of_dof_values(forces)
 
     def inverse_components(
-        self, velocities: Floats, growths: Floats, inertias: Inertias, pushes: Mapping[int, Floats] | None = None
+        self,
+        velocities: Floats,
+        accelerations: Floats,
+        gravity: Sequence[float],
+        external: Mapping[int, Floats] | None = None,
     ) -> tuple[Floats, Floats, Floats]:
         """Return the parts of ``inverse``: of accelerations, of joint velocities, and of all else."""
-        posture = self.posture(second=True)
         rates = self.dof_velocities(velocities)
-        none, still, gravity = np.zeros_like(rates), np.zeros_like(velocities), self._model.opt.gravity.copy()
-        by_growth = self._inverse(posture, inertias, still, none, growths, np.zeros(3))
-        by_velocity = self._inverse(posture, inertias, velocities, rates, none, np.zeros(3))
-        by_base = self._inverse(posture, inertias, velocities, none, none, np.zeros(3))
-        return (
-            by_growth,
-            by_velocity - by_base,
-            self._inverse(posture, inertias, velocities, none, none, gravity, pushes),
-        )
+        none = np.zeros_like(rates)
+        self._set_motion(np.zeros_like(velocities), none, accelerations)
+        by_acceleration = self._needed_forces((0.0, 0.0, 0.0))
+        self._set_motion(velocities, none, None)
+        by_all_else = self._needed_forces(gravity)
+        by_velocity = np.zeros_like(by_all_else)
+        if rates.any():
+            self._set_motion(velocities, rates, None)
+            by_velocity = self._needed_forces(gravity) - by_all_else
+        self._add_external(by_all_else, external)
+        parts = by_acceleration, by_velocity, by_all_else
+        return self._of_dof_values(parts[0]), self._of_dof_values(parts[1]), self._of_dof_values(parts[2])
 
-    def _inverse(
-        self,
-        posture: Posture,
-        inertias: Inertias,
-        velocities: Floats,
-        rates: Floats,
-        growths: Floats,
-        gravity: Floats,
-        pushes: Mapping[int, Floats] | None = None,
-    ) -> Floats:
-        forces = posture.needed_forces(inertias, *_motion(posture, velocities, rates, growths), gravity)
-        coms = posture.coms(inertias)
-        for link, push in (pushes or {}).items():
-            forces[link, :3] += push[3:] + np.cross(coms[link], push[:3])
-            forces[link, 3:] += push[:3]
-        slopes = posture.slopes
-        motors = self.armature * (slopes.forward(growths) + slopes.bend(rates))
-        return slopes.backward(posture.forces(forces) + motors)
+    def _needed_forces(self, gravity: Sequence[float]) -> Floats:
+        """Return the forces on all coordinates for the motion in MuJoCo's data, shape (nv,)."""
+        model, data = self._model, self._data
+        model.opt.gravity[:] = gravity
+        mujoco.mj_comVel(model, data)
+        mujoco.mj_rne(model, data, 1, self._forces)
+        return self._forces.copy()
+
+    def _add_external(self, forces: Floats, external: Mapping[int, Floats] | None) -> None:
+        """Add forces and moments on links at their centres of mass."""
+        for link, wrench in (external or {}).items():
+            body_id = self._body_ids[link]
+            point = self._data.xipos[body_id]
+            mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], point, body_id, forces)
 
 
-def _motion(
-    posture: Posture,
-    velocities: Floats,
-    rates: Floats,
-    growths: Floats,
-    pushes: Mapping[int, Floats] | None = None,
-) -> tuple[Floats, Floats]:
-    """Return the links' motions about the reference point and their derivatives, each of shape (links, 6).
+class _JointAxes:
+    """Which links joints are between, and their axes.
 
-    Of the links' velocities, those of links count that no joint places.
+    Attributes:
+        parents: Index of the parent link of each joint, shape (joints,).
+        children: Index of the child link.
+        directions: First axis, in the parent link, shape (joints, 3).
+        slides: Whether it is a slider, shape (joints, 1).
+        special: Those that have more than one axis, with their indices.
     """
-    slopes = posture.slopes
-    bases = _moved_to_reference(velocities, posture.positions)
-    bases_change = None
-    if pushes:
-        pushed = np.zeros_like(velocities)
-        for link, push in pushes.items():
-            pushed[link] = push
-        bases_change = _moved_to_reference(pushed, posture.positions)
-    movers = slopes.forward(rates)
-    twists = posture.twists(movers, bases)
-    change = posture.accelerations(twists, movers, slopes.forward(growths) + slopes.bend(rates), bases_change)
-    return posture.of_links(twists, bases), posture.of_links(change, bases_change)
+
+    def __init__(self, joints: Sequence[Joint]) -> None:
+        self.parents = np.array([joint.parent for joint in joints], dtype=int)
+        self.children = np.array([joint.child for joint in joints], dtype=int)
+        self.directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3)
+        self.slides = np.array([joint.kind == "slider" for joint in joints], dtype=bool).reshape(-1, 1)
+        self.special = [(index, joint) for index, joint in enumerate(joints) if joint.kind in {"spherical", "hinge2"}]
 
 
-def _moved_to_reference(velocities: Floats, positions: Floats) -> Floats:
-    """Turn velocities of origins and angular ones into motions about the reference point, shape (links, 6)."""
-    spins = velocities[:, 3:]
-    return np.concatenate((spins, velocities[:, :3] - cross(spins, positions)), axis=1)
-
-
-def _moved_to_origins(motions: Floats, positions: Floats) -> Floats:
-    """Undo ``_moved_to_reference``."""
-    spins = motions[:, :3]
-    return np.concatenate((motions[:, 3:] + cross(spins, positions), spins), axis=1)
-
-
-def _outer_cross(turning: Floats, columns: Floats) -> Floats:
-    """Return ``turning[a] x columns[:, b]`` as ``[:, a, :, b]``."""
-    crossed = np.cross(turning[None, :, None], columns[:, None])
-    return crossed.transpose(0, 1, 3, 2)
+def _cross(one: Floats, other: Floats) -> Floats:
+    """Return cross products along the last axis; faster than ``np.cross`` for few vectors."""
+    ax, ay, az = one[..., 0], one[..., 1], one[..., 2]
+    bx, by, bz = other[..., 0], other[..., 1], other[..., 2]
+    return np.stack((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), axis=-1)

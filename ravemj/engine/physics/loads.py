@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
-from ravemj.engine.kinematics import WELDED
+from ravemj.engine.kinematics import NO_QPOS
 from ravemj.engine.physics.body import PhysicalBody
 from ravemj.engine.simulation import BodyState
 
@@ -69,11 +69,11 @@ class Loads:
 
     def apply(self, body: PhysicalBody) -> None:
         """Let torques and forces act on a body in the model of physics, until they are replaced."""
-        data = body.kinematics.data
-        data.xfrc_applied[body.kinematics.body_ids] = np.hstack([self._forces, self._levers + self._moments])
+        data = body.data
+        data.xfrc_applied[body.body_ids] = np.hstack([self._forces, self._levers + self._moments])
         if self.torques.any():
-            slopes = self._state.dynamics.map.at(self._state.kinematics.values(), second=False)
-            columns = slopes.forward(np.eye(len(self.torques)))
+            coupling = self._state.dynamics.couplings.at(self._state.kinematics.values(), second=False)
+            columns = coupling.forward(np.eye(len(self.torques)))
             data.qfrc_applied[body.rows] += np.linalg.lstsq(columns.T, self.torques)[0]
 
     def drive(self, body: PhysicalBody, applied: Floats) -> None:
@@ -85,7 +85,7 @@ class Loads:
         """
         if self.motor is None:
             return
-        model, data = body.kinematics.model, body.kinematics.data
+        model, data = body.model, body.data
         rows, wanted, limits = _motor_rows(body, self.motor)
         unit = np.zeros((len(rows), model.nv))
         unit[np.arange(len(rows)), rows] = 1.0
@@ -99,9 +99,9 @@ class Loads:
 def _motor_rows(body: PhysicalBody, motor: Motor) -> tuple[Ints, Floats, Floats]:
     """Return where the driven joints are in ``qvel``, and their velocities and greatest torques."""
     kinematics = body.state.kinematics
-    movers = body.state.dynamics.tree.mover_of_qpos(kinematics.model)
-    places = np.flatnonzero(kinematics.qpos_indices[motor.dofs] != WELDED)
+    coordinates = body.state.dynamics.tree.of_qpos
+    places = np.flatnonzero(kinematics.qpos_indices[motor.dofs] != NO_QPOS)
     dofs = motor.dofs[places]
-    rows = body.rows[[movers[int(qpos)] for qpos in kinematics.qpos_indices[dofs]]]
+    rows = body.rows[[coordinates[int(qpos)] for qpos in kinematics.qpos_indices[dofs]]]
     torques = [body.state.scene.dof_axes[int(dof)].max_torque or np.inf for dof in dofs]
     return rows, motor.velocities[places], np.array(torques)

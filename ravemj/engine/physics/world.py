@@ -14,7 +14,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, wxyz_from_rows
 from ravemj.engine.collision.resting import tested_pairs
-from ravemj.engine.collision.world import world_of
+from ravemj.engine.model_part import ModelPart
 from ravemj.engine.physics.body import PhysicalBody
 from ravemj.engine.physics.loads import Loads
 from ravemj.engine.simulation import BodyState, Compiled, Simulation
@@ -92,7 +92,6 @@ class Physics:
 
     def _prepare(self) -> None:
         """Make the model anew if the bodies are others, and take over what users moved."""
-        self._simulation.compile()
         states = self._simulation.bodies
         made_of: list[object] = [
             part for state in states for part in (state, state.scene, state.rest_poses, *state.grabs)
@@ -110,7 +109,7 @@ class Physics:
         self._model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
         self._model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
         self._bodies = {
-            state: PhysicalBody(state, self._model, self._data, names)
+            state: PhysicalBody(state, self._model, self._data, ModelPart(self._model, self._data, names))
             for state, names in zip(states, compiled.mjcf.names, strict=True)
         }
 
@@ -134,7 +133,7 @@ class Physics:
     def _untested_pairs(self, state: BodyState) -> set[tuple[int, int]]:
         """Return the pairs of a body's links that do not collide, by index."""
         pairs = set(itertools.combinations(range(len(state.scene.links)), 2))
-        return pairs.difference(tested_pairs(world_of(self._simulation), state)) if self.self_collisions else pairs
+        return pairs.difference(tested_pairs(self._simulation.collisions(), state)) if self.self_collisions else pairs
 
     def joint_wrench(self, state: BodyState, child: int, anchor: Floats) -> tuple[Floats, Floats]:
         """Return the force on a link from its parent [N], and the torque about a point [N m], in world axes.
@@ -168,7 +167,7 @@ class Physics:
             return None
         mujoco.mj_forward(self._model, self._data)
         mujoco.mj_rnePostConstraint(self._model, self._data)
-        return int(body.kinematics.body_ids[link])
+        return int(body.body_ids[link])
 
     def _wrench(self, body_id: int, spatial: Floats, point: Floats) -> tuple[Floats, Floats]:
         """Return force, and torque about a point, of MuJoCo's spatial force: torque about the tree's centre of mass."""
@@ -185,8 +184,6 @@ class Physics:
         own = [body for body in moving if body.state not in held]
         for body in own:
             body.give_configuration()
-        compiled = self._simulation.compile()
-        mujoco.mj_kinematics(compiled.model, compiled.data)
         for body in own:
             body.state.moved()
         for body in own:

@@ -6,16 +6,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ravemj.core.transforms import Floats, Pose, inverse, pose_of
+from ravemj.core.transforms import Floats, Pose
 from ravemj.engine.kinematics import BodyKinematics, Configuration
-from ravemj.engine.placement import place_links
-from ravemj.engine.simulation.compiled import write_inertial
+from ravemj.engine.kinematics.displacement import place_links
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.model.scene import Axis, Geometry, Inertial, KinBody, Link
+from ravemj.model.inertia import Inertias
+from ravemj.model.scene import Axis, Geometry, Inertial, Joint, KinBody, Link
 
 if TYPE_CHECKING:
     from ravemj.engine.batch import Batch
-    from ravemj.engine.dynamics import BodyDynamics, Inertias
+    from ravemj.engine.dynamics import BodyDynamics
+    from ravemj.engine.model_part import ModelPart
     from ravemj.engine.simulation.world import Simulation
 
 _LOOKS = {"name", "diffuse", "ambient", "transparency"}
@@ -41,21 +42,19 @@ class SavedConfiguration(NamedTuple):
     """State of joints and links.
 
     Attributes:
-        last_placed: How joints placed the links, if ever they did.
-        poses: Where the links are, shape (links, 4, 4).
-        is_moved: Whether links were moved since then, while there was no model.
+        configuration: That of MuJoCo's model.
+        T_world_links: Where the links are, for a body that has other joints by then, shape (links, 4, 4).
     """
 
-    last_placed: Configuration | None
-    poses: Floats
-    is_moved: bool
+    configuration: Configuration
+    T_world_links: Floats
 
 
 class BodyState:
     """A body and its state; what the API objects of one body share.
 
-    A body in the world has kinematics in the compiled model. Before that, and after it was taken out, it has poses
-    only.
+    Joint values and poses are those of a MuJoCo model of the body alone (``own_kinematics``), whether the body is in
+    the world or not. It is compiled when first asked for; until then the body is where its description has it.
 
     Attributes:
         scene: What it consists of; what files say, and what setters of the API changed since.
@@ -64,7 +63,6 @@ class BodyState:
         stamp: Grows with every change of pose.
         rest_poses: The pose in which links that touch never count as colliding, shape (links, 4, 4): that in which the
             body was added.
-        api_object: The object that users have for it; the layer above keeps it here.
     """
 
     def __init__(self, scene: KinBody, simulation: "Simulation") -> None:
@@ -73,10 +71,6 @@ class BodyState:
         self.stamp = 0
         self._grabs: tuple[GrabbedBody, ...] = ()
         self.rest_poses: Floats | None = None
-        self.api_object: object | None = None
-        self._kinematics: BodyKinematics | None = None
-        self._dynamics: BodyDynamics | None = None
-        self._batch: Batch | None = None
         self._inertias: tuple[tuple[Link, ...], Inertias] | None = None
         self.rebuild(scene)
 
@@ -93,9 +87,12 @@ class BodyState:
         self.rest_poses = None
         self.stamp += 1
         self._velocities = np.zeros((len(scene.links), 6))
-        self._poses: Floats | None = None
-        self._configuration: Configuration | None = None
-        self._is_moved = False
+        self._forget_kinematics()
+
+    def _forget_kinematics(self) -> None:
+        self._kinematics: BodyKinematics | None = None
+        self._dynamics: BodyDynamics | None = None
+        self._batch: Batch | None = None
 
     @property
     def link_enabled(self) -> tuple[bool, ...]:
@@ -119,131 +116,108 @@ class BodyState:
         self.simulation.collision_stamp += 1
 
     @property
-    def kinematics(self) -> BodyKinematics:
-        """Joint values and link poses in the present model, which is compiled if need be.
+    def own_kinematics(self) -> BodyKinematics:
+        """Joint values and link poses, in a model of the body alone.
 
         Raises:
-            RavemjError: the body is not in the world.
+            CompileError: MuJoCo refuses the body.
         """
         if self._kinematics is None:
-            if not self.index:
-                message = f"'{self.scene.name}' is not in an environment and has no joint values; add it first"
-                raise RavemjError(message, ErrorCode.NotInitialized)
-            self.simulation.compile()
-            assert self._kinematics is not None
+            self._kinematics = BodyKinematics(self.scene)
         return self._kinematics
 
     @property
+    def kinematics(self) -> BodyKinematics:
+        """``own_kinematics``, for what OpenRAVE answers for bodies in an environment only: joint values.
+
+        Raises:
+            RavemjError: the body is not in the world.
+            CompileError: MuJoCo refuses the body.
+        """
+        if not self.index:
+            message = f"'{self.scene.name}' is not in an environment and has no joint values; add it first"
+            raise RavemjError(message, ErrorCode.NotInitialized)
+        return self._kinematics or self.own_kinematics
+
+    @property
     def dynamics(self) -> "BodyDynamics":
-        """Jacobians and inverse dynamics in the present model."""
+        """Jacobians and inverse dynamics; errors as for ``kinematics``."""
+        kinematics = self.kinematics
         if self._dynamics is None:
             from ravemj.engine.dynamics import BodyDynamics  # noqa: PLC0415 - slow to import
 
-            self._dynamics = BodyDynamics(self.kinematics)
+            self._dynamics = BodyDynamics(kinematics)
         return self._dynamics
 
     @property
     def batch(self) -> "Batch":
-        """The chain of links, ready for many configurations."""
+        """The chain of links, ready for many configurations; errors as for ``kinematics``."""
+        dynamics = self.dynamics
         if self._batch is None:
             from ravemj.engine.batch import Batch  # noqa: PLC0415 - slow to import
 
-            self._batch = Batch(self.kinematics, self.dynamics)
+            self._batch = Batch(self.own_kinematics, dynamics)
         return self._batch
 
     @property
-    def inertias(self) -> "Inertias":
+    def inertias(self) -> Inertias:
         """Mass properties of the links, as the scene has them now."""
         if self._inertias is None or self._inertias[0] is not self.scene.links:
-            from ravemj.engine.dynamics import Inertias  # noqa: PLC0415 - slow to import
-
             self._inertias = (self.scene.links, Inertias.of(self.scene.links))
         return self._inertias[1]
 
-    def enter_model(self, kinematics: BodyKinematics) -> None:
-        """Take the body's place in a new model, as far as joints and roots tell; ``settle`` does the rest."""
-        if self._configuration is None:
-            kinematics.write_values(np.array([axis.value for axis in self.scene.dof_axes]))
-        elif not kinematics.restore(self._configuration):
-            self._is_moved = True
-        self._kinematics = kinematics
-
-    def settle(self) -> None:
-        """Put the links where they were moved while there was no model."""
-        if self._is_moved and self._poses is not None:
-            kinematics = self.kinematics
-            place_links(kinematics, self._poses, kinematics.values())
-        self._poses, self._is_moved = None, False
-
-    def leave_model(self) -> None:
-        """Keep the state; the model is about to go."""
-        if self._kinematics is not None:
-            self._poses = self._kinematics.link_transforms()
-            self._configuration = self._kinematics.configuration()
-            self._kinematics = None
-        self._dynamics = self._batch = None
+    def bring_up_to_date(self, part: "ModelPart") -> bool:
+        """Let the body's part of another model follow it; return whether anything was out of date."""
+        kinematics = self._kinematics
+        if kinematics is None or kinematics.stamp == part.stamp:
+            return False
+        part.take(kinematics)
+        return True
 
     def link_transforms(self) -> Floats:
-        """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy. This never compiles."""
-        if self._kinematics is not None:
-            return self._kinematics.link_transforms()
-        return self._kept_poses().copy()
+        """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
+        if self._kinematics is None:
+            return np.array([link.T_world_link.matrix() for link in self.scene.links]).reshape(-1, 4, 4)
+        return self._kinematics.link_transforms()
 
     def link_transform(self, link: int) -> Floats:
-        """Return ``T_world_link`` of one link, shape (4, 4); a copy. This never compiles."""
-        if self._kinematics is not None:
-            return self._kinematics.link_transform(link)
-        return self._kept_poses()[link].copy()
+        """Return ``T_world_link`` of one link, shape (4, 4); a copy."""
+        if self._kinematics is None:
+            return self.scene.links[link].T_world_link.matrix()
+        return self._kinematics.link_transform(link)
 
-    def _kept_poses(self) -> Floats:
-        """Return the poses of the links while there is no model."""
-        if self._poses is None:
-            self._poses = np.array([link.T_world_link.matrix() for link in self.scene.links]).reshape(-1, 4, 4)
-        return self._poses
-
-    def set_values(self, values: Floats, *, limit_followers: bool = True) -> None:
+    def set_values(self, values: Floats, *, clamp_mimic: bool = True) -> None:
         """Set the joint values [rad or m], shape (dof,), and place all links by them."""
-        self.kinematics.set_values(values, limit_followers=limit_followers)
+        self.kinematics.set_values(values, clamp_mimic=clamp_mimic)
         self.moved()
 
     def set_transform(self, T_world_link0: Floats) -> None:
-        """Move the body rigidly, with the joint values as they are. This never compiles.
+        """Move the body rigidly, with the joint values as they are.
 
         Args:
             T_world_link0: Pose of the first link, shape (4, 4).
         """
-        if self._kinematics is not None:
-            self._kinematics.set_transform(T_world_link0)
-        elif len(poses := self._kept_poses()):
-            self._poses = (T_world_link0 @ inverse(poses[0])) @ poses
-            self._poses[0] = T_world_link0
-            self._is_moved = True
+        self.own_kinematics.set_transform(T_world_link0)
         self.moved()
 
     def pose(self) -> Pose:
         """Return the pose of the first link."""
-        if self._kinematics is not None:
-            return self._kinematics.link_pose(0)
-        return pose_of(self.link_transform(0)) if self.scene.links else Pose()
+        return self.own_kinematics.link_pose(0) if self.scene.links else Pose()
 
     def set_pose(self, T_world_link0: Pose) -> None:
         """Move the body rigidly, as ``set_transform``; ``pose()`` gives back this quaternion, not its negative."""
         self.set_transform(T_world_link0.matrix())
-        if self._kinematics is not None:
-            self._kinematics.set_root_wxyz(T_world_link0.wxyz)
+        self.own_kinematics.set_root_wxyz(T_world_link0.wxyz)
 
     def place_links(self, T_world_links: Floats, last_values: Floats | None = None) -> None:
-        """Put every link at a pose; joints get the values that the poses show. This never compiles.
+        """Put every link at a pose; joints get the values that the poses show.
 
         Args:
             T_world_links: Shape (links, 4, 4).
             last_values: Joint values whose full turns are kept [rad or m], shape (dof,); None: the present ones.
         """
-        if self._kinematics is not None:
-            last = self._kinematics.values() if last_values is None else last_values
-            place_links(self._kinematics, T_world_links, last)
-        else:
-            self._poses, self._is_moved = T_world_links.copy(), True
+        kinematics = self.own_kinematics
+        place_links(kinematics, T_world_links, kinematics.values() if last_values is None else last_values)
         self.moved()
 
     def moved(self) -> None:
@@ -303,22 +277,13 @@ class BodyState:
 
     def configuration(self) -> SavedConfiguration:
         """Return the state of joints and links, for ``restore``."""
-        if self._kinematics is not None:
-            return SavedConfiguration(self._kinematics.configuration(), self._kinematics.link_transforms(), False)
-        is_moved = self._is_moved or self._configuration is None
-        return SavedConfiguration(self._configuration, self._kept_poses().copy(), is_moved)
+        return SavedConfiguration(self.own_kinematics.configuration(), self.link_transforms())
 
     def restore(self, saved: SavedConfiguration) -> None:
         """Bring joints and links back to a state that ``configuration`` returned, of this body or one like it."""
-        kinematics = self._kinematics
-        if kinematics is None:
-            self._configuration, self._poses, self._is_moved = saved.last_placed, saved.poses.copy(), True
-        else:
-            is_placed = saved.last_placed is not None and kinematics.restore(saved.last_placed)
-            if is_placed:
-                kinematics.update()
-            if saved.is_moved or not is_placed:
-                place_links(kinematics, saved.poses, kinematics.values())
+        kinematics = self.own_kinematics
+        if not kinematics.restore(saved.configuration):
+            place_links(kinematics, saved.T_world_links, kinematics.values())
         self.moved()
 
     def copy(self, other: "BodyState", name: str | None = None) -> None:
@@ -329,7 +294,8 @@ class BodyState:
         """
         self.rebuild(other.scene if name is None else replace(other.scene, name=name))
         self.link_enabled = other.link_enabled
-        self._configuration, self._poses, self._is_moved = other.configuration()
+        if other._kinematics is not None:
+            self.own_kinematics.restore(other._kinematics.configuration())
         self._velocities = other.link_velocities()
 
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
@@ -338,8 +304,16 @@ class BodyState:
         if self._kinematics is not None:
             self._kinematics.describe(self.scene)
 
+    def edit_mimic(self, passive_joints: tuple[Joint, ...]) -> None:
+        """Let passive joints follow by other equations; the links stay where they are until values are next set."""
+        saved = self.configuration()
+        self.simulation.forget_model()
+        self._forget_kinematics()
+        self.scene = replace(self.scene, passive_joints=passive_joints)
+        self.restore(saved)
+
     def edit_link(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Link
-        """Change the description of a link."""
+        """Change the description of a link: its masses, its names; shapes by ``set_geometries``."""
         links = list(self.scene.links)
         links[index] = replace(links[index], **changes)
         self.edit(links=tuple(links))
@@ -347,13 +321,10 @@ class BodyState:
     def set_inertial(self, link: int, inertial: Inertial) -> None:
         """Give a link other mass properties, without compiling."""
         self.edit_link(link, inertial=inertial)
-        if self._kinematics is not None:
-            write_inertial(self._kinematics.model, int(self._kinematics.body_ids[link]), inertial)
-            self._kinematics.update()
 
     def set_geometries(self, link: int, geometries: "Sequence[Geometry]") -> None:
-        """Give a link other shapes; the model is compiled anew when it is next asked for."""
-        if self._kinematics is not None:
+        """Give a link other shapes; the model of the world is compiled anew when it is next asked for."""
+        if self.index:
             self.simulation.forget_model()
         self.edit_link(link, geometries=tuple(geometries))
 
@@ -363,24 +334,12 @@ class BodyState:
         geometries[index] = replace(geometries[index], **changes)
         if changes.keys() <= _LOOKS:
             self.edit_link(link, geometries=tuple(geometries))
-            self._paint(link, index)
         else:
             self.set_geometries(link, geometries)
 
-    def _paint(self, link: int, index: int) -> None:
-        """Give the geoms of a shape its colour; what is drawn in its place keeps its own."""
-        geometry = self.scene.links[link].geometries[index]
-        if self._kinematics is None or geometry.display is not None:
-            return
-        from ravemj.formats.mjcf import rgba  # noqa: PLC0415 - slow to import
-
-        model, counts = self._kinematics.model, self._kinematics.names.geoms[link]
-        first = model.body_geomadr[self._kinematics.body_ids[link]] + sum(counts[:index])
-        model.geom_rgba[first : first + counts[index]] = rgba(geometry.diffuse, geometry.transparency)
-
     def edit_joint(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Joint
         """Change the description of a joint; the index counts active joints and then passive ones."""
-        joints = [*self.scene.joints, *self.scene.passive_joints]
+        joints = list(self.scene.all_joints)
         joints[index] = replace(joints[index], **changes)
         count = len(self.scene.joints)
         self.edit(joints=tuple(joints[:count]), passive_joints=tuple(joints[count:]))

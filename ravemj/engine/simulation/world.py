@@ -1,26 +1,27 @@
 """The bodies of an environment and the MuJoCo model made of them."""
 
 from threading import RLock
-
-import mujoco
+from typing import TYPE_CHECKING
 
 from ravemj.core.transforms import Vec3
-from ravemj.engine.kinematics import BodyKinematics
 from ravemj.engine.simulation.body import BodyState
-from ravemj.engine.simulation.compiled import Compiled
 from ravemj.errors import Diagnostics, ErrorCode, RavemjError, send_warnings
 from ravemj.model.drawing import Drawings
-from ravemj.model.scene import KinBody, Scene, View
+from ravemj.model.scene import KinBody, View
+
+if TYPE_CHECKING:
+    from ravemj.engine.collision.world import CollisionWorld
+    from ravemj.engine.simulation.world_model import WorldModel
 
 DEFAULT_GRAVITY: Vec3 = (0.0, 0.0, -9.797930195020351)
 """OpenRAVE's, where a file has no physics engine."""
 
 
 class Simulation:
-    """The bodies of an environment, in one MuJoCo model that is compiled when it is first asked for.
+    """The bodies of an environment, and one MuJoCo model of all of them that is compiled when it is first asked for.
 
-    Adding bodies puts the model out of date; the next query of joints compiles it once, and the bodies keep their
-    state. Moving and enabling bodies never compiles.
+    Bodies know their joint values and poses by themselves; who asks for collisions, pictures or MJCF needs the model.
+    Adding, removing and reshaping bodies puts it out of date. Moving and enabling them does not.
 
     Attributes:
         lock: Held by every reader and writer of the model's state; viewers draw in threads of their own.
@@ -29,7 +30,6 @@ class Simulation:
         version: Grows by one with each compiled model.
         gravity: Acceleration of free fall in the world [m/s^2].
         collision_stamp: Grows when what may collide with what changes: links are enabled, bodies are held.
-        collision_world: What collision checking keeps between its queries; the layer above keeps it here.
         drawings: What scripts draw beside the bodies; needs no lock.
     """
 
@@ -41,10 +41,10 @@ class Simulation:
         self.version = 0
         self.gravity = DEFAULT_GRAVITY
         self.collision_stamp = 0
-        self.collision_world: object | None = None
         self._places: list[BodyState | None] = []
         self._by_name: dict[str, BodyState] = {}
-        self._compiled: Compiled | None = None
+        self._world: WorldModel | None = None
+        self._collisions: CollisionWorld | None = None
 
     @property
     def bodies(self) -> tuple[BodyState, ...]:
@@ -155,40 +155,47 @@ class Simulation:
         """Set the acceleration of free fall [m/s^2]."""
         with self.lock:
             self.gravity = gravity
-            if self._compiled is not None:
-                self._compiled.model.opt.gravity[:] = gravity
+            if self._world is not None:
+                self._world.model.opt.gravity[:] = gravity
 
     def forget_model(self) -> None:
         """Put the model out of date: the bodies or what they consist of are about to change."""
-        if self._compiled is not None:
-            self._compiled = None
-            for body in self.bodies:
-                body.leave_model()
+        self._world = None
 
-    def compile(self) -> Compiled:
-        """Return the model of the present bodies, compiled if it is out of date.
+    def compiled(self) -> "WorldModel":
+        """Return the model of the present bodies as they are now; it is compiled if bodies came, went or changed.
 
         Raises:
             CompileError: MuJoCo refuses the model.
         """
-        known = self._compiled
-        if known is not None:
-            return known
         with self.lock:
-            if self._compiled is not None:  # another thread was faster
-                return self._compiled
-            self.diagnostics = Diagnostics()
-            scene = Scene(tuple(body.scene for body in self.bodies), self.view)
-            compiled = Compiled(scene, self.diagnostics)
-            compiled.write_true_inertias(scene)
-            compiled.model.opt.gravity[:] = self.gravity
-            for body, names in zip(self.bodies, compiled.mjcf.names, strict=True):
-                body.enter_model(BodyKinematics(compiled.model, compiled.data, body.scene, names))
-            mujoco.mj_kinematics(compiled.model, compiled.data)
-            for body in self.bodies:
-                body.settle()
-            self._compiled = compiled
-            self.version += 1
-            # Links that scripts make are all called "base"; only who reads the MJCF wants to know its names.
-            send_warnings(finding for finding in self.diagnostics if finding.code != "renamed")
-            return compiled
+            world = self._world
+            if world is None:
+                self._world = world = self._compile()
+            world.synchronise()
+            return world
+
+    def collisions(self) -> "CollisionWorld":
+        """Return what collision checking knows of the present bodies as they are now. The caller holds ``lock``.
+
+        Raises:
+            CompileError: MuJoCo refuses the model.
+        """
+        model, stamp = self.compiled(), self.collision_stamp
+        known = self._collisions
+        if known is None or known.model is not model or known.stamp != stamp:
+            from ravemj.engine.collision.world import CollisionWorld  # noqa: PLC0415 - slow to import
+
+            self._collisions = known = CollisionWorld(self.bodies, model, stamp)
+        return known
+
+    def _compile(self) -> "WorldModel":
+        from ravemj.engine.simulation.world_model import WorldModel  # noqa: PLC0415 - slow to import
+
+        self.diagnostics = Diagnostics()
+        world = WorldModel(self.bodies, self.view, self.diagnostics)
+        world.model.opt.gravity[:] = self.gravity
+        self.version += 1
+        # Links that scripts make are all called "base"; only who reads the MJCF wants to know its names.
+        send_warnings(finding for finding in self.diagnostics if finding.code != "renamed")
+        return world

@@ -5,7 +5,7 @@ from ravemj.formats.collada.mathml import FormulaError, Writer
 from ravemj.formats.collada.references import References
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, words
 from ravemj.model.builder import BodyBuilder
-from ravemj.model.following import Equations
+from ravemj.model.mimic import Equations
 
 
 def read_formulas(

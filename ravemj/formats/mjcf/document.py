@@ -18,6 +18,9 @@ from ravemj.model.scene import Axis, Joint, KinBody, Link, Mesh, Scene, View
 ASSETS = "assets"
 """Folder of the meshes, beside the MJCF file."""
 
+MECHANISM_MEMORY = "1M"
+"""Working memory of a model without contacts; MuJoCo's default is several times the model's own size, for each body."""
+
 Actuators = Literal["position", "velocity", "torque"]
 
 
@@ -30,12 +33,15 @@ class Options(NamedTuple):
         actuators: The kind of actuator for each DOF, or None.
         decomposed: Whether meshes collide as several convex parts (with CoACD) in place of one hull.
         excludes: Whether pairs of links that OpenRAVE never tests are excluded by name.
+        mechanism_only: Whether only links and joints are written, without shapes and without what acts when time runs,
+            and every root gets a free joint.
     """
 
     free_bases: bool = False
     actuators: Actuators | None = None
     decomposed: bool = False
     excludes: bool = True
+    mechanism_only: bool = False
 
 
 class BodyNames(NamedTuple):
@@ -91,7 +97,8 @@ def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None
         diagnostics: Takes a warning for every value that MuJoCo would refuse and every name that clashes.
         options: What to add; None: nothing.
     """
-    writer = _Writer(diagnostics, options or Options())
+    options = options or Options()
+    writer = _Writer(diagnostics, options)
     for index, body in enumerate(scene.bodies):
         writer.write_body(index, body)
     out = Lines()
@@ -99,7 +106,10 @@ def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None
     out.element("compiler", angle="radian", autolimits=True, fusestatic=False, meshdir=ASSETS)
     if scene.gravity is not None:
         out.element("option", gravity=scene.gravity)
-    _write_look(out, scene.view or View(), writer.geometries.lines)
+    if options.mechanism_only:
+        out.element("size", memory=MECHANISM_MEMORY)
+    else:
+        _write_look(out, scene.view or View(), writer.geometries.lines)
     out.section("worldbody", writer.bodies)
     out.section("contact", writer.excludes)
     out.section("tendon", writer.equalities.tendons)
@@ -157,7 +167,9 @@ class _Writer:
         self.diagnostics = diagnostics
         self.options = options
         self.bodies = Lines(2)
-        self.bodies.element("light", type="directional", dir=(-0.4, 0.4, -1.0), diffuse=(0.4, 0.4, 0.4), specular=ZERO)
+        if not options.mechanism_only:
+            light: dict[str, Attribute] = {"diffuse": (0.4, 0.4, 0.4), "specular": ZERO}
+            self.bodies.element("light", type="directional", dir=(-0.4, 0.4, -1.0), **light)
         self.excludes = Lines(2)
         self.actuators = Lines(2)
         self.geometries = GeometryWriter(diagnostics, decomposed=options.decomposed)
@@ -168,7 +180,7 @@ class _Writer:
 
     def write_body(self, index: int, body: KinBody) -> None:
         """Write the tree of links of a body, root links first, and what belongs to it in other sections."""
-        joints = (*body.joints, *body.passive_joints)
+        joints = body.all_joints
         names = BodyNames(
             links=tuple(self._given.give("body", body, link.name or f"link{i}") for i, link in enumerate(body.links)),
             joints=tuple(
@@ -179,6 +191,8 @@ class _Writer:
         )
         welds = WeldGroups()
         self.names.append(names._replace(geoms=self._write_tree(index, body, names, joints, welds)))
+        if self.options.mechanism_only:
+            return
         if self.options.excludes:
             for first, second in excluded_pairs(body, welds):
                 self.excludes.element("exclude", body1=names.links[first], body2=names.links[second])
@@ -204,6 +218,7 @@ class _Writer:
         for child, number in placing.items():
             children.setdefault(joints[number].parent, []).append(child)
         free = self.options.free_bases and not any(link.static for link in body.links)
+        free = free or self.options.mechanism_only
         pending = [(link, False) for link in reversed(range(len(body.links))) if link not in placing]
         while pending:
             link, is_done = pending.pop()
@@ -220,7 +235,8 @@ class _Writer:
             self._write_inertial(index, link, body.links[link])
             if joint is not None:
                 self._write_joint(joint, joint_names)
-            written = [self.geometries.write(geometry, self.bodies) for geometry in body.links[link].geometries]
+            shapes = () if self.options.mechanism_only else body.links[link].geometries
+            written = [self.geometries.write(geometry, self.bodies) for geometry in shapes]
             geoms[link] = tuple(count for count, _ in written)
             parent = None if joint is None else joint.parent
             solid = any(collides for _, collides in written)

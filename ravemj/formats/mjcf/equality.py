@@ -12,7 +12,7 @@ import numpy as np
 
 from ravemj.errors import Diagnostics
 from ravemj.formats.mjcf.lines import Lines
-from ravemj.model.following import leaders
+from ravemj.model.mimic import leaders
 from ravemj.model.scene import Joint
 
 if TYPE_CHECKING:

@@ -76,7 +76,7 @@ def excluded_pairs(body: KinBody, welds: WeldGroups) -> list[Pair]:
     """
     if len(welds.solid) < 2:
         return []
-    joints = (*body.joints, *body.passive_joints)
+    joints = body.all_joints
     count = len(body.links)
     solid = set(welds.solid)
     named = [(one, other) for one, other in body.adjacent if one in solid and other in solid]

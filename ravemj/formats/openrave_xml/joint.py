@@ -19,7 +19,7 @@ from ravemj.formats.openrave_xml.values import (
     word,
 )
 from ravemj.model.builder import BodyBuilder, JointBuilder
-from ravemj.model.following import Equations
+from ravemj.model.mimic import Equations
 from ravemj.model.scene import UNLIMITED, Axis, JointKind
 
 _KINDS: dict[str, JointKind] = {"hinge": "hinge", "slider": "slider", "hinge2": "hinge2", "spherical": "spherical"}

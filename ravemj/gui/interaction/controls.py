@@ -173,11 +173,11 @@ class Controls:
 
 
 def _joint(body: BodyState, dof: int, value: float) -> Control:
-    kinematics = body.kinematics
+    limits = body.scene.dof_axes[dof]
     joint, axis = joint_and_axis(body, dof)
     reach, unit = _WIDEST.get(joint.kind, _WIDEST["other"])
-    shown, lower, upper = value, float(kinematics.lower[dof]), float(kinematics.upper[dof])
-    if kinematics.circular[dof]:
+    shown, lower, upper = value, limits.lower, limits.upper
+    if limits.circular:
         lower, upper, shown = -math.pi, math.pi, math.remainder(value, math.tau)
     elif not upper - lower <= _MUCH * 2 * reach:
         middle = min(max(0.0, lower + reach), upper - reach)

@@ -315,7 +315,7 @@ class Interaction:
         """Return the view with a focus: before one was set, as deep as the middle of the scene."""
         if self.view.distance > 0:
             return self.view
-        compiled = self._simulation.compile()
+        compiled = self._simulation.compiled()
         center, radius = bounding_sphere(compiled.model, compiled.data)
         depth = float((center - self.view.camera.position) @ self.view.camera.rotation[:, 2])
         return replace(self.view, distance=depth if depth > 0 else radius)

@@ -11,6 +11,7 @@ from ravemj.geometry_functions import matrixFromAxisAngle
 from ravemj.gui.interaction.cube import Cube, Grip, nearest_on_line
 from ravemj.gui.interaction.joint_handle import JointHandle, joint_and_axis
 from ravemj.gui.interaction.viewpoint import Ray
+from ravemj.model.limits import clamp
 
 Follow = Callable[[Ray], None]
 """Takes the pointer's ray as it is now."""
@@ -60,11 +61,8 @@ def move_joint(body: BodyState, dof: int, handle: JointHandle, point: Floats, ra
 
 def set_dof(body: BodyState, dof: int, value: float) -> None:
     """Give a joint another value [rad or m], as far as its limits go."""
-    kinematics = body.kinematics
-    if not kinematics.circular[dof]:
-        value = min(max(value, kinematics.lower[dof]), kinematics.upper[dof])
-    values = kinematics.values()
-    values[dof] = value
+    values = body.kinematics.values()
+    values[dof] = clamp(body.scene.dof_axes[dof], value)
     body.set_values(values)
 
 

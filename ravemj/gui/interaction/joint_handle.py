@@ -11,7 +11,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.gui.interaction.picking import visible_box
 from ravemj.gui.interaction.viewpoint import Ray
 from ravemj.model import drawing
-from ravemj.model.chains import all_joints, joints_above
+from ravemj.model.chains import joints_above
 from ravemj.model.drawing import Shapes
 from ravemj.model.joints import directions_at
 from ravemj.model.manipulators import joint_dofs
@@ -39,7 +39,7 @@ def driving_dof(body: KinBody, link: int) -> int | None:
 
     A joint that follows others stands for the first one that it follows. None where nothing moves the link.
     """
-    joints = all_joints(body)
+    joints = body.all_joints
     for index in joints_above(body, link):
         mimic = joints[index].mimic
         if mimic is not None and mimic.dofs:

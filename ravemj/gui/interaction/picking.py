@@ -32,7 +32,7 @@ class Hit:
 
 def pick(simulation: Simulation, ray: Ray) -> Hit | None:
     """Return the nearest point on a link that a ray meets, or None."""
-    compiled = simulation.compile()
+    compiled = simulation.compiled()
     model, data = compiled.model, compiled.data
     center, radius = bounding_sphere(model, data)
     reach = 2 * (float(np.linalg.norm(center - ray.start)) + radius)
@@ -41,7 +41,7 @@ def pick(simulation: Simulation, ray: Ray) -> Hit | None:
         return None
     body_id = model.geom_bodyid[hit.geom]
     for body in simulation.bodies:
-        links = np.flatnonzero(body.kinematics.body_ids == body_id)
+        links = np.flatnonzero(compiled.part(body).body_ids == body_id)
         if len(links):
             return Hit(body, int(links[0]), hit.position, hit.normal, hit.fraction * reach)
     return None
@@ -68,9 +68,10 @@ def visible_box(body: BodyState, links: "list[int] | None", T_world_frame: Float
         links: Their indices; None: all.
         T_world_frame: The frame, 4x4.
     """
-    kinematics = body.kinematics
-    model, data = kinematics.model, kinematics.data
-    body_ids = kinematics.body_ids if links is None else kinematics.body_ids[links]
+    compiled = body.simulation.compiled()
+    model, data, body_ids = compiled.model, compiled.data, compiled.part(body).body_ids
+    if links is not None:
+        body_ids = body_ids[links]
     geoms = np.flatnonzero(drawn_geoms(model) & np.isin(model.geom_bodyid, body_ids))
     if not len(geoms):
         return None

@@ -15,7 +15,7 @@ _TOP_LEFT = mujoco.mjtGridPos.mjGRID_TOPLEFT.value
 
 def appearance(simulation: Simulation) -> object:
     """Return what is equal for as long as bodies and drawings look the same; the caller has locked the simulation."""
-    compiled = simulation.compile()
+    compiled = simulation.compiled()
     model, data = compiled.model, compiled.data
     state = data.geom_xpos.tobytes(), data.geom_xmat.tobytes(), model.geom_rgba.tobytes()
     return simulation.version, state, simulation.drawings.shapes()
@@ -50,7 +50,7 @@ class WindowRenderer:
         Returns:
             Whether anything looks different from last time.
         """
-        compiled = simulation.compile()
+        compiled = simulation.compiled()
         seen = (appearance(simulation), interaction.version, background, pixels, ratio)
         if seen == self._seen:
             return False

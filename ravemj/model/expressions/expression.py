@@ -11,7 +11,7 @@ from ravemj.model.expressions.calculus import derivative
 from ravemj.model.expressions.functions import FUNCTIONS, NAN
 from ravemj.model.expressions.nodes import Call, Node, Number, Variable, ordered, steps
 from ravemj.model.expressions.parser import parse_nodes
-from ravemj.model.expressions.polynomials import coefficients
+from ravemj.model.expressions.polynomials import Affine, affine, coefficients
 from ravemj.model.expressions.writer import text_of
 
 Compiled = Callable[[Sequence[float]], float]
@@ -65,6 +65,11 @@ class Expression:
     @cached_property
     def _evaluate(self) -> Compiled:
         return self.compiled()
+
+    @cached_property
+    def affine(self) -> Affine | None:
+        """A constant plus multiples of the variables, if the expression is that, else None."""
+        return affine(self.nodes)
 
     def __str__(self) -> str:
         return text_of(self.nodes)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from itertools import zip_longest
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -98,6 +98,66 @@ _RULES: dict[str, Callable[..., Coefficients | None]] = {
     "mul": _multiply,
     "div": _divide,
     "pow": _power,
+}
+
+
+class Affine(NamedTuple):
+    """A constant plus multiples of variables.
+
+    Attributes:
+        offset: The constant.
+        slopes: What each variable is multiplied by.
+    """
+
+    offset: float
+    slopes: dict[str, float]
+
+    def plus(self, other: "Affine", factor: float = 1.0) -> "Affine":
+        """Return this plus a multiple of another."""
+        slopes = dict(self.slopes)
+        for name, slope in other.slopes.items():
+            slopes[name] = slopes.get(name, 0.0) + factor * slope
+        return Affine(self.offset + factor * other.offset, slopes)
+
+
+def affine(nodes: list[Node]) -> Affine | None:
+    """Return the last of ``nodes`` as a constant plus multiples of variables, or None if it is not written as one."""
+    found: dict[Node, Affine | None] = {}
+    for node in nodes:
+        match node:
+            case Number(value):
+                found[node] = Affine(value, {})
+            case Variable(name):
+                found[node] = Affine(0.0, {name: 1.0})
+            case Call(function, arguments):
+                known = [part for part in map(found.__getitem__, arguments) if part is not None]
+                rule = _AFFINE_RULES.get(function)
+                found[node] = rule(*known) if rule is not None and len(known) == len(arguments) else None
+    result = found[nodes[-1]]
+    is_finite = result is not None and all(map(math.isfinite, (result.offset, *result.slopes.values())))
+    return result if is_finite else None
+
+
+def _scaled(x: Affine, factor: float) -> Affine:
+    return Affine(factor * x.offset, {name: factor * slope for name, slope in x.slopes.items()})
+
+
+def _affine_product(x: Affine, y: Affine) -> Affine | None:
+    if x.slopes and y.slopes:
+        return None
+    return _scaled(x, y.offset) if x.slopes else _scaled(y, x.offset)
+
+
+def _affine_quotient(x: Affine, y: Affine) -> Affine | None:
+    return None if y.slopes or y.offset == 0 else _scaled(x, 1 / y.offset)
+
+
+_AFFINE_RULES: dict[str, Callable[..., Affine | None]] = {
+    "add": lambda x, y: x.plus(y),
+    "sub": lambda x, y: x.plus(y, -1.0),
+    "neg": lambda x: _scaled(x, -1.0),
+    "mul": _affine_product,
+    "div": _affine_quotient,
 }
 
 

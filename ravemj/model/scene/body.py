@@ -99,6 +99,11 @@ class KinBody(Record):
     source: Source
 
     @property
+    def all_joints(self) -> tuple[Joint, ...]:
+        """The active joints in DOF order, then the passive ones; joints are counted in this order."""
+        return (*self.joints, *self.passive_joints)
+
+    @property
     def dof_axes(self) -> tuple[Axis, ...]:
         """The axes of all active joints, in DOF order."""
         return tuple(axis for joint in self.joints for axis in joint.axes)

@@ -11,7 +11,6 @@ from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.batch import batch_collides
 from ravemj.engine.collision.questions import moved_apart
 from ravemj.engine.collision.resting import tested_pairs
-from ravemj.engine.collision.world import world_of
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import AABB
 from ravemj.model.bounds import Bounds, links_bounds
@@ -150,7 +149,7 @@ class BodyCollision(BodyPart):
             adjacentoptions: Which of them, ``AdjacentOptions`` combined with ``|``; 0: all.
         """
         with self._simulation.lock:
-            pairs = tested_pairs(world_of(self._simulation), self._state)
+            pairs = tested_pairs(self._simulation.collisions(), self._state)
         if adjacentoptions & AdjacentOptions.Enabled:
             enabled = self._state.link_enabled
             pairs = [(first, second) for first, second in pairs if enabled[first] and enabled[second]]

@@ -11,7 +11,6 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.questions import touching_links
-from ravemj.engine.collision.world import world_of
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -75,7 +74,7 @@ class Grabbing(BodyPart):
                 raise ArgumentError(f"Grab: grablink is {grablink!r}, and should be a link of '{self.GetName()}'")
             held = body.simulation_state
             link = grablink.GetIndex()
-            touched = touching_links(world_of(self._simulation), self._state, held)
+            touched = touching_links(self._simulation.collisions(), self._state, held)
             ignored = {link, *(self._link_index(one) for one in linkstoignore), *touched}
             T_link_body = inverse(self._state.link_transform(link)) @ held.link_transform(0)
             self._state.grab(GrabbedBody(held, link, T_link_body, frozenset(ignored)))

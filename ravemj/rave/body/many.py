@@ -95,7 +95,8 @@ class Many(BodyPart):
             )
         result = _checked_out(out, checked[0].shape)
         with self._simulation.lock:
-            self._state.batch.inverse_dynamics(checked[0], checked[1], checked[2], self._state.inertias, result)
+            state, gravity = self._state, np.array(self._simulation.gravity)
+            state.batch.inverse_dynamics(checked[0], checked[1], checked[2], state.inertias, gravity, result)
         return result
 
     def _checked_many(self, numbers: ArrayLike, name: str) -> Floats:

@@ -32,7 +32,7 @@ class Motion(Velocities, Many):
             Derivative of ``GetCenterOfMass()`` by the DOF values, shape (3, dof).
         """
         with self._simulation.lock:
-            return self._state.dynamics.com_jacobian(self._state.inertias)
+            return self._state.dynamics.com_jacobian()
 
     def ComputeJacobianTranslation(
         self, linkindex: int, position: ArrayLike, dofindices: "ArrayLike | None" = None
@@ -54,7 +54,10 @@ class Motion(Velocities, Many):
             >>> tip = robot.GetLink("Arm1").GetTransform()[0:3, 3]
             >>> robot.ComputeJacobianTranslation(2, tip) @ robot.GetDOFVelocities()  # the tip's velocity
         """
-        return _columns(self._jacobian(linkindex, position)[0], dofindices)
+        link, point = self._checked_link(linkindex), checked_vector(position, 3, "position")
+        with self._simulation.lock:
+            jacobian = self._state.dynamics.translation_jacobian(link, point)
+        return jacobian if dofindices is None else _columns(jacobian, dofindices)
 
     def ComputeJacobianAxisAngle(self, linkindex: int, dofindices: "ArrayLike | None" = None) -> Floats:
         """Return how a link turns with the joint values.
@@ -66,7 +69,10 @@ class Motion(Velocities, Many):
         Returns:
             Angular velocity of the link, in world axes, per unit of DOF velocity, shape (3, dof).
         """
-        return _columns(self._jacobian(linkindex, np.zeros(3))[1], dofindices)
+        link = self._checked_link(linkindex)
+        with self._simulation.lock:
+            jacobian = self._state.dynamics.rotation_jacobian(link)
+        return jacobian if dofindices is None else _columns(jacobian, dofindices)
 
     def CalculateJacobian(self, linkindex: int, position: ArrayLike) -> Floats:
         """Return ``ComputeJacobianTranslation`` for all DOFs; its older name.
@@ -127,11 +133,6 @@ class Motion(Velocities, Many):
         """
         derivatives = self._hessian(linkindex, np.zeros(3))[1]
         return _both_columns(derivatives + derivatives.transpose(2, 1, 0), dofindices)
-
-    def _jacobian(self, link: int, point: ArrayLike) -> tuple[Floats, Floats]:
-        checked = self._checked_link(link), checked_vector(point, 3, "position")
-        with self._simulation.lock:
-            return self._state.dynamics.jacobian(*checked)
 
     def _hessian(self, link: int, point: ArrayLike) -> tuple[Floats, Floats]:
         checked = self._checked_link(link), checked_vector(point, 3, "position")
@@ -220,9 +221,9 @@ class Motion(Velocities, Many):
         accelerations = self._checked_accelerations(dofaccelerations, "ComputeInverseDynamics")
         pushes = self._checked_pushes(externalforcetorque, "externalforcetorque")
         with self._simulation.lock:
-            state = self._state
-            given = state.link_velocities(), accelerations, state.inertias, pushes
-            return state.dynamics.inverse_components(*given) if returncomponents else state.dynamics.inverse(*given)
+            dynamics = self._state.dynamics
+            given = self._state.link_velocities(), accelerations, self._simulation.gravity, pushes
+            return dynamics.inverse_components(*given) if returncomponents else dynamics.inverse(*given)
 
     def _checked_accelerations(self, accelerations: "ArrayLike | None", name: str) -> Floats:
         dof = self.GetDOF()

@@ -70,9 +70,9 @@ class JointValues(BodyPart):
         with self._simulation.lock:
             kinematics = self._state.kinematics
             target = self._full_values(values, dofindices)
-            if not kinematics.within_limits(target):
+            if not kinematics.limits.contain(target):
                 target = self._settled(target, checklimits)
-            self._state.set_values(target, limit_followers=checklimits != CheckLimitsAction.Nothing)
+            self._state.set_values(target, clamp_mimic=checklimits != CheckLimitsAction.Nothing)
 
     def _full_values(self, values: ArrayLike, dofindices: "ArrayLike | None") -> Floats:
         """Return one value for each DOF, in DOF order."""
@@ -102,16 +102,15 @@ class JointValues(BodyPart):
         target = np.where(np.isnan(target), kinematics.values(), target)
         if checklimits == CheckLimitsAction.Nothing:
             return target
-        limited = np.where(kinematics.circular, target, np.clip(target, kinematics.lower, kinematics.upper))
+        limited = kinematics.limits.clamp(target)
         outside = np.flatnonzero(np.abs(target - limited) > ROUNDING)
         if len(outside) and checklimits != CheckLimitsAction.CheckLimitsSilent:
             self._report_limits(target, outside[0], checklimits)
         return limited
 
     def _report_limits(self, target: Floats, dof: np.intp, checklimits: int) -> None:
-        kinematics = self._state.kinematics
-        joint = self._state.scene.joint_of_dof(int(dof))
-        limits = f"[{kinematics.lower[dof]:.6g}, {kinematics.upper[dof]:.6g}]"
+        joint, axis = self._state.scene.joint_of_dof(int(dof)), self._state.scene.dof_axes[dof]
+        limits = f"[{axis.lower:.6g}, {axis.upper:.6g}]"
         message = f"joint '{joint.name}' is set to {target[dof]:.6g}, outside its limits {limits}"
         if checklimits == CheckLimitsAction.CheckLimitsThrow:
             raise ArgumentError(message)
@@ -122,4 +121,4 @@ class JointValues(BodyPart):
     def qpos_indices(self) -> Ints:
         """Where each DOF is in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld."""
         with self._simulation.lock:
-            return self._state.kinematics.qpos_indices.copy()
+            return self._simulation.compiled().qpos_indices(self._state)

@@ -1,6 +1,7 @@
 """What the parts of an environment's API share."""
 
 from typing import TYPE_CHECKING, cast
+from weakref import WeakValueDictionary
 
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import Diagnostic, ErrorCode, RavemjError
@@ -22,6 +23,8 @@ class EnvironmentPart(UserData):
     def __init__(self) -> None:
         self._simulation = Simulation()
         self._renderer = SimulationRenderer(self._simulation)
+        self._objects: WeakValueDictionary[BodyState, KinBody] = WeakValueDictionary()
+        self._kept_objects: dict[BodyState, KinBody] = {}  # of bodies that are in the environment
         self._viewers: list[Viewer] = []
         self._found: dict[Diagnostic, None] = {}  # as ordered sets, which loading a file again does not let grow
         self._files: dict[str, None] = {}
@@ -49,7 +52,15 @@ class EnvironmentPart(UserData):
     def wrap(self, state: BodyState) -> KinBody:
         """Return the one object that users have for a body."""
         with self._simulation.lock:
-            if state.api_object is None:
-                state.api_object = (Robot if state.scene.is_robot else KinBody)(self._environment, state)
-            assert isinstance(state.api_object, KinBody)
-            return state.api_object
+            found = self._kept_objects.get(state) or self._objects.get(state)
+            if found is None:
+                found = (Robot if state.scene.is_robot else KinBody)(self._environment, state)
+                self._objects[state] = found
+            if state.index:
+                self._kept_objects[state] = found
+            return found
+
+    def _remove_all(self) -> None:
+        """Take all bodies out of the environment."""
+        self._simulation.clear()
+        self._kept_objects.clear()

@@ -8,6 +8,7 @@ from ravemj.rave.body.base import both_locks
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.contents import Contents
 from ravemj.rave.interface import checked_environment
+from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 
 if TYPE_CHECKING:
@@ -50,21 +51,21 @@ class Cloning(Contents):
         if source is self._simulation:
             return
         with both_locks(source, self._simulation):
-            self._simulation.clear()
+            self._remove_all()
             self._simulation.view = source.view
             self._simulation.set_gravity(source.gravity)
-            copies = {body: self._copy(body) for body in source.bodies}
+            copies = {body: self._copy(body, reference.wrap(body)) for body in source.bodies}
             for original, copy in copies.items():
                 copy.grabs = [
                     GrabbedBody(copies[grab.body], grab.link, grab.T_link_body, grab.ignored) for grab in original.grabs
                 ]
 
-    def _copy(self, original: BodyState) -> BodyState:
+    def _copy(self, original: BodyState, other: KinBody) -> BodyState:
         copy = self._simulation.create(original.scene)
         copy.copy(original)
         self._simulation.insert(copy, original.index)
         copy.rest_poses = original.rest_poses
-        body, other = self.wrap(copy), original.api_object
+        body = self.wrap(copy)
         if isinstance(body, Robot) and isinstance(other, Robot):
             body.take_choices(other)
         return copy

@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.showing import Shown
 from ravemj.core.transforms import Floats
-from ravemj.engine.collision.world import world_of
 from ravemj.errors import ArgumentError
 from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
 from ravemj.rave.env.base import EnvironmentPart
@@ -133,7 +132,7 @@ class Collision(EnvironmentPart):
         found, points = np.zeros(len(rows), dtype=bool), np.zeros((len(rows), 6))
         checker = self.GetCollisionChecker()
         with self._simulation.lock:
-            world = world_of(self._simulation)
+            world = self._simulation.collisions()
             for number, row in enumerate(rows):
                 hit = checker.cast(world, row[:3], row[3:], ... if body is None else body)
                 if hit is not None and not (front_facing_only and hit.normal @ row[3:] >= 0):

@@ -63,6 +63,7 @@ class Contents(EnvironmentPart):
             if int(addMode) & InterfaceAddMode.AllowRenaming:
                 self._simulation.rename(state, self._simulation.free_name(state.scene.name))
             self._simulation.insert(state)
+            self._kept_objects[state] = body
         for viewer in self._viewers:
             viewer.take_over()
 
@@ -88,6 +89,7 @@ class Contents(EnvironmentPart):
         """
         if not isinstance(obj, KinBody):
             return self._remove_other(obj)
+        self._kept_objects.pop(obj.simulation_state, None)
         return self._simulation.remove(obj.simulation_state)
 
     RemoveKinBody = Remove

@@ -21,7 +21,7 @@ class JointPart(Shown):
     @property
     def _scene(self) -> scene.Joint:
         body = self._state.scene
-        return (*body.joints, *body.passive_joints)[self._index]
+        return body.all_joints[self._index]
 
     @property
     def _is_active(self) -> bool:

@@ -4,8 +4,8 @@ import numpy as np
 
 from ravemj.core.transforms import Ints
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.model.following import Equations, leaders, with_equations
 from ravemj.model.manipulators import joint_dofs
+from ravemj.model.mimic import Equations, leaders, with_equations
 from ravemj.rave.joints.base import JointPart
 
 
@@ -66,5 +66,4 @@ class JointFollowing(JointPart):
             raise RavemjError(message, ErrorCode.NotImplemented)
         with self._state.simulation.lock:
             passive = with_equations(self._state.scene, self._index, Equations(poseq, veleq, acceleq))
-            self._state.simulation.forget_model()
-            self._state.edit(passive_joints=passive)
+            self._state.edit_mimic(passive)

@@ -22,7 +22,7 @@ class LinkShapes(LinkPart):
             >>> for geometry in robot.GetLink("Arm0").GetGeometries():
             ...     geometry.SetTransparency(0.5)
         """
-        return [Geometry(self._state, self._index, index) for index in range(len(self._scene.geometries))]
+        return [Geometry(self, self._state, self._index, index) for index in range(len(self._scene.geometries))]
 
     def GetGeometry(self, index: int) -> Geometry:
         """Return one of the link's shapes.
@@ -116,7 +116,7 @@ class LinkShapes(LinkPart):
         Raises:
             openrave_exception: there is no such group.
         """
-        return [Geometry(self._state, self._index, index, name) for index in range(len(self._group(name)))]
+        return [Geometry(self, self._state, self._index, index, name) for index in range(len(self._group(name)))]
 
     GetGroupGeometries = GetGeometriesFromGroup
 

@@ -1,7 +1,7 @@
-"""How the movers of a body follow its DOFs.
+"""How the velocity coordinates of a body follow its DOFs.
 
-``qvel = P(q) dq/dt``: P is constant but for followers and spherical joints. By virtual work the generalised forces of
-the DOFs are ``P^T`` times those of the movers.
+``qvel = P(q) dq/dt`` with the coupling matrix P, which is constant but for mimic joints with curved equations and for
+spherical joints. By virtual work the generalised forces of the DOFs are ``P^T`` times those of the coordinates.
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Ints, rows_from_wxyz
 from ravemj.engine.dynamics.tree import Tree
-from ravemj.engine.kinematics import WELDED, Ball, BodyKinematics, Follower
+from ravemj.engine.kinematics import NO_QPOS, BodyKinematics, SphericalJoint
 
 if TYPE_CHECKING:
     from ravemj.model.expressions import Expression
@@ -26,105 +26,110 @@ SMALL = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Slopes:
+class Coupling:
     """P and its derivative at given joint values, of one configuration or of many (a last axis).
 
     Attributes:
         dof: How many DOFs there are.
-        count: How many movers there are.
-        dofs: The DOFs that move a mover one to one.
-        movers: These movers.
-        first: Further entries of P: mover, DOF, value.
-        second: Entries of P's derivative: mover, the DOF that changes, the DOF of the column, value.
+        count: How many velocity coordinates there are.
+        dofs: The DOFs that are coordinates themselves.
+        coordinates: These coordinates.
+        first: Further entries of P: coordinate, DOF, value.
+        second: Entries of P's derivative: coordinate, the DOF that changes, the DOF of the column, value.
     """
 
     dof: int
     count: int
     dofs: Ints
-    movers: Ints
+    coordinates: Ints
     first: list[tuple[int, int, Floats]]
     second: list[tuple[int, int, int, Floats]]
 
     def forward(self, rates: Floats) -> Floats:
-        """Return the movers' velocities of those of the DOFs, shape (dof, ...) to (movers, ...)."""
+        """Return P times something: velocities of the coordinates, shape (dof, ...) to (coordinates, ...)."""
         moved = np.zeros((self.count, *rates.shape[1:]))
-        moved[self.movers] = rates[self.dofs]
-        for mover, dof, value in self.first:
-            moved[mover] += value * rates[dof]
+        moved[self.coordinates] = rates[self.dofs]
+        for coordinate, dof, value in self.first:
+            moved[coordinate] += value * rates[dof]
         return moved
 
     def backward(self, forces: Floats) -> Floats:
-        """Return P^T times something, shape (movers, ...) to (dof, ...)."""
+        """Return P^T times something: forces on the DOFs, shape (coordinates, ...) to (dof, ...)."""
         collected = np.zeros((self.dof, *forces.shape[1:]))
-        collected[self.dofs] = forces[self.movers]
-        for mover, dof, value in self.first:
-            collected[dof] += value * forces[mover]
+        collected[self.dofs] = forces[self.coordinates]
+        for coordinate, dof, value in self.first:
+            collected[dof] += value * forces[coordinate]
         return collected
 
-    def bend(self, rates: Floats) -> Floats:
-        """Return the movers' accelerations while the DOFs keep their velocities, shape (dof, ...) to (movers, ...)."""
-        bent = np.zeros((self.count, *rates.shape[1:]))
-        for mover, along, dof, value in self.second:
-            bent[mover] += value * rates[along] * rates[dof]
-        return bent
+    def bias(self, rates: Floats) -> Floats:
+        """Return dP/dt dq/dt: accelerations of the coordinates while the DOFs keep their velocities, shape (dof, ...).
+
+        Returns:
+            Shape (coordinates, ...).
+        """
+        bias = np.zeros((self.count, *rates.shape[1:]))
+        for coordinate, along, dof, value in self.second:
+            bias[coordinate] += value * rates[along] * rates[dof]
+        return bias
 
 
-class VelocityMap:
-    """The map from DOF velocities to those of the movers, at any joint values."""
+class CouplingMap:
+    """The coupling matrix of a body at any joint values.
+
+    Attributes:
+        constant: The coupling, if it is the same at all joint values, else None.
+        is_one_to_one: Whether every velocity coordinate is that of one DOF.
+    """
 
     def __init__(self, kinematics: BodyKinematics, tree: Tree) -> None:
         self._kinematics = kinematics
-        mover_of = tree.mover_of_qpos(kinematics.model)
-        dofs = np.flatnonzero(kinematics.qpos_indices != WELDED)
-        movers = np.array([mover_of[qpos] for qpos in kinematics.qpos_indices[dofs].tolist()], dtype=int)
-        self._one_to_one = kinematics.dof, tree.count, dofs, movers
-        self._balls = [(ball, mover_of[ball.qpos.start]) for ball in kinematics.balls]
-        self._followers = [
-            (follower, mover_of.get(follower.qpos, WELDED), _Partials(self._expression(follower)))
-            for follower in kinematics.followers
+        dofs = np.flatnonzero(kinematics.qpos_indices != NO_QPOS)
+        coordinates = np.array([tree.of_qpos[qpos] for qpos in kinematics.qpos_indices[dofs].tolist()], dtype=int)
+        self._one_to_one = kinematics.dof, tree.count, dofs, coordinates
+        self._spherical = [(one, tree.of_qpos[one.qpos.start]) for one in kinematics.spherical]
+        self._mimic = [
+            (joint.index, self._coordinate(tree, joint.index), _Partials(joint.expression))
+            for joint in kinematics.mimic.joints
         ]
-        self._plain = None if self._balls or self._followers else Slopes(*self._one_to_one, [], [])
+        is_affine = all(joint.expression.affine is not None for joint in kinematics.mimic.joints)
+        self.constant: Coupling | None = None
+        if is_affine and not self._spherical:
+            self.constant = self._at(np.zeros(kinematics.dof), second=False)
+        self.is_one_to_one = not (self._spherical or self._mimic)
 
-    @property
-    def is_constant(self) -> bool:
-        """Whether P is the same at all joint values."""
-        return self._plain is not None
+    def _coordinate(self, tree: Tree, joint: int) -> int:
+        places = self._kinematics.joint_qpos[joint]
+        return tree.of_qpos[places[0]] if places else NO_QPOS
 
-    def _expression(self, follower: Follower) -> "Expression":
-        body = self._kinematics.body
-        mimic = (*body.joints, *body.passive_joints)[follower.joint].mimic
-        assert mimic is not None
-        assert mimic.expression is not None
-        return mimic.expression
-
-    def at(self, values: Floats, *, second: bool = True) -> Slopes:
+    def at(self, values: Floats, *, second: bool = True) -> Coupling:
         """Return P and its derivative.
 
         Args:
             values: Joint values [rad or m], shape (dof,) or (dof, N).
             second: Whether the derivative is wanted.
         """
-        if self._plain is not None:
-            return self._plain
-        slopes = Slopes(*self._one_to_one, [], [])
-        for ball, mover in self._balls:
-            _add_ball(slopes, ball, mover, values[ball.dofs], second=second)
-        self._add_followers(slopes, values, second=second)
-        return slopes
+        return self.constant or self._at(values, second=second)
 
-    def _add_followers(self, slopes: Slopes, values: Floats, *, second: bool) -> None:
+    def _at(self, values: Floats, *, second: bool) -> Coupling:
+        coupling = Coupling(*self._one_to_one, [], [])
+        for joint, coordinate in self._spherical:
+            _add_spherical(coupling, joint, coordinate, values[joint.dofs], second=second)
+        self._add_mimic(coupling, values, second=second)
+        return coupling
+
+    def _add_mimic(self, coupling: Coupling, values: Floats, *, second: bool) -> None:
         kinematics = self._kinematics
         known = dict(enumerate(first_values(kinematics, values)))
         gradients: dict[int, Gradient] = {index: {dof: np.ones(())} for index, dof in enumerate(kinematics.first_dofs)}
         hessians: dict[int, Hessian] = {index: {} for index in gradients}
-        for follower, mover, partials in self._followers:
+        for index, coordinate, partials in self._mimic:
             named = {name: known[_index(name)] for name in partials.names}
-            known[follower.joint] = _value(partials.expression, named, values)
+            known[index] = _value(partials.expression, named, values)
             gradient, hessian = partials.chain(named, values, gradients, hessians if second else None)
-            gradients[follower.joint], hessians[follower.joint] = gradient, hessian
-            if mover != WELDED:
-                slopes.first.extend((mover, dof, value) for dof, value in gradient.items())
-                slopes.second.extend((mover, *pair, value) for pair, value in hessian.items())
+            gradients[index], hessians[index] = gradient, hessian
+            if coordinate != NO_QPOS:
+                coupling.first.extend((coordinate, dof, value) for dof, value in gradient.items())
+                coupling.second.extend((coordinate, *pair, value) for pair, value in hessian.items())
 
 
 class _Partials:
@@ -187,16 +192,16 @@ def _value(expression: "Expression", named: dict[str, Floats], values: Floats) -
     return np.asarray(expression.evaluate({name: float(value) for name, value in wanted.items()}))
 
 
-def _add_ball(slopes: Slopes, ball: Ball, mover: int, vector: Floats, *, second: bool) -> None:
-    """Add the entries of a spherical joint, whose movers turn about the axes of the child link."""
-    rest = np.array(rows_from_wxyz(ball.joint.T_parent_child.wxyz)).T
+def _add_spherical(coupling: Coupling, joint: SphericalJoint, coordinate: int, vector: Floats, *, second: bool) -> None:
+    """Add the entries of a spherical joint, whose coordinates turn about the axes of the child link."""
+    rest = np.array(rows_from_wxyz(joint.joint.T_parent_child.wxyz)).T
     rate, changes = rotation_rate(vector)
-    first = ball.dofs.start
+    first = joint.dofs.start
     for (row, column), value in _entries(np.tensordot(rest, rate, 1)):
-        slopes.first.append((mover + row, first + column, value))
+        coupling.first.append((coordinate + row, first + column, value))
     for along, change in enumerate(changes if second else ()):
         for (row, column), value in _entries(np.tensordot(rest, change, 1)):
-            slopes.second.append((mover + row, first + along, first + column, value))
+            coupling.second.append((coordinate + row, first + along, first + column, value))
 
 
 def _entries(matrix: Floats) -> "list[tuple[tuple[int, int], Floats]]":

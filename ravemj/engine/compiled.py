@@ -10,7 +10,7 @@ import numpy as np
 
 from ravemj.errors import CompileError, Diagnostics, Source
 from ravemj.model.inertia import principal_frame, principal_moments
-from ravemj.model.scene import Inertial, Scene
+from ravemj.model.scene import Inertial, KinBody, Scene
 
 if TYPE_CHECKING:
     from ravemj.formats import mjcf
@@ -67,6 +67,22 @@ class Compiled:
         for complaint in complaints:
             self._report(str(complaint.message), scene, diagnostics)
         self.data = mujoco.MjData(self.model)
+
+    @classmethod
+    def mechanism(cls, body: KinBody) -> "Compiled":
+        """Compile the links and joints of one body, without shapes; each root hangs on a free joint.
+
+        The model has the true masses and inertias. What the translation finds is left to that of the whole scene.
+
+        Raises:
+            CompileError: MuJoCo refuses the model.
+        """
+        from ravemj.formats import mjcf  # noqa: PLC0415 - slow to import
+
+        scene = Scene((body,))
+        compiled = cls(scene, Diagnostics(), mjcf.Options(mechanism_only=True))
+        compiled.write_true_inertias(scene)
+        return compiled
 
     def _report(self, complaint: str, scene: Scene, diagnostics: Diagnostics) -> None:
         """Record a warning of MuJoCo's, with the link that it is about where it names a DOF."""

@@ -1,10 +1,14 @@
-"""Mimic joints: from the equations of a file to expressions over the joints of a body."""
+"""Mimic joints: from the equations of a file to expressions over the joints of a body, and their values."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from ravemj.core.ordering import dependencies_first
+from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostics, Source
 from ravemj.model.scene import Joint, KinBody, Mimic
 
@@ -20,8 +24,8 @@ class Equations(NamedTuple):
     acceleration: str = ""
 
 
-class Follower(NamedTuple):
-    """A joint as its leaders and followers see it.
+class NamedJoint(NamedTuple):
+    """A joint as equations refer to it.
 
     Attributes:
         name: Its name.
@@ -36,7 +40,7 @@ class Follower(NamedTuple):
     source: Source
 
 
-def resolve(joints: Sequence[Follower], diagnostics: Diagnostics) -> dict[int, Mimic]:
+def resolve(joints: Sequence[NamedJoint], diagnostics: Diagnostics) -> dict[int, Mimic]:
     """Return how each mimic joint follows the others.
 
     Args:
@@ -77,17 +81,17 @@ def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[Joi
     Raises:
         ArgumentError: these equations cannot be used.
     """
-    followers: list[Follower] = []
+    named: list[NamedJoint] = []
     dof = 0
-    for place, joint in enumerate((*body.joints, *body.passive_joints)):
+    for place, joint in enumerate(body.all_joints):
         count = len(joint.axes) if place < len(body.joints) else 0
         mimic = joint.mimic
         own = None if mimic is None else Equations(mimic.position, mimic.velocity, mimic.acceleration)
         chosen = equations if place == index else own
-        followers.append(Follower(joint.name, tuple(range(dof, dof + count)), chosen, joint.source))
+        named.append(NamedJoint(joint.name, tuple(range(dof, dof + count)), chosen, joint.source))
         dof += count
     diagnostics = Diagnostics()
-    mimics = resolve(followers, diagnostics)
+    mimics = resolve(named, diagnostics)
     for finding in diagnostics:
         raise ArgumentError(finding.message)
     first = len(body.joints)
@@ -99,7 +103,9 @@ def leaders(expression: "Expression") -> tuple[int, ...]:
     return tuple(int(name.removeprefix("joint")) for name in expression.variables)
 
 
-def _mimic(index: int, joints: Sequence[Follower], mimics: "dict[int, Expression]", diagnostics: Diagnostics) -> Mimic:
+def _mimic(
+    index: int, joints: Sequence[NamedJoint], mimics: "dict[int, Expression]", diagnostics: Diagnostics
+) -> Mimic:
     joint = joints[index]
     equations = joint.equations or Equations()
     dofs: set[int] = set()
@@ -120,6 +126,75 @@ def _mimic(index: int, joints: Sequence[Follower], mimics: "dict[int, Expression
 
 
 def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
-    """Return the followers, each behind the followers that it depends on."""
+    """Return the mimic joints, each behind those that it depends on; those that follow in a circle are left out."""
     moving = {index: mimic.expression for index, mimic in mimics.items() if mimic.expression is not None}
     return dependencies_first(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])
+
+
+class MimicJoint(NamedTuple):
+    """A joint whose value is a function of the values of others.
+
+    Attributes:
+        index: Its index among the active joints followed by the passive ones.
+        expression: The function, of ``joint0``, ``joint1``, …
+        evaluate: The same, of the first values of all joints.
+        lower: Its lower limit [rad or m].
+        upper: Its upper limit; a circular joint has none.
+    """
+
+    index: int
+    expression: "Expression"
+    evaluate: Callable[[Sequence[float]], float]
+    lower: float
+    upper: float
+
+
+class MimicJoints:
+    """The mimic joints of a body, ready to be evaluated.
+
+    Attributes:
+        joints: Each behind those that it depends on.
+    """
+
+    def __init__(self, joints: Sequence[Joint]) -> None:
+        """Prepare the mimic joints among the active joints followed by the passive ones."""
+        mimics = {index: joint.mimic for index, joint in enumerate(joints) if joint.mimic is not None}
+        self.joints = [_prepared(index, joints) for index in evaluation_order(mimics)]
+
+    def evaluate(self, values: list[float], *, clamp: bool = True) -> None:
+        """Compute the values of the mimic joints from those of the others, in place.
+
+        Args:
+            values: The first value of each joint [rad or m], active joints and then passive ones.
+            clamp: Whether mimic joints stop at their limits.
+        """
+        for index, _, evaluate, lower, upper in self.joints:
+            value = evaluate(values)
+            if clamp:
+                value = min(max(value, lower), upper)
+            values[index] = value
+
+    def evaluate_many(self, values: list[Floats]) -> None:
+        """Do the same for many configurations: an array of shape (N,) for each joint."""
+        for joint in self.joints:
+            named = {f"joint{leader}": values[leader] for leader in leaders(joint.expression)}
+            found = np.broadcast_to(joint.expression.evaluate_many(named), np.shape(values[joint.index]))
+            values[joint.index] = np.clip(found, joint.lower, joint.upper)
+
+
+def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:
+    mimic, axis = joints[index].mimic, joints[index].axes[0]
+    assert mimic is not None
+    assert mimic.expression is not None
+    lower, upper = (-math.inf, math.inf) if axis.circular else (axis.lower, axis.upper)
+    return MimicJoint(index, mimic.expression, _function(mimic.expression, len(joints)), lower, upper)
+
+
+def _function(expression: "Expression", count: int) -> Callable[[Sequence[float]], float]:
+    """Return a fast form of an expression over the first values of that many joints."""
+    affine = expression.affine
+    if affine is not None and len(affine.slopes) == 1:  # nearly all equations are a*x + b
+        ((name, slope),) = affine.slopes.items()
+        leader, offset = int(name.removeprefix("joint")), affine.offset
+        return lambda values: slope * values[leader] + offset
+    return expression.compiled([f"joint{number}" for number in range(count)])

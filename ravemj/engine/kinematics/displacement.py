@@ -8,11 +8,10 @@ goes into the fixed part of a link's pose in its parent, ``body_pos`` and ``body
 
 import math
 
-import mujoco
 import numpy as np
 
 from ravemj.core.transforms import Floats, inverse, pose_of
-from ravemj.engine.kinematics import BodyKinematics
+from ravemj.engine.kinematics.body import BodyKinematics
 from ravemj.model.joints import measured_values
 from ravemj.model.scene import Joint
 
@@ -28,13 +27,12 @@ def place_links(kinematics: BodyKinematics, T_world_links: Floats, last_values: 
         T_world_links: Shape (links, 4, 4).
         last_values: Joint values whose full turns are kept [rad or m], shape (dof,).
     """
-    for link in kinematics.roots:
-        kinematics.write_root(link, T_world_links[link])
-    kinematics.set_values(_shown_values(kinematics, T_world_links, last_values), limit_followers=False)
+    for root, link in enumerate(kinematics.roots):
+        kinematics.set_root_transform(root, T_world_links[link])
+    kinematics.set_values(_shown_values(kinematics, T_world_links, last_values), clamp_mimic=False)
     placed = kinematics.link_transforms()
     if placed.size and np.abs(placed - T_world_links).max() > ROUNDING:
         _displace(kinematics, placed, T_world_links)
-        mujoco.mj_kinematics(kinematics.model, kinematics.data)
 
 
 def _shown_values(kinematics: BodyKinematics, T_world_links: Floats, last_values: Floats) -> Floats:
@@ -56,16 +54,10 @@ def _in_turn(joint: Joint, shown: float, last: float) -> float:
 
 def _displace(kinematics: BodyKinematics, placed: Floats, wanted: Floats) -> None:
     """Change the fixed part of links' poses so that they come where they are wanted."""
-    model = kinematics.model
     link_of = {body_id: link for link, body_id in enumerate(kinematics.body_ids.tolist())}
     for body_id, link in link_of.items():
         if link in kinematics.roots:
             continue
-        parent = link_of[int(model.body_parentid[body_id])]
-        fixed = np.eye(4)
-        fixed[:3, 3] = model.body_pos[body_id]
-        mujoco.mju_quat2Mat(rotation := np.zeros(9), model.body_quat[body_id])
-        fixed[:3, :3] = rotation.reshape(3, 3)
-        by_joint: Floats = inverse(placed[parent] @ fixed) @ placed[link]
-        kinematics.write_root(link, inverse(wanted[parent]) @ wanted[link] @ inverse(by_joint))
-    kinematics.displaced = True
+        parent = link_of[int(kinematics.model.body_parentid[body_id])]
+        by_joint: Floats = inverse(placed[parent] @ kinematics.rest_transform(link)) @ placed[link]
+        kinematics.displace(link, inverse(wanted[parent]) @ wanted[link] @ inverse(by_joint))

@@ -1,0 +1,132 @@
+"""The mechanics of a body in many configurations at once.
+
+Arrays have a first axis for the links or velocity coordinates, then one for components, then one for configurations.
+Motions are six numbers in world axes: the angular velocity, and the velocity of the body's point that passes through a
+fixed reference point. Accelerations are their time derivatives, and forces their duals: moment about the reference
+point, and force. The roots rest.
+"""
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.engine.dynamics import NONE, Coupling, Tree
+from ravemj.model.inertia import Inertias
+
+
+class KinematicState:
+    """Where the links and the axes of a body are.
+
+    Attributes:
+        tree: What carries what.
+        coupling: How the coordinates follow the DOFs.
+        screws: The motion of a link for one unit of each coordinate's velocity, shape (coordinates, 6, N).
+        positions: Origins of the links, from the reference point [m], shape (links, 3, N).
+        rotations: For each link the directions of its axes, one after the other, shape (links, 3, 3, N).
+    """
+
+    def __init__(
+        self, tree: Tree, coupling: Coupling, axes: Floats, anchors: Floats, positions: Floats, rotations: Floats
+    ) -> None:
+        self.tree = tree
+        self.coupling = coupling
+        self.positions = positions
+        self.rotations = rotations
+        self.screws = np.concatenate((axes, cross(anchors, axes)), axis=1)
+        self.screws[tree.slides, :3] = 0.0
+        self.screws[tree.slides, 3:] = axes[tree.slides]
+
+    def jacobian(self, link: int, point: Floats) -> Floats:
+        """Return how a link's point and the link move with each DOF.
+
+        Args:
+            link: Index of the link.
+            point: From the reference point [m], shape (3, N).
+
+        Returns:
+            Velocity of the point and angular velocity for one unit of each DOF's, shape (dof, 6, N).
+        """
+        turning = self.screws[:, :3]
+        columns = np.concatenate((self.screws[:, 3:] + cross(turning, point[None]), turning), axis=1)
+        return self.coupling.backward(self.tree.moves[link][:, None, None] * columns)
+
+    def twists(self, velocities: Floats) -> Floats:
+        """Return the motion of the links that each coordinate moves last, shape (coordinates, 6, N).
+
+        Args:
+            velocities: Those of the coordinates, shape (coordinates, N).
+        """
+        return self._outward(self.screws * velocities[:, None])
+
+    def accelerations(self, twists: Floats, velocities: Floats, accelerations: Floats) -> Floats:
+        """Return the time derivative of ``twists``.
+
+        Args:
+            twists: From ``twists``.
+            velocities: Those of the coordinates, shape (coordinates, N).
+            accelerations: Their derivatives, shape (coordinates, N).
+        """
+        turned = _carried(twists[self.tree.carriers], self.screws)
+        return self._outward(self.screws * accelerations[:, None] + turned * velocities[:, None])
+
+    def _outward(self, own: Floats) -> Floats:
+        """Add to what each coordinate does what those below it do, in place."""
+        for coordinate, parent in enumerate(self.tree.parents):
+            if parent != NONE:
+                own[coordinate] += own[parent]
+        return own
+
+    def of_links(self, of_coordinates: Floats) -> Floats:
+        """Return for each link what is said of the last coordinate that moves it; 0 for the roots."""
+        found = np.zeros((len(self.tree.last), *of_coordinates.shape[1:]))
+        moved = [link for link, last in enumerate(self.tree.last) if last != NONE]
+        found[moved] = of_coordinates[[self.tree.last[link] for link in moved]]
+        return found
+
+    def forces(self, link_forces: Floats) -> Floats:
+        """Return generalised forces of forces on the links, shape (links, 6, N) to (coordinates, N)."""
+        tree = self.tree
+        borne = np.zeros((tree.count, *link_forces.shape[1:]))
+        for link, last in enumerate(tree.last):
+            if last != NONE:
+                borne[last] += link_forces[link]
+        for coordinate in reversed(range(tree.count)):
+            if tree.parents[coordinate] != NONE:
+                borne[tree.parents[coordinate]] += borne[coordinate]
+        return (self.screws * borne).sum(axis=1)
+
+    def needed_forces(self, inertias: Inertias, twists: Floats, accelerations: Floats, gravity: Floats) -> Floats:
+        """Return the forces that let the links move as they do, shape (links, 6, N).
+
+        Args:
+            inertias: Mass properties.
+            twists: Motions of the links, shape (links, 6, N).
+            accelerations: Their derivatives, shape (links, 6, N).
+            gravity: Acceleration of free fall [m/s^2], shape (3,).
+        """
+        coms = self.positions + self._to_world(inertias.coms[:, :, None])
+        spin, angular = twists[:, :3], accelerations[:, :3]
+        velocities = twists[:, 3:] + cross(spin, coms)
+        force = accelerations[:, 3:] + cross(angular, coms) + cross(spin, velocities) - gravity[None, :, None]
+        force *= inertias.masses[:, None, None]
+        local_spin, local_angular = self._to_local(spin), self._to_local(angular)
+        moment = inertias.tensors @ local_angular + cross(local_spin, inertias.tensors @ local_spin)
+        return np.concatenate((self._to_world(moment) + cross(coms, force), force), axis=1)
+
+    def _to_local(self, vectors: Floats) -> Floats:
+        return (self.rotations * vectors[:, None]).sum(axis=2)
+
+    def _to_world(self, vectors: Floats) -> Floats:
+        return (self.rotations * vectors[:, :, None]).sum(axis=1)
+
+
+def cross(one: Floats, other: Floats) -> Floats:
+    """Return the cross products along the second axis."""
+    ax, ay, az = one[:, 0], one[:, 1], one[:, 2]
+    bx, by, bz = other[:, 0], other[:, 1], other[:, 2]
+    return np.stack((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), axis=1)
+
+
+def _carried(twists: Floats, screws: Floats) -> Floats:
+    """Return how fast screws change that are carried with given motions."""
+    spin, axis = twists[:, :3], screws[:, :3]
+    return np.concatenate((cross(spin, axis), cross(spin, screws[:, 3:]) + cross(twists[:, 3:], axis)), axis=1)

@@ -1,0 +1,345 @@
+"""Joint values and link poses of one body, in a MuJoCo model of this body alone."""
+
+import itertools
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints, Pose, Wxyz, inverse, rows_from_wxyz, wxyz_from_rows
+from ravemj.engine.compiled import Compiled, write_inertial
+from ravemj.engine.kinematics.spherical import SphericalJoint
+from ravemj.model.joints import measured_values
+from ravemj.model.limits import Limits
+from ravemj.model.mimic import MimicJoints
+from ravemj.model.scene import KinBody
+
+NO_QPOS = -1
+"""In place of an index into ``qpos``, where a joint has none since it moves no link."""
+
+_BODY, _JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
+
+
+class Configuration(NamedTuple):
+    """Where the links of a body are, and why: what ``BodyKinematics.restore`` needs.
+
+    Attributes:
+        qpos: MuJoCo's, of the body's own model.
+        positions: Positions of the links in their parents at rest, in MuJoCo's order.
+        quaternions: Their orientations, wxyz.
+        passive: The values of the passive joints.
+        displaced: Whether links are where their joints do not place them.
+    """
+
+    qpos: Floats
+    positions: Floats
+    quaternions: Floats
+    passive: list[list[float]]
+    displaced: bool
+
+
+class BodyKinematics:
+    """The configuration of one body, in a MuJoCo model that has its links and joints but no shapes.
+
+    Each root hangs on a free joint, so that ``qpos`` has its pose and ``qvel`` its velocity. Writing marks the links as
+    out of place; whoever reads them calls ``place`` first, which runs ``mj_kinematics`` if need be. The model is
+    compiled once.
+
+    Attributes:
+        body: The description of the body.
+        model: The model.
+        data: Its state.
+        stamp: Grows with every write.
+        dof: Number of degrees of freedom.
+        limits: Limits of the joint values.
+        displaced: Whether links are where their joints do not place them; ``set_values`` ends that.
+        body_ids: MuJoCo's index of each link, shape (links,).
+        roots: Indices of the links that no joint places; the first link is one.
+        root_qpos: For each root where its free joint is in ``qpos``.
+        root_qvel: For each root where its free joint is in ``qvel``.
+        inner_qpos: Where the joints between links are in ``qpos``.
+        inner_qvel: Where they are in ``qvel``.
+        qpos_indices: Where each DOF is in ``qpos``, shape (dof,); ``NO_QPOS`` for that of a joint that moves no link,
+            and for those of a spherical joint.
+        joint_qpos: For each joint, active ones and then passive ones, the places of its axes in ``qpos``; none for a
+            joint that moves no link.
+        first_dofs: First DOF of each active joint.
+        mimic: The mimic joints; none in a body without DOFs, where OpenRAVE never sets a value.
+        spherical: The spherical joints.
+    """
+
+    def __init__(self, body: KinBody) -> None:
+        """Compile a body, in the configuration that its description has.
+
+        Raises:
+            CompileError: MuJoCo refuses it.
+        """
+        self.body = body
+        compiled = Compiled.mechanism(body)
+        self.model, self.data = model, data = compiled.model, compiled.data
+        self._qpos, self._xpos, self._xmat = data.qpos, data.xpos, data.xmat
+        self.stamp = 0
+        self._is_placed = self._has_coms = False
+        (names,) = compiled.mjcf.names
+        self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
+        self._links = index_range(self.body_ids)
+        self.roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
+        free = model.body_jntadr[self.body_ids[self.roots]]
+        self.root_qpos: list[int] = model.jnt_qposadr[free].tolist()
+        self.root_qvel: list[int] = model.jnt_dofadr[free].tolist()
+        self.inner_qpos = _others(model.nq, self.root_qpos, 7)
+        self.inner_qvel = _others(model.nv, self.root_qvel, 6)
+        self._rest = (model.body_pos.copy(), model.body_quat.copy())
+        self.displaced = False
+        self._find_joints(names.joints)
+        self._homogeneous = np.zeros((len(self.body_ids), 4, 4))
+        self._homogeneous[:, 3, 3] = 1.0
+        self._passive_values = [[axis.value for axis in joint.axes] for joint in body.passive_joints]
+        self.describe(body)
+        self.set_values(np.array([axis.value for axis in body.dof_axes]))
+
+    def _find_joints(self, names: tuple[tuple[str, ...], ...]) -> None:
+        """Find the joints, which have these names in the model."""
+        body = self.body
+        self.joint_qpos = [
+            [int(self.model.jnt_qposadr[mujoco.mj_name2id(self.model, _JOINT, name)]) for name in joint_names]
+            for joint_names in names
+        ]
+        sizes = (len(joint.axes) for joint in body.joints)
+        self.first_dofs = list(itertools.accumulate(sizes, initial=0))[:-1]
+        self.mimic = MimicJoints(body.all_joints if body.joints else ())
+        self.spherical: list[SphericalJoint] = []
+        indices: list[int] = []
+        for joint, first, places in zip(body.joints, self.first_dofs, self.joint_qpos, strict=False):
+            if joint.kind == "spherical" and places:
+                joint_slice = slice(places[0], places[0] + 4)
+                self.spherical.append(SphericalJoint(joint, slice(first, first + 3), joint_slice))
+            indices += places if places and joint.kind != "spherical" else [NO_QPOS] * len(joint.axes)
+        self.qpos_indices = np.array(indices, dtype=int)
+        self._moving = self.qpos_indices != NO_QPOS
+        self._to_qpos = index_range(self.qpos_indices[self._moving])
+        self._is_plain = bool(self._moving.all()) and not self.mimic.joints
+        self._mimic_qpos = [(one.index, self.joint_qpos[one.index][:1]) for one in self.mimic.joints]
+        self._loops = [
+            (first, joint)
+            for first, joint, places in zip(self.first_dofs, body.joints, self.joint_qpos, strict=False)
+            if not places and not joint.static
+        ]
+
+    def describe(self, body: KinBody) -> None:
+        """Take over a description of the body with other limits or masses; its links and joints are the same."""
+        before = self.body.links
+        self.body = body
+        axes = body.dof_axes
+        self.dof = len(axes)
+        self.limits = Limits(axes)
+        if self.mimic.joints:
+            self.mimic = MimicJoints(body.all_joints)
+        for body_id, link, old in zip(self.body_ids, body.links, before, strict=True):
+            if link.inertial is not old.inertial:
+                write_inertial(self.model, int(body_id), link.inertial)
+                self._touch()
+
+    def _touch(self) -> None:
+        """Take note that something was written."""
+        self._is_placed = self._has_coms = False
+        self.stamp += 1
+
+    def place(self) -> None:
+        """Bring the poses of the links up to date."""
+        if not self._is_placed:
+            mujoco.mj_kinematics(self.model, self.data)
+            self._is_placed = True
+
+    def place_coms(self) -> None:
+        """Bring poses, centres of mass and the axes of motion up to date, which Jacobians and dynamics need."""
+        if not self._has_coms:
+            self.place()
+            mujoco.mj_comPos(self.model, self.data)
+            self._has_coms = True
+
+    def values(self) -> Floats:
+        """Return the joint values [rad or m], shape (dof,); a copy.
+
+        A weld's is 0; a joint that closes a loop has the value that the poses of its links show.
+        """
+        if self._is_plain:
+            return self._qpos[self._to_qpos].copy()
+        values = np.zeros(self.dof)
+        values[self._moving] = self._qpos[self._to_qpos]
+        for ball in self.spherical:
+            values[ball.dofs] = ball.to_values(self._qpos[ball.qpos].tolist())
+        for dof, joint in self._loops:
+            T_parent_child = self.link_pose(joint.parent).inverse() @ self.link_pose(joint.child)
+            values[dof : dof + len(joint.axes)] = measured_values(joint, T_parent_child)
+        return values
+
+    def set_values(self, values: Floats, *, clamp_mimic: bool = True) -> None:
+        """Set the joint values and so the poses of the links: forward kinematics, no limits of DOFs checked.
+
+        Args:
+            values: Joint values [rad or m], shape (dof,).
+            clamp_mimic: Whether mimic joints stop at their limits.
+        """
+        if self.displaced:
+            self._undo_displacement()
+        if self._is_plain:
+            self._qpos[self._to_qpos] = values
+        else:
+            self._qpos[self._to_qpos] = values[self._moving]
+            for ball in self.spherical:
+                self._qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
+            if self._mimic_qpos:
+                self._set_mimic(values, clamp=clamp_mimic)
+        self._is_placed = self._has_coms = False
+        self.stamp += 1
+
+    def _set_mimic(self, values: Floats, *, clamp: bool) -> None:
+        """Write the values of the mimic joints."""
+        known = self.first_values(values)
+        self.mimic.evaluate(known, clamp=clamp)
+        first_passive = len(self.first_dofs)
+        for index, places in self._mimic_qpos:
+            self._passive_values[index - first_passive][0] = known[index]
+            for place in places:
+                self._qpos[place] = known[index]
+
+    def first_values(self, values: Floats) -> list[float]:
+        """Return the first value of each joint, active ones and then passive ones, for given DOF values."""
+        plain = values.tolist()
+        return [plain[first] for first in self.first_dofs] + [passive[0] for passive in self._passive_values]
+
+    def passive_values(self, index: int) -> Floats:
+        """Return the values of a passive joint [rad or m], shape (axes,); a copy."""
+        return np.array(self._passive_values[index])
+
+    def set_qpos(self, qpos: Floats, *, inner_only: bool) -> None:
+        """Take over MuJoCo's configuration from a model in which time moved the body.
+
+        Args:
+            qpos: Positions of all joints, the free joints of the roots included, or of those between links.
+            inner_only: Which of the two it is.
+        """
+        self._qpos[self.inner_qpos if inner_only else slice(None)] = qpos
+        self._touch()
+        for index, places in self._mimic_qpos:
+            for place in places:
+                self._passive_values[index - len(self.first_dofs)][0] = float(self._qpos[place])
+
+    def _undo_displacement(self) -> None:
+        """Let the joints place the links again that ``place_links`` put elsewhere; the roots stay."""
+        self.model.body_pos[:], self.model.body_quat[:] = self._rest
+        self.displaced = False
+
+    def inner_index(self, qpos: int) -> int:
+        """Return the place of an index into ``qpos`` among ``inner_qpos``."""
+        return qpos - 7 * sum(root < qpos for root in self.root_qpos)
+
+    def rest_transform(self, link: int) -> Floats:
+        """Return the pose of a link in its parent where no joint between them has moved, shape (4, 4)."""
+        positions, quaternions = self._rest
+        return _matrix(positions[self.body_ids[link]], quaternions[self.body_ids[link]])
+
+    def displace(self, link: int, T_parent_link: Floats) -> None:
+        """Change the pose of a link in its parent where no joint between them has moved, until ``set_values``."""
+        body_id = self.body_ids[link]
+        self.model.body_pos[body_id] = T_parent_link[:3, 3]
+        self.model.body_quat[body_id] = wxyz_from_rows(T_parent_link[:3, :3].tolist())
+        self.displaced = True
+        self._touch()
+
+    def set_root_transform(self, root: int, T_world_link: Floats) -> None:
+        """Move a root, of which ``root`` is the place in ``roots``, and what hangs on it."""
+        first = self.root_qpos[root]
+        self._qpos[first : first + 3] = T_world_link[:3, 3]
+        self._qpos[first + 3 : first + 7] = wxyz_from_rows(T_world_link[:3, :3].tolist())
+        self._touch()
+
+    def set_transform(self, T_world_link0: Floats) -> None:
+        """Move the body rigidly: all links, with the joint values as they are.
+
+        Args:
+            T_world_link0: Pose of the first link, shape (4, 4).
+        """
+        if not self.roots:
+            return
+        if len(self.roots) > 1:
+            motion = T_world_link0 @ inverse(self.link_transform(0))
+            for root, link in enumerate(self.roots[1:], 1):
+                self.set_root_transform(root, motion @ self.link_transform(link))
+        self.set_root_transform(0, T_world_link0)
+
+    def set_root_wxyz(self, wxyz: Wxyz) -> None:
+        """Write the orientation of the first link as this quaternion rather than its negative."""
+        first = self.root_qpos[0]
+        self._qpos[first + 3 : first + 7] = wxyz
+        self._touch()
+
+    def configuration(self) -> Configuration:
+        """Return all that ``restore`` needs, also of another object for the same body."""
+        passive = [list(values) for values in self._passive_values]
+        model = self.model
+        return Configuration(self._qpos.copy(), model.body_pos.copy(), model.body_quat.copy(), passive, self.displaced)
+
+    def restore(self, configuration: Configuration) -> bool:
+        """Go back to a configuration.
+
+        Returns:
+            False, and nothing changes, if it is that of another set of links and joints.
+        """
+        qpos, positions, quaternions, passive, displaced = configuration
+        if qpos.shape != self._qpos.shape or positions.shape != self.model.body_pos.shape:
+            return False
+        self._qpos[:] = qpos
+        self.model.body_pos[:], self.model.body_quat[:] = positions, quaternions
+        self._passive_values = [list(values) for values in passive]
+        self.displaced = displaced
+        self._touch()
+        return True
+
+    def link_transforms(self) -> Floats:
+        """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
+        self.place()
+        transforms = self._homogeneous.copy()
+        transforms[:, :3, 3] = self._xpos[self._links]
+        transforms[:, :3, :3] = self._xmat[self._links].reshape(-1, 3, 3)
+        return transforms
+
+    def link_transform(self, link: int) -> Floats:
+        """Return ``T_world_link`` of one link, shape (4, 4); a copy."""
+        self.place()
+        transform = np.eye(4)
+        body_id = self.body_ids[link]
+        transform[:3, 3] = self._xpos[body_id]
+        transform[:3, :3] = self._xmat[body_id].reshape(3, 3)
+        return transform
+
+    def link_pose(self, link: int) -> Pose:
+        """Return ``T_world_link`` of one link."""
+        self.place()
+        body_id = self.body_ids[link]
+        (x, y, z), (w, i, j, k) = self._xpos[body_id].tolist(), self.data.xquat[body_id].tolist()
+        return Pose((x, y, z), (w, i, j, k))
+
+
+def _others(count: int, first: list[int], width: int) -> slice | Ints:
+    """Return the indices below a count that are in none of some ranges of one width."""
+    taken = {index for start in first for index in range(start, start + width)}
+    return index_range(np.array([index for index in range(count) if index not in taken], dtype=int))
+
+
+def index_range(indices: Ints) -> slice | Ints:
+    """Return the indices as a slice if they follow one another, since slices are faster."""
+    plain = indices.tolist()
+    first = plain[0] if plain else 0
+    if plain == list(range(first, first + len(plain))):
+        return slice(first, first + len(plain))
+    return indices
+
+
+def _matrix(position: Floats, wxyz: Floats) -> Floats:
+    w, x, y, z = wxyz.tolist()
+    transform = np.eye(4)
+    transform[:3, :3] = rows_from_wxyz((w, x, y, z))
+    transform[:3, 3] = position
+    return transform

@@ -1,0 +1,64 @@
+"""A body in a model of several bodies."""
+
+import mujoco
+import numpy as np
+
+from ravemj.core.transforms import Ints
+from ravemj.engine.kinematics import BodyKinematics
+from ravemj.formats.mjcf import BodyNames
+
+_WIDTHS = {int(mujoco.mjtJoint.mjJNT_FREE): (7, 6), int(mujoco.mjtJoint.mjJNT_BALL): (4, 3)}
+"""How many numbers joints of several have in ``qpos`` and ``qvel``; the others have one."""
+
+
+class ModelPart:
+    """The part of a model that is one body: its links and joints, in the order of the model that is the body's own.
+
+    Attributes:
+        names: What links and joints are called in the model.
+        body_ids: MuJoCo's index of each link, shape (links,).
+        qpos: Where the body is in ``qpos``.
+        qvel: Where it is in ``qvel``.
+        is_free: Whether its roots have free joints, as in its own model; else the world holds them.
+        stamp: ``BodyKinematics.stamp`` of what was last taken over; -1 before.
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, names: BodyNames) -> None:
+        self._model, self._data = model, data
+        self.names = names
+        found = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in names.links]
+        self.body_ids: Ints = np.array(found, dtype=int)
+        first = min(found, default=0)
+        self._bodies = slice(first, first + len(found))
+        self._roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
+        joints = np.flatnonzero((model.jnt_bodyid >= first) & (model.jnt_bodyid < first + len(found)))
+        self.qpos = self.qvel = slice(0, 0)
+        self.is_free = False
+        if len(joints):
+            start, last = int(joints[0]), int(joints[-1])
+            width, speeds = _WIDTHS.get(int(model.jnt_type[last]), (1, 1))
+            self.qpos = slice(int(model.jnt_qposadr[start]), int(model.jnt_qposadr[last]) + width)
+            self.qvel = slice(int(model.jnt_dofadr[start]), int(model.jnt_dofadr[last]) + speeds)
+            self.is_free = model.jnt_type[start] == mujoco.mjtJoint.mjJNT_FREE
+        self.stamp = -1
+
+    def take(self, kinematics: BodyKinematics) -> None:
+        """Go where the body is."""
+        model, own = self._model, kinematics.model
+        model.body_pos[self._bodies] = own.body_pos[1:]
+        model.body_quat[self._bodies] = own.body_quat[1:]
+        qpos = kinematics.data.qpos
+        if self.is_free:
+            self._data.qpos[self.qpos] = qpos
+        else:
+            self._data.qpos[self.qpos] = qpos[kinematics.inner_qpos]
+            for root, place in zip(self._roots, kinematics.root_qpos, strict=True):
+                body_id = self.body_ids[root]
+                model.body_pos[body_id] = qpos[place : place + 3]
+                model.body_quat[body_id] = qpos[place + 3 : place + 7]
+        self.stamp = kinematics.stamp
+
+    def give(self, kinematics: BodyKinematics) -> None:
+        """Let the body go where it is in this model."""
+        kinematics.set_qpos(self._data.qpos[self.qpos], inner_only=not self.is_free)
+        self.stamp = kinematics.stamp

@@ -1,0 +1,83 @@
+"""The MuJoCo model of all bodies of an environment."""
+
+from collections.abc import Iterable
+
+import mujoco
+
+from ravemj.core.transforms import Ints
+from ravemj.engine.compiled import Compiled, write_inertial
+from ravemj.engine.kinematics import NO_QPOS
+from ravemj.engine.model_part import ModelPart
+from ravemj.engine.simulation.body import BodyState
+from ravemj.errors import Diagnostics
+from ravemj.formats.mjcf import rgba
+from ravemj.model.scene import KinBody, Link, Scene, View
+
+
+class WorldModel(Compiled):
+    """All bodies with their shapes in one model: for collisions, pictures and export.
+
+    Each body is at home in its own model (``BodyState.kinematics``). Here is a copy, which ``synchronise`` brings up to
+    date.
+    """
+
+    def __init__(self, bodies: Iterable[BodyState], view: View, diagnostics: Diagnostics) -> None:
+        """Compile bodies.
+
+        Raises:
+            CompileError: MuJoCo refuses the model.
+        """
+        bodies = tuple(bodies)
+        scene = Scene(tuple(body.scene for body in bodies), view)
+        super().__init__(scene, diagnostics)
+        self.write_true_inertias(scene)
+        self._parts = {
+            body: ModelPart(self.model, self.data, names) for body, names in zip(bodies, self.mjcf.names, strict=True)
+        }
+        self._scenes = list(scene.bodies)
+        for body, part in self._parts.items():
+            if not _is_at_reference(body.scene):
+                part.take(body.own_kinematics)
+        mujoco.mj_kinematics(self.model, self.data)
+
+    def part(self, body: BodyState) -> ModelPart:
+        """Return where a body is in this model."""
+        return self._parts[body]
+
+    def synchronise(self) -> None:
+        """Take over what changed since: joint values, poses, masses, colours."""
+        has_changed = False
+        for number, (body, part) in enumerate(self._parts.items()):
+            if body.scene is not self._scenes[number]:
+                self._describe(part, self._scenes[number].links, body.scene.links)
+                self._scenes[number] = body.scene
+                has_changed = True
+            has_changed |= body.bring_up_to_date(part)
+        if has_changed:
+            mujoco.mj_kinematics(self.model, self.data)
+
+    def _describe(self, part: ModelPart, before: Iterable[Link], links: Iterable[Link]) -> None:
+        """Give links other masses, and geometries other colours; what is drawn in place of one keeps its own."""
+        for old, link, body_id, counts in zip(before, links, part.body_ids.tolist(), part.names.geoms, strict=True):
+            if link.inertial is not old.inertial:
+                write_inertial(self.model, body_id, link.inertial)
+            if link.geometries is not old.geometries:
+                geom = int(self.model.body_geomadr[body_id])
+                for geometry, count in zip(link.geometries, counts, strict=True):
+                    if geometry.display is None:
+                        self.model.geom_rgba[geom : geom + count] = rgba(geometry.diffuse, geometry.transparency)
+                    geom += count
+
+    def qpos_indices(self, body: BodyState) -> Ints:
+        """Return where each DOF of a body is in ``qpos``, shape (dof,); -1 where ``BodyKinematics`` has none."""
+        kinematics, part = body.own_kinematics, self._parts[body]
+        indices = kinematics.qpos_indices.copy()
+        for number, index in enumerate(indices.tolist()):
+            if index != NO_QPOS:
+                indices[number] = part.qpos.start + kinematics.inner_index(index)
+        return indices
+
+
+def _is_at_reference(body: KinBody) -> bool:
+    """Return whether the joints of a body are loaded at the values for which MuJoCo compiles the poses."""
+    return all(axis.value == axis.reference for joint in body.all_joints for axis in joint.axes)

@@ -1,0 +1,45 @@
+"""Limits of joint values: the one place where values are compared with them and moved into them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.model.scene import Axis
+
+LARGEST = float(np.finfo(np.float64).max)
+
+_FEW = 20  # up to so many values a loop over plain floats is faster than numpy
+
+
+class Limits:
+    """The limits of several axes; circular ones allow every finite number.
+
+    Attributes:
+        lower: Least values [rad or m], shape (axes,).
+        upper: Greatest values, shape (axes,).
+    """
+
+    def __init__(self, axes: Sequence[Axis]) -> None:
+        self.lower = np.array([-LARGEST if axis.circular else axis.lower for axis in axes])
+        self.upper = np.array([LARGEST if axis.circular else axis.upper for axis in axes])
+        pairs = list(zip(self.lower.tolist(), self.upper.tolist(), strict=True))
+        self._pairs = pairs if len(pairs) <= _FEW else None
+
+    def contain(self, values: Floats) -> bool:
+        """Return whether all values, shape (axes,), are finite numbers within the limits."""
+        if self._pairs is None:
+            return bool(((self.lower <= values) & (values <= self.upper)).all())
+        for value, (lower, upper) in zip(values.tolist(), self._pairs, strict=True):  # noqa: SIM110 - faster than all
+            if not lower <= value <= upper:
+                return False
+        return True
+
+    def clamp(self, values: Floats) -> Floats:
+        """Return values, shape (..., axes), moved into the limits; NaN stays."""
+        return np.clip(values, self.lower, self.upper)
+
+
+def clamp(axis: Axis, value: float) -> float:
+    """Return a value [rad or m] moved into the limits of an axis, which a circular one does not have; NaN stays."""
+    return value if axis.circular else min(max(value, axis.lower), axis.upper)
