@@ -5,7 +5,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import ParamSpec, Self
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import Shown
 
 _Arguments = ParamSpec("_Arguments")
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import Shown
 from ravemj.core.transforms import ZERO, Floats, Pose
 from ravemj.geometry_functions import arguments
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from ravemj.core.ordering import dependencies_first
+from ravemj.core.graphs import dependencies_first
 from ravemj.errors import ArgumentError, Diagnostics, Source
 from ravemj.model.scene import Joint, KinBody, Mimic
 

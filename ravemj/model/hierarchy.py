@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ravemj.core.ordering import dependencies_first
+from ravemj.core.graphs import dependencies_first
 
 
 class Edge(NamedTuple):

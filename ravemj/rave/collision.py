@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Self, cast
 
 import numpy as np
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import Shown
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision import questions
 from ravemj.engine.collision.questions import LinkOf, Links, MovedBy

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.api_object import Shown
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
-from ravemj.core.showing import Shown
 from ravemj.core.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
 from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.geometry_functions import Ray

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import Shown
 from ravemj.core.transforms import Floats
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from format_notes import NOTES
 
 from ravemj.formats.meshes import MESH_SUFFIXES
-from ravemj.formats.openrave_xml import actuator, body, environment, geometry, joint, link, mass, robot, sensor
+from ravemj.formats.openrave_xml import actuator, environment, geom, joint, kinbody, link, mass, robot, sensor
 
 Reasons = Mapping[str, str]
 
@@ -59,7 +59,7 @@ def sections() -> list[Section]:
             {"(what else is in it, and in odeproperties)": environment.NO_PHYSICS},
         ),
         _robot(),
-        Section("KinBody", in_scopes, body.KINBODY_TAGS, body.SCOPE_ATTRIBUTES, body.KINBODY_IGNORED),
+        Section("KinBody", in_scopes, kinbody.KINBODY_TAGS, kinbody.SCOPE_ATTRIBUTES, kinbody.KINBODY_IGNORED),
         Section(
             "Body",
             "a link, in KinBody",
@@ -68,7 +68,7 @@ def sections() -> list[Section]:
             {},
             link.LINK_IGNORED_ATTRIBUTES,
         ),
-        Section("Geom", "a shape, in Body", geometry.GEOM_TAGS, geometry.GEOM_ATTRIBUTES, geometry.GEOM_IGNORED),
+        Section("Geom", "a shape, in Body", geom.GEOM_TAGS, geom.GEOM_ATTRIBUTES, geom.GEOM_IGNORED),
         Section("Mass", "in Body", mass.MASS_TAGS, mass.MASS_ATTRIBUTES),
         Section("Mass of a KinBody", "in KinBody", mass.DEFAULT_MASS_TAGS, mass.MASS_ATTRIBUTES),
         Section("Joint", "in KinBody", joint.JOINT_TAGS, joint.JOINT_ATTRIBUTES, joint.JOINT_IGNORED),
@@ -95,12 +95,12 @@ def _environment() -> Section:
 
 
 def _robot() -> Section:
-    read = [tag for tag in body.ROBOT_TAGS if tag != "controller"]
+    read = [tag for tag in kinbody.ROBOT_TAGS if tag != "controller"]
     left_out = {
         "controller": "it has no effect on the model; behind joints it ends the reading, as in OpenRAVE",
-        **body.ROBOT_IGNORED,
+        **kinbody.ROBOT_IGNORED,
     }
-    return Section("Robot", "in Environment and Robot, or the root", read, body.SCOPE_ATTRIBUTES, left_out)
+    return Section("Robot", "in Environment and Robot, or the root", read, kinbody.SCOPE_ATTRIBUTES, left_out)
 
 
 def _sensor() -> Section:

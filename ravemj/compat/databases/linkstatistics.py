@@ -5,7 +5,7 @@ import numpy as np
 from ravemj.compat.databases.model import DatabaseGenerator
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
-from ravemj.model.reach import travel
+from ravemj.model.motion_bounds import travel
 
 
 class LinkStatisticsModel(DatabaseGenerator):

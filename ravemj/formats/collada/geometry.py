@@ -7,11 +7,11 @@ import numpy as np
 
 from ravemj.core.transforms import ZERO, Floats, Pose, Vec3, wxyz_from_axis_angle
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.placing import rigid, split
+from ravemj.formats.collada.polar import rigid, split
 from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
-from ravemj.formats.meshes.collada.geometry import triangle_meshes
 from ravemj.formats.meshes.collada.materials import bindings, read_material
+from ravemj.formats.meshes.collada.triangles import triangle_meshes
 from ravemj.formats.meshes.obj import transparency
 from ravemj.formats.meshes.parts import check_finite, check_size
 from ravemj.model.scene import Box, CalibrationBoard, Container, Cylinder, Geometry, Mesh, Rgb, Shape, Sphere, TriMesh

@@ -7,7 +7,7 @@ import numpy as np
 
 from ravemj.core.transforms import ZERO, Pose, Vec3
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.polar import rigid
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words

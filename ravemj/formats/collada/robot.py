@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ravemj.core.transforms import Pose
+from ravemj.formats.collada.kinematics_model import ModelReader, valid_name
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.model import ModelReader, valid_name
 from ravemj.formats.collada.motor import driven
-from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.polar import rigid
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.visual import transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words

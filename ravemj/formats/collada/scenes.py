@@ -6,10 +6,10 @@ from ravemj.core.transforms import Vec3, inverse
 from ravemj.formats.collada.axis import AxisInfo
 from ravemj.formats.collada.bindings import read_bindings
 from ravemj.formats.collada.geometry import GeometryReader
+from ravemj.formats.collada.kinematics_model import ModelReader, Scene, valid_name
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.model import ModelReader, Scene, valid_name
 from ravemj.formats.collada.physics import NO_MASS, Physics
-from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.polar import rigid
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.robot import ExtraReader, interface_kind
 from ravemj.formats.collada.visual import Node, expand

@@ -6,7 +6,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import Source, SourceError
-from ravemj.formats.meshes import faces
+from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.files import MeshFile
 from ravemj.formats.meshes.parts import BLACK, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
 from ravemj.model.scene import Mesh, Rgb
@@ -129,7 +129,7 @@ def _part(material: _Material, points: Floats, file: MeshFile) -> MeshPart | Non
     check_size(int((sizes - 2).sum()), file.source)
     corners = points[index]
     check_finite(corners, file.source)
-    triangles = corners[faces.clipped(corners, np.cumsum(sizes) - sizes, sizes)]
+    triangles = corners[triangulation.clipped(corners, np.cumsum(sizes) - sizes, sizes)]
     triangles = without_degenerate(triangles)
     if not len(triangles):
         return None

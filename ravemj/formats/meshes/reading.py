@@ -40,7 +40,7 @@ def _collada(file: MeshFile) -> tuple[MeshPart, ...]:
 
 
 def _exchange(file: MeshFile) -> tuple[MeshPart, ...]:
-    from ravemj.formats.meshes.exchange import read_exchange  # noqa: PLC0415
+    from ravemj.formats.meshes.trimesh_formats import read_exchange  # noqa: PLC0415
 
     return read_exchange(file)
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from ravemj.core.transforms import ZERO, Pose, Vec3, Wxyz, multiply, wxyz_from_axis_angle
 from ravemj.errors import Diagnostics, Source, SourceError
-from ravemj.formats.openrave_xml.body import read_body
 from ravemj.formats.openrave_xml.context import IGNORED, NO_EFFECT_HERE, Context, uncomputable
+from ravemj.formats.openrave_xml.kinbody import read_body
 from ravemj.formats.openrave_xml.tree import Document, Element, parse, parse_file
 from ravemj.formats.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.model.scene import KinBody, Scene, View

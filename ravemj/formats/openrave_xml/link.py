@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ravemj.core.transforms import Pose
 from ravemj.formats.openrave_xml.context import IGNORED, Context
-from ravemj.formats.openrave_xml.geometry import GeometryScope, read_geometries
+from ravemj.formats.openrave_xml.geom import GeometryScope, read_geometries
 from ravemj.formats.openrave_xml.joint import frame_of_link
 from ravemj.formats.openrave_xml.mass import MassReader, MassRule, link_inertial
 from ravemj.formats.openrave_xml.tree import Element

@@ -3,8 +3,8 @@
 import weakref
 from typing import Any
 
+from ravemj.core.api_object import Shown
 from ravemj.core.handles import Handle
-from ravemj.core.showing import Shown
 from ravemj.engine.simulation import Simulation
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import Hit, Interaction, Ray

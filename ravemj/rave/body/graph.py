@@ -3,7 +3,7 @@
 from typing import Literal, overload
 
 from ravemj.errors import ArgumentError
-from ravemj.model import chains, fingerprints
+from ravemj.model import chains, hashes
 from ravemj.rave.body.mechanism import Mechanism
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
@@ -126,7 +126,7 @@ class Graph(Mechanism):
 
         Pose, joint values, limits and names do not matter.
         """
-        return fingerprints.of_body(self._state.scene)
+        return hashes.of_body(self._state.scene)
 
     GetStructureHash = GetKinematicsGeometryHash
 

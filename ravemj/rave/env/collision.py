@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.core.api_object import Shown
 from ravemj.core.arrays import checked_numbers
-from ravemj.core.showing import Shown
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.world import world_of
 from ravemj.errors import ArgumentError

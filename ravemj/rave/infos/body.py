@@ -15,7 +15,7 @@ from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.model import scene
-from ravemj.model.making import MADE
+from ravemj.model.shape_bodies import MADE
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.joint import JointInfo
 from ravemj.rave.infos.link import LinkInfo

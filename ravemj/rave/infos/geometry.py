@@ -14,7 +14,7 @@ from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceError
 from ravemj.model import scene
-from ravemj.model.making import MADE
+from ravemj.model.shape_bodies import MADE
 from ravemj.model.tessellation import merged
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.content import Info

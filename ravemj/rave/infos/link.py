@@ -14,7 +14,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
-from ravemj.model.making import MADE
+from ravemj.model.shape_bodies import MADE
 from ravemj.rave.infos.geometry import GeometryInfo
 from ravemj.rave.infos.numbers import filled, identity, pose
 from ravemj.rave.infos.parameters import ParameterFields

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
-from ravemj.model.making import MADE
+from ravemj.model.shape_bodies import MADE
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import identity, pose, vector
 

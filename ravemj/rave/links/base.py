@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import Shown
 from ravemj.engine.simulation import BodyState
 from ravemj.model import scene
 

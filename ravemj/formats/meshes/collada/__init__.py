@@ -17,9 +17,9 @@ from ravemj.formats.meshes.collada.document import (
     children,
     local_name,
 )
-from ravemj.formats.meshes.collada.geometry import PrimitiveGroup, primitive_groups
 from ravemj.formats.meshes.collada.materials import ColladaMaterial, bindings, read_material
-from ravemj.formats.meshes.collada.placement import local_transform
+from ravemj.formats.meshes.collada.node_transforms import local_transform
+from ravemj.formats.meshes.collada.triangles import PrimitiveGroup, primitive_groups
 from ravemj.formats.meshes.files import MeshFile
 from ravemj.formats.meshes.obj import GRAY, transparency
 from ravemj.formats.meshes.parts import WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate

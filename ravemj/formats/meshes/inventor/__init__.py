@@ -7,8 +7,8 @@ So does this reader: ``ascii`` or ``binary`` make nodes, ``old`` or ``vrml97`` w
 from ravemj.formats.meshes.files import MeshFile
 from ravemj.formats.meshes.inventor import ascii as text_format
 from ravemj.formats.meshes.inventor import binary, old, vrml97
-from ravemj.formats.meshes.inventor.drawing import Drawing, State
 from ravemj.formats.meshes.inventor.nodes import Document, Node
+from ravemj.formats.meshes.inventor.traversal import Drawing, State
 from ravemj.formats.meshes.parts import MeshPart, check_finite, weld
 
 

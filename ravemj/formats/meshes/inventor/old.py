@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from ravemj.core.transforms import Ints
-from ravemj.formats.meshes import faces
+from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.inventor import primitives
-from ravemj.formats.meshes.inventor.drawing import Drawing, Finish, Handler, State, moved, transform
 from ravemj.formats.meshes.inventor.nodes import Node
+from ravemj.formats.meshes.inventor.traversal import Drawing, Finish, Handler, State, moved, transform
 from ravemj.formats.meshes.matrices import rotation, translation
 from ravemj.formats.meshes.parts import rgb
 
@@ -132,20 +132,22 @@ def _face_set(drawing: Drawing, node: Node, state: State) -> State:
 
 
 def _indexed_face_set(drawing: Drawing, node: Node, state: State) -> State:
-    drawing.add_polygons(*faces.split(node.integers("coordIndex", (0,))), node, _with_own_points(drawing, node, state))
+    drawing.add_polygons(
+        *triangulation.split(node.integers("coordIndex", (0,))), node, _with_own_points(drawing, node, state)
+    )
     return state
 
 
 def _triangle_strips(drawing: Drawing, node: Node, state: State) -> State:
     state_of_shape = _with_own_points(drawing, node, state)
     sizes, index = _runs(node, state_of_shape)
-    triangles = faces.strips(sizes, index)
+    triangles = triangulation.strips(sizes, index)
     drawing.add_polygons(np.full(len(triangles), 3), triangles.ravel(), node, state_of_shape)
     return state
 
 
 def _indexed_triangle_strips(drawing: Drawing, node: Node, state: State) -> State:
-    triangles = faces.strips(*faces.split(node.integers("coordIndex", (0,))))
+    triangles = triangulation.strips(*triangulation.split(node.integers("coordIndex", (0,))))
     points = _with_own_points(drawing, node, state)
     drawing.add_polygons(np.full(len(triangles), 3), triangles.ravel(), node, points)
     return state

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from ravemj.formats.meshes import faces
+from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.inventor import primitives
-from ravemj.formats.meshes.inventor.drawing import Drawing, Finish, Handler, State, moved, transform
 from ravemj.formats.meshes.inventor.nodes import Node
+from ravemj.formats.meshes.inventor.traversal import Drawing, Finish, Handler, State, moved, transform
 from ravemj.formats.meshes.parts import rgb
 
 
@@ -61,7 +61,7 @@ def _indexed_face_set(drawing: Drawing, node: Node, state: State) -> State:
     if coordinates is None:
         return state
     shape = State(state.matrix, coordinates.vectors("point"), concave=not node.flag("convex", True))
-    drawing.add_polygons(*faces.split(node.integers("coordIndex")), node, shape)
+    drawing.add_polygons(*triangulation.split(node.integers("coordIndex")), node, shape)
     return state
 
 

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import examples
 
-from ravemj.core.ordering import dependencies_first
+from ravemj.core.graphs import dependencies_first
 
 GRAPHS = st.lists(st.lists(st.integers(0, 7), max_size=4), min_size=8, max_size=8)
 

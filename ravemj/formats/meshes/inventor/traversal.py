@@ -8,7 +8,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import SourceError
-from ravemj.formats.meshes import faces
+from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.files import MeshFile
 from ravemj.formats.meshes.inventor import primitives
 from ravemj.formats.meshes.inventor.nodes import MAX_NODES, Node
@@ -133,9 +133,9 @@ class Drawing:
         starts, sizes = starts[good], sizes[good]
         if state.concave and (sizes > 3).any():
             index = np.where((index < 0) | (index >= len(state.points)), 0, index)
-            triangles = faces.clipped(state.points[index], starts, sizes)
+            triangles = triangulation.clipped(state.points[index], starts, sizes)
         else:
-            triangles = faces.fans(starts, sizes)
+            triangles = triangulation.fans(starts, sizes)
         return self.add(state.points[index[triangles]], node, state)
 
     def include(self, names: Iterable[str], node: Node, state: State, painting: bool) -> State:

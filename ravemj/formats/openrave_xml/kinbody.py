@@ -13,7 +13,7 @@ from ravemj.errors import SourceError
 from ravemj.formats.collada import is_collada
 from ravemj.formats.openrave_xml.collada_body import add_collada
 from ravemj.formats.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
-from ravemj.formats.openrave_xml.geometry import GeometryScope
+from ravemj.formats.openrave_xml.geom import GeometryScope
 from ravemj.formats.openrave_xml.joint import read_joint
 from ravemj.formats.openrave_xml.link import read_link
 from ravemj.formats.openrave_xml.mass import DefaultMassReader

@@ -25,7 +25,7 @@ from ravemj.formats.collada.formulas import read_formulas
 from ravemj.formats.collada.geometry import GeometryReader
 from ravemj.formats.collada.library import Library
 from ravemj.formats.collada.physics import NO_MASS, Physics
-from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.polar import rigid
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers

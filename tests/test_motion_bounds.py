@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from ravemj.databases.linkstatistics import LinkStatisticsModel
 
 import ravemj
-from ravemj.model.reach import travel
+from ravemj.model.motion_bounds import travel
 from ravemj.model.tessellation import merged, moved, triangulated
 
 MECHANISM = """<Robot name="m"><KinBody>
