@@ -1,15 +1,15 @@
-"""Things that depend on each other, put in order."""
+"""Orders of graphs."""
 
 from collections.abc import Callable, Iterable
 
 
-def dependencies_first(items: Iterable[int], dependencies: Callable[[int], Iterable[int]]) -> list[int]:
-    """Return items and what they depend on, each behind its own dependencies.
+def topological_order(items: Iterable[int], dependencies: Callable[[int], Iterable[int]]) -> list[int]:
+    """Return items and their dependencies in topological order: each comes after its own dependencies.
 
-    Where some depend on each other in a circle, the one that is met first comes behind the others.
+    Of the members of a cycle, the one that is visited first comes last.
 
     Args:
-        items: In the order that they keep where nothing speaks against it.
+        items: In the order that they keep where dependencies allow it.
         dependencies: Returns what an item depends on.
     """
     order: list[int] = []

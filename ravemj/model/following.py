@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from ravemj.core.graphs import dependencies_first
+from ravemj.core.graphs import topological_order
 from ravemj.errors import ArgumentError, Diagnostics, Source
 from ravemj.model.scene import Joint, KinBody, Mimic
 
@@ -122,4 +122,4 @@ def _mimic(index: int, joints: Sequence[Follower], mimics: "dict[int, Expression
 def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
     """Return the followers, each behind the followers that it depends on."""
     moving = {index: mimic.expression for index, mimic in mimics.items() if mimic.expression is not None}
-    return dependencies_first(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])
+    return topological_order(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])

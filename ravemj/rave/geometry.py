@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.api_object import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.engine.simulation import BodyState
@@ -20,7 +20,7 @@ from ravemj.rave.infos.geometry import TYPES, GeometryInfo
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 
 
-class Geometry(Shown):
+class Geometry(ApiObject):
     """A shape of a link; ``link.GetGeometries()`` makes it. What it does not have, its getters raise for.
 
     Setters act at once, also in viewers and in pictures.

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ravemj.core.api_object import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 
@@ -41,7 +41,7 @@ class Annotations:
         self.data: dict[str, Any] = {}
 
 
-class UserData(Shown):
+class UserData(ApiObject):
     """Keeps data of users."""
 
     _annotations: Annotations

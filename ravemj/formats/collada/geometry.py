@@ -7,7 +7,7 @@ import numpy as np
 
 from ravemj.core.transforms import ZERO, Floats, Pose, Vec3, wxyz_from_axis_angle
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.polar import rigid, split
+from ravemj.formats.collada.polar import polar_decomposition, rigid_part
 from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
 from ravemj.formats.meshes.collada.materials import bindings, read_material
@@ -54,10 +54,10 @@ class GeometryReader:
     def _shapes(self, instance: Element, geometry: Element, T_link_node: Floats) -> Iterator[Geometry]:
         info = _info(geometry)
         source = self._library.source(instance)
-        T_link_frame, scaling = split(T_link_node, source)
+        T_link_frame, scaling = polar_decomposition(T_link_node, source)
         visible = True
         if info is not None:
-            T_link_frame = T_link_frame @ rigid(transform_of(self._library, info), source)
+            T_link_frame = T_link_frame @ rigid_part(transform_of(self._library, info), source)
             visible = words(child(info, "visible", "bool"))[:1] != ["false"]
         primitive = None if info is None else self._primitive(info)
         groups = self._groups(geometry)

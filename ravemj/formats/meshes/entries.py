@@ -27,7 +27,7 @@ def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
 
     Args:
         parts: The parts of the mesh.
-        digests: The files that they come from besides the mesh file, as in ``References``.
+        digests: The files that they come from besides the mesh file, as in ``ReferencedFiles``.
     """
     about: list[object] = []
     arrays: list[bytes] = []

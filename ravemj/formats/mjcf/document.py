@@ -8,7 +8,7 @@ from ravemj.core.transforms import ZERO, conjugate, rotate
 from ravemj.errors import Diagnostics, Source
 from ravemj.formats.mjcf.equality import EqualityWriter
 from ravemj.formats.mjcf.excludes import WeldGroups, excluded_pairs
-from ravemj.formats.mjcf.geoms import GeometryWriter
+from ravemj.formats.mjcf.geoms import GeomWriter
 from ravemj.formats.mjcf.inertia import inertia_attributes, is_rounding, legal_inertial
 from ravemj.formats.mjcf.lines import Attribute, Lines, pose_attributes
 from ravemj.model.joints import relative_pose
@@ -160,7 +160,7 @@ class _Writer:
         self.bodies.element("light", type="directional", dir=(-0.4, 0.4, -1.0), diffuse=(0.4, 0.4, 0.4), specular=ZERO)
         self.excludes = Lines(2)
         self.actuators = Lines(2)
-        self.geometries = GeometryWriter(diagnostics, decomposed=options.decomposed)
+        self.geometries = GeomWriter(diagnostics, decomposed=options.decomposed)
         self.equalities = EqualityWriter(diagnostics, Lines(2), Lines(2))
         self.names: list[BodyNames] = []
         self.altered: list[tuple[int, int]] = []

@@ -11,7 +11,7 @@ SMALLEST_SIZE = 1e-10
 """The least size [m] that is written; MuJoCo wants it positive."""
 
 
-class GeometryWriter:
+class GeomWriter:
     """Writes geoms and collects the meshes that they need.
 
     Attributes:

@@ -18,7 +18,7 @@ def appearance(simulation: Simulation) -> object:
     compiled = simulation.compile()
     model, data = compiled.model, compiled.data
     state = data.geom_xpos.tobytes(), data.geom_xmat.tobytes(), model.geom_rgba.tobytes()
-    return simulation.version, state, simulation.drawings.shapes()
+    return simulation.version, state, simulation.drawings.primitives()
 
 
 class Painter:
@@ -57,8 +57,8 @@ class Painter:
         self._seen = seen
         self._overlay = interaction.overlay()
         stage = self._prepared_stage(compiled.model, (simulation.version, ratio), ratio)
-        shapes = merge([simulation.drawings.shapes(), self._overlay.shapes])
-        stage.fill(compiled.data, interaction.view.camera, *pixels, shapes)
+        primitives = merge([simulation.drawings.primitives(), self._overlay.primitives])
+        stage.fill(compiled.data, interaction.view.camera, *pixels, primitives)
         return True
 
     def _prepared_stage(self, model: mujoco.MjModel, key: object, ratio: float) -> Stage:

@@ -45,7 +45,7 @@ class Look:
         interaction, studio = self._interaction(), self._studio()
         if interaction is None or studio is None:
             return None
-        gizmos = interaction.overlay().shapes
+        gizmos = interaction.overlay().primitives
         return studio.picture(interaction.view.camera, self._background, self._form, gizmos=gizmos)
 
     def close(self) -> None:

@@ -10,7 +10,7 @@ from ravemj.rave.link import Link
 
 
 class Graph(Mechanism):
-    """What moves what, the way between links, and fingerprints of the structure."""
+    """What moves what, the way between links, and hashes of the structure."""
 
     def GetJointIndex(self, name: str) -> int:
         """Return the place in ``GetJoints()`` of the joint of that name, or -1."""

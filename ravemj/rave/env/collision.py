@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.core.api_object import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.world import world_of
@@ -20,7 +20,7 @@ CollisionCallback = Callable[[CollisionReport, bool], int]
 """Takes a report of one collision and whether time runs, and returns a ``CollisionAction``."""
 
 
-class CollisionCallbackHandle(Shown):
+class CollisionCallbackHandle(ApiObject):
     """Keeps a function registered; it is not called any more once this is closed or gone."""
 
     def __init__(self, callbacks: list[CollisionCallback], callback: CollisionCallback) -> None:

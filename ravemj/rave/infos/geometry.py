@@ -14,7 +14,7 @@ from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceError
 from ravemj.model import scene
-from ravemj.model.shape_bodies import MADE
+from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.model.tessellation import merged
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.content import Info
@@ -161,7 +161,7 @@ class GeometryInfo(Info):
             display=self._display(),
             render_file=_file(self._filenamerender, self._vRenderScale),
             collision_file=_file(self._filenamecollision, self._vCollisionScale),
-            source=MADE,
+            source=FROM_SCRIPT,
         )
 
     def draw(self, filename: str) -> None:
