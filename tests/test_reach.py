@@ -11,7 +11,7 @@ from ravemj.databases.linkstatistics import LinkStatisticsModel
 
 import ravemj
 from ravemj.model.motion_bounds import motion_bounds
-from ravemj.model.tessellation import merged, moved, triangulated
+from ravemj.model.scene.tessellation import merged, moved, triangulated
 
 MECHANISM = """<Robot name="m"><KinBody>
   <Body name="a"><Geom type="box"><extents>0.1 0.1 0.1</extents></Geom></Body>

@@ -5,7 +5,7 @@ import pytest
 
 from ravemj.core.transforms import Pose
 from ravemj.model import scene
-from ravemj.model.tessellation import merged, moved, triangulated
+from ravemj.model.scene.tessellation import merged, moved, triangulated
 
 SHAPES = {
     "box": (scene.Box((0.1, 0.2, 0.3)), 8 * 0.1 * 0.2 * 0.3),

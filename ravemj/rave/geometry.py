@@ -14,7 +14,7 @@ from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import AABB
 from ravemj.model import scene
 from ravemj.model.bounds import geometry_bounds
-from ravemj.model.tessellation import triangulated
+from ravemj.model.scene.tessellation import triangulated
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.geometry import TYPES, GeometryInfo
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of

@@ -8,7 +8,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.errors import Source, SourceError
 from ravemj.model.scene import KinBody as Description
 from ravemj.model.scene import Mesh
-from ravemj.model.tessellation import merged, moved, triangulated
+from ravemj.model.scene.tessellation import merged, moved, triangulated
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody

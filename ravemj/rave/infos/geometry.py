@@ -14,8 +14,8 @@ from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceError
 from ravemj.model import scene
+from ravemj.model.scene.tessellation import merged
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.model.tessellation import merged
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, identity, pose, vector

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
-from ravemj.model.tessellation import merged, moved, triangulated
+from ravemj.model.scene.tessellation import merged, moved, triangulated
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo
 from ravemj.rave.infos.link import geometries_of
