@@ -11,7 +11,7 @@ from ravemj.databases.linkstatistics import LinkStatisticsModel
 
 import ravemj
 from ravemj.model.motion_bounds import motion_bounds
-from ravemj.model.scene.tessellation import merged, moved, triangulated
+from ravemj.model.scene import Mesh
 
 MECHANISM = """<Robot name="m"><KinBody>
   <Body name="a"><Geom type="box"><extents>0.1 0.1 0.1</extents></Geom></Body>
@@ -29,7 +29,7 @@ MECHANISM = """<Robot name="m"><KinBody>
 def vertices(body) -> list[np.ndarray]:
     """The corners of each link's shapes in the world."""
     shapes = [
-        merged(moved(triangulated(one.shape), one.T_link_geometry.matrix()) for one in link.geometries).vertices
+        Mesh.merged(one.shape.triangulated().moved(one.T_link_geometry.matrix()) for one in link.geometries).vertices
         for link in body.simulation_state.scene.links
     ]
     poses = body.GetLinkTransformations()

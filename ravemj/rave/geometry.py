@@ -14,7 +14,6 @@ from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import AABB
 from ravemj.model import scene
 from ravemj.model.bounds import geometry_bounds
-from ravemj.model.scene.tessellation import triangulated
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.geometry import TYPES, GeometryInfo
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
@@ -144,7 +143,7 @@ class Geometry(ApiObject):
 
         Those of a trimesh are as the file has them. Round shapes have their corners on the surface.
         """
-        return trimesh_of(triangulated(self._scene.shape))
+        return trimesh_of(self._scene.shape.triangulated())
 
     def InitCollisionMesh(self, fTessellation: float = 1.0) -> bool:
         """Return True; the triangles of ``GetCollisionMesh`` are always there, in one fineness.

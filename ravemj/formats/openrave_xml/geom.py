@@ -22,18 +22,14 @@ from ravemj.formats.openrave_xml.values import (
     vector,
 )
 from ravemj.model.scene import (
-    Box,
-    Capsule,
-    Container,
+    SHAPE_TYPES,
     Cylinder,
     Geometry,
     Mesh,
     MeshFile,
     NoShape,
-    Prism,
     Rgb,
     Shape,
-    Sphere,
     Surface,
     TriMesh,
 )
@@ -63,11 +59,7 @@ class _Geom:
     context: Context
     name: str = ""
     placement: Placement = field(default_factory=Placement)
-    half_extents: Vec3 = ZERO
-    radius: float = 0.0
-    height: float = 0.0
-    container: dict[str, Vec3] = field(default_factory=lambda: {})
-    cross_section: Sequence[float] = ()
+    sizes: dict[str, object] = field(default_factory=lambda: dict(_NO_SIZES))
     vertices: Sequence[float] = ()
     collision: MeshFile | None = None
     render: MeshFile | None = None
@@ -82,25 +74,25 @@ class _Geom:
         self.placement.turn(element, self.context.diagnostics)
 
     def read_half_extents(self, element: Element) -> None:
-        self.half_extents = vector(element, self.context.diagnostics)
+        self.sizes["half_extents"] = vector(element, self.context.diagnostics)
 
     def read_full_extents(self, element: Element) -> None:
-        self.half_extents = scale(vector(element, self.context.diagnostics), 0.5)
+        self.sizes["half_extents"] = scale(vector(element, self.context.diagnostics), 0.5)
 
-    def read_radius(self, element: Element) -> None:
-        self.radius = number(element, self.context.diagnostics)
+    def read_number(self, element: Element) -> None:
+        """Read a size that is called like its tag."""
+        self.sizes[element.tag] = number(element, self.context.diagnostics)
 
-    def read_height(self, element: Element) -> None:
-        self.height = number(element, self.context.diagnostics)
-
-    def read_container(self, element: Element) -> None:
-        self.container[element.tag] = vector(element, self.context.diagnostics)
+    def read_vector(self, element: Element) -> None:
+        """Read a size in three directions that is called like its tag."""
+        self.sizes[element.tag] = vector(element, self.context.diagnostics)
 
     def read_cross_section(self, element: Element) -> None:
-        self.cross_section, rest = leading_numbers(element.text)
-        if rest or len(self.cross_section) % 2:
-            message = f"<{element.spelled}> needs x and y of each corner, and holds {len(self.cross_section)} numbers"
+        numbers, rest = leading_numbers(element.text)
+        if rest or len(numbers) % 2:
+            message = f"<{element.spelled}> needs x and y of each corner, and holds {len(numbers)} numbers"
             self.context.diagnostics.warn("number-count", message, element.source)
+        self.sizes["cross_section"] = tuple(zip(numbers[::2], numbers[1::2], strict=False))
 
     def read_vertices(self, element: Element) -> None:
         self.vertices, rest = leading_numbers(element.text)
@@ -135,9 +127,8 @@ GEOM_TAGS: dict[str, Callable[[_Geom, Element], None]] = {
     "extents": _Geom.read_half_extents,
     "halfextents": _Geom.read_half_extents,
     "fullextents": _Geom.read_full_extents,
-    "radius": _Geom.read_radius,
-    "height": _Geom.read_height,
-    **dict.fromkeys(("outer_extents", "inner_extents", "bottom_cross", "bottom"), _Geom.read_container),
+    **dict.fromkeys(("radius", "height"), _Geom.read_number),
+    **dict.fromkeys(("outer_extents", "inner_extents", "bottom_cross", "bottom"), _Geom.read_vector),
     "crosssection": _Geom.read_cross_section,
     "vertices": _Geom.read_vertices,
     "data": _Geom.read_collision,
@@ -151,19 +142,13 @@ GEOM_TAGS: dict[str, Callable[[_Geom, Element], None]] = {
 GEOM_IGNORED = {"sidewall": "OpenRAVE itself cannot make a cage from XML"}
 GEOM_ATTRIBUTES = {"type", "name", "render", "modifiable", "group"}
 
-_SHAPES: dict[str, Callable[[_Geom], Shape]] = {
-    "box": lambda geom: Box(geom.half_extents),
-    "sphere": lambda geom: Sphere(geom.radius),
-    "cylinder": lambda geom: Cylinder(geom.radius, geom.height),
-    "capsule": lambda geom: Capsule(geom.radius, geom.height),
-    "container": lambda geom: Container(
-        *(geom.container.get(name, ZERO) for name in ("outer_extents", "inner_extents", "bottom_cross", "bottom"))
-    ),
-    "prism": lambda geom: Prism(
-        tuple(zip(geom.cross_section[::2], geom.cross_section[1::2], strict=False)), geom.height
-    ),
-    "none": lambda geom: NoShape(),
+_SHAPES = {one.xml: one.shape for one in SHAPE_TYPES}
+_NO_SIZES: dict[str, object] = {
+    **dict.fromkeys(("half_extents", "outer_extents", "inner_extents", "bottom_cross", "bottom"), ZERO),
+    **dict.fromkeys(("radius", "height"), 0.0),
+    "cross_section": (),
 }
+"""What OpenRAVE takes for a size that a ``<Geom>`` leaves out."""
 
 
 def read_geometries(element: Element, scope: GeometryScope, context: Context) -> list[Geometry]:
@@ -176,14 +161,14 @@ def read_geometries(element: Element, scope: GeometryScope, context: Context) ->
         message = f"the geometries of group '{element.attributes['group']}' are no part of the link; left out"
         context.diagnostics.warn("ignored-group", message, element.source)
         return []
-    if kind == "trimesh":
-        return _trimesh(geom, element, scope)
     shape = _SHAPES.get(kind)
+    if shape is TriMesh:
+        return _trimesh(geom, element, scope)
     if shape is None:
         message = f"a geometry of type '{kind}' has no shape here"
         context.diagnostics.warn("unsupported-geometry", message, element.source)
     display = _surfaces(geom, geom.render, element, scope)
-    return [_geometry(geom, element, shape(geom) if shape else NoShape(), scope, _NO_PART, display)]
+    return [_geometry(geom, element, (shape or NoShape).of_sizes(geom.sizes), scope, _NO_PART, display)]
 
 
 def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geometry]:
