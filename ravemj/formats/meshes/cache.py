@@ -28,7 +28,7 @@ from typing import TypeVar
 
 from ravemj.formats.meshes.entries import Parts, follow_shortcut, pack_entry, pack_shortcut, unpack_entry
 from ravemj.formats.meshes.files import ReferencedFiles, changed_at, digest_of, read_bytes, stamp_of
-from ravemj.model.scene import shapes
+from ravemj.model.scene import mesh
 
 _log = logging.getLogger(__name__)
 
@@ -156,7 +156,7 @@ def _readers_unread() -> bytes:
 
 def _sources() -> list[str]:
     """Return the paths of the modules beside this one, and of that with class ``Mesh``."""
-    return [*sorted(_modules(os.path.dirname(__file__))), shapes.__file__]
+    return [*sorted(_modules(os.path.dirname(__file__))), mesh.__file__]
 
 
 def _modules(folder: str) -> Iterator[str]:
