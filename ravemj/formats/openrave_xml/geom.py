@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -11,9 +11,9 @@ import numpy as np
 from ravemj.core.transforms import ZERO, Floats, Pose, Vec3, rows_from_wxyz, scale, wxyz_from_axis_angle
 from ravemj.formats.meshes import MeshPart
 from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tags import Tag, placement_tags
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
-    ROTATIONS,
     Placement,
     hadamard,
     is_false,
@@ -121,26 +121,37 @@ class _Geom:
         self.name = element.text.strip()
 
 
-GEOM_TAGS: dict[str, Callable[[_Geom, Element], None]] = {
-    "translation": _Geom.translate,
-    **dict.fromkeys(ROTATIONS, _Geom.turn),
-    "extents": _Geom.read_half_extents,
-    "halfextents": _Geom.read_half_extents,
-    "fullextents": _Geom.read_full_extents,
-    **dict.fromkeys(("radius", "height"), _Geom.read_number),
-    **dict.fromkeys(("outer_extents", "inner_extents", "bottom_cross", "bottom"), _Geom.read_vector),
-    "crosssection": _Geom.read_cross_section,
-    "vertices": _Geom.read_vertices,
-    "data": _Geom.read_collision,
-    "collision": _Geom.read_collision,
-    "render": _Geom.read_render,
-    "diffusecolor": _Geom.read_diffuse,
-    "ambientcolor": _Geom.read_ambient,
-    "transparency": _Geom.read_transparency,
-    "name": _Geom.read_name,
+GEOM_TAGS: dict[str, Tag[_Geom]] = {
+    **placement_tags(_Geom.translate, _Geom.turn),
+    "extents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
+    "halfextents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
+    "fullextents": Tag(_Geom.read_full_extents, "of a box: sizes x y z [m]"),
+    "radius": Tag(_Geom.read_number, "of a sphere, cylinder or capsule [m]"),
+    "height": Tag(_Geom.read_number, "of a cylinder, along y, and of a capsule or prism, along z [m]"),
+    "outer_extents": Tag(_Geom.read_vector, "of a container: sizes x y z [m]"),
+    "inner_extents": Tag(_Geom.read_vector, "of a container: sizes of the inside [m]"),
+    "bottom_cross": Tag(_Geom.read_vector, "of a container: sizes of a cross on the bottom [m]"),
+    "bottom": Tag(_Geom.read_vector, "of a container: sizes of a plate on the bottom [m]"),
+    "crosssection": Tag(
+        _Geom.read_cross_section, "of a prism: x y of its corners [m]; it has walls, and no top and bottom"
+    ),
+    "vertices": Tag(_Geom.read_vertices, "of a trimesh: nine numbers a triangle [m]"),
+    "data": Tag(_Geom.read_collision, "mesh file that collides, and scale"),
+    "collision": Tag(_Geom.read_collision, "the same as Data, also as attributes file and scale"),
+    "render": Tag(_Geom.read_render, "mesh file that is drawn, and scale"),
+    "diffusecolor": Tag(_Geom.read_diffuse, "red green blue, from 0 to 1"),
+    "ambientcolor": Tag(_Geom.read_ambient, "red green blue, from 0 to 1"),
+    "transparency": Tag(_Geom.read_transparency, "from 0 to 1"),
+    "name": Tag(_Geom.read_name, "name of the shape"),
 }
 GEOM_IGNORED = {"sidewall": "OpenRAVE itself cannot make a cage from XML"}
-GEOM_ATTRIBUTES = {"type", "name", "render", "modifiable", "group"}
+GEOM_ATTRIBUTES = {
+    "type": f"{', '.join(one.xml for one in SHAPE_TYPES if one.xml)}; others have no shape here",
+    "name": "name of the shape",
+    "render": "false: collides and is not drawn",
+    "modifiable": "false: planners leave it alone",
+    "group": "geometries of other groups than `self` are left out",
+}
 
 _SHAPES = {one.xml: one.shape for one in SHAPE_TYPES}
 _NO_SIZES: dict[str, object] = {

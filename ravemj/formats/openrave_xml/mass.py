@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from ravemj.core.transforms import ZERO, Rows, Vec3, Wxyz, add, dot, rows_from_wxyz, scale
 from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tags import Tag
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import hadamard, number, numbers, vector
 from ravemj.model.builder import DEFAULT_INERTIAL
@@ -108,14 +109,14 @@ class MassReader:
         """Accept ``<extents>``, which OpenRAVE does not read in a Body."""
 
 
-MASS_ATTRIBUTES = {"type"}
-MASS_TAGS = {
-    "density": MassReader.density,
-    "total": MassReader.total,
-    "radius": MassReader.radius,
-    "extents": MassReader.extents,
-    "com": MassReader.com,
-    "inertia": MassReader.inertia,
+MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box, custom"}
+MASS_TAGS: dict[str, Tag[MassReader]] = {
+    "density": Tag(MassReader.density, "[kg/m³]"),
+    "total": Tag(MassReader.total, "[kg]"),
+    "radius": Tag(MassReader.radius, "of a sphere [m]"),
+    "extents": Tag(MassReader.extents, "no effect, as in OpenRAVE; a warning says so"),
+    "com": Tag(MassReader.com, "centre of a custom mass [m]"),
+    "inertia": Tag(MassReader.inertia, "of a custom mass, about its centre: nine numbers [kg m²]"),
 }
 
 
@@ -135,7 +136,7 @@ class DefaultMassReader:
 
     def read(self, element: Element) -> None:
         """Read a ``<Mass>`` of a KinBody."""
-        self._context.check_attributes(element, MASS_ATTRIBUTES, {})
+        self._context.check_attributes(element, DEFAULT_MASS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "sphere").lower()
         if kind not in {"mimicgeom", "sphere", "box"}:
             message = f"OpenRAVE takes a mass of type '{kind}' in a KinBody for a sphere"
@@ -174,11 +175,12 @@ class DefaultMassReader:
             self._half_extents = half_extents
 
 
-DEFAULT_MASS_TAGS = {
-    "density": DefaultMassReader.density,
-    "total": DefaultMassReader.total,
-    "radius": DefaultMassReader.radius,
-    "extents": DefaultMassReader.extents,
+DEFAULT_MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box; others count as sphere"}
+DEFAULT_MASS_TAGS: dict[str, Tag[DefaultMassReader]] = {
+    "density": Tag(DefaultMassReader.density, "[kg/m³]"),
+    "total": Tag(DefaultMassReader.total, "[kg]; of mimicgeom OpenRAVE takes it for a density"),
+    "radius": Tag(DefaultMassReader.radius, "of a sphere [m]"),
+    "extents": Tag(DefaultMassReader.extents, "of a box: half sizes [m]"),
 }
 
 
