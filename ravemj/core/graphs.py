@@ -1,6 +1,8 @@
-"""Orders of graphs."""
+"""Topological orders and connected components of graphs."""
 
 from collections.abc import Callable, Iterable
+
+Pair = tuple[int, int]
 
 
 def topological_order(items: Iterable[int], dependencies: Callable[[int], Iterable[int]]) -> list[int]:
@@ -27,3 +29,24 @@ def topological_order(items: Iterable[int], dependencies: Callable[[int], Iterab
                 met.add(following)
                 path.append((following, iter(dependencies(following))))
     return order
+
+
+def ordered_pair(first: int, second: int) -> Pair:
+    """Return two numbers, the smaller one first."""
+    return (first, second) if first <= second else (second, first)
+
+
+def connected_components(count: int, edges: Iterable[Pair]) -> list[int]:
+    """Return for each node the smallest node of its connected component (union-find)."""
+    label = list(range(count))
+
+    def root(node: int) -> int:
+        while label[node] != node:
+            label[node] = label[label[node]]
+            node = label[node]
+        return node
+
+    for first, second in edges:
+        small, large = ordered_pair(root(first), root(second))
+        label[large] = small
+    return [root(node) for node in range(count)]
