@@ -149,7 +149,7 @@ class Desk:
         await_equal(lambda: self.picture(page)[CLEAR], lambda: self._expected()[CLEAR])
 
     def _expected(self) -> np.ndarray:
-        gizmos = self.viewer.interaction.overlay().shapes
+        gizmos = self.viewer.interaction.overlay().primitives
         form = Format(*SIZE)
         return self.viewer._renderer.render(self.core.view.camera, self.viewer.background, form, gizmos=gizmos)
 

@@ -26,7 +26,7 @@ from ravemj.errors import Diagnostics, RavemjError, RavemjWarning
 from ravemj.formats import mjcf
 from ravemj.formats.openrave_xml.actuator import ACTUATOR_TAGS
 from ravemj.formats.openrave_xml.environment import ENVIRONMENT_IGNORED
-from ravemj.formats.openrave_xml.geometry import GEOM_TAGS
+from ravemj.formats.openrave_xml.geom import GEOM_TAGS
 from ravemj.formats.openrave_xml.joint import JOINT_ATTRIBUTES, JOINT_TAGS
 from ravemj.formats.openrave_xml.sensor import CAMERA_TAGS
 from ravemj.formats.readers import read_file

@@ -35,7 +35,7 @@ def middle(picture):
 
 
 def drawn(env):
-    return len(env.simulation.drawings.shapes())
+    return len(env.simulation.drawings.primitives())
 
 
 CALLS = {

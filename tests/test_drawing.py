@@ -175,7 +175,7 @@ def test_cameras_with_a_calibration(how):
     model, data = state_of(geoms, EMPTY)
     with open_as(how, model, WIDTH, HEIGHT, samples=0) as renderer:
         ids = renderer.segment(data, camera)
-        picture = renderer.render(data, camera, shapes=drawing.points(positions * 0.9, 3, many(RED, 3)))
+        picture = renderer.render(data, camera, primitives=drawing.points(positions * 0.9, 3, many(RED, 3)))
         same = Camera(np.eye(4), calibration=AHEAD.pinhole(WIDTH, HEIGHT))
         assert np.array_equal(renderer.render(data, same), renderer.render(data, AHEAD))
     for geom, (x, y, z) in enumerate(positions):
@@ -216,7 +216,7 @@ def test_drawings_and_bodies_hide_each_other(how):
     model, data = state_of(wall, EMPTY)
     with open_as(how, model, WIDTH, HEIGHT) as renderer:
         before = renderer.segment(data, AHEAD)
-        renderer.render(data, AHEAD, shapes=shapes[0])
+        renderer.render(data, AHEAD, primitives=shapes[0])
         assert np.array_equal(renderer.segment(data, AHEAD), before)
 
 
@@ -241,7 +241,7 @@ def test_alpha_mixes_with_what_is_behind(how, shadows):
     drawings = Drawings()
     for shape in (figures[0], wall):
         drawings.add(shape)
-    color = picture_of(how, drawings.shapes(), geoms=geoms, shadows=shadows)[HEIGHT // 2, WIDTH // 2]
+    color = picture_of(how, drawings.primitives(), geoms=geoms, shadows=shadows)[HEIGHT // 2, WIDTH // 2]
     np.testing.assert_allclose(color, [0.4 * 255, 0.6 * 255, 0], atol=4)
     pink = drawing.points(np.array([[0, 0, 2.0]]), 9, many(np.array([1, 0.5, 0.5, 1]), 1))
     color = picture_of(how, pink, geoms=geoms, shadows=shadows)[HEIGHT // 2, WIDTH // 2]
@@ -294,7 +294,7 @@ def everything(rng):
     drawings.add(drawing.box(positions[2], np.array([0.1, 0.2, 0.05]), colors[1]))
     drawings.add(drawing.mesh(positions, np.array([[3, 4, 5], [6, 7, 8]]), colors))
     drawings.add(drawing.plane(np.eye(4), np.array([0.3, 0.2]), rng.uniform(0, 1, (4, 5, 4))))
-    return drawings.shapes()
+    return drawings.primitives()
 
 
 @pytest.mark.parametrize("how", [GL])
@@ -320,7 +320,7 @@ def test_tens_of_thousands_of_points(how):
     colors = np.column_stack([np.ones(count), rng.uniform(0, 0.4, (count, 2)), np.ones(count)])
     model, data = state_of("", EMPTY)
     with open_as(how, model, 640, 480, samples=0) as renderer:
-        picture = renderer.render(data, AHEAD, shapes=drawing.points(positions, 3, colors))
+        picture = renderer.render(data, AHEAD, primitives=drawing.points(positions, 3, colors))
     np.testing.assert_allclose(picture[rows, columns], 255 * colors[:, :3], atol=1)
     assert (picture[rows + 2, columns + 2] == 255).all()
 
@@ -389,21 +389,21 @@ def test_fine_textures_are_averaged():
 
 def test_what_is_on_show_is_the_same_object_until_something_changes():
     drawings = Drawings()
-    assert drawings.shapes() is NOTHING
+    assert drawings.primitives() is NOTHING
     key, shown = drawings.add(drawing.points(np.zeros((1, 3)), 3, many(RED, 1)))
-    first = drawings.shapes()
-    assert drawings.shapes() is first
+    first = drawings.primitives()
+    assert drawings.primitives() is first
     move = np.eye(4)
     move[:3, 3] = 1, 2, 3
     shown.place(move)
-    assert drawings.shapes() is not first
-    assert drawings.shapes().points.corners.tolist() == [[[1, 2, 3]]]
+    assert drawings.primitives() is not first
+    assert drawings.primitives().points.corners.tolist() == [[[1, 2, 3]]]
     shown.show(False)
-    assert len(drawings.shapes()) == 0
+    assert len(drawings.primitives()) == 0
     shown.show(True)
-    assert drawings.shapes().points.corners.tolist() == [[[1, 2, 3]]]
+    assert drawings.primitives().points.corners.tolist() == [[[1, 2, 3]]]
     drawings.remove(key)
     drawings.remove(key)
-    assert len(drawings.shapes()) == 0
+    assert len(drawings.primitives()) == 0
     shown.place(np.eye(4))
-    assert len(drawings.shapes()) == 0
+    assert len(drawings.primitives()) == 0

@@ -333,13 +333,13 @@ def test_a_click_selects_and_a_second_one_hides_the_cube(boxes):
     left, right = (hand.at([0.1, y, 0]) for y in (-0.3, 0.3))
     hand.click(left)
     assert hand.selection.body.scene.name == "left"
-    assert len(hand.gui.overlay().shapes) > 0
+    assert len(hand.gui.overlay().primitives) > 0
     assert hand.lines()[1:] == ("Body left",)
     hand.drag(right, (right[0] + 2, right[1] + 1))  # a hand that trembles
     assert hand.selection.body.scene.name == "right"
     hand.click(right)
     assert hand.selection is None
-    assert hand.gui.overlay().shapes is drawing.NOTHING
+    assert hand.gui.overlay().primitives is drawing.NOTHING
     hand.click(left)
     hand.click((400, 590))
     assert hand.selection is None, "a click on nothing"
@@ -378,7 +378,7 @@ def test_the_cube_is_around_what_is_seen(boxes):
     cube = Cube.around(body._state)
     np.testing.assert_allclose(cube.T_world_cube, body.GetTransform(), atol=1e-12)
     np.testing.assert_allclose(cube.half, [0.115, 0.065, 0.165], atol=1e-9)
-    assert np.abs(cube.shapes().placed(np.linalg.inv(cube.T_world_cube)).triangles.corners).max() == pytest.approx(
+    assert np.abs(cube.primitives().placed(np.linalg.inv(cube.T_world_cube)).triangles.corners).max() == pytest.approx(
         0.165
     )
 
@@ -500,7 +500,7 @@ def test_ctrl_and_a_click_on_the_cylinder_change_its_size(hand, robot):
     hand.in_interaction().click(hand.at([0.01, 0, -0.3]), ctrl=True)
     widths = []
     for _ in range(5):
-        widths.append(np.ptp(hand.gui.overlay().shapes.triangles.corners[..., 2]))
+        widths.append(np.ptp(hand.gui.overlay().primitives.triangles.corners[..., 2]))
         hand.click(hand.at(JointHandle.at(robot._state, 1).center), ctrl=True)
     np.testing.assert_allclose(np.array(widths) / widths[0], [1, 2, 4, 0.5, 1])
     assert hand.selection.dof == 1

@@ -159,7 +159,7 @@ def test_changed_readers(folder, later, mesh, reads, contents, monkeypatch, stal
 
 def test_the_source_is_known():
     names = {os.path.basename(path) for path in cache._sources()}
-    assert {"cache.py", "entries.py", "reading.py", "old.py", "geometry.py", "shapes.py"} <= names
+    assert {"cache.py", "entries.py", "reading.py", "old.py", "triangles.py", "mesh.py"} <= names
     assert len(cache._readers()) == len(cache._readers_unread()) == 32
 
 
@@ -313,7 +313,7 @@ def test_folders(tmp_path, monkeypatch):
     assert cache.cache_folder() == tmp_path / "ravemj" / "meshes"
     monkeypatch.setenv("XDG_CACHE_HOME", "relative/is/no/good")
     monkeypatch.setenv("HOME", "/home/someone")
-    assert cache.cache_folder() == Path("/home/someone/.cache/ravemj/formats/meshes")
+    assert cache.cache_folder() == Path("/home/someone/.cache/ravemj/meshes")
     monkeypatch.setattr(Path, "home", lambda: (_ for _ in ()).throw(RuntimeError))
     assert cache.cache_folder() is None
 

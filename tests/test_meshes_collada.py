@@ -8,8 +8,8 @@ import pytest
 from ravemj.errors import SourceError
 from ravemj.formats.meshes import area, read_mesh
 from ravemj.formats.meshes.collada.document import ColladaDocument
-from ravemj.formats.meshes.collada.geometry import primitive_groups
 from ravemj.formats.meshes.collada.materials import read_material
+from ravemj.formats.meshes.collada.triangles import primitive_groups
 
 FILES = Path(__file__).parent / "data" / "meshes"
 GRAY = pytest.approx((0.6, 0.6, 0.6))

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from ravemj.errors import SourceError
 from ravemj.formats.meshes import MESH_SUFFIXES, files, read_mesh
-from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.reading import _READERS, _read
 
 DATA = Path(__file__).parent / "data" / "meshes"
@@ -58,7 +58,7 @@ def survives(name, data):
     with warnings.catch_warnings():
         if suffix in TRIMESH:
             warnings.simplefilter("ignore")
-        parts = outcome(lambda: _read(MeshFile(str(DATA / name), data), _READERS[suffix])[0])
+        parts = outcome(lambda: _read(FileContent(str(DATA / name), data), _READERS[suffix])[0])
     for part in parts:
         assert len(part.mesh.triangles)
         assert part.mesh.triangles.min() >= 0

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from ravemj.errors import RavemjError
 from ravemj.formats.meshes import area, collision_form, decompose, decomposition, volume, write_obj
-from ravemj.formats.meshes.faces import clip_ears, clipped, fans
 from ravemj.formats.meshes.inventor import primitives
 from ravemj.formats.meshes.parts import corners_of, weld
+from ravemj.formats.meshes.triangulation import clip_ears, clipped, fans
 from ravemj.model.scene import Mesh
 
 SQUARE = Mesh(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))

@@ -11,7 +11,7 @@ from lxml import etree
 from ravemj.errors import SourceError
 from ravemj.formats.meshes import MESH_SUFFIXES, read_mesh, volume
 from ravemj.formats.meshes.collada.document import ColladaDocument, attribute_number, child
-from ravemj.formats.meshes.collada.geometry import primitive_groups
+from ravemj.formats.meshes.collada.triangles import primitive_groups
 from ravemj.model.scene import Mesh
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"

@@ -150,7 +150,7 @@ def test_a_prism_has_walls_alone(link):
     geometry = link(
         f'<Body name="a"><Geom type="prism"><crosssection>{corners}</crosssection><height>3</height></Geom></Body>'
     ).geometries[0]
-    walls = geometry.shape.walls()
+    walls = geometry.shape.triangulated()
     assert area(walls) == pytest.approx((2 + 1 + 2 + 1) * 3)
     assert volume(walls) == pytest.approx(2 * 1 * 3 * 2 / 3)  # two of three pairs of faces, all turned outwards
     np.testing.assert_array_equal(walls.vertices.min(axis=0), [0, 0, -1.5])

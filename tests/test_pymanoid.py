@@ -285,7 +285,7 @@ def test_a_thread_draws_while_the_robot_moves(env, robot, viewer):
     thread.start()
     while thread.is_alive():
         centre_of_mass(robot)
-        env.simulation.drawings.shapes()
+        env.simulation.drawings.primitives()
     thread.join()
     assert wrong == []
     np.testing.assert_allclose(robot.GetDOFValues(), np.full(8, 1.0))

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from ravemj.databases.linkstatistics import LinkStatisticsModel
 
 import ravemj
-from ravemj.model.reach import travel
-from ravemj.model.tessellation import merged, moved, triangulated
+from ravemj.model.motion_bounds import motion_bounds
+from ravemj.model.scene import Mesh
 
 MECHANISM = """<Robot name="m"><KinBody>
   <Body name="a"><Geom type="box"><extents>0.1 0.1 0.1</extents></Geom></Body>
@@ -29,7 +29,7 @@ MECHANISM = """<Robot name="m"><KinBody>
 def vertices(body) -> list[np.ndarray]:
     """The corners of each link's shapes in the world."""
     shapes = [
-        merged(moved(triangulated(one.shape), one.T_link_geometry.matrix()) for one in link.geometries).vertices
+        Mesh.merged(one.shape.triangulated().moved(one.T_link_geometry.matrix()) for one in link.geometries).vertices
         for link in body.simulation_state.scene.links
     ]
     poses = body.GetLinkTransformations()
@@ -39,13 +39,13 @@ def vertices(body) -> list[np.ndarray]:
 def test_a_pendulum(robot):
     forearm = [0.2, 0.01, 0.01]
     expected = [0.2 + np.linalg.norm(forearm), np.linalg.norm(forearm[:2])]
-    np.testing.assert_allclose(travel(robot.simulation_state.scene), expected)
+    np.testing.assert_allclose(motion_bounds(robot.simulation_state.scene), expected)
 
 
 def test_turning_counts_across_the_axis_and_sliders_reach_further():
     env = ravemj.Environment()
     assert env.LoadData(MECHANISM)
-    found = travel(env.GetRobot("m").simulation_state.scene)
+    found = motion_bounds(env.GetRobot("m").simulation_state.scene)
     np.testing.assert_allclose(found, [max(0.5, 2 + 0.2 * 2**0.5), 1, 0])
 
 
@@ -79,9 +79,9 @@ def test_weights_and_resolutions(robot):
     assert (first + second) / 2 == pytest.approx(3)
     assert first / second == pytest.approx(2, rel=1e-2)
     model.setRobotResolutions()
-    np.testing.assert_allclose(robot.GetDOFResolutions(), 0.005 / travel(robot.simulation_state.scene))
+    np.testing.assert_allclose(robot.GetDOFResolutions(), 0.005 / motion_bounds(robot.simulation_state.scene))
     model.setRobotResolutions(0.01)
-    np.testing.assert_allclose(robot.GetDOFResolutions(), 0.01 / travel(robot.simulation_state.scene))
+    np.testing.assert_allclose(robot.GetDOFResolutions(), 0.01 / motion_bounds(robot.simulation_state.scene))
     with pytest.raises(ravemj.ArgumentError, match="type is 5"):
         model.setRobotWeights(5)
 

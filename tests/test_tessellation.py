@@ -5,7 +5,6 @@ import pytest
 
 from ravemj.core.transforms import Pose
 from ravemj.model import scene
-from ravemj.model.tessellation import merged, moved, triangulated
 
 SHAPES = {
     "box": (scene.Box((0.1, 0.2, 0.3)), 8 * 0.1 * 0.2 * 0.3),
@@ -23,7 +22,7 @@ def volume(mesh):
 @pytest.mark.parametrize("name", SHAPES)
 def test_closed_outward_and_of_about_the_volume(name):
     shape, exact = SHAPES[name]
-    mesh = triangulated(shape)
+    mesh = shape.triangulated()
     edges = mesh.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     there = {tuple(edge) for edge in edges.tolist()}
     assert len(there) == len(edges)
@@ -32,22 +31,22 @@ def test_closed_outward_and_of_about_the_volume(name):
 
 
 def test_round_corners_lie_on_the_surface():
-    np.testing.assert_allclose(np.linalg.norm(triangulated(scene.Sphere(0.5)).vertices, axis=1), 0.5, rtol=1e-12)
-    capsule = triangulated(scene.Capsule(0.3, 1.0)).vertices
+    np.testing.assert_allclose(np.linalg.norm(scene.Sphere(0.5).triangulated().vertices, axis=1), 0.5, rtol=1e-12)
+    capsule = scene.Capsule(0.3, 1.0).triangulated().vertices
     beyond = np.clip(np.abs(capsule[:, 2]) - 0.5, 0, None)
     np.testing.assert_allclose(np.hypot(np.hypot(capsule[:, 0], capsule[:, 1]), beyond), 0.3, rtol=1e-12)
 
 
 def test_a_container_is_hollow():
-    mesh = triangulated(scene.Container((1, 1, 1), (0.8, 0.8, 0.9), (0, 0, 0), (0, 0, 0)))
+    mesh = scene.Container((1, 1, 1), (0.8, 0.8, 0.9)).triangulated()
     assert np.abs(mesh.vertices[:, :2]).max() == 0.5
     assert (mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()) == (0, 1)
     assert len(mesh.triangles) == 5 * 12
 
 
 def test_moved_and_merged():
-    box = triangulated(scene.Box((1, 1, 1)))
-    both = merged([box, moved(box, Pose((5, 0, 0)).matrix())])
+    box = scene.Box((1, 1, 1)).triangulated()
+    both = scene.Mesh.merged([box, box.moved(Pose((5, 0, 0)).matrix())])
     assert volume(both) == pytest.approx(16)
     assert both.vertices.max(axis=0).tolist() == [6, 1, 1]
-    assert len(merged([]).vertices) == len(triangulated(scene.NoShape()).triangles) == 0
+    assert len(scene.Mesh.merged([]).vertices) == len(scene.NoShape().triangulated().triangles) == 0

@@ -57,7 +57,7 @@ def _geometry(geometry: Geometry) -> Summary:
     if isinstance(shape, TriMesh):
         sizes: Summary = {"vertices": len(shape.mesh.vertices), "triangles": len(shape.mesh.triangles)}
     else:
-        sizes = {name: _finite(getattr(shape, name)) for name in shape.__dataclass_fields__}
+        sizes = {size.name: _finite(getattr(shape, size.name)) for size in shape.sizes()}
     return {"type": type(shape).__name__.lower(), "name": geometry.name, **sizes, "visible": geometry.visible}
 
 

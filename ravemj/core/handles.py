@@ -5,12 +5,12 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import ParamSpec, Self
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import ApiObject
 
 _Arguments = ParamSpec("_Arguments")
 
 
-class Handle(Shown):
+class Handle(ApiObject):
     """Holds something for as long as somebody holds the handle."""
 
     def __init__(

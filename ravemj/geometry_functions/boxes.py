@@ -5,12 +5,12 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.core.transforms import ZERO, Floats, Pose
 from ravemj.geometry_functions import arguments
 
 
-class Ray(Shown):
+class Ray(ApiObject):
     """A ray; its length is that of its direction.
 
     Example:
@@ -36,7 +36,7 @@ class Ray(Shown):
         return f"<{_listed((*self._pos, *self._dir), ' ')}>"
 
 
-class AABB(Shown):
+class AABB(ApiObject):
     """A box along the axes of the world.
 
     Example:
@@ -67,7 +67,7 @@ class AABB(Shown):
         return f"<{_listed((*self._pos, *self._extents), ' ')}>"
 
 
-class OrientedBox(Shown):
+class OrientedBox(ApiObject):
     """A box that may be turned."""
 
     def __init__(self, transform: ArrayLike = (1, 0, 0, 0, 0, 0, 0), extents: ArrayLike = ZERO) -> None:

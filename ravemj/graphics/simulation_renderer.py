@@ -18,7 +18,7 @@ from ravemj.graphics.rendering import (
     view_from_above,
 )
 from ravemj.graphics.rendering.contexts import RAY
-from ravemj.model.drawing import NOTHING, Shapes, merge
+from ravemj.model.drawing import NOTHING, Primitives, merge
 
 Frame = NDArray[np.uint8]
 
@@ -48,7 +48,7 @@ class SimulationRenderer:
         self._kept = threading.local()
 
     def render(
-        self, camera: Camera, background: ArrayLike, form: Format, drawings: bool = True, gizmos: Shapes = NOTHING
+        self, camera: Camera, background: ArrayLike, form: Format, drawings: bool = True, gizmos: Primitives = NOTHING
     ) -> Frame:
         """Draw the bodies and the drawings as they are now.
 
@@ -67,8 +67,8 @@ class SimulationRenderer:
         """
         with self._simulation.lock:
             compiled = self._simulation.compiled()
-            shapes = self._simulation.drawings.shapes() if drawings else NOTHING
-            shown = merge([shapes, gizmos]) if len(gizmos) else shapes
+            primitives = self._simulation.drawings.primitives() if drawings else NOTHING
+            shown = merge([primitives, gizmos]) if len(gizmos) else primitives
             renderer = self._current(form)
             if renderer.backend == RAY:  # it hides geoms of the model while it draws
                 return renderer.render(compiled.data, camera, background, shown)

@@ -176,7 +176,7 @@ class BodyBuilder:
         mimic_joints = MimicJoints(joints)
         mimic_joints.evaluate(firsts)
         for mimic in mimic_joints.joints:
-            values[mimic.index][0] = firsts[mimic.index]
+            values[mimic.joint][0] = firsts[mimic.joint]
         return [
             replace(
                 joint,

@@ -1,8 +1,8 @@
 """Drawings that scripts add to a scene: points, lines and triangles over arrays, without a renderer.
 
-Every call of OpenRAVE's (arrow, box, plane, mesh) becomes a ``Batch`` of one of four kinds; renderers know these
-four. ``Drawings`` keeps what is to be seen. Adding, changing and removing are each one step on a dict, so any thread
-may do so at any time, garbage collection included, and nobody waits for anybody.
+Each drawing call of OpenRAVE's (arrow, box, plane, mesh) becomes primitives of four kinds, the only ones that renderers
+know: points, spheres, lines and triangles. ``Drawings`` holds them. Adding, changing and removing one is a single
+operation on a dict, so any thread may do it at any time without a lock, garbage collection included.
 """
 
 import itertools
@@ -29,8 +29,8 @@ _BOX_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-
 _BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
 
-class Batch(NamedTuple):
-    """Figures of one kind.
+class PrimitiveBatch(NamedTuple):
+    """Primitives of one kind, as arrays.
 
     Attributes:
         corners: Shape (N, k, 3) [m]; k is 1 for points and spheres, 2 for lines, 3 for triangles.
@@ -42,42 +42,42 @@ class Batch(NamedTuple):
     sizes: Floats
     rgba: Floats
 
-    def placed(self, transform: Floats) -> "Batch":
-        """Return the figures moved by a 4x4 transform."""
+    def placed(self, transform: Floats) -> "PrimitiveBatch":
+        """Return the primitives moved by a 4x4 transform."""
         return self._replace(corners=self.corners @ transform[:3, :3].T + transform[:3, 3])
 
 
-def _empty(corners: int) -> Batch:
-    return Batch(np.empty((0, corners, 3)), np.empty(0), np.empty((0, 4)))
+def _empty(corners: int) -> PrimitiveBatch:
+    return PrimitiveBatch(np.empty((0, corners, 3)), np.empty(0), np.empty((0, 4)))
 
 
 @dataclass(frozen=True, eq=False)
-class Shapes:
-    """Drawings, as renderers see them: figures by kind. Equal is only what is the same object.
+class Primitives:
+    """Graphics primitives by kind, as renderers take them. Two are equal only if they are the same object.
 
     Attributes:
         points: Squares that face the camera, in their own colour; OpenGL's points.
-        spheres: Balls, lit.
+        spheres: Spheres, lit.
         lines: Segments of constant width on the screen, in their own colour.
         triangles: Flat and lit, seen from both sides.
     """
 
-    points: Batch = field(default_factory=lambda: _empty(1))
-    spheres: Batch = field(default_factory=lambda: _empty(1))
-    lines: Batch = field(default_factory=lambda: _empty(2))
-    triangles: Batch = field(default_factory=lambda: _empty(3))
+    points: PrimitiveBatch = field(default_factory=lambda: _empty(1))
+    spheres: PrimitiveBatch = field(default_factory=lambda: _empty(1))
+    lines: PrimitiveBatch = field(default_factory=lambda: _empty(2))
+    triangles: PrimitiveBatch = field(default_factory=lambda: _empty(3))
 
     @property
-    def batches(self) -> tuple[Batch, Batch, Batch, Batch]:
+    def batches(self) -> tuple[PrimitiveBatch, PrimitiveBatch, PrimitiveBatch, PrimitiveBatch]:
         """Points, spheres, lines and triangles."""
         return self.points, self.spheres, self.lines, self.triangles
 
     def __len__(self) -> int:
         return sum(len(batch.sizes) for batch in self.batches)
 
-    def placed(self, transform: Floats) -> "Shapes":
-        """Return the figures moved by a 4x4 transform."""
-        return Shapes(*(batch.placed(transform) for batch in self.batches))
+    def placed(self, transform: Floats) -> "Primitives":
+        """Return the primitives moved by a 4x4 transform."""
+        return Primitives(*(batch.placed(transform) for batch in self.batches))
 
     def bounding_sphere(self) -> tuple[Floats, float]:
         """Return centre (3,) and radius [m] of a sphere around all of them; there has to be one."""
@@ -87,31 +87,31 @@ class Shapes:
         return center, float(np.linalg.norm(corners - center, axis=1).max() + largest)
 
 
-NOTHING = Shapes()
+NOTHING = Primitives()
 
 
-def points(positions: Floats, size: float, rgba: Floats) -> Shapes:
+def points(positions: Floats, size: float, rgba: Floats) -> Primitives:
     """Return points (N, 3) of a size [pixels], with colours (N, 4)."""
-    return Shapes(points=Batch(positions[:, None], np.full(len(positions), size), rgba))
+    return Primitives(points=PrimitiveBatch(positions[:, None], np.full(len(positions), size), rgba))
 
 
-def spheres(positions: Floats, radius: float, rgba: Floats) -> Shapes:
+def spheres(positions: Floats, radius: float, rgba: Floats) -> Primitives:
     """Return spheres around positions (N, 3), with colours (N, 4)."""
-    return Shapes(spheres=Batch(positions[:, None], np.full(len(positions), radius), rgba))
+    return Primitives(spheres=PrimitiveBatch(positions[:, None], np.full(len(positions), radius), rgba))
 
 
-def line_strip(positions: Floats, width: float, rgba: Floats) -> Shapes:
+def line_strip(positions: Floats, width: float, rgba: Floats) -> Primitives:
     """Return the line through positions (N, 3); colours (N, 4) run from one to the next."""
     first = np.arange(len(positions) - 1)
     return _lines(positions, width, rgba, np.stack([first, first + 1], axis=1))
 
 
-def line_list(positions: Floats, width: float, rgba: Floats) -> Shapes:
+def line_list(positions: Floats, width: float, rgba: Floats) -> Primitives:
     """Return a line between each pair of positions (N, 3); a last one that is alone is left out."""
     return _lines(positions, width, rgba, np.arange(len(positions) // 2 * 2).reshape(-1, 2))
 
 
-def _lines(positions: Floats, width: float, rgba: Floats, ends: Ints) -> Shapes:
+def _lines(positions: Floats, width: float, rgba: Floats, ends: Ints) -> Primitives:
     """Cut lines whose ends differ in colour into pieces of one colour."""
     pieces = max(1, int(np.ceil(_SHADES * np.abs(np.diff(rgba[ends], axis=1)).max(initial=0))))
     cuts = np.arange(pieces + 1) / pieces
@@ -119,19 +119,19 @@ def _lines(positions: Floats, width: float, rgba: Floats, ends: Ints) -> Shapes:
     middles = 0.5 * (cuts[:-1] + cuts[1:])
     colors = rgba[ends[:, 0], None] + middles[:, None] * np.diff(rgba[ends], axis=1)
     corners = np.stack([at[:, :-1], at[:, 1:]], axis=2).reshape(-1, 2, 3)
-    return Shapes(lines=Batch(corners, np.full(len(corners), width), colors.reshape(-1, 4)))
+    return Primitives(lines=PrimitiveBatch(corners, np.full(len(corners), width), colors.reshape(-1, 4)))
 
 
-def mesh(positions: Floats, triangles: Ints, rgba: Floats) -> Shapes:
+def mesh(positions: Floats, triangles: Ints, rgba: Floats) -> Primitives:
     """Return triangles (M, 3) of positions (N, 3); each has the mean colour of its corners' (N, 4)."""
     return _triangles(positions[triangles], rgba[triangles].mean(axis=1))
 
 
-def _triangles(corners: Floats, rgba: Floats) -> Shapes:
-    return Shapes(triangles=Batch(corners, np.zeros(len(corners)), rgba))
+def _triangles(corners: Floats, rgba: Floats) -> Primitives:
+    return Primitives(triangles=PrimitiveBatch(corners, np.zeros(len(corners)), rgba))
 
 
-def arrow(start: Floats, end: Floats, radius: float, rgba: Floats) -> Shapes:
+def arrow(start: Floats, end: Floats, radius: float, rgba: Floats) -> Primitives:
     """Return an arrow: a shaft of that radius [m] and a tip twice as wide; nothing where it has no length."""
     along = end - start
     if not along.any():
@@ -144,7 +144,7 @@ def arrow(start: Floats, end: Floats, radius: float, rgba: Floats) -> Shapes:
     return _skin(outline, rgba)
 
 
-def cylinder(radius: float, height: float, rgba: Floats) -> Shapes:
+def cylinder(radius: float, height: float, rgba: Floats) -> Primitives:
     """Return a cylinder along z around the origin, with its full height [m]."""
     turn = np.linspace(0, 2 * np.pi, _SIDES_OF_CYLINDER, endpoint=False)
     ring = radius * np.column_stack([np.cos(turn), np.sin(turn), 0 * turn])
@@ -152,7 +152,7 @@ def cylinder(radius: float, height: float, rgba: Floats) -> Shapes:
     return _skin([0 * ring - up, ring - up, ring + up, 0 * ring + up], rgba)
 
 
-def _skin(rings: list[Floats], rgba: Floats) -> Shapes:
+def _skin(rings: list[Floats], rgba: Floats) -> Primitives:
     """Return the surface through rings of points, each (N, 3)."""
     corners = np.concatenate([_quads(inner, outer) for inner, outer in itertools.pairwise(rings)])
     return _triangles(corners, np.tile(rgba, (len(corners), 1)))
@@ -171,13 +171,13 @@ def _normals(corners: Floats) -> Floats:
     return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
-def box(center: Floats, extents: Floats, rgba: Floats) -> Shapes:
+def box(center: Floats, extents: Floats, rgba: Floats) -> Primitives:
     """Return a box along the axes; extents (3,) are half of its sides [m]."""
     faces = np.array(_BOX_FACES)[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
     return _triangles((center + _BOX_CORNERS * extents)[faces], np.tile(rgba, (len(faces), 1)))
 
 
-def plane(transform: Floats, extents: Floats, texture: Floats) -> Shapes:
+def plane(transform: Floats, extents: Floats, texture: Floats) -> Primitives:
     """Return an image on a rectangle.
 
     Args:
@@ -206,56 +206,56 @@ def _averaged(texture: Floats, axis: int) -> Floats:
 
 
 class Drawing:
-    """A drawing on show; the one who draws holds it, and ``Drawings.remove`` takes it off.
+    """A drawing that can be moved and hidden.
 
     Attributes:
-        state: The figures as they were drawn, and where they are now; None while they are hidden. Replaced as a whole.
+        state: Its primitives in the world; None while it is hidden. Replaced as a whole, so readers need no lock.
     """
 
-    def __init__(self, shapes: Shapes) -> None:
-        self._shapes = shapes
+    def __init__(self, primitives: Primitives) -> None:
+        self._primitives = primitives
         self._transform = np.eye(4)
         self._shown = True
-        self.state: Shapes | None = shapes
+        self.state: Primitives | None = primitives
 
     def place(self, transform: Floats) -> None:
-        """Set where the figures are: a 4x4 transform of what was drawn."""
+        """Set the pose of the drawing: a 4x4 transform of its primitives as they were drawn."""
         self._transform = transform
         self._update()
 
     def show(self, shown: bool) -> None:
-        """Show or hide the figures."""
+        """Show or hide the drawing."""
         self._shown = shown
         self._update()
 
     def _update(self) -> None:
-        self.state = self._shapes.placed(self._transform) if self._shown else None
+        self.state = self._primitives.placed(self._transform) if self._shown else None
 
 
 class Drawings:
-    """What is drawn beside the bodies."""
+    """All drawings of a scene."""
 
     def __init__(self) -> None:
         self._drawn: dict[int, Drawing] = {}
         self._keys = itertools.count()
-        self._merged: tuple[tuple[Shapes, ...], Shapes] = ((), NOTHING)
+        self._merged: tuple[tuple[Primitives, ...], Primitives] = ((), NOTHING)
 
-    def add(self, shapes: Shapes) -> tuple[int, Drawing]:
-        """Show figures; return the key that removes them, and the drawing."""
-        key, drawing = next(self._keys), Drawing(shapes)
+    def add(self, primitives: Primitives) -> tuple[int, Drawing]:
+        """Add a drawing; return the key that removes it, and the drawing."""
+        key, drawing = next(self._keys), Drawing(primitives)
         self._drawn[key] = drawing
         return key, drawing
 
     def remove(self, key: int) -> None:
-        """Take a drawing off; nothing happens where it is off already. Never waits, so finalizers may call it."""
+        """Remove a drawing, if it is still there. Takes no lock, so finalizers may call it."""
         self._drawn.pop(key, None)
 
     def clear(self) -> None:
-        """Take all drawings off."""
+        """Remove all drawings."""
         self._drawn.clear()
 
-    def shapes(self) -> Shapes:
-        """Return all visible figures, in the world; the same object for as long as nothing changes."""
+    def primitives(self) -> Primitives:
+        """Return the primitives of all visible drawings; the same object for as long as nothing changes."""
         states = [drawing.state for drawing in self._drawn.copy().values()]
         visible = tuple(state for state in states if state is not None)
         before, merged = self._merged
@@ -265,7 +265,9 @@ class Drawings:
         return merged
 
 
-def merge(parts: Iterable[Shapes]) -> Shapes:
-    """Return all figures of several drawings."""
+def merge(parts: Iterable[Primitives]) -> Primitives:
+    """Return several sets of primitives as one."""
     by_kind = zip(NOTHING.batches, *(part.batches for part in parts), strict=True)
-    return Shapes(*(Batch(*(np.concatenate(arrays) for arrays in zip(*kind, strict=True))) for kind in by_kind))
+    return Primitives(
+        *(PrimitiveBatch(*(np.concatenate(arrays) for arrays in zip(*kind, strict=True))) for kind in by_kind)
+    )

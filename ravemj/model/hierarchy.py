@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ravemj.core.ordering import dependencies_first
+from ravemj.core.graphs import topological_order
 
 
 class Edge(NamedTuple):
@@ -70,7 +70,7 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
 
 def _leaders_first(order: Sequence[int], edges: Sequence[Edge]) -> list[int]:
     """Move each joint behind the passive joints that it follows."""
-    return dependencies_first(order, lambda index: edges[index].follows)
+    return topological_order(order, lambda index: edges[index].follows)
 
 
 def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Sequence[int]) -> tuple[int, ...]:
@@ -81,7 +81,7 @@ def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Se
         parent = ends[index][0]
         return [placed_by[parent]] if parent in placed_by else []
 
-    return tuple(dependencies_first([index for index in order if index in placing], carrying))
+    return tuple(topological_order([index for index in order if index in placing], carrying))
 
 
 def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int | None]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ravemj.core.ordering import dependencies_first
+from ravemj.core.graphs import topological_order
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostics, Source
 from ravemj.model.scene import Joint, KinBody, Mimic
@@ -128,21 +128,21 @@ def _mimic(
 def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
     """Return the mimic joints, each behind those that it depends on; those that follow in a circle are left out."""
     moving = {index: mimic.expression for index, mimic in mimics.items() if mimic.expression is not None}
-    return dependencies_first(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])
+    return topological_order(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])
 
 
 class MimicJoint(NamedTuple):
     """A joint whose value is a function of the values of others.
 
     Attributes:
-        index: Its index among the active joints followed by the passive ones.
+        joint: Its index among the active joints followed by the passive ones.
         expression: The function, of ``joint0``, ``joint1``, …
         evaluate: The same, of the first values of all joints.
         lower: Its lower limit [rad or m].
         upper: Its upper limit; a circular joint has none.
     """
 
-    index: int
+    joint: int
     expression: "Expression"
     evaluate: Callable[[Sequence[float]], float]
     lower: float
@@ -178,8 +178,8 @@ class MimicJoints:
         """Do the same for many configurations: an array of shape (N,) for each joint."""
         for joint in self.joints:
             named = {f"joint{leader}": values[leader] for leader in leaders(joint.expression)}
-            found = np.broadcast_to(joint.expression.evaluate_many(named), np.shape(values[joint.index]))
-            values[joint.index] = np.clip(found, joint.lower, joint.upper)
+            found = np.broadcast_to(joint.expression.evaluate_many(named), np.shape(values[joint.joint]))
+            values[joint.joint] = np.clip(found, joint.lower, joint.upper)
 
 
 def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.core.transforms import Floats, inverse
 from ravemj.errors import ErrorCode, UnsupportedError
 from ravemj.geometry_functions import Ray, quatFromRotationMatrix
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 INVERSE_KINEMATICS = "inverse kinematics"
 
 
-class ArmGoals(Shown):
+class ArmGoals(ApiObject):
     """Part of the API of a manipulator."""
 
     @property

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Self, cast
 
 import numpy as np
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision import questions
 from ravemj.engine.collision.questions import LinkOf, Links, MovedBy
@@ -304,7 +304,7 @@ class NoCollisionChecker(CollisionChecker):
         del world, start, direction, target
 
 
-class CollisionOptionsStateSaver(Shown):
+class CollisionOptionsStateSaver(ApiObject):
     """Sets the options of a checker, and sets the old ones again at the end of its ``with``.
 
     Example:

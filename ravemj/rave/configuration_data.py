@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers
-from ravemj.core.showing import Shown
 from ravemj.core.transforms import Floats, Ints, Pose
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import arguments
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ravemj.rave.specification import ConfigurationSpecification
 
 
-class ConfigurationData(Shown):
+class ConfigurationData(ApiObject):
     """The part of ``ConfigurationSpecification`` that works on numbers."""
 
     _groups: list[Group]

@@ -6,21 +6,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
-from ravemj.core.showing import Shown
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import AABB
 from ravemj.model import scene
 from ravemj.model.bounds import geometry_bounds
-from ravemj.model.tessellation import triangulated
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.geometry import TYPES, GeometryInfo
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 
 
-class Geometry(Shown):
+class Geometry(ApiObject):
     """A shape of a link; ``link.GetGeometries()`` makes it. What it does not have, its getters raise for.
 
     Setters act at once, also in viewers and in pictures.
@@ -145,7 +144,7 @@ class Geometry(Shown):
 
         Those of a trimesh are as the file has them. Round shapes have their corners on the surface.
         """
-        return trimesh_of(triangulated(self._scene.shape))
+        return trimesh_of(self._scene.shape.triangulated())
 
     def InitCollisionMesh(self, fTessellation: float = 1.0) -> bool:
         """Return True; the triangles of ``GetCollisionMesh`` are always there, in one fineness.

@@ -4,7 +4,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_transform
 from ravemj.core.handles import Handle
-from ravemj.model.drawing import Drawings, Shapes
+from ravemj.model.drawing import Drawings, Primitives
 
 
 class GraphHandle(Handle):
@@ -16,8 +16,8 @@ class GraphHandle(Handle):
         >>> handle = None  # gone
     """
 
-    def __init__(self, drawings: Drawings, shapes: Shapes) -> None:
-        key, self._drawing = drawings.add(shapes)
+    def __init__(self, drawings: Drawings, primitives: Primitives) -> None:
+        key, self._drawing = drawings.add(primitives)
         super().__init__(drawings.remove, key)
 
     def SetTransform(self, transform: ArrayLike) -> None:

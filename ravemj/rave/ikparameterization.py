@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
-from ravemj.core.showing import Shown
 from ravemj.core.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
 from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
 from ravemj.geometry_functions import Ray, quatRotateDirection, rotationMatrixFromQuat
@@ -28,7 +28,7 @@ _CUSTOM_DATA = 0x10000
 _ANGLE_WEIGHT = 0.4
 
 
-class IkParameterization(Shown):
+class IkParameterization(ApiObject):
     """A pose, a direction, a point or a ray that the tool of an arm shall reach.
 
     The numbers are, by type: ``Transform6D`` the pose [w, x, y, z, tx, ty, tz]; ``Rotation3D`` the quaternion;

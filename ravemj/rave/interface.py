@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 
@@ -42,7 +42,7 @@ class Annotations:
         self.data: dict[str, Any] = {}
 
 
-class UserData(Shown):
+class UserData(ApiObject):
     """Keeps data of users."""
 
     _annotations: Annotations

@@ -10,7 +10,7 @@ from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Ints, pose_of, wxyz_from_rows
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, RavemjError
-from ravemj.model import chains, fingerprints, scene
+from ravemj.model import chains, hashes, scene
 from ravemj.model.manipulators import joint_dofs
 from ravemj.rave.arm_collision import ArmCollision
 from ravemj.rave.arm_goals import ArmGoals
@@ -219,11 +219,11 @@ class Manipulator(ArmGoals, ArmCollision):
 
     def GetKinematicsStructureHash(self) -> str:
         """Return a text that is the same for arms of the same joints and tool: 32 hexadecimal digits."""
-        return fingerprints.of_arm(self._state.scene, self._scene)
+        return hashes.of_arm(self._state.scene, self._scene)
 
     def GetStructureHash(self) -> str:
         """Return a text that is the same for manipulators of the same kind in the same robot: 32 hexadecimal digits."""
-        return fingerprints.of_manipulator(self._state.scene, self._scene)
+        return hashes.of_manipulator(self._state.scene, self._scene)
 
     def GetInfo(self) -> ManipulatorInfo:
         """Return the description of the manipulator, a copy."""

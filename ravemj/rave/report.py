@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.core.transforms import Floats
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Part:
         return self.link.GetParent().GetName(), self.link.GetName(), geometry
 
 
-class CollisionPairInfo(Shown):
+class CollisionPairInfo(ApiObject):
     """Two links that collide, or a link that a ray hits."""
 
     def __init__(self, first: Part, second: Part | None) -> None:
@@ -78,7 +78,7 @@ class CollisionPairInfo(Shown):
         return f"<collision:{self}>"
 
 
-class CollisionReport(Shown):
+class CollisionReport(ApiObject):
     """What a call of collision checking found; hand one in to get it filled.
 
     OpenRAVE renamed the content over time; both sets of names are here: ``collisionInfos`` of newer versions, and

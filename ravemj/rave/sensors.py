@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
@@ -67,7 +67,7 @@ class CameraSensorData:
         return self.intrinsics.K
 
 
-class Sensor(Shown):
+class Sensor(ApiObject):
     """A device that measures; ``attached.GetSensor()`` makes it.
 
     Example:
@@ -184,7 +184,7 @@ class Sensor(Shown):
         return f"{self._attached!r}.GetSensor()"
 
 
-class AttachedSensor(Shown):
+class AttachedSensor(ApiObject):
     """A place on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
 
     def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:

@@ -16,7 +16,7 @@ from ravemj.errors import Diagnostics
 from ravemj.formats import mjcf
 from ravemj.formats.collada.archive import Archive
 from ravemj.formats.meshes.collada.document import ColladaDocument
-from ravemj.formats.meshes.collada.geometry import triangle_meshes
+from ravemj.formats.meshes.collada.triangles import triangle_meshes
 from ravemj.formats.readers import read_file
 
 _ROBOTS = CORPUS / "rdiankov+collada_robots"
@@ -24,7 +24,8 @@ _CORNERS = 1000  # of the circles of the SCARA: meshes as large as those of real
 _BOX = "<box><half_extents>0.1 0.1 0.1</half_extents></box>"
 _INFO = f"<extra type='geometry_info'><technique profile='OpenRAVE'>{_BOX}</technique></extra>"
 _IMPORT = (
-    "import sys, hashlib; from ravemj import collada, readers; from ravemj.formats.meshes.collada import geometry; "
+    "import sys, hashlib; from ravemj.formats import collada, readers; "
+    "from ravemj.formats.meshes.collada import triangles; "
 )
 _ROUNDS = 5
 

@@ -1,18 +1,17 @@
 """What is read of OpenRAVE's XML and what is left out, from the reader's own tables: ``docs/coverage.md``."""
 
 import sys
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from types import MappingProxyType
-from typing import NamedTuple
-
-from format_notes import NOTES
+from typing import Any, NamedTuple
 
 from ravemj.formats.meshes import MESH_SUFFIXES
-from ravemj.formats.openrave_xml import actuator, body, environment, geometry, joint, link, mass, robot, sensor
+from ravemj.formats.openrave_xml import actuator, environment, geom, joint, kinbody, link, mass, robot, sensor
+from ravemj.formats.openrave_xml.tags import Tag
 
-Reasons = Mapping[str, str]
+Meanings = Mapping[str, str]
 
-_NONE: Reasons = MappingProxyType({})
+_NONE: Meanings = MappingProxyType({})
 
 _HEAD = """\
 # What is read of OpenRAVE's XML
@@ -27,88 +26,94 @@ matter. `ravemj check FILE` lists what applies to a file.
 
 
 class Section(NamedTuple):
-    """An element of the format.
+    """An element of the format; all tables give a meaning, or a reason why something is left out.
 
     Attributes:
         element: Its tag.
         place: What it is, and where it stands.
         tags: Children that are read.
         attributes: Attributes that are read.
-        left_out: Children that are known and left out, with the reason; those in parentheses are no single tags.
-        left_out_attributes: Attributes that are known and left out, with the reason.
+        left_out: Children that are known and left out; those in parentheses are no single tags.
+        left_out_attributes: Attributes that are known and left out.
     """
 
     element: str
     place: str
-    tags: Collection[str]
-    attributes: Collection[str]
-    left_out: Reasons = _NONE
-    left_out_attributes: Reasons = _NONE
+    tags: Meanings
+    attributes: Meanings
+    left_out: Meanings = _NONE
+    left_out_attributes: Meanings = _NONE
 
 
 def sections() -> list[Section]:
     """Return all elements of the format."""
     in_scopes = "in Environment, Robot and KinBody, or the root"
     return [
-        _environment(),
+        _section(
+            "Environment",
+            "the root, or nested",
+            environment.ENVIRONMENT_TAGS,
+            environment.ENVIRONMENT_ATTRIBUTES,
+            environment.ENVIRONMENT_IGNORED,
+        ),
         Section(
             "PhysicsEngine",
             "in Environment",
-            ["odeproperties"],
-            ["type"],
+            {"odeproperties": "its `gravity`: x y z [m/s²]"},
+            {"type": "ode, bullet or GenericPhysicsEngine"},
             {"(what else is in it, and in odeproperties)": environment.NO_PHYSICS},
         ),
-        _robot(),
-        Section("KinBody", in_scopes, body.KINBODY_TAGS, body.SCOPE_ATTRIBUTES, body.KINBODY_IGNORED),
-        Section(
-            "Body",
-            "a link, in KinBody",
-            link.LINK_TAGS,
-            link.LINK_ATTRIBUTES,
-            {},
-            link.LINK_IGNORED_ATTRIBUTES,
+        _section(
+            "Robot",
+            "in Environment and Robot, or the root",
+            kinbody.ROBOT_TAGS,
+            kinbody.SCOPE_ATTRIBUTES,
+            kinbody.ROBOT_IGNORED,
         ),
-        Section("Geom", "a shape, in Body", geometry.GEOM_TAGS, geometry.GEOM_ATTRIBUTES, geometry.GEOM_IGNORED),
-        Section("Mass", "in Body", mass.MASS_TAGS, mass.MASS_ATTRIBUTES),
-        Section("Mass of a KinBody", "in KinBody", mass.DEFAULT_MASS_TAGS, mass.MASS_ATTRIBUTES),
-        Section("Joint", "in KinBody", joint.JOINT_TAGS, joint.JOINT_ATTRIBUTES, joint.JOINT_IGNORED),
-        Section("Actuator", "in Joint", actuator.ACTUATOR_TAGS, ["type"], actuator.ACTUATOR_IGNORED),
-        Section(
+        _section("KinBody", in_scopes, kinbody.KINBODY_TAGS, kinbody.SCOPE_ATTRIBUTES, kinbody.KINBODY_IGNORED),
+        _section("Body", "a link, in KinBody", link.LINK_TAGS, link.LINK_ATTRIBUTES, {}, link.LINK_IGNORED_ATTRIBUTES),
+        _section("Geom", "a shape, in Body", geom.GEOM_TAGS, geom.GEOM_ATTRIBUTES, geom.GEOM_IGNORED),
+        _section("Mass", "in Body", mass.MASS_TAGS, mass.MASS_ATTRIBUTES),
+        _section("Mass of a KinBody", "in KinBody", mass.DEFAULT_MASS_TAGS, mass.DEFAULT_MASS_ATTRIBUTES),
+        _section("Joint", "in KinBody", joint.JOINT_TAGS, joint.JOINT_ATTRIBUTES, joint.JOINT_IGNORED),
+        _section(
+            "Actuator",
+            "in Joint",
+            actuator.ACTUATOR_TAGS,
+            {"type": "electric_motor; OpenRAVE refuses others"},
+            actuator.ACTUATOR_IGNORED,
+        ),
+        _section(
             "Manipulator",
             "in Robot",
             robot.MANIPULATOR_TAGS,
             robot.MANIPULATOR_ATTRIBUTES,
             robot.MANIPULATOR_IGNORED,
         ),
-        Section("AttachedSensor", "in Robot", robot.SENSOR_TAGS, robot.SENSOR_ATTRIBUTES, robot.SENSOR_IGNORED),
-        _sensor(),
+        _section("AttachedSensor", "in Robot", robot.SENSOR_TAGS, robot.SENSOR_ATTRIBUTES, robot.SENSOR_IGNORED),
+        _section(
+            "Sensor",
+            "in AttachedSensor, or the root of an included file",
+            sensor.CAMERA_TAGS,
+            sensor.DEVICE_ATTRIBUTES,
+            {**sensor.CAMERA_IGNORED, "(what is in sensors other than cameras)": sensor.NO_DEVICE},
+            sensor.DEVICE_IGNORED_ATTRIBUTES,
+        ),
     ]
 
 
-def _environment() -> Section:
-    """Take apart what belongs to the model and the interfaces that are only reported."""
-    reason = "it has no effect on the model; an unknown class is reported as an error"
-    interfaces = dict.fromkeys(environment.INTERFACES, reason)
-    read = [tag for tag in environment.ENVIRONMENT_TAGS if tag not in interfaces]
-    left_out = {**environment.ENVIRONMENT_IGNORED, **interfaces}
-    return Section("Environment", "the root, or nested", read, environment.ENVIRONMENT_ATTRIBUTES, left_out)
-
-
-def _robot() -> Section:
-    read = [tag for tag in body.ROBOT_TAGS if tag != "controller"]
-    left_out = {
-        "controller": "it has no effect on the model; behind joints it ends the reading, as in OpenRAVE",
-        **body.ROBOT_IGNORED,
-    }
-    return Section("Robot", "in Environment and Robot, or the root", read, body.SCOPE_ATTRIBUTES, left_out)
-
-
-def _sensor() -> Section:
-    left_out = {**sensor.CAMERA_IGNORED, "(what is in sensors other than cameras)": sensor.NO_DEVICE}
-    place = "in AttachedSensor, or the root of an included file"
-    return Section(
-        "Sensor", place, sensor.CAMERA_TAGS, sensor.DEVICE_ATTRIBUTES, left_out, sensor.DEVICE_IGNORED_ATTRIBUTES
-    )
+def _section(
+    element: str,
+    place: str,
+    tags: Mapping[str, Tag[Any]],
+    attributes: Meanings,
+    ignored: Meanings = _NONE,
+    ignored_attributes: Meanings = _NONE,
+) -> Section:
+    """Return an element as the reader's tables have it."""
+    read = {name: tag.meaning for name, tag in tags.items() if not tag.left_out}
+    left_out = {name: tag.meaning for name, tag in tags.items() if tag.left_out}
+    return Section(element, place, read, attributes, {**left_out, **ignored}, ignored_attributes)
 
 
 def markdown() -> str:
@@ -117,12 +122,11 @@ def markdown() -> str:
 
 
 def _table(section: Section) -> str:
-    notes = NOTES[section.element]
     rows = [f"## {section.element}\n\n{section.place[0].upper()}{section.place[1:]}.\n"]
     rows += ["| attribute or child | | meaning or reason |", "|---|---|---|"]
-    rows += [f'| `{name}="…"` | read | {notes.get(f"@{name}", "")} |' for name in sorted(section.attributes)]
+    rows += [f'| `{name}="…"` | read | {meaning} |' for name, meaning in sorted(section.attributes.items())]
     rows += [f'| `{name}="…"` | left out | {reason} |' for name, reason in section.left_out_attributes.items()]
-    rows += [f"| `<{tag}>` | read | {notes.get(tag, '')} |" for tag in section.tags]
+    rows += [f"| `<{tag}>` | read | {meaning} |" for tag, meaning in section.tags.items()]
     rows += [f"| {_child(tag)} | left out | {reason} |" for tag, reason in section.left_out.items()]
     return "\n".join(rows) + "\n"
 

@@ -5,7 +5,7 @@ import numpy as np
 from ravemj.compat.databases.model import DatabaseGenerator
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
-from ravemj.model.reach import travel
+from ravemj.model.motion_bounds import motion_bounds
 
 
 class LinkStatisticsModel(DatabaseGenerator):
@@ -56,5 +56,5 @@ class LinkStatisticsModel(DatabaseGenerator):
 
     def _distances(self) -> Floats:
         """Return how far a point travels at most per unit of each DOF; the least of all where nothing moves."""
-        distances = travel(self.robot.simulation_state.scene)
+        distances = motion_bounds(self.robot.simulation_state.scene)
         return np.where(distances > 0, distances, np.min(distances, initial=1.0, where=distances > 0))

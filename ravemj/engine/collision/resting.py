@@ -3,10 +3,11 @@
 import itertools
 from weakref import WeakKeyDictionary
 
+from ravemj.core.graphs import Pair
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.world import CollisionWorld, cross, joined
 from ravemj.engine.simulation import BodyState
-from ravemj.model.adjacency import Pair, adjacent_pairs
+from ravemj.model.adjacency import adjacent_pairs
 
 _found: "WeakKeyDictionary[BodyState, tuple[Floats | None, frozenset[Pair]]]" = WeakKeyDictionary()
 

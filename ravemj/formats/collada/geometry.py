@@ -5,16 +5,16 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ravemj.core.transforms import ZERO, Floats, Pose, Vec3, wxyz_from_axis_angle
+from ravemj.core.transforms import Floats, Pose, wxyz_from_axis_angle
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.placing import rigid, split
+from ravemj.formats.collada.polar import polar_decomposition, rigid_part
 from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
-from ravemj.formats.meshes.collada.geometry import triangle_meshes
 from ravemj.formats.meshes.collada.materials import bindings, read_material
+from ravemj.formats.meshes.collada.triangles import triangle_meshes
 from ravemj.formats.meshes.obj import transparency
 from ravemj.formats.meshes.parts import check_finite, check_size
-from ravemj.model.scene import Box, CalibrationBoard, Container, Cylinder, Geometry, Mesh, Rgb, Shape, Sphere, TriMesh
+from ravemj.model.scene import SHAPE_TYPES, Geometry, Mesh, Rgb, Shape, TriMesh
 
 _DIFFUSE: Rgb = (1.0, 0.5, 0.5)
 _AMBIENT: Rgb = (float(np.float32(0.1)), 0.0, 0.0)
@@ -54,10 +54,10 @@ class GeometryReader:
     def _shapes(self, instance: Element, geometry: Element, T_link_node: Floats) -> Iterator[Geometry]:
         info = _info(geometry)
         source = self._library.source(instance)
-        T_link_frame, scaling = split(T_link_node, source)
+        T_link_frame, scaling = polar_decomposition(T_link_node, source)
         visible = True
         if info is not None:
-            T_link_frame = T_link_frame @ rigid(transform_of(self._library, info), source)
+            T_link_frame = T_link_frame @ rigid_part(transform_of(self._library, info), source)
             visible = words(child(info, "visible", "bool"))[:1] != ["false"]
         primitive = None if info is None else self._primitive(info)
         groups = self._groups(geometry)
@@ -115,9 +115,9 @@ class GeometryReader:
     def _primitive(self, info: Element) -> tuple[Shape, Pose] | None:
         """Return the shape that replaces the triangles, and its pose in the geometry's frame."""
         for element in children(info, *_PRIMITIVES):
-            shape = _PRIMITIVES[local_name(element)](element, self._library.metres(element))
+            shape = _shape(element, self._library.metres(element))
             if shape is not None:
-                return shape
+                return shape, _Z_TO_Y if local_name(element) == "cylinder" else Pose()
             self._library.warn("bad-number", "a size is missing or not finite; the triangles count", element)
         for element in children(info):
             if local_name(element) not in _KNOWN:
@@ -135,49 +135,19 @@ def _info(geometry: Element) -> Element | None:
     return None
 
 
-def _sizes(element: Element, name: str, count: int, metres: float) -> list[float] | None:
-    values = (numbers(child(element, name))[:count] * metres).tolist()
-    return values if len(values) == count and all(map(math.isfinite, values)) else None
+def _shape(element: Element, metres: float) -> Shape | None:
+    """Return the shape of an element that has a child for each size; None where a size is missing or not finite."""
+    kind = _PRIMITIVES[local_name(element)]
+    sizes: dict[str, object] = {}
+    for name, form, optional in kind.sizes():
+        count = 1 if form is float else 3
+        values = (numbers(child(element, name))[:count] * metres).tolist()
+        if len(values) == count and all(map(math.isfinite, values)):
+            sizes[name] = values[0] if form is float else tuple(values)
+        elif not optional:
+            return None
+    return kind.of_sizes(sizes)
 
 
-def _vector(element: Element, name: str, metres: float) -> Vec3 | None:
-    values = _sizes(element, name, 3, metres)
-    return None if values is None else (values[0], values[1], values[2])
-
-
-def _box(element: Element, metres: float) -> tuple[Shape, Pose] | None:
-    sizes = _vector(element, "half_extents", metres)
-    kind = CalibrationBoard if local_name(element) == "calibration_board" else Box
-    return None if sizes is None else (kind(sizes), Pose())
-
-
-def _sphere(element: Element, metres: float) -> tuple[Shape, Pose] | None:
-    radius = _sizes(element, "radius", 1, metres)
-    return None if radius is None else (Sphere(radius[0]), Pose())
-
-
-def _cylinder(element: Element, metres: float) -> tuple[Shape, Pose] | None:
-    """Read a cylinder along y, or along z."""
-    radius, height = (_sizes(element, name, 1, metres) for name in ("radius", "height"))
-    if radius is None or height is None:
-        return None
-    return Cylinder(radius[0], height[0]), Pose() if local_name(element) == "cylinderz" else _Z_TO_Y
-
-
-def _container(element: Element, metres: float) -> tuple[Shape, Pose] | None:
-    outer, inner = (_vector(element, name, metres) for name in ("outer_extents", "inner_extents"))
-    if outer is None or inner is None:
-        return None
-    cross, bottom = (_vector(element, name, metres) or ZERO for name in ("bottom_cross", "bottom"))
-    return Container(outer, inner, cross, bottom), Pose()
-
-
-_PRIMITIVES: dict[str, Callable[[Element, float], tuple[Shape, Pose] | None]] = {
-    "box": _box,
-    "calibration_board": _box,
-    "sphere": _sphere,
-    "cylinder": _cylinder,
-    "cylinderz": _cylinder,
-    "container": _container,
-}
+_PRIMITIVES = {tag: one.shape for one in SHAPE_TYPES for tag in one.collada}
 _KNOWN = {*_PRIMITIVES, "translate", "rotate", "matrix", "scale", "lookat", "visible", "trimesh"}

@@ -7,7 +7,7 @@ import numpy as np
 
 from ravemj.core.transforms import ZERO, Pose, Vec3
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.polar import rigid_part
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
@@ -54,8 +54,8 @@ class RigidBody:
             raise library.error("the mass properties are not finite", self.element)
         frame = child(common, "mass_frame")
         source = library.source(self.element if frame is None else frame)
-        T_world_parent = T_world_root if self.parent is None else rigid(self.parent.world, source)
-        T_parent_mass = Pose() if frame is None else rigid(transform_of(library, frame), source)
+        T_world_parent = T_world_root if self.parent is None else rigid_part(self.parent.world, source)
+        T_parent_mass = Pose() if frame is None else rigid_part(transform_of(library, frame), source)
         T_link_mass = T_world_link.inverse() @ T_world_parent @ T_parent_mass
         return inertial_about(weight, T_link_mass, moments)
 

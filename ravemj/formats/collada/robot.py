@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ravemj.core.transforms import Pose
+from ravemj.formats.collada.kinematics_model import ModelReader, valid_name
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.model import ModelReader, valid_name
 from ravemj.formats.collada.motor import driven
-from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.polar import rigid_part
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.visual import transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
@@ -109,7 +109,7 @@ class ExtraReader:
         return self._references.number(direction) or 0.0
 
     def _pose(self, element: Element) -> Pose:
-        return rigid(transform_of(self._library, element), self._library.source(element))
+        return rigid_part(transform_of(self._library, element), self._library.source(element))
 
     def _read_sensor(self, extra: Element, technique: Element, system: Element) -> None:
         origin = child(technique, "frame_origin")

@@ -6,10 +6,10 @@ from ravemj.core.transforms import Vec3, inverse
 from ravemj.formats.collada.axis import AxisInfo
 from ravemj.formats.collada.bindings import read_bindings
 from ravemj.formats.collada.geometry import GeometryReader
+from ravemj.formats.collada.kinematics_model import ModelReader, SceneContext, valid_name
 from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.model import ModelReader, Scene, valid_name
 from ravemj.formats.collada.physics import NO_MASS, Physics
-from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.polar import rigid_part
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.robot import ExtraReader, interface_kind
 from ravemj.formats.collada.visual import Node, expand
@@ -57,7 +57,7 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
         element = library.follow(kinematics)
         if element is not None:
             bindings = read_bindings(library, references, kinematics, element, root)
-            shared = Scene(library, references, bindings, physics, geometry)
+            shared = SceneContext(library, references, bindings, physics, geometry)
             shown |= shared.moved
             bodies += _bodies(shared, element, wanted)
     if wanted:
@@ -70,7 +70,7 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
     return Content(bodies, others, physics.gravity)
 
 
-def _bodies(scene: Scene, element: Element, wanted: str) -> list[BodyBuilder]:
+def _bodies(scene: SceneContext, element: Element, wanted: str) -> list[BodyBuilder]:
     systems = [_system_body(scene, item, wanted) for item in children(element, "instance_articulated_system")]
     models = [_model_body(scene, item, wanted) for item in children(element, "instance_kinematics_model")]
     return [body for body in (*systems, *models) if body is not None]
@@ -89,7 +89,7 @@ class _System(NamedTuple):
         return any(name in (part.get("id"), part.get("sid"), (part.get("url") or "").lstrip("#")) for part in parts)
 
 
-def _system_body(scene: Scene, instance: Element, wanted: str) -> BodyBuilder | None:
+def _system_body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | None:
     parts = _System([], [], {})
     _take_apart(scene, instance, parts, {}, 0)
     if wanted and not parts.has(wanted) and wanted != instance.get("sid"):
@@ -99,13 +99,13 @@ def _system_body(scene: Scene, instance: Element, wanted: str) -> BodyBuilder | 
     return _filled(scene, body, instance, parts)
 
 
-def _model_body(scene: Scene, instance: Element, wanted: str) -> BodyBuilder | None:
+def _model_body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | None:
     body = BodyBuilder(is_robot=False, source=scene.library.source(instance))
     parts = _System([], [instance], {})
     return None if wanted and not parts.has(wanted) else _filled(scene, body, instance, parts)
 
 
-def _filled(scene: Scene, body: BodyBuilder, instance: Element, parts: _System) -> BodyBuilder | None:
+def _filled(scene: SceneContext, body: BodyBuilder, instance: Element, parts: _System) -> BodyBuilder | None:
     """Fill a body from its kinematics models; None where there is none."""
     readers: list[ModelReader] = []
     for item in parts.models:
@@ -123,7 +123,9 @@ def _filled(scene: Scene, body: BodyBuilder, instance: Element, parts: _System) 
     return body
 
 
-def _take_apart(scene: Scene, instance: Element, parts: _System, motions: dict[Element, Element], depth: int) -> None:
+def _take_apart(
+    scene: SceneContext, instance: Element, parts: _System, motions: dict[Element, Element], depth: int
+) -> None:
     """Descend from an instance of a system to the models; what is met on the way goes into ``parts``."""
     system = scene.library.follow(instance)
     if system is None or depth > _MAX_DEPTH:
@@ -140,7 +142,7 @@ def _take_apart(scene: Scene, instance: Element, parts: _System, motions: dict[E
         parts.models.extend(children(kinematics, "instance_kinematics_model"))
 
 
-def _axis_infos(scene: Scene, part: Element) -> dict[Element, Element]:
+def _axis_infos(scene: SceneContext, part: Element) -> dict[Element, Element]:
     """Return the ``<axis_info>`` elements of a part of a system, by what they say something about."""
     infos: dict[Element, Element] = {}
     for info in children(child(part, "technique_common"), "axis_info"):
@@ -156,7 +158,7 @@ def _node_body(library: Library, geometry: GeometryReader, node: Node) -> BodyBu
     """Return the body of one link that OpenRAVE makes of a node, or None where it shows nothing."""
     source = library.source(node.element)
     name = valid_name(node.name)
-    T_world_link = rigid(node.world, source)
+    T_world_link = rigid_part(node.world, source)
     T_link_world = inverse(T_world_link.matrix())
     shapes = geometry.read(node, lambda inner: T_link_world @ inner.world, lambda inner: False)
     if not shapes:

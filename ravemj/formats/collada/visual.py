@@ -9,7 +9,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.formats.collada.library import Library
 from ravemj.formats.meshes.collada.document import Element, children, local_name
-from ravemj.formats.meshes.collada.placement import local_transform
+from ravemj.formats.meshes.collada.node_transforms import local_transform
 
 _MAX_DEPTH = 150
 _MAX_NODES = 100_000

@@ -27,8 +27,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from ravemj.formats.meshes.entries import Parts, follow_shortcut, pack_entry, pack_shortcut, unpack_entry
-from ravemj.formats.meshes.files import References, changed_at, digest_of, read_bytes, stamp_of
-from ravemj.model.scene import shapes
+from ravemj.formats.meshes.files import ReferencedFiles, changed_at, digest_of, read_bytes, stamp_of
+from ravemj.model.scene import mesh
 
 _log = logging.getLogger(__name__)
 
@@ -45,7 +45,7 @@ _written = 0
 _T = TypeVar("_T")
 
 
-def remembered_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, References]]) -> Parts:
+def remembered_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, ReferencedFiles]]) -> Parts:
     """Return what ``read`` makes of a file, from the cache if it is there.
 
     Args:
@@ -83,7 +83,9 @@ def remembered(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
         read: Returns the parts.
     """
     folder = cache_folder()
-    return read() if folder is None else _by_content(folder, content, kind, "", lambda _: (read(), References()))[0]
+    return (
+        read() if folder is None else _by_content(folder, content, kind, "", lambda _: (read(), ReferencedFiles()))[0]
+    )
 
 
 def cache_folder() -> Path | None:
@@ -103,8 +105,8 @@ def cache_folder() -> Path | None:
 
 
 def _by_content(
-    folder: Path, content: bytes, kind: str, home: str, read: Callable[[bytes], tuple[Parts, References]]
-) -> tuple[Parts, str, References]:
+    folder: Path, content: bytes, kind: str, home: str, read: Callable[[bytes], tuple[Parts, ReferencedFiles]]
+) -> tuple[Parts, str, ReferencedFiles]:
     """Return the parts, the name of their entry, and the files that they come from besides this one.
 
     Where there are such files, the entry belongs to the folder ``home``: elsewhere the same names are other files.
@@ -115,7 +117,7 @@ def _by_content(
         found = _loaded(f"{folder}/{entry}", unpack_entry)
         if found:
             parts, digests = found
-            references = References(digests, {path: stamp_of(path) for path in digests})
+            references = ReferencedFiles(digests, {path: stamp_of(path) for path in digests})
             if all(digest_of(path) == digest for path, digest in digests.items()):
                 return parts, entry, references
     parts, references = read(content)
@@ -154,7 +156,7 @@ def _readers_unread() -> bytes:
 
 def _sources() -> list[str]:
     """Return the paths of the modules beside this one, and of that with class ``Mesh``."""
-    return [*sorted(_modules(os.path.dirname(__file__))), shapes.__file__]
+    return [*sorted(_modules(os.path.dirname(__file__))), mesh.__file__]
 
 
 def _modules(folder: str) -> Iterator[str]:

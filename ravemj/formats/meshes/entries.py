@@ -27,7 +27,7 @@ def pack_entry(parts: Parts, digests: dict[str, str]) -> bytes:
 
     Args:
         parts: The parts of the mesh.
-        digests: The files that they come from besides the mesh file, as in ``References``.
+        digests: The files that they come from besides the mesh file, as in ``ReferencedFiles``.
     """
     about: list[object] = []
     arrays: list[bytes] = []
@@ -63,8 +63,7 @@ def unpack_entry(content: bytes) -> tuple[Parts, dict[str, str]]:
         position = middle + 3 * _TRIANGLE.itemsize * triangles
         for numbers in (points, corners):
             numbers.flags.writeable = False  # so that the mesh takes them as they are
-        mesh = Mesh(points, corners)
-        mesh.__dict__["digest"] = digest  # where the cached property keeps it
+        mesh = Mesh(points, corners, digest)
         remember_form(mesh, form)
         parts.append(MeshPart(mesh, tuple(diffuse), tuple(ambient), transparency))
     return tuple(parts), digests

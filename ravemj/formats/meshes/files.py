@@ -15,7 +15,7 @@ _MAX_REFERENCES = 1000
 
 
 @dataclass(slots=True)
-class References:
+class ReferencedFiles:
     """The files that a mesh file and its references name.
 
     Attributes:
@@ -46,7 +46,7 @@ class References:
 
 
 @dataclass(frozen=True, slots=True)
-class MeshFile:
+class FileContent:
     """A file in memory.
 
     Attributes:
@@ -58,7 +58,7 @@ class MeshFile:
 
     path: str
     data: bytes
-    references: References = field(default_factory=References)
+    references: ReferencedFiles = field(default_factory=ReferencedFiles)
     parents: tuple[str, ...] = ()
 
     @property
@@ -66,7 +66,7 @@ class MeshFile:
         """The file as a whole, for messages."""
         return Source(self.path)
 
-    def refer(self, name: str) -> "MeshFile | None":
+    def refer(self, name: str) -> "FileContent | None":
         """Read a file that this one names.
 
         Args:
@@ -79,7 +79,7 @@ class MeshFile:
         path = os.path.normpath(os.path.join(os.path.dirname(here), unquote(name.partition("#")[0])))
         parents = (*self.parents, here)
         data = None if "://" in name or path in parents else self.references.read(path)
-        return None if data is None else MeshFile(path, data, self.references, parents)
+        return None if data is None else FileContent(path, data, self.references, parents)
 
 
 def digest_of(path: str) -> str:

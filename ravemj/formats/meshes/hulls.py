@@ -2,6 +2,7 @@
 
 import math
 from typing import Literal
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -16,7 +17,9 @@ _ROUNDING = 4 * float(np.finfo(np.float32).eps)
 _MIN_AREA = 1e-12  # m^2
 _MAX_REACH = 1e15  # m; MuJoCo computes areas in single precision
 _SAMPLE = 64  # triangles
-_MEMO = "_collision_form"
+
+_forms: WeakKeyDictionary[Mesh, CollisionForm] = WeakKeyDictionary()
+"""The forms that are known, while their meshes are in use. A lookup hashes the mesh, whose digest all callers need."""
 
 
 def collision_form(mesh: Mesh) -> CollisionForm:
@@ -27,16 +30,15 @@ def collision_form(mesh: Mesh) -> CollisionForm:
         can only be seen; ``none`` if it has no area either or is enormous, and MuJoCo would not load it. With
         ``inertia="shell"`` MuJoCo loads the first two, with other settings not all of them.
     """
-    form = mesh.__dict__.get(_MEMO)
+    form = _forms.get(mesh)
     if form is None:
-        form = _form(mesh)
-        remember_form(mesh, form)
+        form = _forms[mesh] = _form(mesh)
     return form
 
 
 def remember_form(mesh: Mesh, form: CollisionForm) -> None:
-    """Say what ``collision_form`` will return for a mesh, where that is known already."""
-    mesh.__dict__[_MEMO] = form  # a mesh never changes
+    """Store what ``collision_form`` returns for a mesh."""
+    _forms[mesh] = form
 
 
 def _form(mesh: Mesh) -> CollisionForm:

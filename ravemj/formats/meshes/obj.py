@@ -6,8 +6,8 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import Source, SourceError
-from ravemj.formats.meshes import faces
-from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes import triangulation
+from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.parts import BLACK, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
 from ravemj.model.scene import Mesh, Rgb
 
@@ -27,7 +27,7 @@ class _Material:
 class _Reading:
     """What the lines of the file so far have said."""
 
-    def __init__(self, file: MeshFile) -> None:
+    def __init__(self, file: FileContent) -> None:
         self.file = file
         self.points: list[tuple[float, ...]] = []
         self.materials = {"": _Material()}
@@ -68,7 +68,7 @@ class _Reading:
                 _colour(self.current, words)
 
 
-def read_obj(file: MeshFile) -> tuple[MeshPart, ...]:
+def read_obj(file: FileContent) -> tuple[MeshPart, ...]:
     """Read an OBJ file: one part for each material that is used, in the order of the material file.
 
     Objects and groups do not count, as OpenRAVE joins them. Lines and points are left out.
@@ -124,12 +124,12 @@ def _colour(material: _Material, words: list[str]) -> None:
         pass  # a colour that is no number: as if it were not there
 
 
-def _part(material: _Material, points: Floats, file: MeshFile) -> MeshPart | None:
+def _part(material: _Material, points: Floats, file: FileContent) -> MeshPart | None:
     sizes, index = np.array(material.sizes, np.int_), np.array(material.index, np.int_)
     check_size(int((sizes - 2).sum()), file.source)
     corners = points[index]
     check_finite(corners, file.source)
-    triangles = corners[faces.clipped(corners, np.cumsum(sizes) - sizes, sizes)]
+    triangles = corners[triangulation.clipped(corners, np.cumsum(sizes) - sizes, sizes)]
     triangles = without_degenerate(triangles)
     if not len(triangles):
         return None

@@ -8,39 +8,39 @@ import numpy as np
 from ravemj.core.transforms import UNSCALED, Vec3
 from ravemj.errors import Source, SourceError
 from ravemj.formats.meshes import cache
-from ravemj.formats.meshes.files import MeshFile, References, unpacked
+from ravemj.formats.meshes.files import FileContent, ReferencedFiles, unpacked
 from ravemj.formats.meshes.parts import MESH_SUFFIXES, MeshPart
 from ravemj.model.scene import Mesh
 
-_Reader = Callable[[MeshFile], tuple[MeshPart, ...]]
+_Reader = Callable[[FileContent], tuple[MeshPart, ...]]
 
 
-def _inventor(file: MeshFile) -> tuple[MeshPart, ...]:
+def _inventor(file: FileContent) -> tuple[MeshPart, ...]:
     from ravemj.formats.meshes.inventor import read_inventor  # noqa: PLC0415 - most meshes come from the cache
 
     return read_inventor(file)
 
 
-def _stl(file: MeshFile) -> tuple[MeshPart, ...]:
+def _stl(file: FileContent) -> tuple[MeshPart, ...]:
     from ravemj.formats.meshes.stl import read_stl  # noqa: PLC0415
 
     return read_stl(file)
 
 
-def _obj(file: MeshFile) -> tuple[MeshPart, ...]:
+def _obj(file: FileContent) -> tuple[MeshPart, ...]:
     from ravemj.formats.meshes.obj import read_obj  # noqa: PLC0415
 
     return read_obj(file)
 
 
-def _collada(file: MeshFile) -> tuple[MeshPart, ...]:
+def _collada(file: FileContent) -> tuple[MeshPart, ...]:
     from ravemj.formats.meshes.collada import read_collada  # noqa: PLC0415
 
     return read_collada(file)
 
 
-def _exchange(file: MeshFile) -> tuple[MeshPart, ...]:
-    from ravemj.formats.meshes.exchange import read_exchange  # noqa: PLC0415
+def _exchange(file: FileContent) -> tuple[MeshPart, ...]:
+    from ravemj.formats.meshes.trimesh_formats import read_exchange  # noqa: PLC0415
 
     return read_exchange(file)
 
@@ -81,14 +81,14 @@ def read_mesh(path: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
         raise SourceError("no mesh format that ravemj knows", Source(path), hint=f"it reads {known}")
     kind = suffix if scale == UNSCALED else f"{suffix} {scale}"
 
-    def read(raw: bytes) -> tuple[tuple[MeshPart, ...], References]:
-        parts, references = _read(MeshFile(path, unpacked(raw, path)), _READERS[suffix])
+    def read(raw: bytes) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:
+        parts, references = _read(FileContent(path, unpacked(raw, path)), _READERS[suffix])
         return parts if scale == UNSCALED else tuple(_scaled(part, scale) for part in parts), references
 
     return cache.remembered_file(path, kind, read)
 
 
-def _read(file: MeshFile, reader: _Reader) -> tuple[tuple[MeshPart, ...], References]:
+def _read(file: FileContent, reader: _Reader) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:
     """Return the parts, and the files that they come from besides ``file``."""
     try:
         with np.errstate(all="ignore"):  # what is not finite in the end is refused

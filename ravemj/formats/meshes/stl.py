@@ -6,7 +6,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import SourceError
-from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.parts import WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
 
 AMBIENT = rgb((0.05, 0.05, 0.05))
@@ -17,7 +17,7 @@ _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute
 _VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
 
 
-def read_stl(file: MeshFile) -> tuple[MeshPart, ...]:
+def read_stl(file: FileContent) -> tuple[MeshPart, ...]:
     """Read an STL file; solids are joined, as OpenRAVE does it.
 
     A colour ``COLOR=rgba`` in the header of a binary file is that of the part, as some writers mean it; else it is
@@ -45,7 +45,7 @@ def read_stl(file: MeshFile) -> tuple[MeshPart, ...]:
     return (MeshPart(weld(corners), diffuse, AMBIENT),) if len(corners) else ()
 
 
-def _text_corners(file: MeshFile) -> Floats:
+def _text_corners(file: FileContent) -> Floats:
     words = _VERTEX.findall(file.data)
     if not words or len(words) % 3:
         raise SourceError("a facet without three vertices", file.source)

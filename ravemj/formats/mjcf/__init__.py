@@ -5,7 +5,7 @@ keep all their digits, every element has its own line, and names stay as they ar
 """
 
 from ravemj.formats.mjcf.document import ASSETS, BodyNames, Mjcf, Options, write
-from ravemj.formats.mjcf.geometry import rgba
+from ravemj.formats.mjcf.geoms import rgba
 from ravemj.formats.mjcf.inertia import legal_inertial
 
 __all__ = ["ASSETS", "BodyNames", "Mjcf", "Options", "legal_inertial", "rgba", "write"]

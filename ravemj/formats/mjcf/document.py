@@ -8,12 +8,12 @@ from ravemj.core.transforms import ZERO, conjugate, rotate
 from ravemj.errors import Diagnostics, Source
 from ravemj.formats.mjcf.equality import EqualityWriter
 from ravemj.formats.mjcf.excludes import WeldGroups, excluded_pairs
-from ravemj.formats.mjcf.geometry import GeometryWriter
+from ravemj.formats.mjcf.geoms import GeomWriter
 from ravemj.formats.mjcf.inertia import inertia_attributes, is_rounding, legal_inertial
 from ravemj.formats.mjcf.lines import Attribute, Lines, pose_attributes
 from ravemj.model.joints import relative_pose
-from ravemj.model.making import MASSLESS
 from ravemj.model.scene import Axis, Joint, KinBody, Link, Mesh, Scene, View
+from ravemj.model.shape_bodies import MASSLESS
 
 ASSETS = "assets"
 """Folder of the meshes, beside the MJCF file."""
@@ -172,7 +172,7 @@ class _Writer:
             self.bodies.element("light", type="directional", dir=(-0.4, 0.4, -1.0), **light)
         self.excludes = Lines(2)
         self.actuators = Lines(2)
-        self.geometries = GeometryWriter(diagnostics, decomposed=options.decomposed)
+        self.geometries = GeomWriter(diagnostics, decomposed=options.decomposed)
         self.equalities = EqualityWriter(diagnostics, Lines(2), Lines(2))
         self.names: list[BodyNames] = []
         self.altered: list[tuple[int, int]] = []

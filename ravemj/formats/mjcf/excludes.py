@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import combinations, product
 
-from ravemj.model.adjacency import Pair, components, ordered
+from ravemj.core.graphs import Pair, connected_components, ordered_pair
 from ravemj.model.scene import KinBody
 
 _WORLD = -1
@@ -61,7 +61,7 @@ class WeldGroups:
         for one, other in product(first, second):
             if self.are_tested(one, other):
                 for link, partner in product(first[one], second[other]):
-                    yield ordered(link, partner)
+                    yield ordered_pair(link, partner)
 
 
 def excluded_pairs(body: KinBody, welds: WeldGroups) -> list[Pair]:
@@ -82,12 +82,12 @@ def excluded_pairs(body: KinBody, welds: WeldGroups) -> list[Pair]:
     named = [(one, other) for one, other in body.adjacent if one in solid and other in solid]
     pairs = {(one, other) for one, other in named if welds.are_tested(welds.group[one], welds.group[other])}
     if body.joined_links_adjacent:
-        rigid = components(count, ((joint.parent, joint.child) for joint in joints if joint.static))
+        rigid = connected_components(count, ((joint.parent, joint.child) for joint in joints if joint.static))
         parts = _cells(rigid, welds)
-        joined = {ordered(rigid[joint.parent], rigid[joint.child]) for joint in joints}
+        joined = {ordered_pair(rigid[joint.parent], rigid[joint.child]) for joint in joints}
         for one, other in joined | {(part, part) for part in parts}:
             pairs.update(welds.tested_pairs(parts.get(one, {}), parts.get(other, {})))
-    trees = _cells(components(count, ((joint.parent, joint.child) for joint in joints)), welds).values()
+    trees = _cells(connected_components(count, ((joint.parent, joint.child) for joint in joints)), welds).values()
     moving = [tree for tree in trees if tree.keys() != {_WORLD}]
     fixed = {_WORLD: [link for tree in trees if tree.keys() == {_WORLD} for link in tree[_WORLD]]}
     for one, other in (*combinations(moving, 2), *product(moving, [fixed])):

@@ -1,11 +1,12 @@
 """``<actuator>``: the motor of a joint, of which the torque limit comes."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from ravemj.errors import SourceError
-from ravemj.formats.openrave_xml.context import Context, reasons
+from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tags import Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import number
 
@@ -21,8 +22,12 @@ class _Data:
         self.numbers[element.tag] = number(element, self.context.diagnostics)
 
 
-_READ = ("gear_ratio", "nominal_torque", "max_instantaneous_torque", "rotor_inertia")
-ACTUATOR_TAGS: dict[str, Callable[[_Data, Element], None]] = dict.fromkeys(_READ, _Data.read)
+ACTUATOR_TAGS: dict[str, Tag[_Data]] = {
+    "gear_ratio": Tag(_Data.read, "motor turns for each of the joint"),
+    "nominal_torque": Tag(_Data.read, "limit of the torque [N m], where there is no other"),
+    "max_instantaneous_torque": Tag(_Data.read, "limit of the torque [N m]"),
+    "rotor_inertia": Tag(_Data.read, "[kg m²]; armature of actuators in MJCF"),
+}
 ACTUATOR_IGNORED = reasons(
     "no getter or simulation of ravemj uses it",
     "assigned_power_rating",

@@ -2,28 +2,19 @@
 
 import functools
 import os
-from collections.abc import Callable, Collection, Mapping, Set
-from typing import TypeVar
+from collections.abc import Collection, Mapping
 
 from ravemj.core.transforms import UNSCALED, Vec3
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats.collada import SUFFIXES as COLLADA_SUFFIXES
 from ravemj.formats.meshes import MeshPart
+from ravemj.formats.openrave_xml.tags import Tag, Target
 from ravemj.formats.openrave_xml.tree import Element, parse_file
 
-Target = TypeVar("Target")
-
-IGNORED = "OpenRAVE reads it and makes nothing of it"
 MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
 _LONGEST_NAME = 80
 """No known name is anywhere near as long."""
-NO_EFFECT_HERE = "it has no effect on the model"
-
-
-def reasons(reason: str, *names: str) -> dict[str, str]:
-    """Return a table that gives one reason for each name."""
-    return dict.fromkeys(names, reason)
 
 
 def uncomputable(element: Element) -> SourceError:
@@ -48,24 +39,24 @@ class Context:
     def walk(
         self,
         element: Element,
-        handlers: Mapping[str, Callable[[Target, Element], None]],
+        tags: Mapping[str, Tag[Target]],
         ignored: Mapping[str, str],
         target: Target,
     ) -> None:
-        """Hand each child element to its handler, in document order; report the others.
+        """Read each child element that is in a table, in document order; report the others.
 
         Args:
             element: The parent of the children.
-            handlers: What to do with a child, by tag.
+            tags: How to read a child.
             ignored: Known tags without effect, and the reason.
-            target: First argument of the handlers.
+            target: What the children are read into.
         """
         for child in element.children:
-            handler = handlers.get(child.tag)
-            if handler is not None:
+            tag = tags.get(child.tag)
+            if tag is not None:
                 if child.complete:
                     try:
-                        handler(target, child)
+                        tag.read(target, child)
                     except ArithmeticError as error:
                         raise uncomputable(child) from error
             elif child.tag in ignored:
@@ -75,16 +66,16 @@ class Context:
                     "unknown-tag",
                     f"OpenRAVE knows no <{child.spelled}> in <{element.spelled}> and skips it with all that it holds",
                     child.source,
-                    _belongs(child) or did_you_mean(child.tag, handlers),
+                    _belongs(child) or did_you_mean(child.tag, tags),
                 )
 
     def leave_out(self, element: Element, reason: str) -> None:
         """Report an element that has no effect here."""
         self.diagnostics.warn("ignored-tag", f"<{element.spelled}> is left out: {reason}", element.source)
 
-    def check_attributes(self, element: Element, known: Set[str], ignored: Mapping[str, str]) -> None:
-        """Report the attributes of an element that nothing reads."""
-        if element.attributes.keys() <= known:
+    def check_attributes(self, element: Element, known: Mapping[str, str], ignored: Mapping[str, str]) -> None:
+        """Report the attributes of an element that nothing reads; the tables give meanings and reasons."""
+        if element.attributes.keys() <= known.keys():
             return
         for name in element.attributes:
             if name in known:

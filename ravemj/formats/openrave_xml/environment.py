@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 from ravemj.core.transforms import ZERO, Pose, Vec3, Wxyz, multiply, wxyz_from_axis_angle
 from ravemj.errors import Diagnostics, Source, SourceError
-from ravemj.formats.openrave_xml.body import read_body
-from ravemj.formats.openrave_xml.context import IGNORED, NO_EFFECT_HERE, Context, uncomputable
+from ravemj.formats.openrave_xml.context import Context, uncomputable
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, with_given
+from ravemj.formats.openrave_xml.kinbody import read_body
+from ravemj.formats.openrave_xml.tags import IGNORED, NO_EFFECT_HERE, Tag
 from ravemj.formats.openrave_xml.tree import Document, Element, parse, parse_file
 from ravemj.formats.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.model.scene import KinBody, Scene, View
@@ -225,19 +226,24 @@ class _EnvironmentScope:
         return self.view.T_world_camera or Pose(_DEFAULT_CAMERA_POSITION, _DEFAULT_CAMERA_WXYZ)
 
 
-ENVIRONMENT_TAGS: dict[str, Callable[[_EnvironmentScope, Element], None]] = {
-    "environment": _EnvironmentScope.read_environment,
-    "robot": _EnvironmentScope.read_body,
-    "kinbody": _EnvironmentScope.read_body,
-    "bkgndcolor": _EnvironmentScope.read_background,
-    "camtrans": _EnvironmentScope.read_camera_position,
-    "camrotationaxis": _EnvironmentScope.read_camera_rotation,
-    "camrotmat": _EnvironmentScope.read_camera_matrix,
-    "camrotaxis": _EnvironmentScope.read_old_camera_rotation,
-    "physicsengine": _EnvironmentScope.read_physics,
-    **dict.fromkeys(INTERFACES, _EnvironmentScope.read_interface),
+_INTERFACE = Tag(
+    _EnvironmentScope.read_interface,
+    "it has no effect on the model; an unknown class is reported as an error",
+    left_out=True,
+)
+ENVIRONMENT_TAGS: dict[str, Tag[_EnvironmentScope]] = {
+    "environment": Tag(_EnvironmentScope.read_environment, "its content is added"),
+    "robot": Tag(_EnvironmentScope.read_body, "see below; also as the root"),
+    "kinbody": Tag(_EnvironmentScope.read_body, "see below; also as the root"),
+    "bkgndcolor": Tag(_EnvironmentScope.read_background, "red green blue, from 0 to 1"),
+    "camtrans": Tag(_EnvironmentScope.read_camera_position, "position of the camera [m]"),
+    "camrotationaxis": Tag(_EnvironmentScope.read_camera_rotation, "axis x y z, angle [deg]; z looks forward, y down"),
+    "camrotmat": Tag(_EnvironmentScope.read_camera_matrix, "nine numbers, row by row"),
+    "camrotaxis": Tag(_EnvironmentScope.read_old_camera_rotation, "deprecated: a half turn about x comes first"),
+    "physicsengine": Tag(_EnvironmentScope.read_physics, "only its gravity; `ode` without one has none"),
+    **dict.fromkeys(INTERFACES, _INTERFACE),
 }
-ENVIRONMENT_ATTRIBUTES = {"file"}
+ENVIRONMENT_ATTRIBUTES = {"file": "read first, as if its content stood here"}
 ENVIRONMENT_IGNORED = {
     "plugin": "plugins are not loaded",
     "unit": IGNORED,

@@ -1,13 +1,13 @@
 """``<Joint>``: two links, a frame, and the numbers of its axes."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from ravemj.core.transforms import ZERO, Pose, Vec3, rotate, scale
 from ravemj.errors import SourceError
 from ravemj.formats.openrave_xml.actuator import Motor, read_motor
-from ravemj.formats.openrave_xml.context import IGNORED, Context, reasons
+from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tags import IGNORED, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
     hadamard,
@@ -140,28 +140,43 @@ class _JointReader:
             axis[name] = value * factor
 
 
-JOINT_TAGS: dict[str, Callable[[_JointReader, Element], None]] = {
-    "body": _JointReader.read_body,
-    "offsetfrom": _JointReader.read_frame,
-    "anchor": _JointReader.read_anchor,
-    **dict.fromkeys(("axis", "axis1", "axis2"), _JointReader.read_direction),
-    **dict.fromkeys(("limits", "limitsrad", "limitsdeg"), _JointReader.read_limits),
-    **dict.fromkeys(("lostop", "histop"), _JointReader.read_stop),
-    "initial": _JointReader.read_initial,
-    "weight": _JointReader.read_weight,
-    "resolution": _JointReader.read_resolution,
-    **dict.fromkeys(("maxvel", "maxveldeg"), _JointReader.read_max_velocity),
-    **dict.fromkeys(("maxaccel", "maxacceldeg"), _JointReader.read_max_acceleration),
-    "maxtorque": _JointReader.read_max_torque,
-    "actuator": _JointReader.read_actuator,
+JOINT_TAGS: dict[str, Tag[_JointReader]] = {
+    "body": Tag(_JointReader.read_body, "twice: the names of the Bodies that it joins"),
+    "offsetfrom": Tag(_JointReader.read_frame, "name of the Body that anchor and axis are relative to"),
+    "anchor": Tag(_JointReader.read_anchor, "a point on the axis [m]"),
+    "axis": Tag(_JointReader.read_direction, "direction x y z, of a hinge or slider"),
+    "axis1": Tag(_JointReader.read_direction, "first axis of a hinge2"),
+    "axis2": Tag(_JointReader.read_direction, "second axis of a hinge2"),
+    "limits": Tag(_JointReader.read_limits, "lower and upper [rad, m]"),
+    "limitsrad": Tag(_JointReader.read_limits, "lower and upper [rad, m]"),
+    "limitsdeg": Tag(_JointReader.read_limits, "lower and upper [deg; of a slider m]"),
+    "lostop": Tag(_JointReader.read_stop, "deprecated: lower limit [deg, m]; turns the axis round"),
+    "histop": Tag(_JointReader.read_stop, "deprecated: upper limit [deg, m]; turns the axis round"),
+    "initial": Tag(_JointReader.read_initial, "the value at the poses of the file [rad, m]"),
+    "weight": Tag(_JointReader.read_weight, "in distances between configurations"),
+    "resolution": Tag(_JointReader.read_resolution, "step of planners [deg, m]"),
+    "maxvel": Tag(_JointReader.read_max_velocity, "[rad/s, m/s]"),
+    "maxveldeg": Tag(_JointReader.read_max_velocity, "[deg/s]"),
+    "maxaccel": Tag(_JointReader.read_max_acceleration, "[rad/s², m/s²]"),
+    "maxacceldeg": Tag(_JointReader.read_max_acceleration, "[deg/s²]"),
+    "maxtorque": Tag(_JointReader.read_max_torque, "[N m, N]"),
+    "actuator": Tag(_JointReader.read_actuator, "see below"),
 }
 JOINT_IGNORED = {
     **reasons(IGNORED, "maxforce", "mode", "axis3"),
     **reasons("no getter or simulation of ravemj uses it", "hardmaxvel", "maxinertia"),
 }
 JOINT_ATTRIBUTES = {
-    "name", "type", "enable", "circular", "scalegeometry", "mimic_pos", "mimic_vel", "mimic_accel", "mimic",
-}  # fmt: skip
+    "name": "name of the joint",
+    "type": "hinge, slider, hinge2, spherical; OpenRAVE refuses universal, and takes others for a hinge",
+    "enable": "false: passive, without a DOF",
+    "circular": "true: turns without end",
+    "scalegeometry": "one factor or three, of the anchor",
+    "mimic_pos": "equation of the value that it follows",
+    "mimic_vel": "its partial derivatives",
+    "mimic_accel": "its second derivatives",
+    "mimic": "deprecated: joint, factor and offset",
+}
 
 
 def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:

@@ -1,15 +1,15 @@
 """``<Body>``: a link, new or re-opened by its name."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from ravemj.core.transforms import Pose
-from ravemj.formats.openrave_xml.context import IGNORED, Context
-from ravemj.formats.openrave_xml.geometry import GeometryScope, read_geometries
+from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.geom import GeometryScope, read_geometries
 from ravemj.formats.openrave_xml.joint import frame_of_link
 from ravemj.formats.openrave_xml.mass import MassReader, MassRule, link_inertial
+from ravemj.formats.openrave_xml.tags import IGNORED, Tag, placement_tags
 from ravemj.formats.openrave_xml.tree import Element
-from ravemj.formats.openrave_xml.values import ROTATIONS, Placement, hadamard, is_false, scale_attribute
+from ravemj.formats.openrave_xml.values import Placement, hadamard, is_false, scale_attribute
 from ravemj.model.builder import BodyBuilder, LinkBuilder
 
 
@@ -92,16 +92,24 @@ class _LinkScope:
         self.mass.read(element)
 
 
-LINK_TAGS: dict[str, Callable[[_LinkScope, Element], None]] = {
-    "translation": _LinkScope.translate,
-    **dict.fromkeys(ROTATIONS, _LinkScope.turn),
-    "offsetfrom": _LinkScope.read_offset,
-    "geom": _LinkScope.read_geometry,
-    "geometry": _LinkScope.read_geometry,
-    "mass": _LinkScope.read_mass,
-    "body": _LinkScope.read_nested,
+LINK_TAGS: dict[str, Tag[_LinkScope]] = {
+    **placement_tags(_LinkScope.translate, _LinkScope.turn),
+    "offsetfrom": Tag(_LinkScope.read_offset, "name of the Body that the pose is relative to"),
+    "geom": Tag(_LinkScope.read_geometry, "see below"),
+    "geometry": Tag(_LinkScope.read_geometry, "the same as Geom"),
+    "mass": Tag(_LinkScope.read_mass, "see below"),
+    "body": Tag(
+        _LinkScope.read_nested,
+        "more of the same link; its transform moves all shapes so far, its Mass is discarded, as in OpenRAVE",
+    ),
 }
-LINK_ATTRIBUTES = {"name", "type", "enable", "scalegeometry", "file"}
+LINK_ATTRIBUTES = {
+    "name": "name of the link; a known one goes on with that link",
+    "type": "static: never moves",
+    "enable": "false: takes no part in collisions",
+    "scalegeometry": "one factor or three, of positions and meshes",
+    "file": "a file with a Body, read as if it stood in this one",
+}
 LINK_IGNORED_ATTRIBUTES = {"skipgeometry": IGNORED}
 
 

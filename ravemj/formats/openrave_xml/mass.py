@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 from ravemj.core.transforms import ZERO, Rows, Vec3, Wxyz, add, dot, rows_from_wxyz, scale
 from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tags import Tag
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import hadamard, number, numbers, vector
 from ravemj.model.builder import DEFAULT_INERTIAL
-from ravemj.model.scene import Box, Container, Cylinder, Geometry, Inertial, Shape, Sphere
+from ravemj.model.scene import Box, Geometry, Inertial, Sphere
 
 NO_INERTIA: Rows = (ZERO, ZERO, ZERO)
 TOTAL_DENSITY = 1000.0  # OpenRAVE's density for shapes whose total mass is given
@@ -108,14 +109,14 @@ class MassReader:
         """Accept ``<extents>``, which OpenRAVE does not read in a Body."""
 
 
-MASS_ATTRIBUTES = {"type"}
-MASS_TAGS = {
-    "density": MassReader.density,
-    "total": MassReader.total,
-    "radius": MassReader.radius,
-    "extents": MassReader.extents,
-    "com": MassReader.com,
-    "inertia": MassReader.inertia,
+MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box, custom"}
+MASS_TAGS: dict[str, Tag[MassReader]] = {
+    "density": Tag(MassReader.density, "[kg/m³]"),
+    "total": Tag(MassReader.total, "[kg]"),
+    "radius": Tag(MassReader.radius, "of a sphere [m]"),
+    "extents": Tag(MassReader.extents, "no effect, as in OpenRAVE; a warning says so"),
+    "com": Tag(MassReader.com, "centre of a custom mass [m]"),
+    "inertia": Tag(MassReader.inertia, "of a custom mass, about its centre: nine numbers [kg m²]"),
 }
 
 
@@ -135,7 +136,7 @@ class DefaultMassReader:
 
     def read(self, element: Element) -> None:
         """Read a ``<Mass>`` of a KinBody."""
-        self._context.check_attributes(element, MASS_ATTRIBUTES, {})
+        self._context.check_attributes(element, DEFAULT_MASS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "sphere").lower()
         if kind not in {"mimicgeom", "sphere", "box"}:
             message = f"OpenRAVE takes a mass of type '{kind}' in a KinBody for a sphere"
@@ -174,11 +175,12 @@ class DefaultMassReader:
             self._half_extents = half_extents
 
 
-DEFAULT_MASS_TAGS = {
-    "density": DefaultMassReader.density,
-    "total": DefaultMassReader.total,
-    "radius": DefaultMassReader.radius,
-    "extents": DefaultMassReader.extents,
+DEFAULT_MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box; others count as sphere"}
+DEFAULT_MASS_TAGS: dict[str, Tag[DefaultMassReader]] = {
+    "density": Tag(DefaultMassReader.density, "[kg/m³]"),
+    "total": Tag(DefaultMassReader.total, "[kg]; of mimicgeom OpenRAVE takes it for a density"),
+    "radius": Tag(DefaultMassReader.radius, "of a sphere [m]"),
+    "extents": Tag(DefaultMassReader.extents, "of a box: half sizes [m]"),
 }
 
 
@@ -191,7 +193,7 @@ def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Iner
     if rule.kind == "mimicgeom":
         return _sum_of_shapes(rule, geometries)
     shape = Box(rule.half_extents) if rule.kind == "box" else Sphere(rule.half_extents[0])
-    mass, moments = _solid(shape, 1.0 if rule.density is None else rule.density)
+    mass, moments = shape.mass_moments(1.0 if rule.density is None else rule.density)
     if rule.total is not None:
         moments = scale(moments, rule.total / mass if mass else 0.0)
         mass = rule.total
@@ -205,7 +207,7 @@ def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     the mass is 0, also with a total: OpenRAVE gives 0 or NaN there.
     """
     density = TOTAL_DENSITY if rule.total is not None else (1.0 if rule.density is None else rule.density)
-    solids = [_solid(geometry.shape, density) for geometry in geometries]
+    solids = [geometry.shape.mass_moments(density) for geometry in geometries]
     mass = sum(part for part, _ in solids)
     if mass == 0.0:
         return Inertial(0.0, ZERO, NO_INERTIA)
@@ -222,26 +224,6 @@ def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
         arm = add(position, scale(com, -1.0))
         inertia = _add_rows(inertia, _rotated(moments, wxyz), _point_inertia(part * factor, arm))
     return Inertial(mass * factor, com, inertia)
-
-
-def _solid(shape: Shape, density: float) -> tuple[float, Vec3]:
-    """Return mass and principal moments about the centre; other shapes have no mass in OpenRAVE."""
-    match shape:
-        case Box((a, b, c)):
-            mass = 8 * a * b * c * density
-            return mass, (mass / 3 * (b * b + c * c), mass / 3 * (a * a + c * c), mass / 3 * (a * a + b * b))
-        case Sphere(radius):
-            mass = 4 / 3 * math.pi * radius**3 * density
-            moment = 0.4 * mass * radius**2
-            return mass, (moment, moment, moment)
-        case Cylinder(radius, height):
-            mass = math.pi * radius**2 * height * density
-            across = mass * (radius**2 / 4 + height**2 / 12)
-            return mass, (across, across, mass * radius**2 / 2)
-        case Container((x, y, z)):  # as if it were solid, about its origin
-            return _solid(Box((x / 2, y / 2, z / 2)), density)
-        case _:
-            return 0.0, ZERO
 
 
 def _rotated(moments: Vec3, wxyz: Wxyz) -> Rows:

@@ -8,8 +8,8 @@ from ravemj.errors import Source
 from ravemj.formats.meshes import MESH_SUFFIXES
 from ravemj.formats.openrave_xml.context import COLLADA_SUFFIXES, Context
 from ravemj.model.builder import BodyBuilder, LinkBuilder
-from ravemj.model.making import MASSLESS
 from ravemj.model.scene import Geometry, TriMesh
+from ravemj.model.shape_bodies import MASSLESS
 
 
 def is_mesh(name: str) -> bool:

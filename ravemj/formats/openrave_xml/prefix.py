@@ -4,8 +4,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ravemj.model.builder import BodyBuilder
-from ravemj.model.following import Equations
 from ravemj.model.manipulators import ManipulatorBuilder
+from ravemj.model.mimic import Equations
 
 
 class Marks(NamedTuple):

@@ -1,11 +1,10 @@
 """What only robots have: ``<Manipulator>`` and ``<AttachedSensor>``."""
 
-from collections.abc import Callable
-
-from ravemj.formats.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
+from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.sensor import Device, read_device
+from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
 from ravemj.formats.openrave_xml.tree import Element
-from ravemj.formats.openrave_xml.values import ROTATIONS, Placement, leading_numbers, vector, word
+from ravemj.formats.openrave_xml.values import Placement, leading_numbers, vector, word
 from ravemj.model.builder import BodyBuilder
 from ravemj.model.manipulators import ManipulatorBuilder
 from ravemj.model.scene import AttachedSensor
@@ -56,16 +55,19 @@ class _ManipulatorScope:
         self.built.direction = vector(element, self.context.diagnostics)
 
 
-MANIPULATOR_TAGS: dict[str, Callable[[_ManipulatorScope, Element], None]] = {
-    "translation": _ManipulatorScope.translate,
-    **dict.fromkeys(ROTATIONS, _ManipulatorScope.turn),
-    "base": _ManipulatorScope.read_base,
-    "effector": _ManipulatorScope.read_effector,
-    **dict.fromkeys(("joints", "gripperjoints"), _ManipulatorScope.read_gripper),
-    **dict.fromkeys(("closingdirection", "closingdir", "chuckingdirection"), _ManipulatorScope.read_closing),
-    **dict.fromkeys(("direction", "palmdirection"), _ManipulatorScope.read_direction),
+MANIPULATOR_TAGS: dict[str, Tag[_ManipulatorScope]] = {
+    **placement_tags(_ManipulatorScope.translate, _ManipulatorScope.turn),
+    "base": Tag(_ManipulatorScope.read_base, "name of the Body that the arm starts from"),
+    "effector": Tag(_ManipulatorScope.read_effector, "name of the Body that carries the tool"),
+    "joints": Tag(_ManipulatorScope.read_gripper, "names of the gripper's joints"),
+    "gripperjoints": Tag(_ManipulatorScope.read_gripper, "names of the gripper's joints"),
+    "closingdirection": Tag(_ManipulatorScope.read_closing, "sign of closing for each"),
+    "closingdir": Tag(_ManipulatorScope.read_closing, "the same as closingdirection"),
+    "chuckingdirection": Tag(_ManipulatorScope.read_closing, "the same as closingdirection"),
+    "direction": Tag(_ManipulatorScope.read_direction, "where the tool points: x y z"),
+    "palmdirection": Tag(_ManipulatorScope.read_direction, "the same as direction"),
 }
-MANIPULATOR_ATTRIBUTES = {"name"}
+MANIPULATOR_ATTRIBUTES = {"name": "name of the manipulator"}
 MANIPULATOR_IGNORED = {
     "armjoints": "OpenRAVE finds the arm's joints by itself, between base and effector",
     "iksolver": NO_EFFECT_HERE,
@@ -119,13 +121,12 @@ class _SensorScope:
         self.device = read_device(element, self.context)
 
 
-SENSOR_TAGS: dict[str, Callable[[_SensorScope, Element], None]] = {
-    "link": _SensorScope.read_link,
-    "translation": _SensorScope.translate,
-    **dict.fromkeys(ROTATIONS, _SensorScope.turn),
-    "sensor": _SensorScope.read_device,
+SENSOR_TAGS: dict[str, Tag[_SensorScope]] = {
+    "link": Tag(_SensorScope.read_link, "name of the Body that carries it"),
+    **placement_tags(_SensorScope.translate, _SensorScope.turn),
+    "sensor": Tag(_SensorScope.read_device, "see below"),
 }
-SENSOR_ATTRIBUTES = {"name"}
+SENSOR_ATTRIBUTES = {"name": "name of the sensor"}
 SENSOR_IGNORED = reasons(NO_EFFECT_HERE, "sendcommand")
 
 

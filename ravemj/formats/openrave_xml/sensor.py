@@ -1,10 +1,10 @@
 """``<Sensor>``: the kind of a sensor and, of cameras, the intrinsics."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
-from ravemj.formats.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
+from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import leading_numbers, number, numbers
 from ravemj.model.scene import Intrinsics
@@ -57,15 +57,19 @@ class _Camera:
         self.intrinsics = replace(self.intrinsics, width=int(values[0]), height=int(values[1]))
 
 
-CAMERA_TAGS: dict[str, Callable[[_Camera, Element], None]] = {
-    "kk": _Camera.read_kk,
-    "intrinsic": _Camera.read_intrinsic,
-    "width": _Camera.read_width,
-    "height": _Camera.read_height,
-    "image_dimensions": _Camera.read_dimensions,
+CAMERA_TAGS: dict[str, Tag[_Camera]] = {
+    "kk": Tag(_Camera.read_kk, "fx fy cx cy [pixels]"),
+    "intrinsic": Tag(_Camera.read_intrinsic, "fx 0 cx 0 fy cy [pixels]"),
+    "width": Tag(_Camera.read_width, "[pixels]"),
+    "height": Tag(_Camera.read_height, "[pixels]"),
+    "image_dimensions": Tag(_Camera.read_dimensions, "width and height [pixels]; channels may follow"),
 }
 NO_DEVICE = "of sensors that are no cameras, only kind and place are kept"
-DEVICE_ATTRIBUTES = {"type", "file", "name"}
+DEVICE_ATTRIBUTES = {
+    "type": ", ".join(_KNOWN_TYPES.values()),
+    "file": "read in its place",
+    "name": "takes no effect; the name is that of the AttachedSensor",
+}
 DEVICE_IGNORED_ATTRIBUTES = {"args": "no sensor here takes arguments"}
 CAMERA_IGNORED = reasons(
     NO_EFFECT_HERE, "framerate", "focal_length", "color", "power", "gain", "measurement_time", "format",

@@ -27,7 +27,7 @@ from ravemj.graphics.rendering.camera import (
 )
 from ravemj.graphics.rendering.checks import WHITE
 from ravemj.graphics.rendering.visibility import drawn_geoms
-from ravemj.model.drawing import NOTHING, Shapes
+from ravemj.model.drawing import NOTHING, Primitives
 
 __all__ = [
     "Camera",
@@ -55,7 +55,7 @@ class Renderer(Protocol):
     backend: str
 
     def render(
-        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, shapes: Shapes = NOTHING
+        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, primitives: Primitives = NOTHING
     ) -> NDArray[np.uint8]:
         """Draw a picture.
 
@@ -64,7 +64,7 @@ class Renderer(Protocol):
                 model has lights, they are placed (``mj_camlight``).
             camera: Where the picture is taken from.
             background: Colour where nothing is: red, green, blue in 0..1.
-            shapes: What is drawn beside the model's geoms.
+            primitives: What is drawn beside the model's geoms.
 
         Returns:
             A new array (height, width, 3), top row first.

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera
-from ravemj.model.drawing import Batch, Shapes
+from ravemj.model.drawing import PrimitiveBatch, Primitives
 
 _NO_VECTOR = np.zeros(3)
 _NO_ROTATION = np.eye(3).reshape(-1)
@@ -15,17 +15,17 @@ _WHITE = np.ones(4, dtype=np.float32)
 _Floats32 = NDArray[np.float32]
 
 
-def add_drawing_geoms(scene: mujoco.MjvScene, shapes: Shapes, camera: Camera, width: int, height: int) -> None:
+def add_drawing_geoms(scene: mujoco.MjvScene, primitives: Primitives, camera: Camera, width: int, height: int) -> None:
     """Append drawings to a scene that has been updated; what does not fit is left out.
 
     Args:
         scene: The scene.
-        shapes: The drawings, in the world.
+        primitives: The drawings, in the world.
         camera: Where the picture is taken from.
         width: Columns of the picture.
         height: Rows of the picture.
     """
-    points, spheres, lines, triangles = shapes.batches
+    points, spheres, lines, triangles = primitives.batches
     for kind, batch in (
         (mujoco.mjtGeom.mjGEOM_SPHERE, spheres),
         (mujoco.mjtGeom.mjGEOM_TRIANGLE, triangles),
@@ -34,15 +34,15 @@ def add_drawing_geoms(scene: mujoco.MjvScene, shapes: Shapes, camera: Camera, wi
     ):
         slots = _append(scene, kind, min(len(batch.sizes), scene.maxgeom - scene.ngeom))
         if slots:
-            _write(slots, kind, Batch(*(array[: len(slots)] for array in batch)), camera.position)
+            _write(slots, kind, PrimitiveBatch(*(array[: len(slots)] for array in batch)), camera.position)
 
 
-def _squares(points: Batch, camera: Camera, width: int, height: int) -> Batch:
+def _squares(points: PrimitiveBatch, camera: Camera, width: int, height: int) -> PrimitiveBatch:
     """Return points as lines that are as long as they are wide, level on the screen."""
     centers, sizes = points.corners[:, 0], np.maximum(points.sizes, 1)
     depth = (centers - camera.position) @ camera.rotation[:, 2]
     half = (0.5 * sizes * depth / camera.pinhole(width, height).fx)[:, None] * camera.rotation[:, 0]
-    return Batch(np.stack([centers - half, centers + half], axis=1), sizes, points.rgba)
+    return PrimitiveBatch(np.stack([centers - half, centers + half], axis=1), sizes, points.rgba)
 
 
 def _append(scene: mujoco.MjvScene, kind: mujoco.mjtGeom, count: int) -> tuple[mujoco.MjvGeom, ...]:
@@ -58,7 +58,7 @@ def _append(scene: mujoco.MjvScene, kind: mujoco.mjtGeom, count: int) -> tuple[m
     return slots
 
 
-def _write(slots: tuple[mujoco.MjvGeom, ...], kind: mujoco.mjtGeom, batch: Batch, eye: Floats) -> None:
+def _write(slots: tuple[mujoco.MjvGeom, ...], kind: mujoco.mjtGeom, batch: PrimitiveBatch, eye: Floats) -> None:
     size, position, frame, rgba = (_column(slots, name) for name in ("size", "pos", "mat", "rgba"))
     rgba[:] = np.clip(batch.rgba, 0, 1)
     rgba[:, 3] = 1 - np.sqrt(1 - rgba[:, 3])  # MuJoCo draws what is transparent twice, for its back and its front

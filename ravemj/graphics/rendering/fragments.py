@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats, Ints
 from ravemj.graphics.rendering.camera import Camera, Pinhole
 from ravemj.graphics.rendering.lights import Lights
-from ravemj.model.drawing import Batch, Shapes
+from ravemj.model.drawing import PrimitiveBatch, Primitives
 
 _AT_ONCE = 1 << 20
 """Pairs of figure and pixel that are tested at once."""
@@ -95,22 +95,22 @@ class Raster:
     offset: tuple[float, float] = (0.0, 0.0)
     ray_of_pixel: Ints | None = None
 
-    def fragments(self, shapes: Shapes) -> Fragments:
+    def fragments(self, primitives: Primitives) -> Fragments:
         """Return what drawings, given in the world, cover."""
         T_camera_world = np.eye(4)
         T_camera_world[:3, :3] = self.camera.rotation.T
         T_camera_world[:3, 3] = -self.camera.rotation.T @ self.camera.position
-        points, spheres, lines, triangles = shapes.placed(T_camera_world).batches
+        points, spheres, lines, triangles = primitives.placed(T_camera_world).batches
         found = [*self._points(points), *self._spheres(spheres), *self._lines(lines), *self._triangles(triangles)]
         return Fragments(*(np.concatenate(arrays) for arrays in zip(*found, strict=True))) if found else NO_FRAGMENTS
 
-    def _points(self, batch: Batch) -> Iterator[Fragments]:
+    def _points(self, batch: PrimitiveBatch) -> Iterator[Fragments]:
         batch = _select(batch, batch.corners[:, 0, 2] > _NEAREST)
         center, half = self._project(batch.corners[:, 0]), 0.5 * np.maximum(batch.sizes, 1)[:, None]
         for owner, ray, _ in self._pairs(center - half, center + half):
             yield _flat(ray, batch.corners[owner, 0, 2], batch.rgba[owner])
 
-    def _lines(self, batch: Batch) -> Iterator[Fragments]:
+    def _lines(self, batch: PrimitiveBatch) -> Iterator[Fragments]:
         batch = _select(batch, batch.corners[:, :, 2].max(axis=1) > _NEAREST)
         ends = _cut_off(batch.corners)
         start, along = self._project(ends[:, 0]), self._project(ends[:, 1]) - self._project(ends[:, 0])
@@ -142,7 +142,7 @@ class Raster:
         step = (last - first)[line] / count[line]
         return line, first[line] + number * step, first[line] + (number + 1) * step
 
-    def _spheres(self, batch: Batch) -> Iterator[Fragments]:
+    def _spheres(self, batch: PrimitiveBatch) -> Iterator[Fragments]:
         center, radius = batch.corners[:, 0], batch.sizes
         batch = _select(batch, (center[:, 2] > -radius) & (np.linalg.norm(center, axis=1) > radius))
         center, radius = batch.corners[:, 0], batch.sizes
@@ -170,7 +170,7 @@ class Raster:
         high[in_front] = (x_or_y * depth + aside) / (depth**2 - r**2) * focal + principal
         return low, high
 
-    def _triangles(self, batch: Batch) -> Iterator[Fragments]:
+    def _triangles(self, batch: PrimitiveBatch) -> Iterator[Fragments]:
         batch = _select(batch, batch.corners[:, :, 2].max(axis=1) > _NEAREST)
         corners = batch.corners
         one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
@@ -240,8 +240,8 @@ class Raster:
             yield owner, ray, np.stack([column, row], axis=1) + center
 
 
-def _select(batch: Batch, chosen: NDArray[np.bool_]) -> Batch:
-    return Batch(*(array[chosen] for array in batch))
+def _select(batch: PrimitiveBatch, chosen: NDArray[np.bool_]) -> PrimitiveBatch:
+    return PrimitiveBatch(*(array[chosen] for array in batch))
 
 
 def _flat(ray: Ints, depth: Floats, rgba: Floats) -> Fragments:

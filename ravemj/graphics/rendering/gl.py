@@ -11,7 +11,7 @@ from ravemj.graphics.rendering.camera import Camera
 from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
 from ravemj.graphics.rendering.contexts import OffscreenContext, close_at_exit
 from ravemj.graphics.rendering.gl_scene import GlScene, Quality
-from ravemj.model.drawing import NOTHING, Shapes
+from ravemj.model.drawing import NOTHING, Primitives
 
 
 class GlRenderer:
@@ -35,11 +35,11 @@ class GlRenderer:
         close_at_exit(self)
 
     def render(
-        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, shapes: Shapes = NOTHING
+        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, primitives: Primitives = NOTHING
     ) -> NDArray[np.uint8]:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
         color = color_bytes(background)
-        stage = self._filled_stage(data, camera, shapes)
+        stage = self._filled_stage(data, camera, primitives)
         with self._context.current():
             stage.draw(self._viewport, color)
             picture = self._read(stage)
@@ -77,11 +77,11 @@ class GlRenderer:
             stage.draw_ids(self._viewport)
             return self._read(stage)
 
-    def _filled_stage(self, data: mujoco.MjData, camera: Camera, shapes: Shapes) -> GlScene:
+    def _filled_stage(self, data: mujoco.MjData, camera: Camera, primitives: Primitives) -> GlScene:
         if self._gl_scene is None:
             raise RenderingError("this renderer is closed")
         check_data(self._model, data)
-        self._gl_scene.fill(data, camera, *self._size, shapes)
+        self._gl_scene.fill(data, camera, *self._size, primitives)
         return self._gl_scene
 
     def _read(self, stage: GlScene) -> NDArray[np.uint8]:

@@ -18,7 +18,7 @@ from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera, bounding_sphere
 from ravemj.graphics.rendering.drawing_geoms import add_drawing_geoms
 from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms
-from ravemj.model.drawing import NOTHING, Shapes
+from ravemj.model.drawing import NOTHING, Primitives
 
 SHADOW_SIZE = 1024
 """Texels along one side of the shadow map: a quarter of MuJoCo's default, a seventh of its cost on a CPU."""
@@ -88,7 +88,9 @@ class GlScene:
         self.scene = mujoco.MjvScene(self._model, self._model.ngeom + room)
         self._room = room
 
-    def fill(self, data: mujoco.MjData, camera: Camera, width: int, height: int, shapes: Shapes = NOTHING) -> None:
+    def fill(
+        self, data: mujoco.MjData, camera: Camera, width: int, height: int, primitives: Primitives = NOTHING
+    ) -> None:
         """Take over the poses of the geoms, the drawings and the point of view.
 
         Args:
@@ -96,13 +98,13 @@ class GlScene:
             camera: Where the picture is taken from.
             width: Columns of the viewport.
             height: Rows of the viewport.
-            shapes: What is drawn beside the geoms. With points or lines there are no shadows: MuJoCo would draw these
-                once more for each light that casts some, and add the colours up.
+            primitives: What is drawn beside the geoms. With points or lines there are no shadows: MuJoCo would draw
+                these once more for each light that casts some, and add the colours up.
         """
-        self._make_room(len(shapes))
-        has_lines = bool(shapes.points.sizes.size or shapes.lines.sizes.size)
+        self._make_room(len(primitives))
+        has_lines = bool(primitives.points.sizes.size or primitives.lines.sizes.size)
         self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._shadows and not has_lines
-        depths = near_and_far(self._model, data, camera, shapes)
+        depths = near_and_far(self._model, data, camera, primitives)
         aim(self.scene, camera, (width, height), depths)
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
@@ -112,7 +114,7 @@ class GlScene:
         mujoco.mjv_updateScene(self._model, data, self._option, None, user_camera, everything, self.scene)
         if self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW]:
             self._cover_with_shadows(data, near=depths[0])
-        add_drawing_geoms(self.scene, shapes, camera, width, height)
+        add_drawing_geoms(self.scene, primitives, camera, width, height)
 
     def _make_room(self, figures: int) -> None:
         if figures > _MAX_FIGURES and not self._has_warned:
@@ -213,7 +215,7 @@ def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: t
 
 
 def near_and_far(
-    model: mujoco.MjModel, data: mujoco.MjData, camera: Camera, shapes: Shapes = NOTHING
+    model: mujoco.MjModel, data: mujoco.MjData, camera: Camera, primitives: Primitives = NOTHING
 ) -> tuple[float, float]:
     """Return depths [m] between which everything lies that the camera can see, wherever it stands.
 
@@ -222,8 +224,8 @@ def near_and_far(
     """
     center, radius = bounding_sphere(model, data)
     near, far = _depths_of_sphere(center, radius, camera)
-    if len(shapes):
-        center_of_drawings, radius_of_drawings = shapes.bounding_sphere()
+    if len(primitives):
+        center_of_drawings, radius_of_drawings = primitives.bounding_sphere()
         nearer, farther = _depths_of_sphere(center_of_drawings, max(radius_of_drawings, _SMALLEST), camera)
         far = max(far, farther)
         near = max(min(near, nearer), _WIDEST * far)

@@ -21,7 +21,7 @@ from ravemj.graphics.rendering.fragments import Fragments, Raster
 from ravemj.graphics.rendering.gl_scene import near_and_far
 from ravemj.graphics.rendering.lights import Lights
 from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms, geom_rgba
-from ravemj.model.drawing import NOTHING, Shapes
+from ravemj.model.drawing import NOTHING, Primitives
 
 _BAND = 1 << 16
 """Rays that are cast at once: a few megabytes, whatever the size of the picture."""
@@ -64,19 +64,19 @@ class RayRenderer:
         self._closed = False
 
     def render(
-        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, shapes: Shapes = NOTHING
+        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, primitives: Primitives = NOTHING
     ) -> NDArray[np.uint8]:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
         width, height = self._size
         color = color_bytes(background)
         picture = np.empty((height, width, 3), dtype=np.uint8)
         with self._scene(data, camera) as scene:
-            drawn = Raster(camera, self._size, self._lights).fragments(shapes)
+            drawn = Raster(camera, self._size, self._lights).fragments(primitives)
             for rows, rays in self._bands(camera):
                 here = drawn.between(rows.start * width, rows.stop * width)
                 picture[rows] = np.rint(scene.colors(rays, color, here)).reshape(-1, width, 3)
             if self._samples:
-                self._smooth_edges(picture, scene, camera, color, shapes)
+                self._smooth_edges(picture, scene, camera, color, primitives)
         return picture
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
@@ -127,7 +127,7 @@ class RayRenderer:
         scene: "_RayScene",
         camera: Camera,
         background: NDArray[np.uint8],
-        shapes: Shapes,
+        primitives: Primitives,
     ) -> None:
         """Replace pixels that differ from a neighbour by the mean of four rays."""
         rows, columns = np.nonzero(_edges(picture))
@@ -137,7 +137,7 @@ class RayRenderer:
         sums = np.zeros((rows.size, 3))
         for offset in _SUBPIXELS:
             aside = offset / camera.pinhole(*self._size)[:2] @ camera.rotation[:, :2].T
-            drawn = Raster(camera, self._size, self._lights, offset, ray_of_pixel.reshape(-1)).fragments(shapes)
+            drawn = Raster(camera, self._size, self._lights, offset, ray_of_pixel.reshape(-1)).fragments(primitives)
             for start in range(0, rows.size, _BAND):
                 some = slice(start, min(start + _BAND, rows.size))
                 rays = by_column[0, columns[some]] + by_row[rows[some], 0] + aside

@@ -36,7 +36,7 @@ from ravemj.gui.interaction.picking import Hit, pick
 from ravemj.gui.interaction.playback import Playback
 from ravemj.gui.interaction.selection import OnSelect, Selection, Selector, point_line
 from ravemj.gui.interaction.viewpoint import View
-from ravemj.model.drawing import Shapes
+from ravemj.model.drawing import Primitives
 
 _CLICK = 4.0
 """Farthest way of the pointer [points] between press and release of a click."""
@@ -56,13 +56,13 @@ class Overlay(NamedTuple):
     """What is drawn over the bodies.
 
     Attributes:
-        shapes: Figures in the world.
+        primitives: Figures in the world.
         lines: Text for the top left corner.
         panels: Buttons, wheels and sliders, for a shell that has none of its own.
         controls: What the buttons and sliders beside the tutorial's are, as plain data.
     """
 
-    shapes: Shapes
+    primitives: Primitives
     lines: tuple[str, ...]
     panels: tuple[Panel, ...]
     controls: tuple[Control, ...] = ()
@@ -192,7 +192,7 @@ class Interaction:
             lines = (*([at] if at else []), *self._selector.lines(), *self.controls.notices.lines)
             tools = mode_buttons.panels(self.view.size, chosen) if self._has_tools else ()
             panels = *tools, *layout.panels()
-            return Overlay(self._selector.shapes(), lines, panels, self.controls.all())
+            return Overlay(self._selector.primitives(), lines, panels, self.controls.all())
 
     def _forget_what_is_gone(self) -> None:
         if self._selector.forget_what_is_gone():

@@ -12,7 +12,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.gui.interaction.picking import visible_box
 from ravemj.gui.interaction.viewpoint import Ray, View
 from ravemj.model import drawing
-from ravemj.model.drawing import Shapes
+from ravemj.model.drawing import Primitives
 
 _MARGIN = 0.1
 """How far the cube stands off, as a part of half its longest side."""
@@ -109,7 +109,7 @@ class Cube:
     def _in_world(self, points: Floats) -> Floats:
         return points @ self.T_world_cube[:3, :3].T + self.T_world_cube[:3, 3]
 
-    def shapes(self) -> Shapes:
+    def primitives(self) -> Primitives:
         """Return its figures, in the world."""
         ends = np.concatenate([edge.ends for edge in self._edges()])
         lines = drawing.line_list(ends, _EDGE_WIDTH, np.repeat(_EDGES, len(ends), axis=0))

@@ -12,7 +12,7 @@ from ravemj.gui.interaction.picking import visible_box
 from ravemj.gui.interaction.viewpoint import Ray
 from ravemj.model import drawing
 from ravemj.model.chains import joints_above
-from ravemj.model.drawing import Shapes
+from ravemj.model.drawing import Primitives
 from ravemj.model.joints import directions_at
 from ravemj.model.manipulators import joint_dofs
 from ravemj.model.scene import Joint, KinBody
@@ -101,7 +101,7 @@ class JointHandle:
         distance = mujoco.mju_rayGeom(self.center, turned, size, ray.start, ray.direction, kind, np.zeros(3))
         return None if distance < 0 else ray.start + distance * ray.direction
 
-    def shapes(self) -> Shapes:
+    def primitives(self) -> Primitives:
         """Return its figures, in the world: stripes show how it turns."""
         ring = self.radius * np.column_stack([np.cos(_CIRCLE), np.sin(_CIRCLE), 0 * _CIRCLE])
         up = np.array([0.0, 0.0, self.height / 2])
@@ -110,7 +110,7 @@ class JointHandle:
         return drawing.merge([drawing.cylinder(self.radius, self.height, _SURFACE), *lines]).placed(self.T_world_handle)
 
 
-def _strip(points: Floats) -> Shapes:
+def _strip(points: Floats) -> Primitives:
     return drawing.line_strip(points, _LINE_WIDTH, np.tile(_LINES, (len(points), 1)))
 
 

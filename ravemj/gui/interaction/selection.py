@@ -14,7 +14,7 @@ from ravemj.gui.interaction.joint_handle import SIZES, JointHandle, driving_dof,
 from ravemj.gui.interaction.labels import body_line, joint_line, point_line
 from ravemj.gui.interaction.picking import Hit, pick
 from ravemj.gui.interaction.viewpoint import Ray, View
-from ravemj.model.drawing import NOTHING, Shapes
+from ravemj.model.drawing import NOTHING, Primitives
 
 OnSelect = Callable[[Hit, Ray], bool]
 """Asked before something is selected; False keeps it unselected."""
@@ -161,10 +161,10 @@ class Selector:
             return False
         return hit.distance < float(np.linalg.norm(point - ray.start))
 
-    def shapes(self) -> Shapes:
+    def primitives(self) -> Primitives:
         """Return the figures of the cube or the cylinder."""
         shown = self._cube() or self._handle()
-        return NOTHING if shown is None else shown.shapes()
+        return NOTHING if shown is None else shown.primitives()
 
     def point_line(self) -> str:
         """Return the text about the point that was clicked on, where it is now; empty where there is none."""

@@ -47,7 +47,7 @@ class FrameSource:
         interaction, renderer = self._interaction(), self._renderer()
         if interaction is None or renderer is None:
             return None
-        gizmos = interaction.overlay().shapes
+        gizmos = interaction.overlay().primitives
         return renderer.render(interaction.view.camera, self._background, self._form, gizmos=gizmos)
 
     def close(self) -> None:

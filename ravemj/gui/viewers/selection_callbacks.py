@@ -3,15 +3,15 @@
 import weakref
 from typing import Any
 
+from ravemj.core.api_object import ApiObject
 from ravemj.core.handles import Handle
-from ravemj.core.showing import Shown
 from ravemj.engine.simulation import Simulation
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import Hit, Interaction, Ray
 from ravemj.gui.viewers.callbacks import Callback, Callbacks
 
 
-class Selecting(Shown):
+class Selecting(ApiObject):
     """Part of every viewer: its mouse and keys, and what they select.
 
     Attributes:

@@ -305,7 +305,7 @@ class Viewer(Playing):
             RenderingError: nothing can draw here.
         """
         form = self._format(width, height, "render")
-        gizmos = self.interaction.overlay().shapes
+        gizmos = self.interaction.overlay().primitives
         picture = self._renderer.render(self.camera, self._background, form, gizmos=gizmos)
         self._image_callbacks.call(picture)
         return picture

@@ -18,7 +18,7 @@ def appearance(simulation: Simulation) -> object:
     compiled = simulation.compiled()
     model, data = compiled.model, compiled.data
     state = data.geom_xpos.tobytes(), data.geom_xmat.tobytes(), model.geom_rgba.tobytes()
-    return simulation.version, state, simulation.drawings.shapes()
+    return simulation.version, state, simulation.drawings.primitives()
 
 
 class WindowRenderer:
@@ -57,8 +57,8 @@ class WindowRenderer:
         self._seen = seen
         self._overlay = interaction.overlay()
         stage = self._prepared_scene(compiled.model, (simulation.version, ratio), ratio)
-        shapes = merge([simulation.drawings.shapes(), self._overlay.shapes])
-        stage.fill(compiled.data, interaction.view.camera, *pixels, shapes)
+        primitives = merge([simulation.drawings.primitives(), self._overlay.primitives])
+        stage.fill(compiled.data, interaction.view.camera, *pixels, primitives)
         return True
 
     def _prepared_scene(self, model: mujoco.MjModel, key: object, ratio: float) -> GlScene:

@@ -15,10 +15,10 @@ Hostile text cannot do more than raise ``ExpressionError``: its length, the dept
 values it can have are bounded, and evaluation takes time in proportion to the length.
 """
 
+from ravemj.model.expressions.attributes import joint_variables, linear_mimic, partials, substitute
 from ravemj.model.expressions.errors import ExpressionError
 from ravemj.model.expressions.expression import Expression, first_within, parse
-from ravemj.model.expressions.mimic import joint_variables, linear_mimic, partials, substitute
-from ravemj.model.expressions.polynomials import fit_polynomial
+from ravemj.model.expressions.polynomial_fit import fit_polynomial
 
 __all__ = [
     "Expression",

@@ -1,20 +1,14 @@
-"""Polynomials in one variable, which MuJoCo's ``<joint polycoef>`` can enforce: found exactly, or fitted."""
+"""Polynomials in one variable: what an expression is where it is one exactly."""
 
 import math
 from collections.abc import Callable
 from itertools import zip_longest
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from ravemj.model.expressions.functions import FUNCTIONS
 from ravemj.model.expressions.nodes import Call, Node, Number, Variable
 
-if TYPE_CHECKING:
-    from ravemj.model.expressions.expression import Expression
-
-MAX_INNER_DEGREE = 16  # on the way to the result
-FIT_POINTS, CHECK_POINTS = 200, 2001
+MAX_INNER_DEGREE = 16  # of intermediate results: terms of higher degree may cancel
 
 Coefficients = tuple[float, ...]  # ascending
 
@@ -152,53 +146,22 @@ def _affine_quotient(x: Affine, y: Affine) -> Affine | None:
     return None if y.slopes or y.offset == 0 else _scaled(x, 1 / y.offset)
 
 
+def _affine_sum(x: Affine, y: Affine) -> Affine:
+    return x.plus(y)
+
+
+def _affine_difference(x: Affine, y: Affine) -> Affine:
+    return x.plus(y, -1.0)
+
+
+def _affine_negative(x: Affine) -> Affine:
+    return _scaled(x, -1.0)
+
+
 _AFFINE_RULES: dict[str, Callable[..., Affine | None]] = {
-    "add": lambda x, y: x.plus(y),
-    "sub": lambda x, y: x.plus(y, -1.0),
-    "neg": lambda x: _scaled(x, -1.0),
+    "add": _affine_sum,
+    "sub": _affine_difference,
+    "neg": _affine_negative,
     "mul": _affine_product,
     "div": _affine_quotient,
 }
-
-
-def fit_polynomial(
-    expression: "Expression", variable: str, lower: float, upper: float, degree: int = 4
-) -> tuple[Coefficients, float]:
-    """Approximate an expression in one variable by a polynomial.
-
-    The fit is by least squares at Chebyshev points, which lie closer together towards the limits; that keeps the
-    largest error near the smallest possible.
-
-    Args:
-        expression: Of no other variable.
-        variable: Its variable.
-        lower: Where the range begins.
-        upper: Where it ends.
-        degree: Of the polynomial.
-
-    Returns:
-        ``degree + 1`` coefficients in ascending order, and the largest error at evenly spaced points of the range;
-        infinite if the expression has no value at some of them.
-
-    Raises:
-        ValueError: If there are other variables, or the range is not finite.
-    """
-    others = [name for name in expression.variables if name != variable]
-    if others or not (math.isfinite(lower) and math.isfinite(upper)):
-        raise ValueError(f"cannot fit over {lower} to {upper}" + "".join(f"; {name} is open" for name in others))
-    middle, radius = (lower + upper) / 2, abs(upper - lower) / 2 or 1.0
-    unit = np.cos(np.pi * (np.arange(FIT_POINTS) + 0.5) / FIT_POINTS)
-    points = middle + radius * (unit if lower != upper else 0 * unit)
-    values = expression.evaluate_many({variable: points})
-    usable = np.isfinite(values)
-    if lower == upper or np.count_nonzero(usable) <= degree:
-        constant = float(values[usable].mean()) if usable.any() else 0.0
-        fitted = np.array([constant] + [0.0] * degree)
-    else:
-        basis = np.polynomial.Chebyshev.fit(points[usable], values[usable], degree, domain=[lower, upper])
-        found = basis.convert(kind=np.polynomial.Polynomial).coef  # without zeros at its end
-        fitted = np.pad(found, (0, degree + 1 - len(found)))
-    checks = np.linspace(lower, upper, CHECK_POINTS)
-    errors = np.abs(np.polynomial.polynomial.polyval(checks, fitted) - expression.evaluate_many({variable: checks}))
-    largest = float(errors.max()) if np.isfinite(errors).all() else math.inf
-    return tuple(fitted.tolist()), largest

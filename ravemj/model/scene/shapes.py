@@ -1,72 +1,119 @@
-"""Shapes, colours and triangles."""
+"""Shapes, and geometries: shapes with a pose and colours.
 
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, NamedTuple
+A shape knows what it consists of. Everything else asks it, so a new type of geometry is a class here with its row in
+``SHAPE_TYPES``, and a member of the API's ``GeometryType``; getters of its own go to the API's ``Geometry``.
+"""
+
+# ruff: noqa: D102 - the base class says what the methods return
+
+import math
+from collections.abc import Mapping
+from dataclasses import MISSING, dataclass, fields
+from typing import Any, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ravemj.core.transforms import Floats, Ints, Pose, Vec3
+from ravemj.core.transforms import ZERO, Floats, Pose, Vec3, add, scale
 from ravemj.errors import Source
+from ravemj.model.scene.mesh import Bounds, Mesh
 from ravemj.model.scene.record import Record
+from ravemj.model.scene.tessellation import solid_mesh
 
 Rgb = tuple[float, float, float]
 
+CrossSection = tuple[tuple[float, float], ...]
+"""Corners x y of a polygon [m]; the last is joined to the first."""
 
-@dataclass(frozen=True, eq=False)
-class Mesh:
-    """Triangles; two meshes are equal if their numbers are.
+
+class Solid(NamedTuple):
+    """A solid that MuJoCo has as a geom.
 
     Attributes:
-        vertices: Shape (n, 3) [m]; read-only.
-        triangles: Indices of the corners of each triangle, counter-clockwise seen from outside, shape (m, 3);
-            read-only.
+        kind: MuJoCo's type of geom: ``box``, ``sphere``, ``cylinder`` or ``capsule``.
+        size: MuJoCo's sizes: half extents of a box, else the radius and, along z, half the height [m].
+        centre: Its centre in the frame of the shape.
     """
 
-    vertices: Floats
-    triangles: Ints
-
-    def __post_init__(self) -> None:
-        for name, kind in (("vertices", np.float64), ("triangles", np.int_)):
-            given: NDArray[Any] = np.asarray(getattr(self, name))
-            if not _is_settled(given, kind):
-                numbers = given.reshape(-1, 3).astype(kind, order="C")
-                numbers.flags.writeable = False
-                object.__setattr__(self, name, numbers)
-
-    @cached_property
-    def digest(self) -> str:
-        """A name for the content: the same for the same numbers."""
-        import hashlib  # noqa: PLC0415 - slow to import
-
-        content = hashlib.sha256(self.vertices.tobytes())
-        content.update(self.triangles.tobytes())
-        return content.hexdigest()
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Mesh) and self.digest == other.digest
-
-    def __hash__(self) -> int:
-        return hash(self.digest)
+    kind: str
+    size: tuple[float, ...]
+    centre: Vec3 = ZERO
 
 
-def _is_settled(numbers: NDArray[Any], kind: type) -> bool:
-    """Tell whether a mesh can keep an array as it is: it is of the right form, has its own memory, and is read-only."""
-    return (
-        numbers.dtype == kind
-        and numbers.shape[1:] == (3,)
-        and numbers.flags.c_contiguous
-        and numbers.flags.owndata
-        and not numbers.flags.writeable
-    )
+class Size(NamedTuple):
+    """A size of a shape.
+
+    Attributes:
+        name: Its name; readers of files and the API use it as well.
+        type: ``float``, ``Vec3``, ``CrossSection`` or ``Mesh``.
+        optional: Whether a shape can be made without it.
+    """
+
+    name: str
+    type: object
+    optional: bool
+
+
+class Shape(Record):
+    """The base class of shapes. By default a shape has no volume: it consists of nothing."""
+
+    __slots__ = ()
+
+    @classmethod
+    def sizes(cls) -> tuple[Size, ...]:
+        """Return the sizes that make the shape, in the order of its fields."""
+        own: Any = cls  # ``fields`` wants a dataclass, which every shape is
+        return tuple(Size(field.name, field.type, field.default is not MISSING) for field in fields(own))
+
+    @classmethod
+    def of_sizes(cls, values: Mapping[str, Any]) -> Self:
+        """Return the shape with the sizes among some values; other values are passed over."""
+        return cls(**{size.name: values[size.name] for size in cls.sizes() if size.name in values})
+
+    def solids(self) -> list[Solid]:
+        """Return the solids that the shape consists of; none for one that only triangles can describe."""
+        return []
+
+    def triangulated(self) -> Mesh:
+        """Return the surface as triangles, counter-clockwise seen from outside, in the frame of the shape.
+
+        Round shapes have their vertices on the surface. Several solids keep the walls between them.
+        """
+        solids = self.solids()
+        return Mesh.merged(solid_mesh(kind, size).moved(Pose(centre).matrix()) for kind, size, centre in solids)
+
+    def bounds(self, T_a_shape: Floats) -> Bounds:
+        """Return the exact axis-aligned bounding box in frame a."""
+        return self.triangulated().bounds(T_a_shape)
+
+    def mass_moments(self, density: float) -> tuple[float, Vec3]:
+        """Return mass [kg] and principal moments of inertia about the origin of the shape's frame [kg m^2].
+
+        OpenRAVE's rules: it knows no mass of capsules, prisms and meshes, and takes it for 0.
+        """
+        del density
+        return 0.0, ZERO
+
+
+def _centred_bounds(centre: Floats, half_extents: Floats) -> Bounds:
+    return Bounds(centre - half_extents, centre + half_extents)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Box(Record):
+class Box(Shape):
     """A box; ``half_extents`` are half its edge lengths."""
 
     half_extents: Vec3
+
+    def solids(self) -> list[Solid]:
+        return [Solid("box", self.half_extents)]
+
+    def bounds(self, T_a_shape: Floats) -> Bounds:
+        return _centred_bounds(T_a_shape[:3, 3], np.abs(T_a_shape[:3, :3]) @ self.half_extents)
+
+    def mass_moments(self, density: float) -> tuple[float, Vec3]:
+        a, b, c = self.half_extents
+        mass = 8 * a * b * c * density
+        return mass, (mass / 3 * (b * b + c * c), mass / 3 * (a * a + c * c), mass / 3 * (a * a + b * b))
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,30 +122,60 @@ class CalibrationBoard(Box):
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Sphere(Record):
+class Sphere(Shape):
     """A sphere."""
 
     radius: float
 
+    def solids(self) -> list[Solid]:
+        return [Solid("sphere", (self.radius,))]
+
+    def bounds(self, T_a_shape: Floats) -> Bounds:
+        return _centred_bounds(T_a_shape[:3, 3], np.full(3, self.radius))
+
+    def mass_moments(self, density: float) -> tuple[float, Vec3]:
+        mass = 4 / 3 * math.pi * self.radius**3 * density
+        moment = 0.4 * mass * self.radius**2
+        return mass, (moment, moment, moment)
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Cylinder(Record):
+class Cylinder(Shape):
     """A cylinder along z, centred; ``height`` is the full height."""
 
     radius: float
     height: float
 
+    def solids(self) -> list[Solid]:
+        return [Solid("cylinder", (self.radius, self.height / 2))]
+
+    def bounds(self, T_a_shape: Floats) -> Bounds:
+        x, y, z = T_a_shape[:3, :3].T
+        half_extents = np.abs(z) * self.height / 2 + np.hypot(x, y) * self.radius
+        return _centred_bounds(T_a_shape[:3, 3], half_extents)
+
+    def mass_moments(self, density: float) -> tuple[float, Vec3]:
+        mass = math.pi * self.radius**2 * self.height * density
+        across = mass * (self.radius**2 / 4 + self.height**2 / 12)
+        return mass, (across, across, mass * self.radius**2 / 2)
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Capsule(Record):
+class Capsule(Shape):
     """A capsule along z, centred; ``height`` is that of the cylindrical part."""
 
     radius: float
     height: float
 
+    def solids(self) -> list[Solid]:
+        return [Solid("capsule", (self.radius, self.height / 2))]
+
+    def bounds(self, T_a_shape: Floats) -> Bounds:
+        return _centred_bounds(T_a_shape[:3, 3], np.abs(T_a_shape[:3, 2]) * self.height / 2 + self.radius)
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Container(Record):
+class Container(Shape):
     """An open box that stands on the origin and opens along z; all sizes are full edge lengths.
 
     Attributes:
@@ -110,23 +187,49 @@ class Container(Record):
 
     outer_extents: Vec3
     inner_extents: Vec3
-    bottom_cross: Vec3
-    bottom: Vec3
+    bottom_cross: Vec3 = ZERO
+    bottom: Vec3 = ZERO
+
+    def solids(self) -> list[Solid]:
+        """Return floor, four walls, and what stands on the floor."""
+        outer, inner = self.outer_extents, self.inner_extents
+        wall_x, wall_y, floor = ((o - i) / 2 for o, i in zip(outer, inner, strict=True))
+        floor *= 2  # there is no lid
+        solids = [Solid("box", (outer[0] / 2, outer[1] / 2, floor / 2), (0.0, 0.0, floor / 2))]
+        middle: Vec3 = (0.0, 0.0, outer[2] / 2)
+        for sign in (-1.0, 1.0):
+            across: Vec3 = ((outer[0] - wall_x) / 2, 0.0, 0.0)
+            along: Vec3 = (0.0, (outer[1] - wall_y) / 2, 0.0)
+            solids.append(Solid("box", (wall_x / 2, outer[1] / 2, outer[2] / 2), add(middle, scale(across, sign))))
+            solids.append(Solid("box", (outer[0] / 2, wall_y / 2, outer[2] / 2), add(middle, scale(along, sign))))
+        for size in (self.bottom_cross, self.bottom):
+            if all(size):
+                solids.append(Solid("box", scale(size, 0.5), (0.0, 0.0, floor + size[2] / 2)))
+        return solids
+
+    def bounds(self, T_a_shape: Floats) -> Bounds:
+        half_extents = np.array(self.outer_extents) / 2
+        centre = T_a_shape[:3, :3] @ (0.0, 0.0, half_extents[2]) + T_a_shape[:3, 3]
+        return _centred_bounds(centre, np.abs(T_a_shape[:3, :3]) @ half_extents)
+
+    def mass_moments(self, density: float) -> tuple[float, Vec3]:
+        """Return those of a solid box about the origin, as OpenRAVE does."""
+        return Box(scale(self.outer_extents, 0.5)).mass_moments(density)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Prism(Record):
+class Prism(Shape):
     """Walls along z over the edges of a polygon, without top and bottom.
 
     Attributes:
-        cross_section: Corners x y of the polygon [m]; the last is joined to the first.
+        cross_section: The polygon.
         height: The full height; the origin is at half of it.
     """
 
-    cross_section: tuple[tuple[float, float], ...]
+    cross_section: CrossSection
     height: float
 
-    def walls(self) -> Mesh:
+    def triangulated(self) -> Mesh:
         """Return the walls, two triangles for each edge."""
         corners = np.array(self.cross_section, dtype=float).reshape(-1, 2)
         count = len(corners)
@@ -137,18 +240,48 @@ class Prism(Record):
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class TriMesh(Record):
+class TriMesh(Shape):
     """Triangles; none where their file is missing."""
 
     mesh: Mesh
 
+    def triangulated(self) -> Mesh:
+        return self.mesh
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class NoShape(Record):
+class NoShape(Shape):
     """A geometry without a shape."""
 
 
-Shape = Box | Sphere | Cylinder | Capsule | Container | Prism | TriMesh | NoShape
+class ShapeType(NamedTuple):
+    """What OpenRAVE calls a shape.
+
+    Attributes:
+        shape: The class.
+        name: Its name in ``GeometryType``.
+        xml: The ``type`` of a ``<Geom>``; None where XML has none.
+        collada: Elements of a ``geometry_info`` in COLLADA.
+    """
+
+    shape: type[Shape]
+    name: str
+    xml: str | None = None
+    collada: tuple[str, ...] = ()
+
+
+SHAPE_TYPES = (
+    ShapeType(Box, "Box", "box", ("box",)),
+    ShapeType(Sphere, "Sphere", "sphere", ("sphere",)),
+    ShapeType(Cylinder, "Cylinder", "cylinder", ("cylinder", "cylinderz")),
+    ShapeType(Capsule, "Capsule", "capsule"),
+    ShapeType(Container, "Container", "container", ("container",)),
+    ShapeType(Prism, "Prism", "prism"),
+    ShapeType(TriMesh, "Trimesh", "trimesh"),
+    ShapeType(CalibrationBoard, "CalibrationBoard", collada=("calibration_board",)),
+    ShapeType(NoShape, "None_", "none"),
+)
+"""All types of geometry."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

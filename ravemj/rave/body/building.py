@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats, Pose
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.model.making import body_of_geometries, box_geometries, shape_geometry, sphere_geometries
 from ravemj.model.scene import Geometry, KinBody
 from ravemj.model.scene import TriMesh as Triangles
+from ravemj.model.shape_bodies import body_of_geometries, box_geometries, shape_geometry, sphere_geometries
 from ravemj.rave.body.mechanism import Mechanism
 from ravemj.rave.infos import ExtractInfoOptions, GeometryInfo, JointInfo, KinBodyInfo, LinkInfo, body_of
 from ravemj.rave.infos.link import geometries_of

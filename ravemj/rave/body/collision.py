@@ -13,7 +13,8 @@ from ravemj.engine.collision.questions import moved_apart
 from ravemj.engine.collision.resting import tested_pairs
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import AABB
-from ravemj.model.bounds import Bounds, links_bounds
+from ravemj.model.bounds import links_bounds
+from ravemj.model.scene import Bounds
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import AdjacentOptions
 

@@ -3,14 +3,14 @@
 from typing import Literal, overload
 
 from ravemj.errors import ArgumentError
-from ravemj.model import chains, fingerprints
+from ravemj.model import chains, hashes
 from ravemj.rave.body.mechanism import Mechanism
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 
 
 class Graph(Mechanism):
-    """What moves what, the way between links, and fingerprints of the structure."""
+    """What moves what, the way between links, and hashes of the structure."""
 
     def GetJointIndex(self, name: str) -> int:
         """Return the place in ``GetJoints()`` of the joint of that name, or -1."""
@@ -126,7 +126,7 @@ class Graph(Mechanism):
 
         Pose, joint values, limits and names do not matter.
         """
-        return fingerprints.of_body(self._state.scene)
+        return hashes.of_body(self._state.scene)
 
     GetStructureHash = GetKinematicsGeometryHash
 

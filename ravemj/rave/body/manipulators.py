@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, cast
 
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
-from ravemj.model import fingerprints
+from ravemj.model import hashes
 from ravemj.model.manipulators import freeze_manipulator
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.infos import ManipulatorInfo
@@ -44,7 +44,7 @@ class Manipulators(BodyPart):
 
     def GetRobotStructureHash(self) -> str:
         """Return a text that is the same for robots of the same structure, arms and sensors: 32 hexadecimal digits."""
-        return fingerprints.of_robot(self._state.scene)
+        return hashes.of_robot(self._state.scene)
 
     def GetActiveManipulatorIndex(self) -> int:
         """Return the active manipulator's place in ``GetManipulators()``; -1 without one."""

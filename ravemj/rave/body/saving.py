@@ -5,7 +5,7 @@ from dataclasses import replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Self, cast
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import ArgumentError
@@ -99,7 +99,7 @@ class Saving(Placement):
             self._simulation.lock.release()
 
 
-class StateSaver(Shown):
+class StateSaver(ApiObject):
     """Keeps a state of a body; ``body.CreateKinBodyStateSaver()`` and ``robot.CreateRobotStateSaver()`` make it."""
 
     def __init__(self, body: "KinBody", options: int | None = None) -> None:

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers
-from ravemj.core.showing import Shown
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
@@ -19,7 +19,7 @@ CollisionCallback = Callable[[CollisionReport, bool], int]
 """Takes a report of one collision and whether time runs, and returns a ``CollisionAction``."""
 
 
-class CollisionCallbackHandle(Shown):
+class CollisionCallbackHandle(ApiObject):
     """Keeps a function registered; it is not called any more once this is closed or gone."""
 
     def __init__(self, callbacks: list[CollisionCallback], callback: CollisionCallback) -> None:

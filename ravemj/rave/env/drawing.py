@@ -7,7 +7,7 @@ from ravemj.core.arrays import checked_numbers, checked_transform, checked_vecto
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.model import drawing
-from ravemj.model.drawing import Shapes
+from ravemj.model.drawing import Primitives
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.graph_handle import GraphHandle
 
@@ -22,8 +22,8 @@ class Drawing(EnvironmentPart):
     ``env.SetViewer('offscreen')`` is enough for drawings to be in ``env.render()`` and in videos.
     """
 
-    def _draw(self, shapes: Shapes) -> GraphHandle | None:
-        return None if self._viewer is None else GraphHandle(self._simulation.drawings, shapes)
+    def _draw(self, primitives: Primitives) -> GraphHandle | None:
+        return None if self._viewer is None else GraphHandle(self._simulation.drawings, primitives)
 
     def plot3(
         self, points: ArrayLike, pointsize: float, colors: ArrayLike | None = None, drawstyle: int = 0

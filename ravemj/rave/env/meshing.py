@@ -8,7 +8,6 @@ from ravemj.engine.simulation import BodyState
 from ravemj.errors import Source, SourceError
 from ravemj.model.scene import KinBody as Description
 from ravemj.model.scene import Mesh
-from ravemj.model.tessellation import merged, moved, triangulated
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
@@ -55,7 +54,7 @@ class Meshing(EnvironmentPart):
         takes = _CHOICES[TriangulateOptions(options)]
         with self._simulation.lock:
             bodies = [state for state in self._simulation.bodies if takes(state.scene, name)]
-            return trimesh_of(merged(map(_triangles, bodies)))
+            return trimesh_of(Mesh.merged(map(_triangles, bodies)))
 
     def ReadTrimeshURI(self, filename: str) -> TriMesh | None:
         """Read a mesh file: all its triangles, in metres and in the frame of the file.
@@ -78,7 +77,7 @@ class Meshing(EnvironmentPart):
         except SourceError as error:
             _LOG.error("%s", error)
             return None
-        return trimesh_of(merged(part.mesh for part in parts))
+        return trimesh_of(Mesh.merged(part.mesh for part in parts))
 
     ReadTrimeshFile = ReadTrimeshURI
 
@@ -94,8 +93,8 @@ _CHOICES: dict[TriangulateOptions, Callable[[Description, str], bool]] = {
 
 def _triangles(state: BodyState) -> Mesh:
     transforms = state.link_transforms()
-    return merged(
-        moved(triangulated(geometry.shape), transforms[index] @ geometry.T_link_geometry.matrix())
+    return Mesh.merged(
+        geometry.shape.triangulated().moved(transforms[index] @ geometry.T_link_geometry.matrix())
         for index, link in enumerate(state.scene.links)
         for geometry in link.geometries
     )

@@ -15,7 +15,7 @@ from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.model import scene
-from ravemj.model.making import MADE
+from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.joint import JointInfo
 from ravemj.rave.infos.link import LinkInfo
@@ -100,7 +100,7 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
     """
     from ravemj.model.builder import BodyBuilder  # noqa: PLC0415 - slow to import
 
-    builder = BodyBuilder(is_robot=like.is_robot, source=MADE, name=info._name or like.name)
+    builder = BodyBuilder(is_robot=like.is_robot, source=FROM_SCRIPT, name=info._name or like.name)
     for one in _checked(info._vLinkInfos, LinkInfo):
         builder.links.append(one.link())
     names = [link.name for link in builder.links]

@@ -3,7 +3,6 @@
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Self
 
@@ -11,11 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_numbers
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, Vec3
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceError
 from ravemj.model import scene
-from ravemj.model.making import MADE
-from ravemj.model.tessellation import merged
+from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, identity, pose, vector
@@ -24,17 +22,9 @@ from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 if TYPE_CHECKING:
     from ravemj.formats.meshes import MeshPart
 
-TYPES: dict[type[scene.Shape], GeometryType] = {
-    scene.Box: GeometryType.Box,
-    scene.CalibrationBoard: GeometryType.CalibrationBoard,
-    scene.Sphere: GeometryType.Sphere,
-    scene.Cylinder: GeometryType.Cylinder,
-    scene.Capsule: GeometryType.Capsule,
-    scene.Container: GeometryType.Container,
-    scene.Prism: GeometryType.Prism,
-    scene.TriMesh: GeometryType.Trimesh,
-    scene.NoShape: GeometryType.None_,
-}
+TYPES = {one.shape: GeometryType[one.name] for one in scene.SHAPE_TYPES}
+_SHAPES = {GeometryType[one.name]: one.shape for one in scene.SHAPE_TYPES}
+_VECTORS = ("_vGeomData", "_vGeomData2", "_vGeomData3", "_vGeomData4")
 
 
 @dataclass(eq=False, repr=False)
@@ -118,23 +108,20 @@ class GeometryInfo(Info):
         return info
 
     def _take(self, shape: scene.Shape) -> None:
-        """Take over the numbers of a shape."""
-        match shape:
-            case scene.Box(half_extents):
-                self._vGeomData = _four(*half_extents)
-            case scene.Sphere(radius):
-                self._vGeomData = _four(radius)
-            case scene.Cylinder(radius, height) | scene.Capsule(radius, height):
-                self._vGeomData = _four(radius, height)
-            case scene.Container(outer, inner, cross, bottom):
-                self._vGeomData, self._vGeomData2 = _four(*outer), _four(*inner)
-                self._vGeomData3, self._vGeomData4 = _four(*cross), _four(*bottom)
-            case scene.Prism(corners, height):
-                self._vCrossSection, self._vGeomData = np.array(corners).reshape(-1, 2), _four(height)
-            case scene.TriMesh(mesh):
-                self._meshcollision = trimesh_of(mesh)
-            case scene.NoShape():
-                pass
+        """Take over the sizes of a shape: each vector fills a field, numbers share the first one."""
+        vectors, numbers = iter(_VECTORS), list[float]()
+        for size in shape.sizes():
+            value = getattr(shape, size.name)
+            if size.type is scene.Mesh:
+                self._meshcollision = trimesh_of(value)
+            elif size.type == scene.CrossSection:
+                self._vCrossSection = np.array(value).reshape(-1, 2)
+            elif size.type is float:
+                numbers.append(value)
+            else:
+                setattr(self, next(vectors), _four(*value))
+        if numbers:
+            self._vGeomData = _four(*numbers)
 
     def geometry(self, *, visible: bool = True) -> scene.Geometry:
         """Return what the fields describe.
@@ -145,12 +132,8 @@ class GeometryInfo(Info):
         Raises:
             RavemjError: a number is wrong, a file cannot be read, or there is no such kind of shape here.
         """
-        make = _SHAPES.get(GeometryType(self._type))
-        if make is None:
-            message = f"GeometryInfo: a shape of type {GeometryType(self._type).name} cannot be made here"
-            raise RavemjError(message, ErrorCode.NotImplemented)
         return scene.Geometry(
-            shape=make(self),
+            shape=self._shape(),
             T_link_geometry=pose(self._t, "GeometryInfo._t"),
             name=self._name or "",
             diffuse=vector(self._vDiffuseColor, "GeometryInfo._vDiffuseColor"),
@@ -161,8 +144,42 @@ class GeometryInfo(Info):
             display=self._display(),
             render_file=_file(self._filenamerender, self._vRenderScale),
             collision_file=_file(self._filenamecollision, self._vCollisionScale),
-            source=MADE,
+            source=FROM_SCRIPT,
         )
+
+    def _shape(self) -> scene.Shape:
+        """Return the shape with the sizes that the fields give, see ``_take``."""
+        kind = _SHAPES.get(GeometryType(self._type))
+        if kind is None:
+            message = f"GeometryInfo: a shape of type {GeometryType(self._type).name} cannot be made here"
+            raise RavemjError(message, ErrorCode.NotImplemented)
+        sizes, vectors = dict[str, object](), iter(_VECTORS)
+        for name, form, _ in kind.sizes():
+            if form is scene.Mesh:
+                sizes[name] = self._mesh()
+            elif form == scene.CrossSection:
+                corners = checked_numbers(self._vCrossSection, "GeometryInfo._vCrossSection").reshape(-1, 2)
+                sizes[name] = tuple((x, y) for x, y in corners.tolist())
+            elif form == Vec3:
+                sizes[name] = vector(getattr(self, next(vectors)), "GeometryInfo._vGeomData")
+        numbers = [size.name for size in kind.sizes() if size.type is float]
+        return kind.of_sizes({**sizes, **dict(zip(numbers, self._numbers(len(numbers)), strict=True))})
+
+    def _numbers(self, count: int) -> list[float]:
+        """Return the first numbers of ``_vGeomData``."""
+        numbers = checked_numbers(self._vGeomData, "GeometryInfo._vGeomData").ravel()
+        if len(numbers) < count or not np.isfinite(numbers[:count]).all():
+            found = numbers.tolist()
+            raise ArgumentError(f"GeometryInfo._vGeomData: is {found}, and should have {count} finite numbers")
+        return numbers[:count].tolist()
+
+    def _mesh(self) -> scene.Mesh:
+        """Return the given triangles, else those of the mesh files."""
+        if self._meshcollision is not None:
+            return checked_mesh(self._meshcollision, "GeometryInfo._meshcollision")
+        collision = _file(self._filenamecollision, self._vCollisionScale)
+        file = collision or _file(self._filenamerender, self._vRenderScale)
+        return scene.Mesh.merged(part.mesh for part in _parts(file)) if file else scene.Mesh.merged([])
 
     def draw(self, filename: str) -> None:
         """Draw a mesh file in place of the shape; '' draws the shape itself."""
@@ -175,43 +192,6 @@ class GeometryInfo(Info):
         if file is None or name == file.name:
             return surfaces if file is not None or name is None else None
         return tuple(scene.Surface(part.mesh, part.diffuse, part.transparency) for part in _parts(file))
-
-
-def _data(info: GeometryInfo, count: int) -> list[float]:
-    """Return the first numbers of ``_vGeomData``."""
-    numbers = checked_numbers(info._vGeomData, "GeometryInfo._vGeomData").ravel()
-    if len(numbers) < count or not np.isfinite(numbers[:count]).all():
-        raise ArgumentError(f"GeometryInfo._vGeomData: is {numbers.tolist()}, and should have {count} finite numbers")
-    return numbers[:count].tolist()
-
-
-def _container(info: GeometryInfo) -> scene.Shape:
-    sizes = (info._vGeomData, info._vGeomData2, info._vGeomData3, info._vGeomData4)
-    return scene.Container(*(vector(size, "GeometryInfo._vGeomData") for size in sizes))
-
-
-def _prism(info: GeometryInfo) -> scene.Shape:
-    corners = checked_numbers(info._vCrossSection, "GeometryInfo._vCrossSection").reshape(-1, 2)
-    return scene.Prism(tuple((x, y) for x, y in corners.tolist()), *_data(info, 1))
-
-
-def _trimesh(info: GeometryInfo) -> scene.Shape:
-    if info._meshcollision is not None:
-        return scene.TriMesh(checked_mesh(info._meshcollision, "GeometryInfo._meshcollision"))
-    file = _file(info._filenamecollision, info._vCollisionScale) or _file(info._filenamerender, info._vRenderScale)
-    return scene.TriMesh(merged(part.mesh for part in _parts(file)) if file else merged([]))
-
-
-_SHAPES: dict[GeometryType, Callable[[GeometryInfo], scene.Shape]] = {
-    GeometryType.None_: lambda info: scene.NoShape(),
-    GeometryType.Box: lambda info: scene.Box(vector(info._vGeomData, "GeometryInfo._vGeomData")),
-    GeometryType.Sphere: lambda info: scene.Sphere(*_data(info, 1)),
-    GeometryType.Cylinder: lambda info: scene.Cylinder(*_data(info, 2)),
-    GeometryType.Capsule: lambda info: scene.Capsule(*_data(info, 2)),
-    GeometryType.Container: _container,
-    GeometryType.Prism: _prism,
-    GeometryType.Trimesh: _trimesh,
-}
 
 
 def _four(*numbers: float) -> Floats:

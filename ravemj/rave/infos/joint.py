@@ -15,8 +15,8 @@ from ravemj.core.transforms import Vec3, add, conjugate, dot, rotate, scale
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.model import scene
 from ravemj.model.joints import about, directions_at, reported_anchor, wxyz_from_rotation_vector
-from ravemj.model.making import MADE
 from ravemj.model.mimic import Equations
+from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, per_axis, vector
@@ -212,7 +212,7 @@ class JointInfo(ParameterFields):
             enabled=bool(self._bIsActive),
             equations=self._equations(),
             parameters=self.parameters(),
-            source=MADE,
+            source=FROM_SCRIPT,
         )
 
     def _made_axes(self, kind: scene.JointKind, values: Sequence[float]) -> tuple[scene.Axis, ...]:

@@ -14,7 +14,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
-from ravemj.model.making import MADE
+from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.infos.geometry import GeometryInfo
 from ravemj.rave.infos.numbers import filled, identity, pose
 from ravemj.rave.infos.parameters import ParameterFields
@@ -91,7 +91,7 @@ class LinkInfo(ParameterFields):
 
         return LinkBuilder(
             name=self._name,
-            source=MADE,
+            source=FROM_SCRIPT,
             pose=pose(self._t, "LinkInfo._t"),
             geometries=list(geometries_of(self._vgeometryinfos, visible=self._bVisible)),
             inertial=inertial_about(mass, T_link_mass, moments),

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
-from ravemj.model.making import MADE
+from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import identity, pose, vector
 
@@ -86,7 +86,7 @@ class ManipulatorInfo(Info):
 
         return ManipulatorBuilder(
             name=self._name,
-            source=MADE,
+            source=FROM_SCRIPT,
             base=self._sBaseLinkName or "",
             effector=self._sEffectorLinkName or "",
             T_effector_tool=pose(self._tLocalTool, "ManipulatorInfo._tLocalTool"),
@@ -139,5 +139,5 @@ class AttachedSensorInfo(Info):
             T_link_sensor=pose(self._trelative, "AttachedSensorInfo._trelative"),
             type=self._sensorname or None,
             camera=self._camera,
-            source=MADE,
+            source=FROM_SCRIPT,
         )

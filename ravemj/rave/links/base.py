@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from ravemj.core.showing import Shown
+from ravemj.core.api_object import ApiObject
 from ravemj.engine.simulation import BodyState
 from ravemj.model import scene
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class LinkPart(Shown):
+class LinkPart(ApiObject):
     """Part of the API of a link; ``Link`` joins the parts."""
 
     def __init__(self, parent: "KinBody", state: BodyState, index: int) -> None:

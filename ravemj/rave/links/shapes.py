@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
-from ravemj.model.tessellation import merged, moved, triangulated
+from ravemj.model.scene import Mesh
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo
 from ravemj.rave.infos.link import geometries_of
@@ -35,7 +35,7 @@ class LinkShapes(LinkPart):
     def GetCollisionData(self) -> TriMesh:
         """Return all shapes of the link as triangles, in the link's frame; copies."""
         return trimesh_of(
-            merged(moved(triangulated(one.shape), one.T_link_geometry.matrix()) for one in self._scene.geometries)
+            Mesh.merged(one.shape.triangulated().moved(one.T_link_geometry.matrix()) for one in self._scene.geometries)
         )
 
     def InitGeometries(self, geometryinfos: Sequence[GeometryInfo]) -> None:

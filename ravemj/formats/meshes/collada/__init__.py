@@ -17,10 +17,10 @@ from ravemj.formats.meshes.collada.document import (
     children,
     local_name,
 )
-from ravemj.formats.meshes.collada.geometry import PrimitiveGroup, primitive_groups
 from ravemj.formats.meshes.collada.materials import ColladaMaterial, bindings, read_material
-from ravemj.formats.meshes.collada.placement import local_transform
-from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.collada.node_transforms import local_transform
+from ravemj.formats.meshes.collada.triangles import PrimitiveGroup, primitive_groups
+from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.obj import GRAY, transparency
 from ravemj.formats.meshes.parts import WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
 
@@ -34,7 +34,7 @@ _Y_UP_FROM = {
 }
 
 
-def read_collada(file: MeshFile) -> tuple[MeshPart, ...]:
+def read_collada(file: FileContent) -> tuple[MeshPart, ...]:
     """Read a COLLADA file: one part for each material that is used, in the order of the materials' ids.
 
     Raises:

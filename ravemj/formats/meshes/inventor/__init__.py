@@ -1,18 +1,19 @@
 """Inventor 1.0 to 2.1, in text and binary, VRML 1.0 and VRML97: a file to one part of one colour.
 
 OpenRAVE loads these files through Coin and takes every triangle of the file, flattened, and the last material.
-So does this reader: ``ascii`` or ``binary`` make nodes, ``old`` or ``vrml97`` walk through them, ``drawing`` collects.
+So does this reader: ``ascii`` or ``binary`` make nodes, ``old`` or ``vrml97`` handle each kind of
+them, ``traversal`` collects the triangles.
 """
 
-from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.inventor import ascii as text_format
 from ravemj.formats.meshes.inventor import binary, old, vrml97
-from ravemj.formats.meshes.inventor.drawing import Drawing, State
-from ravemj.formats.meshes.inventor.nodes import Document, Node
+from ravemj.formats.meshes.inventor.nodes import InventorDocument, Node
+from ravemj.formats.meshes.inventor.traversal import State, Traversal
 from ravemj.formats.meshes.parts import MeshPart, check_finite, weld
 
 
-def read_inventor(file: MeshFile) -> tuple[MeshPart, ...]:
+def read_inventor(file: FileContent) -> tuple[MeshPart, ...]:
     """Read an Inventor or VRML file; the header, not the name, tells the dialect.
 
     Returns:
@@ -23,27 +24,27 @@ def read_inventor(file: MeshFile) -> tuple[MeshPart, ...]:
     """
     trees: dict[str, list[Node]] = {}
 
-    def draw(drawing: Drawing, opened: MeshFile, state: State) -> State:
+    def draw(traversal: Traversal, opened: FileContent, state: State) -> State:
         if opened.path not in trees:
             trees[opened.path] = _nodes(opened)
         handlers = vrml97.HANDLERS if opened.data.startswith(b"#VRML V2") else old.HANDLERS
-        return drawing.nodes(trees[opened.path], handlers, state)
+        return traversal.nodes(trees[opened.path], handlers, state)
 
-    drawing = Drawing(file, draw)
-    draw(drawing, file, State())
-    corners = drawing.corners()
+    traversal = Traversal(file, draw)
+    draw(traversal, file, State())
+    corners = traversal.corners()
     check_finite(corners, file.source)
     if not len(corners):
         return ()
-    mesh, finish = weld(corners), drawing.finish
+    mesh, finish = weld(corners), traversal.finish
     return (MeshPart(mesh) if finish is None else MeshPart(mesh, finish.diffuse, finish.ambient, finish.transparency),)
 
 
-def _nodes(file: MeshFile) -> list[Node]:
+def _nodes(file: FileContent) -> list[Node]:
     header = file.data[:80].partition(b"\n")[0]
     if header.startswith(b"#Inventor V") and b"binary" in header:
-        return binary.parse(Document(file.path), file.data)
-    document = Document(file.path, file.data.decode("latin-1"))  # a character a byte, never wrong
+        return binary.parse(InventorDocument(file.path), file.data)
+    document = InventorDocument(file.path, file.data.decode("latin-1"))  # a character a byte, never wrong
     if not file.data.startswith((b"#Inventor V", b"#VRML V")):
         document.fail("neither Inventor nor VRML: the file has to begin with #Inventor or #VRML", 0)
     return text_format.parse(document)

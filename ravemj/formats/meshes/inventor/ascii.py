@@ -8,7 +8,7 @@ hundreds of field types is needed. Arrays of numbers are found by one regular ex
 import re
 from typing import NoReturn
 
-from ravemj.formats.meshes.inventor.nodes import MAX_DEPTH, MAX_NODES, Document, Is, Node, Numbers, Value
+from ravemj.formats.meshes.inventor.nodes import MAX_DEPTH, MAX_NODES, InventorDocument, Is, Node, Numbers, Value
 from ravemj.formats.meshes.inventor.prototypes import Prototype
 
 _GAP = r"(?:[\s,]++|#[^\n\r]*+)*+"
@@ -22,7 +22,7 @@ _INTERFACE = frozenset({"field", "exposedField", "eventIn", "eventOut"})
 _PUNCTUATION = frozenset("{}[]()|")
 
 
-def parse(document: Document) -> list[Node]:
+def parse(document: InventorDocument) -> list[Node]:
     """Read all nodes of a document.
 
     Raises:
@@ -34,7 +34,7 @@ def parse(document: Document) -> list[Node]:
 class _Parser:
     """Reads from left to right; every method leaves ``_at`` behind what it has read."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: InventorDocument) -> None:
         self._document = document
         self._text = document.text
         self._at = 0

@@ -13,7 +13,7 @@ from typing import NoReturn
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.formats.meshes.inventor.nodes import MAX_DEPTH, MAX_NODES, Document, Node, Value
+from ravemj.formats.meshes.inventor.nodes import MAX_DEPTH, MAX_NODES, InventorDocument, Node, Value
 
 _IS_GROUP = 2  # in the flags of a node
 _GROUPS_OF_2_0 = frozenset(
@@ -22,7 +22,7 @@ _GROUPS_OF_2_0 = frozenset(
 )
 
 
-def parse(document: Document, data: bytes) -> list[Node]:
+def parse(document: InventorDocument, data: bytes) -> list[Node]:
     """Read all nodes of a binary file.
 
     Raises:
@@ -38,7 +38,7 @@ def parse(document: Document, data: bytes) -> list[Node]:
 class _Reader:
     """Reads from front to back; every method leaves ``_at`` behind what it has read."""
 
-    def __init__(self, document: Document, body: bytes, flagged: bool) -> None:
+    def __init__(self, document: InventorDocument, body: bytes, flagged: bool) -> None:
         self._document = document
         self._body = body
         self._flagged = flagged

@@ -16,7 +16,7 @@ MAX_NODES = 200_000
 
 
 @dataclass(frozen=True, slots=True)
-class Document:
+class InventorDocument:
     """The file that nodes come from.
 
     Attributes:
@@ -66,7 +66,7 @@ class Node:
     """
 
     kind: str
-    document: Document
+    document: InventorDocument
     offset: int
     fields: dict[str, Value] = field(default_factory=dict[str, Value])
     children: list["Node"] = field(default_factory=list["Node"])

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from ravemj.core.transforms import Ints
-from ravemj.formats.meshes import faces
+from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.inventor import primitives
-from ravemj.formats.meshes.inventor.drawing import Drawing, Finish, Handler, State, moved, transform
 from ravemj.formats.meshes.inventor.nodes import Node
+from ravemj.formats.meshes.inventor.traversal import Finish, Handler, State, Traversal, moved, transform
 from ravemj.formats.meshes.matrices import rotation, translation
 from ravemj.formats.meshes.parts import rgb
 
@@ -30,70 +30,70 @@ _METRES = {
 }
 
 
-def _separator(drawing: Drawing, node: Node, state: State) -> State:
-    drawing.visit(node.children, state)
+def _separator(traversal: Traversal, node: Node, state: State) -> State:
+    traversal.visit(node.children, state)
     return state
 
 
-def _group(drawing: Drawing, node: Node, state: State) -> State:
-    return drawing.visit(node.children, state)
+def _group(traversal: Traversal, node: Node, state: State) -> State:
+    return traversal.visit(node.children, state)
 
 
-def _transform_separator(drawing: Drawing, node: Node, state: State) -> State:
-    return replace(drawing.visit(node.children, state), matrix=state.matrix, metres=state.metres)
+def _transform_separator(traversal: Traversal, node: Node, state: State) -> State:
+    return replace(traversal.visit(node.children, state), matrix=state.matrix, metres=state.metres)
 
 
-def _switch(drawing: Drawing, node: Node, state: State) -> State:
+def _switch(traversal: Traversal, node: Node, state: State) -> State:
     which = node.integer("whichChild", -1)
     if which == -3:  # all
-        return drawing.visit(node.children, state)
+        return traversal.visit(node.children, state)
     which = max(which, -1)  # -2 is that of an outer switch, which nobody writes into files
-    return drawing.visit(node.children[which : which + 1] if which >= 0 else [], state)
+    return traversal.visit(node.children[which : which + 1] if which >= 0 else [], state)
 
 
-def _first_child(drawing: Drawing, node: Node, state: State) -> State:
-    after = drawing.visit(node.children[:1], state)
-    drawing.look(node.children[1:], state)
+def _first_child(traversal: Traversal, node: Node, state: State) -> State:
+    after = traversal.visit(node.children[:1], state)
+    traversal.look(node.children[1:], state)
     return after
 
 
-def _include(drawing: Drawing, node: Node, state: State) -> State:
-    return drawing.include(node.words("name", ()), node, state, painting=False)
+def _include(traversal: Traversal, node: Node, state: State) -> State:
+    return traversal.include(node.words("name", ()), node, state, painting=False)
 
 
-def _translation(_drawing: Drawing, node: Node, state: State) -> State:
+def _translation(_traversal: Traversal, node: Node, state: State) -> State:
     return moved(state, translation(node.floats("translation", 3, (0.0, 0.0, 0.0))))
 
 
-def _rotation(_drawing: Drawing, node: Node, state: State) -> State:
+def _rotation(_traversal: Traversal, node: Node, state: State) -> State:
     return moved(state, rotation(node.floats("rotation", 4, (0.0, 0.0, 1.0, 0.0))))
 
 
-def _rotation_xyz(_drawing: Drawing, node: Node, state: State) -> State:
+def _rotation_xyz(_traversal: Traversal, node: Node, state: State) -> State:
     axis = {"X": [1.0, 0.0, 0.0], "Y": [0.0, 1.0, 0.0], "Z": [0.0, 0.0, 1.0]}.get(node.word("axis", "X"))
     if axis is None:
         node.fail("the axis of a RotationXYZ is X, Y or Z")
     return moved(state, rotation(np.array([*axis, node.number("angle", 0.0)])))
 
 
-def _scale(_drawing: Drawing, node: Node, state: State) -> State:
+def _scale(_traversal: Traversal, node: Node, state: State) -> State:
     return moved(state, np.diag([*node.floats("scaleFactor", 3, (1.0, 1.0, 1.0)), 1.0]))
 
 
-def _transform(_drawing: Drawing, node: Node, state: State) -> State:
+def _transform(_traversal: Traversal, node: Node, state: State) -> State:
     return moved(state, transform(node, "scaleFactor"))
 
 
-def _matrix_transform(_drawing: Drawing, node: Node, state: State) -> State:
+def _matrix_transform(_traversal: Traversal, node: Node, state: State) -> State:
     rows = node.floats("matrix", 16, tuple(np.eye(4).ravel().tolist())).reshape(4, 4)
     return moved(state, rows.T)  # written for row vectors
 
 
-def _reset_transform(_drawing: Drawing, _node: Node, state: State) -> State:
+def _reset_transform(_traversal: Traversal, _node: Node, state: State) -> State:
     return replace(state, matrix=np.eye(4), metres=1.0)
 
 
-def _units(_drawing: Drawing, node: Node, state: State) -> State:
+def _units(_traversal: Traversal, node: Node, state: State) -> State:
     metres = _METRES.get(node.word("units", "METERS"))
     if metres is None:
         node.fail(f"unknown unit of length {node.word('units', '')[:40]!r}")
@@ -101,72 +101,74 @@ def _units(_drawing: Drawing, node: Node, state: State) -> State:
     return replace(moved(state, np.diag([factor, factor, factor, 1.0])), metres=metres)
 
 
-def _complexity(_drawing: Drawing, node: Node, state: State) -> State:
+def _complexity(_traversal: Traversal, node: Node, state: State) -> State:
     return replace(state, complexity=min(max(node.number("value", primitives.DEFAULT_COMPLEXITY), 0.0), 1.0))
 
 
-def _shape_hints(_drawing: Drawing, node: Node, state: State) -> State:
+def _shape_hints(_traversal: Traversal, node: Node, state: State) -> State:
     return replace(state, concave=node.word("faceType", "CONVEX") == "UNKNOWN_FACE_TYPE")
 
 
-def _coordinate3(_drawing: Drawing, node: Node, state: State) -> State:
+def _coordinate3(_traversal: Traversal, node: Node, state: State) -> State:
     return replace(state, points=node.vectors("point"))
 
 
-def _vertex_property(_drawing: Drawing, node: Node, state: State) -> State:
+def _vertex_property(_traversal: Traversal, node: Node, state: State) -> State:
     return replace(state, points=node.vectors("vertex")) if "vertex" in node.fields else state
 
 
-def _material(drawing: Drawing, node: Node, state: State) -> State:
+def _material(traversal: Traversal, node: Node, state: State) -> State:
     gray = node.floats("diffuseColor", 3, (0.8, 0.8, 0.8))
     ambient = node.floats("ambientColor", 3, (0.2, 0.2, 0.2))
-    drawing.paint(Finish(rgb(gray), rgb(ambient), node.number("transparency", 0.0)))
+    traversal.paint(Finish(rgb(gray), rgb(ambient), node.number("transparency", 0.0)))
     return state
 
 
-def _face_set(drawing: Drawing, node: Node, state: State) -> State:
-    state_of_shape = _with_own_points(drawing, node, state)
+def _face_set(traversal: Traversal, node: Node, state: State) -> State:
+    state_of_shape = _with_own_points(traversal, node, state)
     sizes, index = _runs(node, state_of_shape)
-    drawing.add_polygons(sizes, index, node, state_of_shape)
+    traversal.add_polygons(sizes, index, node, state_of_shape)
     return state
 
 
-def _indexed_face_set(drawing: Drawing, node: Node, state: State) -> State:
-    drawing.add_polygons(*faces.split(node.integers("coordIndex", (0,))), node, _with_own_points(drawing, node, state))
+def _indexed_face_set(traversal: Traversal, node: Node, state: State) -> State:
+    traversal.add_polygons(
+        *triangulation.split(node.integers("coordIndex", (0,))), node, _with_own_points(traversal, node, state)
+    )
     return state
 
 
-def _triangle_strips(drawing: Drawing, node: Node, state: State) -> State:
-    state_of_shape = _with_own_points(drawing, node, state)
+def _triangle_strips(traversal: Traversal, node: Node, state: State) -> State:
+    state_of_shape = _with_own_points(traversal, node, state)
     sizes, index = _runs(node, state_of_shape)
-    triangles = faces.strips(sizes, index)
-    drawing.add_polygons(np.full(len(triangles), 3), triangles.ravel(), node, state_of_shape)
+    triangles = triangulation.strips(sizes, index)
+    traversal.add_polygons(np.full(len(triangles), 3), triangles.ravel(), node, state_of_shape)
     return state
 
 
-def _indexed_triangle_strips(drawing: Drawing, node: Node, state: State) -> State:
-    triangles = faces.strips(*faces.split(node.integers("coordIndex", (0,))))
-    points = _with_own_points(drawing, node, state)
-    drawing.add_polygons(np.full(len(triangles), 3), triangles.ravel(), node, points)
+def _indexed_triangle_strips(traversal: Traversal, node: Node, state: State) -> State:
+    triangles = triangulation.strips(*triangulation.split(node.integers("coordIndex", (0,))))
+    points = _with_own_points(traversal, node, state)
+    traversal.add_polygons(np.full(len(triangles), 3), triangles.ravel(), node, points)
     return state
 
 
-def _quad_mesh(drawing: Drawing, node: Node, state: State) -> State:
-    state_of_shape = _with_own_points(drawing, node, state)
+def _quad_mesh(traversal: Traversal, node: Node, state: State) -> State:
+    state_of_shape = _with_own_points(traversal, node, state)
     rows, columns = (node.integer(name, 1) for name in ("verticesPerColumn", "verticesPerRow"))
     start = node.integer("startIndex", 0)
     if rows < 1 or columns < 1 or start < 0 or start + rows * columns > len(state_of_shape.points):
         node.fail("a QuadMesh with fewer points than it says")
     grid = start + np.arange(rows * columns).reshape(rows, columns)
     quads = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=-1).reshape(-1, 4)
-    drawing.add_polygons(np.full(len(quads), 4), quads.ravel(), node, state_of_shape)
+    traversal.add_polygons(np.full(len(quads), 4), quads.ravel(), node, state_of_shape)
     return state
 
 
-def _with_own_points(drawing: Drawing, node: Node, state: State) -> State:
+def _with_own_points(traversal: Traversal, node: Node, state: State) -> State:
     """Return the state with the points of the shape's ``vertexProperty``, if it has one."""
     own = node.node("vertexProperty")
-    return state if own is None else _vertex_property(drawing, own, state)
+    return state if own is None else _vertex_property(traversal, own, state)
 
 
 def _runs(node: Node, state: State) -> tuple[Ints, Ints]:
@@ -181,25 +183,25 @@ def _runs(node: Node, state: State) -> tuple[Ints, Ints]:
     return sizes, start + np.arange(int(sizes.sum()))
 
 
-def _cube(drawing: Drawing, node: Node, state: State) -> State:
+def _cube(traversal: Traversal, node: Node, state: State) -> State:
     size = np.array([node.number(name, 2.0) for name in ("width", "height", "depth")])
-    return drawing.add(primitives.box(size), node, state)
+    return traversal.add(primitives.box(size), node, state)
 
 
-def _sphere(drawing: Drawing, node: Node, state: State) -> State:
-    return drawing.add(primitives.sphere(node.number("radius", 1.0), state.complexity), node, state)
+def _sphere(traversal: Traversal, node: Node, state: State) -> State:
+    return traversal.add(primitives.sphere(node.number("radius", 1.0), state.complexity), node, state)
 
 
-def _cylinder(drawing: Drawing, node: Node, state: State) -> State:
+def _cylinder(traversal: Traversal, node: Node, state: State) -> State:
     radius, height = node.number("radius", 1.0), node.number("height", 2.0)
     parts = _parts(node, {"SIDES", "TOP", "BOTTOM"})
-    return drawing.add(primitives.cylinder(radius, height, parts, state.complexity), node, state)
+    return traversal.add(primitives.cylinder(radius, height, parts, state.complexity), node, state)
 
 
-def _cone(drawing: Drawing, node: Node, state: State) -> State:
+def _cone(traversal: Traversal, node: Node, state: State) -> State:
     radius, height = node.number("bottomRadius", 1.0), node.number("height", 2.0)
     parts = _parts(node, {"SIDES", "BOTTOM"})
-    return drawing.add(primitives.cone(radius, height, parts, state.complexity), node, state)
+    return traversal.add(primitives.cone(radius, height, parts, state.complexity), node, state)
 
 
 def _parts(node: Node, everything: set[str]) -> set[str]:

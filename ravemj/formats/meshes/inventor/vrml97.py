@@ -2,87 +2,87 @@
 
 import numpy as np
 
-from ravemj.formats.meshes import faces
+from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.inventor import primitives
-from ravemj.formats.meshes.inventor.drawing import Drawing, Finish, Handler, State, moved, transform
 from ravemj.formats.meshes.inventor.nodes import Node
+from ravemj.formats.meshes.inventor.traversal import Finish, Handler, State, Traversal, moved, transform
 from ravemj.formats.meshes.parts import rgb
 
 
-def _group(drawing: Drawing, node: Node, state: State) -> State:
-    drawing.visit([*node.nodes("children"), *node.children], state)
+def _group(traversal: Traversal, node: Node, state: State) -> State:
+    traversal.visit([*node.nodes("children"), *node.children], state)
     return state
 
 
-def _transform(drawing: Drawing, node: Node, state: State) -> State:
-    _group(drawing, node, moved(state, transform(node, "scale")))
+def _transform(traversal: Traversal, node: Node, state: State) -> State:
+    _group(traversal, node, moved(state, transform(node, "scale")))
     return state
 
 
-def _switch(drawing: Drawing, node: Node, state: State) -> State:
+def _switch(traversal: Traversal, node: Node, state: State) -> State:
     which = node.integer("whichChoice", -1)
     choice = node.nodes("choice") or node.nodes("children")  # the latter is X3D's name
-    drawing.visit(choice[which : which + 1] if which >= 0 else [], state)
+    traversal.visit(choice[which : which + 1] if which >= 0 else [], state)
     return state
 
 
-def _level_of_detail(drawing: Drawing, node: Node, state: State) -> State:
+def _level_of_detail(traversal: Traversal, node: Node, state: State) -> State:
     levels = node.nodes("level") or node.nodes("children")
-    drawing.visit(levels[:1], state)
-    drawing.look(levels[1:], state)
+    traversal.visit(levels[:1], state)
+    traversal.look(levels[1:], state)
     return state
 
 
-def _inline(drawing: Drawing, node: Node, state: State) -> State:
-    drawing.include(node.words("url", ()), node, state, painting=True)
+def _inline(traversal: Traversal, node: Node, state: State) -> State:
+    traversal.include(node.words("url", ()), node, state, painting=True)
     return state
 
 
-def _shape(drawing: Drawing, node: Node, state: State) -> State:
-    drawing.visit(node.nodes("appearance"), state)
-    drawing.visit(node.nodes("geometry"), state)
+def _shape(traversal: Traversal, node: Node, state: State) -> State:
+    traversal.visit(node.nodes("appearance"), state)
+    traversal.visit(node.nodes("geometry"), state)
     return state
 
 
-def _appearance(drawing: Drawing, node: Node, state: State) -> State:
-    drawing.visit(node.nodes("material"), state)
+def _appearance(traversal: Traversal, node: Node, state: State) -> State:
+    traversal.visit(node.nodes("material"), state)
     return state
 
 
-def _material(drawing: Drawing, node: Node, state: State) -> State:
+def _material(traversal: Traversal, node: Node, state: State) -> State:
     diffuse = node.floats("diffuseColor", 3, (0.8, 0.8, 0.8))
     ambient = np.repeat(node.number("ambientIntensity", 0.2), 3)
-    drawing.paint(Finish(rgb(diffuse), rgb(ambient), node.number("transparency", 0.0)))
+    traversal.paint(Finish(rgb(diffuse), rgb(ambient), node.number("transparency", 0.0)))
     return state
 
 
-def _indexed_face_set(drawing: Drawing, node: Node, state: State) -> State:
+def _indexed_face_set(traversal: Traversal, node: Node, state: State) -> State:
     coordinates = node.node("coord")
     if coordinates is None:
         return state
     shape = State(state.matrix, coordinates.vectors("point"), concave=not node.flag("convex", True))
-    drawing.add_polygons(*faces.split(node.integers("coordIndex")), node, shape)
+    traversal.add_polygons(*triangulation.split(node.integers("coordIndex")), node, shape)
     return state
 
 
-def _box(drawing: Drawing, node: Node, state: State) -> State:
-    return drawing.add(primitives.box(node.floats("size", 3, (2.0, 2.0, 2.0))), node, state)
+def _box(traversal: Traversal, node: Node, state: State) -> State:
+    return traversal.add(primitives.box(node.floats("size", 3, (2.0, 2.0, 2.0))), node, state)
 
 
-def _sphere(drawing: Drawing, node: Node, state: State) -> State:
-    return drawing.add(primitives.sphere(node.number("radius", 1.0)), node, state)
+def _sphere(traversal: Traversal, node: Node, state: State) -> State:
+    return traversal.add(primitives.sphere(node.number("radius", 1.0)), node, state)
 
 
-def _cylinder(drawing: Drawing, node: Node, state: State) -> State:
+def _cylinder(traversal: Traversal, node: Node, state: State) -> State:
     parts = {name.upper() + "S" * (name == "side") for name in ("side", "top", "bottom") if node.flag(name, True)}
     radius, height = node.number("radius", 1.0), node.number("height", 2.0)
-    return drawing.add(primitives.cylinder(radius, height, parts), node, state)
+    return traversal.add(primitives.cylinder(radius, height, parts), node, state)
 
 
-def _cone(drawing: Drawing, node: Node, state: State) -> State:
+def _cone(traversal: Traversal, node: Node, state: State) -> State:
     parts = {name.upper() + "S" * (name == "side") for name in ("side", "bottom") if node.flag(name, True)}
     radius, height = node.number("bottomRadius", 1.0), node.number("height", 2.0)
-    return drawing.add(primitives.cone(radius, height, parts), node, state)
+    return traversal.add(primitives.cone(radius, height, parts), node, state)
 
 
 HANDLERS: dict[str, Handler] = {

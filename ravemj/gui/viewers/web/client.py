@@ -162,7 +162,7 @@ class Client:
         width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
         shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, 1.0)
         form = Format(max(int(width * shrink), 1), max(int(height * shrink), 1))
-        return self._renderer.render(self.interaction.view.camera, style.background, form, gizmos=overlay.shapes)
+        return self._renderer.render(self.interaction.view.camera, style.background, form, gizmos=overlay.primitives)
 
     def send_file(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""

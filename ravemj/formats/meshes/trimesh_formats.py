@@ -9,7 +9,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import SourceError
-from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.obj import GRAY, transparency
 from ravemj.formats.meshes.parts import BLACK, WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
 from ravemj.model.scene import Rgb
@@ -23,7 +23,7 @@ _COLOURS: dict[str, tuple[Rgb, Rgb]] = {
 """Diffuse and ambient colours that OpenRAVE's importer gives to files without materials."""
 
 
-def read_exchange(file: MeshFile) -> tuple[MeshPart, ...]:
+def read_exchange(file: FileContent) -> tuple[MeshPart, ...]:
     """Read a PLY, OFF, GLB or glTF file: one part for each colour, in the order of the file.
 
     Raises:
@@ -48,7 +48,7 @@ def read_exchange(file: MeshFile) -> tuple[MeshPart, ...]:
 class _References(Mapping[str, bytes]):
     """Gives trimesh the files that a file names."""
 
-    def __init__(self, file: MeshFile) -> None:
+    def __init__(self, file: FileContent) -> None:
         self._file = file
 
     def __getitem__(self, name: str) -> bytes:
@@ -64,7 +64,7 @@ class _References(Mapping[str, bytes]):
         return 0
 
 
-def _geometries(file: MeshFile, kind: str) -> list[tuple[Floats, Floats | None]]:
+def _geometries(file: FileContent, kind: str) -> list[tuple[Floats, Floats | None]]:
     """Return corners and, where there is a material, its red, green, blue and opacity."""
     trimesh: Any = importlib.import_module("trimesh")  # slow to import, and without types
     try:

@@ -1,4 +1,7 @@
-"""How far the points of a body travel when one of its DOFs moves."""
+"""Motion bounds: the greatest displacement of any point of a body per unit of each DOF.
+
+Adaptive collision checking along a path needs such bounds; OpenRAVE's weights and resolutions are made from them.
+"""
 
 import math
 
@@ -11,13 +14,13 @@ from ravemj.model.mimic import evaluation_order, leaders
 from ravemj.model.scene import Joint, KinBody
 
 _SAMPLES = 1000
-"""Values of the leaders at which the slope of an equation of a mimic joint is looked at."""
+"""Sampled values of the leaders, at which the derivative of a mimic joint's equation is evaluated."""
 
 
-def travel(body: KinBody) -> Floats:
-    """Return for each DOF how far a point of the body's shapes moves at most, at any joint values within the limits.
+def motion_bounds(body: KinBody) -> Floats:
+    """Return for each DOF the greatest displacement of a point of the body's shapes, at any values within the limits.
 
-    Where a chain of links bends, it counts as stretched, so that the answer can be too great but not too small.
+    The bounds are conservative: a chain of links counts as stretched in every configuration.
 
     Returns:
         Metres per radian, for sliders per metre, shape (dof,); 0 for a DOF that moves no shape.

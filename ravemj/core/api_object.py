@@ -4,14 +4,14 @@ from collections.abc import Iterable
 from typing import ClassVar
 
 
-class _ShownType(type):
+class _ApiType(type):
     """Completes names of classes like those of their objects; IPython lists both behind an object."""
 
     def __dir__(cls) -> list[str]:
         return _listed(cls, super().__dir__())
 
 
-class Shown(metaclass=_ShownType):
+class ApiObject(metaclass=_ApiType):
     """Shows no address, and completes to what users call.
 
     ``dir`` and tab completion leave out names with an underscore, and those in ``_internal``: what other rooms of this

@@ -6,7 +6,7 @@ from ravemj.core.transforms import Floats, Pose, pose_of
 from ravemj.errors import Source, SourceError
 
 
-def split(matrix: Floats, source: Source) -> tuple[Pose, Floats | None]:
+def polar_decomposition(matrix: Floats, source: Source) -> tuple[Pose, Floats | None]:
     """Take a matrix apart: ``matrix = pose @ rest``.
 
     Args:
@@ -30,10 +30,10 @@ def split(matrix: Floats, source: Source) -> tuple[Pose, Floats | None]:
     return pose_of(rigid), rigid[:3, :3].T @ linear
 
 
-def rigid(matrix: Floats, source: Source) -> Pose:
+def rigid_part(matrix: Floats, source: Source) -> Pose:
     """Return the pose of a matrix, without what it scales.
 
     Raises:
         SourceError: A number in it is not finite.
     """
-    return split(matrix, source)[0]
+    return polar_decomposition(matrix, source)[0]

@@ -8,8 +8,8 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import SourceError
-from ravemj.formats.meshes import faces
-from ravemj.formats.meshes.files import MeshFile
+from ravemj.formats.meshes import triangulation
+from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.inventor import primitives
 from ravemj.formats.meshes.inventor.nodes import MAX_NODES, Node
 from ravemj.formats.meshes.matrices import rotation, translation
@@ -49,14 +49,14 @@ class Finish:
     transparency: float
 
 
-Handler = Callable[["Drawing", Node, State], State]
+Handler = Callable[["Traversal", Node, State], State]
 """Draws a node; the state that it returns is that of the nodes after it."""
 
-Opener = Callable[["Drawing", MeshFile, State], State]
+Opener = Callable[["Traversal", FileContent, State], State]
 """Draws a file that another one includes; returns the state at its end."""
 
 
-class Drawing:
+class Traversal:
     """Triangles collected from a file and those that it includes.
 
     Attributes:
@@ -64,8 +64,8 @@ class Drawing:
         finish: The last material so far.
     """
 
-    def __init__(self, file: MeshFile, opener: Opener) -> None:
-        self.file: MeshFile = file
+    def __init__(self, file: FileContent, opener: Opener) -> None:
+        self.file: FileContent = file
         self.finish: Finish | None = None
         self._opener = opener
         self._handlers: dict[str, Handler] = {}
@@ -133,9 +133,9 @@ class Drawing:
         starts, sizes = starts[good], sizes[good]
         if state.concave and (sizes > 3).any():
             index = np.where((index < 0) | (index >= len(state.points)), 0, index)
-            triangles = faces.clipped(state.points[index], starts, sizes)
+            triangles = triangulation.clipped(state.points[index], starts, sizes)
         else:
-            triangles = faces.fans(starts, sizes)
+            triangles = triangulation.fans(starts, sizes)
         return self.add(state.points[index[triangles]], node, state)
 
     def include(self, names: Iterable[str], node: Node, state: State, painting: bool) -> State:

@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -11,9 +11,9 @@ import numpy as np
 from ravemj.core.transforms import ZERO, Floats, Pose, Vec3, rows_from_wxyz, scale, wxyz_from_axis_angle
 from ravemj.formats.meshes import MeshPart
 from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.tags import Tag, placement_tags
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
-    ROTATIONS,
     Placement,
     hadamard,
     is_false,
@@ -22,18 +22,14 @@ from ravemj.formats.openrave_xml.values import (
     vector,
 )
 from ravemj.model.scene import (
-    Box,
-    Capsule,
-    Container,
+    SHAPE_TYPES,
     Cylinder,
     Geometry,
     Mesh,
     MeshFile,
     NoShape,
-    Prism,
     Rgb,
     Shape,
-    Sphere,
     Surface,
     TriMesh,
 )
@@ -63,11 +59,7 @@ class _Geom:
     context: Context
     name: str = ""
     placement: Placement = field(default_factory=Placement)
-    half_extents: Vec3 = ZERO
-    radius: float = 0.0
-    height: float = 0.0
-    container: dict[str, Vec3] = field(default_factory=lambda: {})
-    cross_section: Sequence[float] = ()
+    sizes: dict[str, object] = field(default_factory=lambda: dict(_NO_SIZES))
     vertices: Sequence[float] = ()
     collision: MeshFile | None = None
     render: MeshFile | None = None
@@ -82,25 +74,25 @@ class _Geom:
         self.placement.turn(element, self.context.diagnostics)
 
     def read_half_extents(self, element: Element) -> None:
-        self.half_extents = vector(element, self.context.diagnostics)
+        self.sizes["half_extents"] = vector(element, self.context.diagnostics)
 
     def read_full_extents(self, element: Element) -> None:
-        self.half_extents = scale(vector(element, self.context.diagnostics), 0.5)
+        self.sizes["half_extents"] = scale(vector(element, self.context.diagnostics), 0.5)
 
-    def read_radius(self, element: Element) -> None:
-        self.radius = number(element, self.context.diagnostics)
+    def read_number(self, element: Element) -> None:
+        """Read a size that is called like its tag."""
+        self.sizes[element.tag] = number(element, self.context.diagnostics)
 
-    def read_height(self, element: Element) -> None:
-        self.height = number(element, self.context.diagnostics)
-
-    def read_container(self, element: Element) -> None:
-        self.container[element.tag] = vector(element, self.context.diagnostics)
+    def read_vector(self, element: Element) -> None:
+        """Read a size in three directions that is called like its tag."""
+        self.sizes[element.tag] = vector(element, self.context.diagnostics)
 
     def read_cross_section(self, element: Element) -> None:
-        self.cross_section, rest = leading_numbers(element.text)
-        if rest or len(self.cross_section) % 2:
-            message = f"<{element.spelled}> needs x and y of each corner, and holds {len(self.cross_section)} numbers"
+        numbers, rest = leading_numbers(element.text)
+        if rest or len(numbers) % 2:
+            message = f"<{element.spelled}> needs x and y of each corner, and holds {len(numbers)} numbers"
             self.context.diagnostics.warn("number-count", message, element.source)
+        self.sizes["cross_section"] = tuple(zip(numbers[::2], numbers[1::2], strict=False))
 
     def read_vertices(self, element: Element) -> None:
         self.vertices, rest = leading_numbers(element.text)
@@ -129,41 +121,45 @@ class _Geom:
         self.name = element.text.strip()
 
 
-GEOM_TAGS: dict[str, Callable[[_Geom, Element], None]] = {
-    "translation": _Geom.translate,
-    **dict.fromkeys(ROTATIONS, _Geom.turn),
-    "extents": _Geom.read_half_extents,
-    "halfextents": _Geom.read_half_extents,
-    "fullextents": _Geom.read_full_extents,
-    "radius": _Geom.read_radius,
-    "height": _Geom.read_height,
-    **dict.fromkeys(("outer_extents", "inner_extents", "bottom_cross", "bottom"), _Geom.read_container),
-    "crosssection": _Geom.read_cross_section,
-    "vertices": _Geom.read_vertices,
-    "data": _Geom.read_collision,
-    "collision": _Geom.read_collision,
-    "render": _Geom.read_render,
-    "diffusecolor": _Geom.read_diffuse,
-    "ambientcolor": _Geom.read_ambient,
-    "transparency": _Geom.read_transparency,
-    "name": _Geom.read_name,
+GEOM_TAGS: dict[str, Tag[_Geom]] = {
+    **placement_tags(_Geom.translate, _Geom.turn),
+    "extents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
+    "halfextents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
+    "fullextents": Tag(_Geom.read_full_extents, "of a box: sizes x y z [m]"),
+    "radius": Tag(_Geom.read_number, "of a sphere, cylinder or capsule [m]"),
+    "height": Tag(_Geom.read_number, "of a cylinder, along y, and of a capsule or prism, along z [m]"),
+    "outer_extents": Tag(_Geom.read_vector, "of a container: sizes x y z [m]"),
+    "inner_extents": Tag(_Geom.read_vector, "of a container: sizes of the inside [m]"),
+    "bottom_cross": Tag(_Geom.read_vector, "of a container: sizes of a cross on the bottom [m]"),
+    "bottom": Tag(_Geom.read_vector, "of a container: sizes of a plate on the bottom [m]"),
+    "crosssection": Tag(
+        _Geom.read_cross_section, "of a prism: x y of its corners [m]; it has walls, and no top and bottom"
+    ),
+    "vertices": Tag(_Geom.read_vertices, "of a trimesh: nine numbers a triangle [m]"),
+    "data": Tag(_Geom.read_collision, "mesh file that collides, and scale"),
+    "collision": Tag(_Geom.read_collision, "the same as Data, also as attributes file and scale"),
+    "render": Tag(_Geom.read_render, "mesh file that is drawn, and scale"),
+    "diffusecolor": Tag(_Geom.read_diffuse, "red green blue, from 0 to 1"),
+    "ambientcolor": Tag(_Geom.read_ambient, "red green blue, from 0 to 1"),
+    "transparency": Tag(_Geom.read_transparency, "from 0 to 1"),
+    "name": Tag(_Geom.read_name, "name of the shape"),
 }
 GEOM_IGNORED = {"sidewall": "OpenRAVE itself cannot make a cage from XML"}
-GEOM_ATTRIBUTES = {"type", "name", "render", "modifiable", "group"}
-
-_SHAPES: dict[str, Callable[[_Geom], Shape]] = {
-    "box": lambda geom: Box(geom.half_extents),
-    "sphere": lambda geom: Sphere(geom.radius),
-    "cylinder": lambda geom: Cylinder(geom.radius, geom.height),
-    "capsule": lambda geom: Capsule(geom.radius, geom.height),
-    "container": lambda geom: Container(
-        *(geom.container.get(name, ZERO) for name in ("outer_extents", "inner_extents", "bottom_cross", "bottom"))
-    ),
-    "prism": lambda geom: Prism(
-        tuple(zip(geom.cross_section[::2], geom.cross_section[1::2], strict=False)), geom.height
-    ),
-    "none": lambda geom: NoShape(),
+GEOM_ATTRIBUTES = {
+    "type": f"{', '.join(one.xml for one in SHAPE_TYPES if one.xml)}; others have no shape here",
+    "name": "name of the shape",
+    "render": "false: collides and is not drawn",
+    "modifiable": "false: planners leave it alone",
+    "group": "geometries of other groups than `self` are left out",
 }
+
+_SHAPES = {one.xml: one.shape for one in SHAPE_TYPES}
+_NO_SIZES: dict[str, object] = {
+    **dict.fromkeys(("half_extents", "outer_extents", "inner_extents", "bottom_cross", "bottom"), ZERO),
+    **dict.fromkeys(("radius", "height"), 0.0),
+    "cross_section": (),
+}
+"""What OpenRAVE takes for a size that a ``<Geom>`` leaves out."""
 
 
 def read_geometries(element: Element, scope: GeometryScope, context: Context) -> list[Geometry]:
@@ -176,14 +172,14 @@ def read_geometries(element: Element, scope: GeometryScope, context: Context) ->
         message = f"the geometries of group '{element.attributes['group']}' are no part of the link; left out"
         context.diagnostics.warn("ignored-group", message, element.source)
         return []
-    if kind == "trimesh":
-        return _trimesh(geom, element, scope)
     shape = _SHAPES.get(kind)
+    if shape is TriMesh:
+        return _trimesh(geom, element, scope)
     if shape is None:
         message = f"a geometry of type '{kind}' has no shape here"
         context.diagnostics.warn("unsupported-geometry", message, element.source)
     display = _surfaces(geom, geom.render, element, scope)
-    return [_geometry(geom, element, shape(geom) if shape else NoShape(), scope, _NO_PART, display)]
+    return [_geometry(geom, element, (shape or NoShape).of_sizes(geom.sizes), scope, _NO_PART, display)]
 
 
 def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geometry]:

@@ -1,52 +1,25 @@
-"""Shapes as triangles."""
+"""Tessellation of MuJoCo's solids: boxes, spheres, cylinders and capsules as triangles."""
 
 import functools
-from collections.abc import Iterable
 
 import numpy as np
 
-from ravemj.core.transforms import Floats, Ints, Pose
-from ravemj.model.scene import Mesh, Prism, Shape, TriMesh
-from ravemj.model.solids import solids
+from ravemj.core.transforms import Floats, Ints
+from ravemj.model.scene.mesh import Mesh
 
 SUBDIVISIONS = 3
-"""How often an icosahedron is refined to a sphere."""
+"""How often the triangles of an icosahedron are divided to make a sphere."""
 SIDES = 51
 """Sides of a cylinder."""
 
 
-def triangulated(shape: Shape) -> Mesh:
-    """Return a shape as triangles, seen from outside counter-clockwise, in the frame of its geometry.
+def solid_mesh(kind: str, size: tuple[float, ...]) -> Mesh:
+    """Return a solid as triangles, centred on the origin.
 
-    Round shapes have their corners on the surface. A container is the sum of its walls.
+    Args:
+        kind: ``box``, ``sphere``, ``cylinder`` or ``capsule``; round ones have their vertices on the surface.
+        size: MuJoCo's sizes: half extents of a box, else the radius and, along z, half the height.
     """
-    match shape:
-        case TriMesh(mesh):
-            return mesh
-        case Prism():
-            return shape.walls()
-        case _:
-            return merged(moved(_solid(kind, size), Pose(centre).matrix()) for kind, size, centre in solids(shape))
-
-
-def merged(meshes: Iterable[Mesh]) -> Mesh:
-    """Return all triangles of some meshes as one mesh."""
-    vertices, triangles = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int_)]
-    count = 0
-    for mesh in meshes:
-        vertices.append(mesh.vertices)
-        triangles.append(mesh.triangles + count)
-        count += len(mesh.vertices)
-    return Mesh(np.concatenate(vertices), np.concatenate(triangles))
-
-
-def moved(mesh: Mesh, T_a_b: Floats) -> Mesh:
-    """Return a mesh of frame b in frame a."""
-    return Mesh(mesh.vertices @ T_a_b[:3, :3].T + T_a_b[:3, 3], mesh.triangles)
-
-
-def _solid(kind: str, size: tuple[float, ...]) -> Mesh:
-    """Return a box, sphere, cylinder or capsule of MuJoCo's sizes."""
     if kind == "box":
         corners, triangles = _cube()
         return Mesh(corners * size, triangles)
@@ -54,7 +27,7 @@ def _solid(kind: str, size: tuple[float, ...]) -> Mesh:
         corners, triangles = _unit_cylinder()
         return Mesh(corners * [size[0], size[0], size[1]], triangles)
     corners, triangles = _unit_sphere()
-    if kind == "capsule":
+    if kind == "capsule":  # two hemispheres, each moved by half the height
         ends = np.where(corners[:, 2] >= 0, size[1], -size[1])
         return Mesh(corners * size[0] + np.outer(ends, [0.0, 0.0, 1.0]), triangles)
     return Mesh(corners * size[0], triangles)

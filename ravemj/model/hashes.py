@@ -1,4 +1,4 @@
-"""Short texts that are the same for bodies of the same structure, wherever they stand and whatever their limits."""
+"""Hashes of the structure of bodies: independent of names, poses in the world and limits."""
 
 from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
@@ -13,24 +13,24 @@ DIGITS = 8
 
 
 def of_body(body: KinBody) -> str:
-    """Return the fingerprint of links, their shapes and joints: 32 hexadecimal digits. Names do not matter."""
+    """Return the hash of the links, their shapes and the joints: 32 hexadecimal digits."""
     return _digest(_links(body), [_joint(joint) for joint in body.all_joints])
 
 
 def of_robot(body: KinBody) -> str:
-    """Return the fingerprint of a robot with its manipulators and sensors."""
+    """Return the hash of a robot with its manipulators and sensors."""
     tools = [_tool(arm) for arm in body.manipulators]
     return _digest(of_body(body), tools, [(one.link, one.T_link_sensor, one.type) for one in body.sensors])
 
 
 def of_arm(body: KinBody, arm: Manipulator) -> str:
-    """Return the fingerprint of the joints between base and effector, and of the tool."""
+    """Return the hash of the joints between base and effector, and of the tool."""
     joints = [joint for joint in body.joints for _ in joint.axes]
     return _digest([_joint(joints[dof]) for dof in arm.arm_dofs], _tool(arm))
 
 
 def of_manipulator(body: KinBody, arm: Manipulator) -> str:
-    """Return the fingerprint of a manipulator in its robot, gripper included."""
+    """Return the hash of a manipulator with its robot, gripper included."""
     return _digest(of_body(body), _tool(arm), arm.gripper_dofs, arm.chucking_direction)
 
 

@@ -1,4 +1,4 @@
-"""Bodies made of numbers, where no file describes them."""
+"""Bodies of one link, made of boxes, spheres or other shapes by a script instead of a file."""
 
 from collections.abc import Iterable, Sequence
 
@@ -6,11 +6,11 @@ from ravemj.core.transforms import ZERO, Floats, Pose, wxyz_from_rows
 from ravemj.errors import Source
 from ravemj.model.scene import Box, Geometry, Inertial, KinBody, Link, Rgb, Shape, Sphere
 
-MADE = Source("made by a script")
-"""Where things come from that no file describes."""
+FROM_SCRIPT = Source("made by a script")
+"""The source of what no file describes."""
 
 MASSLESS = Inertial(1e-10, ZERO, (ZERO, ZERO, ZERO))
-"""What a link weighs that is made of shapes alone."""
+"""The mass properties that OpenRAVE gives to a link made of shapes alone."""
 
 DIFFUSE: Rgb = (1.0, 0.5, 0.5)
 AMBIENT: Rgb = (0.1, 0.0, 0.0)
@@ -26,7 +26,7 @@ def shape_geometry(shape: Shape, T_link_geometry: Pose, *, visible: bool) -> Geo
         ambient=AMBIENT,
         transparency=0.0,
         visible=visible,
-        source=MADE,
+        source=FROM_SCRIPT,
     )
 
 
@@ -68,6 +68,8 @@ def body_of_geometries(body: KinBody, geometries: Iterable[Geometry]) -> KinBody
         geometries=tuple(geometries),
         static=True,
         enabled=True,
-        source=MADE,
+        source=FROM_SCRIPT,
     )
-    return KinBody(name=body.name, is_robot=body.is_robot, links=(base,), joints=(), passive_joints=(), source=MADE)
+    return KinBody(
+        name=body.name, is_robot=body.is_robot, links=(base,), joints=(), passive_joints=(), source=FROM_SCRIPT
+    )

@@ -25,7 +25,7 @@ from ravemj.formats.collada.formulas import read_formulas
 from ravemj.formats.collada.geometry import GeometryReader
 from ravemj.formats.collada.library import Library
 from ravemj.formats.collada.physics import NO_MASS, Physics
-from ravemj.formats.collada.placing import rigid
+from ravemj.formats.collada.polar import rigid_part
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers
@@ -43,7 +43,7 @@ def valid_name(name: str | None) -> str:
 
 
 @dataclass(slots=True)
-class Scene:
+class SceneContext:
     """What all bodies of a kinematics scene share."""
 
     library: Library
@@ -107,7 +107,7 @@ class ModelReader:
 
     def __init__(
         self,
-        scene: Scene,
+        scene: SceneContext,
         body: BodyBuilder,
         owner: Element,
         instance: Element,
@@ -136,7 +136,7 @@ class ModelReader:
         common = child(self.model, "technique_common")
         for link in children(common, "link"):
             parent = None if self._root is None else self._root.parent
-            T_world_parent = Pose() if parent is None else rigid(parent.world, self._library.source(link))
+            T_world_parent = Pose() if parent is None else rigid_part(parent.world, self._library.source(link))
             self._T_world_root = T_world_parent @ self._pose(link)
             self._read_link(link, self._root, self._T_world_root)
         self._settle_joints()
@@ -151,7 +151,7 @@ class ModelReader:
             self.body.joints.append(found.built)
 
     def _pose(self, element: Element) -> Pose:
-        return rigid(transform_of(self._library, element), self._library.source(element))
+        return rigid_part(transform_of(self._library, element), self._library.source(element))
 
     def _read_link(self, element: Element, node: Node | None, T_world_link: Pose) -> None:
         if len(self.body.links) >= _MAX_LINKS:

@@ -4,14 +4,13 @@ from ravemj.core.transforms import Pose
 from ravemj.errors import Diagnostics
 from ravemj.formats.meshes import collision_form
 from ravemj.formats.mjcf.lines import Attribute, Lines, attribute_text, pose_attributes
-from ravemj.model.scene import Geometry, Mesh, Prism, Rgb, Surface, TriMesh
-from ravemj.model.solids import Solid, solids
+from ravemj.model.scene import Geometry, Mesh, Rgb, Solid, Surface
 
 SMALLEST_SIZE = 1e-10
 """The least size [m] that is written; MuJoCo wants it positive."""
 
 
-class GeometryWriter:
+class GeomWriter:
     """Writes geoms and collects the meshes that they need.
 
     Attributes:
@@ -30,15 +29,10 @@ class GeometryWriter:
         """Write the geoms of a geometry; return how many there are, and whether one of them collides."""
         before = self._written
         seen = geometry.visible and geometry.display is None
-        if isinstance(geometry.shape, TriMesh):
-            collides = self._write_mesh(geometry, geometry.shape.mesh, out, seen=seen)
-        elif isinstance(geometry.shape, Prism):
-            collides = self._write_mesh(geometry, geometry.shape.walls(), out, seen=seen)
-        else:
-            parts = solids(geometry.shape)
-            collides = bool(parts)
-            for solid in parts:
-                self._write_solid(geometry, solid, out, seen=seen)
+        solids = geometry.shape.solids()
+        for solid in solids:
+            self._write_solid(geometry, solid, out, seen=seen)
+        collides = bool(solids) or self._write_mesh(geometry, geometry.shape.triangulated(), out, seen=seen)
         for surface in geometry.display or () if geometry.visible else ():
             self._write_surface(geometry, surface, out)
         return self._written - before, collides

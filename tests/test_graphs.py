@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import examples
 
-from ravemj.core.ordering import dependencies_first
+from ravemj.core.graphs import topological_order
 
 GRAPHS = st.lists(st.lists(st.integers(0, 7), max_size=4), min_size=8, max_size=8)
 
@@ -13,7 +13,7 @@ GRAPHS = st.lists(st.lists(st.integers(0, 7), max_size=4), min_size=8, max_size=
 @examples(200)
 def test_dependencies_come_first(graph):
     earlier = [[other for other in needs if other < index] for index, needs in enumerate(graph)]
-    order = dependencies_first(reversed(range(8)), earlier.__getitem__)
+    order = topological_order(reversed(range(8)), earlier.__getitem__)
     assert sorted(order) == list(range(8))
     assert all(order.index(other) < order.index(index) for index in range(8) for other in earlier[index])
 
@@ -21,13 +21,13 @@ def test_dependencies_come_first(graph):
 @given(GRAPHS)
 @examples(200)
 def test_circles_end_and_each_item_comes_once(graph):
-    assert sorted(dependencies_first(range(8), graph.__getitem__)) == list(range(8))
+    assert sorted(topological_order(range(8), graph.__getitem__)) == list(range(8))
 
 
 def test_the_order_given_stays_where_it_can():
     needs = {3: [1], 2: [5]}
-    assert dependencies_first([4, 3, 2, 1], lambda item: needs.get(item, [])) == [4, 1, 3, 5, 2]
+    assert topological_order([4, 3, 2, 1], lambda item: needs.get(item, [])) == [4, 1, 3, 5, 2]
 
 
 def test_long_chains():
-    assert dependencies_first([0], lambda item: [item + 1] if item < 9999 else []) == list(reversed(range(10_000)))
+    assert topological_order([0], lambda item: [item + 1] if item < 9999 else []) == list(reversed(range(10_000)))

@@ -6,7 +6,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import SourceError
-from ravemj.formats.meshes import faces
+from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.cache import remembered
 from ravemj.formats.meshes.collada.document import (
     ColladaDocument,
@@ -150,7 +150,7 @@ def _polygons(element: Element, kind: str) -> tuple[Ints, Ints]:
             counts = np.nan_to_num(numbers_of(child(element, "vcount"))).clip(0, len(index) + 1).astype(np.int_)
             return counts[np.cumsum(counts) <= len(index)], index
         case "tristrips":
-            triangles = faces.strips(lengths, index)
+            triangles = triangulation.strips(lengths, index)
             return np.full(len(triangles), 3), triangles.ravel()
         case _:
             return lengths, index
@@ -179,5 +179,9 @@ def _corners(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats:
     if not good.any():
         return np.zeros((0, 3, 3))
     corners = points[np.where(wrong, 0, index)]
-    cut = faces.clipped(corners, starts[good], sizes[good]) if concave else faces.fans(starts[good], sizes[good])
+    cut = (
+        triangulation.clipped(corners, starts[good], sizes[good])
+        if concave
+        else triangulation.fans(starts[good], sizes[good])
+    )
     return corners[cut]

@@ -4,24 +4,23 @@ A nested ``<KinBody>`` or ``<Robot>`` and an included file add to the body of th
 of an element acts at its end, once, on the links that were made inside it.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from ravemj.core.transforms import Vec3
 from ravemj.errors import SourceError
 from ravemj.formats.collada import is_collada
 from ravemj.formats.openrave_xml.collada_body import add_collada
-from ravemj.formats.openrave_xml.context import NO_EFFECT_HERE, Context, reasons
-from ravemj.formats.openrave_xml.geometry import GeometryScope
+from ravemj.formats.openrave_xml.context import Context
+from ravemj.formats.openrave_xml.geom import GeometryScope
 from ravemj.formats.openrave_xml.joint import read_joint
 from ravemj.formats.openrave_xml.link import read_link
 from ravemj.formats.openrave_xml.mass import DefaultMassReader
 from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.formats.openrave_xml.prefix import Marks, add_prefix
 from ravemj.formats.openrave_xml.robot import read_attached_sensor, read_manipulator
+from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
-    ROTATIONS,
     Placement,
     hadamard,
     is_true,
@@ -179,38 +178,49 @@ class _Scope:
         self.own_sensors.append(len(self.body.sensors) - 1)
 
 
-_PLACEMENT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
-    "translation": _Scope.translate,
-    **dict.fromkeys(ROTATIONS, _Scope.turn),
-    "jointvalues": _Scope.read_joint_values,
+_SCOPE_TAGS: dict[str, Tag[_Scope]] = {
+    **placement_tags(_Scope.translate, _Scope.turn),
+    "jointvalues": Tag(_Scope.read_joint_values, "values of all DOFs [rad, m]"),
 }
-ROBOT_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
-    **_PLACEMENT_TAGS,
-    "robot": _Scope.nest,
-    "kinbody": _Scope.nest,
-    "manipulator": _Scope.read_manipulator,
-    "attachedsensor": _Scope.read_sensor,
-    "controller": _Scope.read_controller,
+ROBOT_TAGS: dict[str, Tag[_Scope]] = {
+    **_SCOPE_TAGS,
+    "robot": Tag(_Scope.nest, "nested: adds to the same body"),
+    "kinbody": Tag(_Scope.nest, "nested: adds to the same body"),
+    "manipulator": Tag(_Scope.read_manipulator, "see below"),
+    "attachedsensor": Tag(_Scope.read_sensor, "see below"),
+    "controller": Tag(
+        _Scope.read_controller,
+        "it has no effect on the model; behind joints it ends the reading, as in OpenRAVE",
+        left_out=True,
+    ),
 }
 ROBOT_IGNORED = {
     **reasons(NO_EFFECT_HERE, "sendcommand"),
     "conveyorjoint": "a plugin of OpenRAVE's makes links of it that ride along a trajectory; MuJoCo has no such joint",
 }
-KINBODY_TAGS: dict[str, Callable[[_Scope, Element], None]] = {
-    **_PLACEMENT_TAGS,
-    "kinbody": _Scope.nest,
-    "body": _Scope.read_link,
-    "joint": _Scope.read_joint,
-    "mass": _Scope.read_default_mass,
-    "adjacent": _Scope.read_adjacent,
-    "modelsdir": _Scope.read_models_folder,
-    "transparency": _Scope.read_transparency,
+KINBODY_TAGS: dict[str, Tag[_Scope]] = {
+    **_SCOPE_TAGS,
+    "kinbody": Tag(_Scope.nest, "nested: adds to the same body"),
+    "body": Tag(_Scope.read_link, "a link: see below"),
+    "joint": Tag(_Scope.read_joint, "see below"),
+    "mass": Tag(_Scope.read_default_mass, "the default of the Bodies that follow: see below"),
+    "adjacent": Tag(_Scope.read_adjacent, "names of two Bodies that never collide"),
+    "modelsdir": Tag(_Scope.read_models_folder, "where meshes of the following Bodies are looked for first"),
+    "transparency": Tag(_Scope.read_transparency, "of all shapes, from 0 to 1"),
 }
 KINBODY_IGNORED = {
     **reasons("OpenRAVE overlooks it here; write it in each Geom", "diffusecolor", "ambientcolor"),
     **reasons(NO_EFFECT_HERE, "sendcommand"),
 }
-SCOPE_ATTRIBUTES = {"name", "prefix", "file", "type", "scalegeometry", "skipgeometry", "makejoinedlinksadjacent"}
+SCOPE_ATTRIBUTES = {
+    "name": "name of the body; no spaces",
+    "prefix": "put before the names of the parts",
+    "file": "read first; XML, or a mesh, which becomes one static link",
+    "type": "`CollisionMapRobot` and `Conveyor` are plain bodies here; unknown classes are an error",
+    "scalegeometry": "one factor or three, of positions and meshes",
+    "skipgeometry": "true: without shapes",
+    "makejoinedlinksadjacent": "0: links at a joint can collide",
+}
 
 
 _PLUGIN_CLASSES = {"collisionmaprobot", "conveyor"}

@@ -1,0 +1,45 @@
+"""Tables of tags: what the reader does with each tag, and what the tag means.
+
+The same tables drive the reader and make ``docs/coverage.md``. A tag that is in no table is unknown.
+"""
+
+from collections.abc import Callable
+from typing import Generic, NamedTuple, TypeVar
+
+from ravemj.formats.openrave_xml.tree import Element
+
+Target = TypeVar("Target")
+
+IGNORED = "OpenRAVE reads it and makes nothing of it"
+NO_EFFECT_HERE = "it has no effect on the model"
+
+
+class Tag(NamedTuple, Generic[Target]):
+    """A child element that the reader knows.
+
+    Attributes:
+        read: Reads the element into the object that stands for its parent.
+        meaning: What the element means, or why it is left out, in a few words.
+        left_out: Whether it has no effect on the model.
+    """
+
+    read: Callable[[Target, Element], None]
+    meaning: str
+    left_out: bool = False
+
+
+def placement_tags(
+    translate: Callable[[Target, Element], None], turn: Callable[[Target, Element], None]
+) -> dict[str, Tag[Target]]:
+    """Return the tags that place an element: those that translate and those that turn it."""
+    return {
+        "translation": Tag(translate, "x y z [m]; several add up, and rotations do not turn them"),
+        "rotationaxis": Tag(turn, "axis x y z of any length, angle [deg]"),
+        "rotationmat": Tag(turn, "nine numbers, row by row"),
+        "quat": Tag(turn, "w x y z"),
+    }
+
+
+def reasons(reason: str, *names: str) -> dict[str, str]:
+    """Return a table that gives one reason for each name."""
+    return dict.fromkeys(names, reason)
