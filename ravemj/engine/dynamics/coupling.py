@@ -88,7 +88,7 @@ class CouplingMap:
         self._one_to_one = kinematics.dof, tree.count, dofs, coordinates
         self._spherical = [(one, tree.of_qpos[one.qpos.start]) for one in kinematics.spherical]
         self._mimic = [
-            (joint.index, self._coordinate(tree, joint.index), _Partials(joint.expression))
+            (joint.joint, self._coordinate(tree, joint.joint), _Partials(joint.expression))
             for joint in kinematics.mimic.joints
         ]
         is_affine = all(joint.expression.affine is not None for joint in kinematics.mimic.joints)
