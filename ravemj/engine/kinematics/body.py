@@ -261,19 +261,19 @@ class BodyKinematics:
         Args:
             T_world_link0: Pose of the first link, shape (4, 4).
         """
-        if not self.roots:
-            return
-        if len(self.roots) > 1:
+        if self.roots == [0]:
+            self.set_root_transform(0, T_world_link0)
+        elif self.roots:  # the first link may hang on another one, where no joint has a DOF
             motion = T_world_link0 @ inverse(self.link_transform(0))
-            for root, link in enumerate(self.roots[1:], 1):
-                self.set_root_transform(root, motion @ self.link_transform(link))
-        self.set_root_transform(0, T_world_link0)
+            for root, moved in enumerate([motion @ self.link_transform(link) for link in self.roots]):
+                self.set_root_transform(root, T_world_link0 if self.roots[root] == 0 else moved)
 
     def set_root_wxyz(self, wxyz: Wxyz) -> None:
         """Write the orientation of the first link as this quaternion rather than its negative."""
-        first = self.root_qpos[0]
-        self._qpos[first + 3 : first + 7] = wxyz
-        self._touch()
+        if 0 in self.roots:
+            first = self.root_qpos[self.roots.index(0)]
+            self._qpos[first + 3 : first + 7] = wxyz
+            self._touch()
 
     def configuration(self) -> Configuration:
         """Return all that ``restore`` needs, also of another object for the same body."""
