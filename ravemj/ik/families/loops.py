@@ -1,0 +1,309 @@
+"""Arms as closed loops: three joints that form a block, and three others around it.
+
+An arm E1 … E6 has to make a motion X. With the block B anywhere among its joints, A B C = X, so B⁻¹ = C X⁻¹ A: the joints
+behind the block, the motion that is asked for, and the joints before it, in a circle. Moving X⁻¹ to the end of the
+circle leaves three joints, some of them seen from elsewhere (E(axis) X = X E(X⁻¹ axis)), that have to keep the block's
+point or plane. Joints that are locked at a value are constant motions in that circle.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from ravemj.ik.families.blocks import Motion, Planar, Wrist
+from ravemj.ik.families.carrying import CarryPlane, CarryPoint, NoFamilyError, Plane
+from ravemj.ik.vectors import Floats, Screw, Transform, cross, dot, tile
+
+Locked = Mapping[int, Floats]
+"""Values of locked joints, turns (2, 1, N) or distances (1, 1, N), by their place in the arm."""
+
+
+@dataclass(frozen=True, eq=False)
+class Arm:
+    """An arm as a family sees it, lengths in units of its reach.
+
+    Attributes:
+        screws: Its joints.
+        joints: For each of them its index in the chain; -1 for joints that were added, and have to stay at 0.
+        locked: Places of joints whose values are given.
+    """
+
+    screws: tuple[Screw, ...]
+    joints: tuple[int, ...]
+    locked: frozenset[int] = field(default_factory=frozenset[int])
+
+    def trimmed(self, motion: Transform, locked: Locked) -> Transform:
+        """Return the motion that is left when locked joints at both ends are taken off."""
+        for place in self._ends(range(len(self.screws))):
+            motion = self.screws[place].transform(locked[place]).inverse() @ motion
+        for place in self._ends(range(len(self.screws) - 1, -1, -1)):
+            motion = motion @ self.screws[place].transform(locked[place]).inverse()
+        return motion
+
+    def _ends(self, places: Sequence[int]) -> list[int]:
+        found: list[int] = []
+        for place in places:
+            if place not in self.locked:
+                break
+            found.append(place)
+        return found
+
+    @property
+    def inner(self) -> list[int]:
+        """Places from the first joint that is not locked to the last one."""
+        free = [place for place in range(len(self.screws)) if place not in self.locked]
+        return list(range(free[0], free[-1] + 1))
+
+    def free(self, places: Sequence[int]) -> list[int]:
+        """Return those places whose joints are not locked."""
+        return [place for place in places if place not in self.locked]
+
+
+class Family(Protocol):
+    """A way to all solutions of an arm.
+
+    Attributes:
+        arm: The arm.
+        name: What it is called.
+        why: What makes the arm one of its kind.
+        order: Places of the joints that it solves for, in the order of its answers.
+        coupled: Whether a quartic has to be solved.
+    """
+
+    arm: Arm
+    name: str
+    why: str
+    order: list[int]
+    coupled: bool
+
+    def names(self) -> list[tuple[int, int]]:
+        """Return for each choice between solutions the place of the joint and their number, the fastest first."""
+        ...
+
+    def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
+        """Return the values of the joints of ``order``, turns (2, B, N) or distances (1, B, N); B may be 1 for all."""
+        ...
+
+
+class Circle:
+    """The joints around a block, and what they become when the motion is moved out from between them."""
+
+    def __init__(self, arm: Arm, block: int) -> None:
+        inner = arm.inner
+        self.arm = arm
+        self.block = list(range(block, block + 3))
+        self.behind, self.before = range(block + 3, inner[-1] + 1), range(inner[0], block)
+        self.places = [*arm.free(self.behind), *arm.free(self.before)]
+        self.motion_first = len(arm.free(self.before)) > len(arm.free(self.behind))
+
+    def around(self, motion: Transform, locked: Locked) -> tuple[list[Screw], Transform | None, Transform | None]:
+        """Return the joints F1, F2, F3 and constants W, K with B⁻¹ = W⁻¹ F1 F2 F3 K; None stands for no motion."""
+        seen: Transform | None = motion if self.motion_first else None
+        goal = seen
+        screws: list[Screw] = []
+        for place in self.behind:
+            seen = self._pass(place, seen, screws, locked)
+        if seen is None or seen is not goal:
+            seen = motion.inverse() if seen is None else seen @ motion.inverse()
+        else:
+            seen = None
+        for place in self.before:
+            seen = self._pass(place, seen, screws, locked)
+        return screws, goal, seen
+
+    def _pass(
+        self, place: int, seen: Transform | None, screws: list[Screw], locked: Locked
+    ) -> Transform | None:
+        screw = self.arm.screws[place]
+        if place not in self.arm.locked:
+            screws.append(screw if seen is None else screw.carried(seen))
+            return seen
+        step = screw.transform(locked[place])
+        return step if seen is None else seen @ step
+
+
+def _turned(transform: Transform | None, vectors: Floats) -> Floats:
+    return vectors if transform is None else transform.turned(vectors)
+
+
+def _moved(transform: Transform | None, points: Floats) -> Floats:
+    return points if transform is None else transform.moved(points)
+
+
+def _motions(
+    screws: Sequence[Screw], values: Sequence[Floats], goal: Transform | None, rest: Transform | None
+) -> tuple[Motion, Motion]:
+    """Return B = K⁻¹ F3⁻¹ F2⁻¹ F1⁻¹ W and its inverse."""
+    count = values[0].shape[-2]
+    back = None if rest is None else rest.inverse()
+    start = None if goal is None else goal.inverse()
+
+    def turned(vectors: Floats) -> Floats:
+        vectors = tile(_turned(goal, vectors), count)
+        for screw, value in zip(screws, values, strict=True):
+            vectors = screw.turned_back(value, vectors)
+        return _turned(back, vectors)
+
+    def moved(points: Floats) -> Floats:
+        points = tile(_moved(goal, points), count)
+        for screw, value in zip(screws, values, strict=True):
+            points = screw.moved_back(value, points)
+        return _moved(back, points)
+
+    def turned_on(vectors: Floats) -> Floats:
+        vectors = tile(_turned(rest, vectors), count)
+        for screw, value in zip(reversed(screws), reversed(values), strict=True):
+            vectors = screw.turned(value, vectors)
+        return _turned(start, vectors)
+
+    def moved_on(points: Floats) -> Floats:
+        points = tile(_moved(rest, points), count)
+        for screw, value in zip(reversed(screws), reversed(values), strict=True):
+            points = screw.moved(value, points)
+        return _moved(start, points)
+
+    return Motion(turned, moved), Motion(turned_on, moved_on)
+
+
+class BlockFamily:
+    """An arm with a block of three joints: a spherical wrist or shoulder, or three parallel axes."""
+
+    def __init__(self, arm: Arm, block: int, inside: Wrist | Planar, examples: tuple[Transform, Locked]) -> None:
+        """Find the way of solution from examples of motions.
+
+        Raises:
+            NoFamilyError: the geometry is not of this family.
+        """
+        self.arm, self.inside = arm, inside
+        self.circle = Circle(arm, block)
+        if len(self.circle.places) != 3:
+            raise NoFamilyError
+        self.order = [*self.circle.places, *self.circle.block]
+        screws, goal, rest = self.circle.around(*examples)
+        kept = self._kept(goal, rest)
+        self.carry = CarryPoint(screws, *kept[0]) if isinstance(inside, Wrist) else CarryPlane(screws, *kept[1])
+        pair = self.carry.pair
+        self.coupled = pair is not None and pair.alone is None
+        self.shared = all(screw.shared for screw in screws)
+        self.name, self.why = inside.describe([arm.joints[place] for place in self.circle.block])
+
+    def _kept(
+        self, goal: Transform | None, rest: Transform | None
+    ) -> tuple[tuple[Floats, Floats], tuple[Plane, Plane]]:
+        centre = self.inside.centre
+        points = _moved(rest, centre), _moved(goal, centre)
+        if isinstance(self.inside, Wrist):
+            normals = centre, centre
+        else:
+            normals = _turned(rest, self.inside.normal), _turned(goal, self.inside.normal)
+        return points, (Plane(normals[0], points[0]), Plane(normals[1], points[1]))
+
+    def names(self) -> list[tuple[int, int]]:
+        """Return for each choice between solutions the place of the joint and their number, the fastest first."""
+        around = [(self.circle.places[joint], count) for joint, count in self.carry.names]
+        return around + [(self.circle.block[joint], count) for joint, count in self.inside.names]
+
+    def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
+        """Return the values of the joints of ``order``."""
+        screws, goal, rest = self.circle.around(motion, locked)
+        points, planes = self._kept(goal, rest)
+        if isinstance(self.carry, CarryPoint):
+            values = self.carry.solve(screws, *points)
+        else:
+            values = self.carry.solve(screws, *planes)
+        needed, opposite = _motions(screws, values, goal, rest)
+        if isinstance(self.inside, Wrist):
+            return values + self.inside.solve(needed)
+        return values + self.inside.solve(needed, opposite)
+
+
+class Gantry:
+    """Three revolute joints, which give the orientation, and three prismatic ones anywhere, which then are linear."""
+
+    coupled = False
+
+    def __init__(self, arm: Arm, examples: tuple[Transform, Locked]) -> None:
+        """Find out whether the arm is one.
+
+        Raises:
+            NoFamilyError: it is none.
+        """
+        self.arm, self.order = arm, arm.inner
+        screws = [arm.screws[place] for place in self.order]
+        self.turning = [index for index, screw in enumerate(screws) if not screw.prismatic]
+        self.sliding = [index for index, screw in enumerate(screws) if screw.prismatic]
+        if len(self.turning) != 3 or len(self.sliding) != 3 or set(self.order) & arm.locked:
+            raise NoFamilyError
+        self.screws = screws
+        self.wrist = Wrist([screws[index] for index in self.turning], np.zeros((3, 1, 1)))
+        self.name, self.why, self.shared = "three prismatic joints", "", True
+
+    def names(self) -> list[tuple[int, int]]:
+        """Return for each choice between solutions the place of the joint and their number, the fastest first."""
+        return [(self.order[self.turning[joint]], count) for joint, count in self.wrist.names]
+
+    def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
+        """Return the values of the joints of ``order``."""
+        turns = self.wrist.solve(Motion(motion.turned, motion.moved))
+        values: list[Floats] = [np.zeros((1, 1, 1))] * 6
+        for index, turn in zip(self.turning, turns, strict=True):
+            values[index] = turn
+        place, directions = np.zeros((3, 1, 1)), list[Floats]()
+        for screw, value in zip(reversed(self.screws), reversed(values), strict=True):
+            place = screw.moved(value, place)
+            directions = [screw.turned(value, direction) for direction in directions]
+            if screw.prismatic:
+                directions.append(screw.axis)
+        way = motion.translation - place
+        a, b, c = np.broadcast_arrays(*directions[::-1], way)[:3]
+        way = np.broadcast_to(way, a.shape)
+        volume = dot(a, cross(b, c))
+        volume = np.where(volume == 0, np.inf, volume)
+        for index, numerator in zip(self.sliding, ((way, b, c), (a, way, c), (a, b, way)), strict=True):
+            values[index] = (dot(numerator[0], cross(numerator[1], numerator[2])) / volume)[None]
+        return values
+
+
+class PointFamily:
+    """Three joints that carry the tool to a place, in whatever orientation."""
+
+    def __init__(self, arm: Arm, tool: Floats, examples: tuple[Transform, Locked]) -> None:
+        """Find the way of solution from examples; of the motions only the translation counts, the place of the tool.
+
+        Raises:
+            NoFamilyError: the joints cannot carry it to any place around.
+        """
+        self.arm, self.tool = arm, tool
+        self.order = arm.free(range(len(arm.screws)))
+        if len(self.order) != 3:
+            raise NoFamilyError
+        motion, locked = examples
+        screws, start = self._seen(locked)
+        self.carry = CarryPoint(screws, start, motion.translation)
+        self.coupled = self.carry.pair.alone is None
+        self.shared = all(screw.shared for screw in screws)
+        self.name, self.why = "position", ""
+
+    def _seen(self, locked: Locked) -> tuple[list[Screw], Floats]:
+        seen: Transform | None = None
+        screws: list[Screw] = []
+        for place, screw in enumerate(self.arm.screws):
+            if place in self.arm.locked:
+                step = screw.transform(locked[place])
+                seen = step if seen is None else seen @ step
+            else:
+                screws.append(screw if seen is None else screw.carried(seen))
+        return screws, _moved(seen, self.tool)
+
+    def names(self) -> list[tuple[int, int]]:
+        """Return for each choice between solutions the place of the joint and their number, the fastest first."""
+        return [(self.order[joint], count) for joint, count in self.carry.names]
+
+    def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
+        """Return the values of the joints of ``order``."""
+        screws, start = self._seen(locked)
+        return self.carry.solve(screws, start, motion.translation)
+
+
