@@ -14,7 +14,7 @@ EXACT = 1e-10
 """A solution with a larger error is refined by Newton's method."""
 ACCURATE = 1e-9
 """What has a larger error after that is no solution."""
-_CHUNK = 768
+_CHUNK = 1536
 """So many poses at once: few enough that the arrays stay in the processor's cache."""
 _SAME = 1e-6
 """Solutions whose values differ by less are one."""
