@@ -183,6 +183,11 @@ class Chain:
                 jacobians[:, 3:, joint] = axis.T
         return tool, jacobians
 
+    def placed_axes(self, values: Floats) -> tuple[Floats, Floats]:
+        """Return the axes and a point on each, both (n, 3), in the posture of joint values (n,)."""
+        frames = np.array(self._frames(self.turns(values[None]))[:-1])[..., 0]
+        return frames[:, 2], frames[:, 3]
+
     def locked(self, joint: int, value: float) -> "Chain":
         """Return the chain without a joint, which stays at a value."""
         motion = self.motion(joint, value)
