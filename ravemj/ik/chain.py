@@ -184,9 +184,9 @@ class Chain:
         return tool, jacobians
 
     def placed_axes(self, values: Floats) -> tuple[Floats, Floats]:
-        """Return the axes and a point on each, both (n, 3), in the posture of joint values (n,)."""
-        frames = np.array(self._frames(self.turns(values[None]))[:-1])[..., 0]
-        return frames[:, 2], frames[:, 3]
+        """Return the axes and a point on each, both (n, M, 3), in the postures of joint values (M, n)."""
+        frames = np.array(self._frames(self.turns(values))[:-1])
+        return frames[:, 2].transpose(0, 2, 1), frames[:, 3].transpose(0, 2, 1)
 
     def locked(self, joint: int, value: float) -> "Chain":
         """Return the chain without a joint, which stays at a value."""

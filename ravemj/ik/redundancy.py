@@ -57,38 +57,43 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
         down = centre - step * np.arange(1, int((centre - low) / step + 1e-9) + 1)
         both = itertools.zip_longest(up.tolist(), down.tolist())
         columns.append([centre, *(value for pair in both for value in pair if value is not None)])
-    return np.array(list(itertools.product(*columns)), dtype=float).reshape(-1, len(columns))
+    rows = list(itertools.product(*columns))
+    return np.array(rows, dtype=float).reshape(len(rows), len(columns))
 
 
-def coaxial_joints(chain: Chain, values: Floats) -> tuple[int, int, float] | None:
-    """Find two joints that turn about the same line in a posture, shape (n,).
+def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, float]]:
+    """Find the postures, of rows (K, n), in which two joints turn about the same line.
 
     Returns:
-        The joints, and 1 or -1 for the same or the opposite direction; None if there are none.
+        For each of them the row, the two joints, and 1 or -1 for the same or the opposite direction.
     """
-    axes, points = chain.placed_axes(values)
-    turning = np.nonzero(~chain.prismatic)[0]
-    for first, second in itertools.combinations(turning.tolist(), 2):
-        away = np.cross(axes[first], points[second] - points[first]) / chain.reach
-        if np.abs(np.cross(axes[first], axes[second])).max() < _COAXIAL and np.abs(away).max() < _COAXIAL:
-            return first, second, float(np.sign(axes[first] @ axes[second]))
-    return None
+    axes, points = chain.placed_axes(rows)
+    turning = np.nonzero(~chain.prismatic)[0].tolist()
+    found: list[tuple[Floats, int, int, float]] = []
+    for first, second in itertools.combinations(turning, 2):
+        tilt = np.abs(np.cross(axes[first], axes[second])).max(axis=1)
+        if tilt.min() < _COAXIAL:
+            away = np.abs(np.cross(axes[first], points[second] - points[first])).max(axis=1) / chain.reach
+            for row in np.nonzero((tilt < _COAXIAL) & (away < _COAXIAL))[0]:
+                found.append((rows[row], first, second, float(np.sign(axes[first, row] @ axes[second, row]))))
+    return found
 
 
-def spread(chain: Chain, row: Floats, at: Sequence[float] = ()) -> Floats:
-    """Return postures (K, n) with the tool's pose of one (n,): where two joints turn about one line, those between them.
+def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:
+    """Return other postures (K, n) with the tool's pose of one in which two joints turn about one line.
 
     Args:
         chain: The arm.
-        row: Joint values.
-        at: More values that the first of the two joints shall have.
+        singular: The posture, the joints and the sign, of ``singular_rows``.
+        seed: A posture that the first of the two joints, or the second one, shall be like in one of the answers.
     """
-    found = coaxial_joints(chain, row)
-    if found is None:
-        return row[None]
-    first, second, sign = found
-    angles = np.array([*np.arange(-np.pi + SINGULAR_STEP, np.pi + 1e-9, SINGULAR_STEP), *at, row[first]])
+    row, first, second, sign = singular
+    angles = np.arange(-np.pi + SINGULAR_STEP, np.pi + 1e-9, SINGULAR_STEP)
+    if seed is not None:
+        angles = np.append(angles, [seed[first], row[first] - sign * (seed[second] - row[second])])
     rows = np.repeat(row[None], len(angles), axis=0)
     rows[:, first] = angles
     rows[:, second] -= sign * (angles - row[first])
+    turning = ~chain.prismatic
+    rows[:, turning] = np.mod(rows[:, turning] + np.pi, 2 * np.pi) - np.pi
     return rows
