@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from string import ascii_lowercase
 
 import numpy as np
 
@@ -59,7 +60,7 @@ class ClosedForm:
 
     def __init__(self, chain: Chain, task: Task, family: Family, *, snapped: bool) -> None:
         self.chain, self.task, self.family = chain, task, family
-        self.near = 0.03 if snapped else 1e-4
+        self.near = 0.03 if snapped or family.coupled else 1e-4
         self._tool = np.linalg.inv(chain.T_base_tool)
         joints = family.arm.joints
         self._answers = [(index, joints[place]) for index, place in enumerate(family.order) if joints[place] >= 0]
@@ -79,8 +80,9 @@ class ClosedForm:
         for place, count in self.family.names():
             joint = self.family.arm.joints[place]
             label = f"j{joint + 1}" if joint >= 0 else "added"
-            signs = [""] if count == 1 else "+-" if count == 2 else "abcd"
-            names = [f"{before}{' ' * bool(before and sign)}{label * bool(sign)}{sign}" for sign in signs for before in names]
+            if count > 1:
+                signs = "+-" if count == 2 else ascii_lowercase[:count]
+                names = [f"{before} {label}{sign}".lstrip() for sign in signs for before in names]
         return names
 
     def solve(self, poses: Floats, locked: Floats | None = None) -> Solutions:

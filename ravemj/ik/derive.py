@@ -1,5 +1,6 @@
 """From a chain to a solver in closed form that has proved itself, or to the reasons why there is none."""
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -7,14 +8,15 @@ import numpy as np
 
 from ravemj.ik.chain import Chain
 from ravemj.ik.closed import ClosedForm
-from ravemj.ik.families.search import families
+from ravemj.ik.families.search import families, general_families
 from ravemj.ik.families.snapping import nominal
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats
 
 SAMPLES = 64
 """Configurations of a certificate."""
-_TRIED = 24
+_FEW = 8
+_TRIED = 32
 """Families that are tried, at most, for one choice of locked joints."""
 
 
@@ -40,13 +42,13 @@ class Certificate:
         return self.found == self.configurations and self.error <= 1e-9
 
 
-def certify(solver: ClosedForm, seed: int = 64) -> Certificate:
+def certify(solver: ClosedForm, *, count: int = SAMPLES, seed: int = 64) -> Certificate:
     """Ask a solver for the poses of random configurations, and look for these among its answers.
 
     Joints turn by up to ±pi whatever their limits, as a solver in closed form knows none.
     """
     chain = solver.chain
-    values = random_values(chain, SAMPLES, np.random.default_rng(seed))
+    values = random_values(chain, count, np.random.default_rng(seed))
     poses = chain.forward(values)
     solutions = solver.solve(poses, values[:, solver.locked])
     away = solutions.values - values[:, None]
@@ -54,7 +56,7 @@ def certify(solver: ClosedForm, seed: int = 64) -> Certificate:
     near = (np.abs(away).max(axis=2, initial=0.0) < 1e-5) & solutions.valid
     rows, pose, _ = solutions.rows
     error = solver.errors(rows, poses[pose]).max(initial=0.0)
-    return Certificate(SAMPLES, int(near.any(axis=1).sum()), float(error), len(rows) / SAMPLES)
+    return Certificate(count, int(near.any(axis=1).sum()), float(error), len(rows) / count)
 
 
 def random_values(chain: Chain, count: int, rng: np.random.Generator) -> Floats:
@@ -65,13 +67,16 @@ def random_values(chain: Chain, count: int, rng: np.random.Generator) -> Floats:
     return rng.uniform(np.minimum(low, high), high, (count, chain.dof))
 
 
-def derive(chain: Chain, task: Task = Task.TRANSFORM, locked: Sequence[int] = ()) -> tuple[ClosedForm, Certificate] | None:
+def derive(
+    chain: Chain, task: Task = Task.TRANSFORM, locked: Sequence[int] = (), *, general: bool = False
+) -> tuple[ClosedForm, Certificate] | None:
     """Find a solver in closed form, and prove it.
 
     Args:
         chain: The arm.
         task: What is asked for.
         locked: Joints whose values will be given; as many others are left as the task fixes, or fewer.
+        general: Whether to try the eigenvalue problem of general arms, instead of the families of special ones.
 
     Returns:
         The solver and its certificate; None where no family fits.
@@ -80,16 +85,26 @@ def derive(chain: Chain, task: Task = Task.TRANSFORM, locked: Sequence[int] = ()
     if not free or len(free) > task.dof or not _regular(chain, task, free):
         return None
     exact = nominal(chain)
-    if task is Task.PLANAR and not _is_planar(exact):
+    if (task is Task.PLANAR and not _is_planar(exact)) or (general and task is not Task.TRANSFORM):
         return None
     deviation = np.abs(exact.axes - chain.axes).max() + _sideways(exact, chain)
-    for number, family in enumerate(families(exact, task, locked)):
-        if number == _TRIED:
-            break
+    found = general_families(exact, locked) if general else families(exact, task, locked)
+    for family in itertools.islice(found, _TRIED):
         solver = ClosedForm(chain, task, family, snapped=deviation > 1e-12)
-        certificate = certify(solver)
-        if certificate.holds:
+        certificate = _prove(solver)
+        if certificate is not None:
             return solver, certificate
+    return None
+
+
+def _prove(solver: ClosedForm) -> Certificate | None:
+    """Return a certificate that holds, if there is one; a few configurations are asked for first."""
+    try:
+        if certify(solver, count=_FEW).holds:
+            certificate = certify(solver)
+            return certificate if certificate.holds else None
+    except np.linalg.LinAlgError:  # nothing but singular matrices
+        pass
     return None
 
 

@@ -5,6 +5,7 @@ treats them: every solution within the limits is one, further turns included; a 
 present value outwards; where two joints turn about one line, the first is shown at every pi/8.
 """
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -64,10 +65,9 @@ class IKSolver:
                 f"damped least squares from up to {self.numeric.starts} starts; the list of solutions is not complete"
             )
         family, proof = self.closed.family, self.certificate
-        degree = "a quartic equation" if family.coupled else "quadratic equations"
         lines = [
             f"closed form for {self.task.value}: {family.name}, since {family.why}",
-            f"up to {len(self.closed.branch_names)} solutions, by {degree}",
+            f"up to {len(self.closed.branch_names)} solutions, by {family.equations}",
             f"certificate: {proof.found} of {proof.configurations} random configurations found, "
             f"worst error {proof.error:.1e}, {proof.solutions:.1f} solutions on average",
         ]
@@ -219,8 +219,8 @@ def make_solver(
         if any(not 0 <= joint < chain.dof for joint in joints):
             raise ValueError(f"free joints {joints}: the arm has joints 0 to {chain.dof - 1}")
     numeric = NumericSolver(chain, task, kinematics=kinematics)
-    for joints in chosen:
-        derived = derive(chain, task, joints)
+    for general, joints in itertools.product((False, True), chosen):
+        derived = derive(chain, task, joints, general=general)
         if derived is not None:
             sizes = [SLIDE_STEP * chain.reach if chain.prismatic[joint] else ANGLE_STEP for joint in joints]
             given = tuple(sizes if steps is None else steps)

@@ -14,6 +14,7 @@ import numpy as np
 
 from ravemj.ik.families.blocks import Motion, Planar, Wrist
 from ravemj.ik.families.carrying import CarryPlane, CarryPoint, NoFamilyError, Plane
+from ravemj.ik.families.pairs import Pair
 from ravemj.ik.vectors import Floats, Screw, Transform, cross, dot, tile
 
 Locked = Mapping[int, Floats]
@@ -69,7 +70,9 @@ class Family(Protocol):
         name: What it is called.
         why: What makes the arm one of its kind.
         order: Places of the joints that it solves for, in the order of its answers.
-        coupled: Whether a quartic has to be solved.
+        coupled: Whether a quartic or a larger equation has to be solved.
+        equations: What has to be solved.
+        shared: Whether the geometry that counts is the same for all poses, which is faster.
     """
 
     arm: Arm
@@ -77,6 +80,8 @@ class Family(Protocol):
     why: str
     order: list[int]
     coupled: bool
+    equations: str
+    shared: bool
 
     def names(self) -> list[tuple[int, int]]:
         """Return for each choice between solutions the place of the joint and their number, the fastest first."""
@@ -184,8 +189,7 @@ class BlockFamily:
         screws, goal, rest = self.circle.around(*examples)
         kept = self._kept(goal, rest)
         self.carry = CarryPoint(screws, *kept[0]) if isinstance(inside, Wrist) else CarryPlane(screws, *kept[1])
-        pair = self.carry.pair
-        self.coupled = pair is not None and pair.alone is None
+        self.coupled, self.equations = _degree(self.carry.pair)
         self.shared = all(screw.shared for screw in screws)
         self.name, self.why = inside.describe([arm.joints[place] for place in self.circle.block])
 
@@ -219,12 +223,17 @@ class BlockFamily:
         return values + self.inside.solve(needed, opposite)
 
 
+def _degree(pair: Pair | None) -> tuple[bool, str]:
+    quartic = pair is not None and pair.alone is None and not all(pair.sliding)
+    return quartic, "a quartic equation" if quartic else "quadratic equations"
+
+
 class Gantry:
     """Three revolute joints, which give the orientation, and three prismatic ones anywhere, which then are linear."""
 
-    coupled = False
+    coupled, equations = False, "a quadratic equation"
 
-    def __init__(self, arm: Arm, examples: tuple[Transform, Locked]) -> None:
+    def __init__(self, arm: Arm) -> None:
         """Find out whether the arm is one.
 
         Raises:
@@ -238,7 +247,8 @@ class Gantry:
             raise NoFamilyError
         self.screws = screws
         self.wrist = Wrist([screws[index] for index in self.turning], np.zeros((3, 1, 1)))
-        self.name, self.why, self.shared = "three prismatic joints", "", True
+        self.name, self.shared = "three prismatic joints", True
+        self.why = "three other joints give the orientation, and the place is linear in their values"
 
     def names(self) -> list[tuple[int, int]]:
         """Return for each choice between solutions the place of the joint and their number, the fastest first."""
@@ -282,9 +292,9 @@ class PointFamily:
         motion, locked = examples
         screws, start = self._seen(locked)
         self.carry = CarryPoint(screws, start, motion.translation)
-        self.coupled = self.carry.pair.alone is None
+        self.coupled, self.equations = _degree(self.carry.pair)
         self.shared = all(screw.shared for screw in screws)
-        self.name, self.why = "position", ""
+        self.name, self.why = "position", "three joints carry the tool to a place"
 
     def _seen(self, locked: Locked) -> tuple[list[Screw], Floats]:
         seen: Transform | None = None

@@ -12,6 +12,7 @@ import numpy as np
 from ravemj.ik.chain import Chain
 from ravemj.ik.families.blocks import Planar, Wrist, common_point, is_planar
 from ravemj.ik.families.carrying import NoFamilyError
+from ravemj.ik.families.general import General
 from ravemj.ik.families.loops import Arm, BlockFamily, Family, Gantry, Locked, PointFamily
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats, Screw, Transform, constant, perpendicular, turn_of
@@ -30,13 +31,9 @@ def families(nominal: Chain, task: Task, locked: Sequence[int]) -> Iterator[Fami
         task: What is asked for.
         locked: Joints whose values are given.
     """
-    screws = [
-        Screw(constant(axis), constant(point), sliding)
-        for axis, point, sliding in zip(nominal.axes, nominal.points, nominal.prismatic.tolist(), strict=True)
-    ]
-    arm = Arm(tuple(screws), tuple(range(nominal.dof)), frozenset(locked))
+    arm = _arm(nominal, locked)
     free = nominal.dof - len(locked)
-    if task is Task.TRANSFORM or task is Task.PLANAR:
+    if task in (Task.TRANSFORM, Task.PLANAR):
         for whole in _complete(arm, 6 - free):
             yield from sorted(_of(whole), key=lambda family: (family.coupled, not family.shared))
         return
@@ -49,12 +46,32 @@ def families(nominal: Chain, task: Task, locked: Sequence[int]) -> Iterator[Fami
         return
 
 
+def general_families(nominal: Chain, locked: Sequence[int]) -> Iterator[Family]:
+    """Return ways to solve an arm of revolute joints by an eigenvalue problem, a hundred times slower."""
+    whole = next(_complete(_arm(nominal, locked), 6 - nominal.dof + len(locked)), None)
+    for backward in (False, True):
+        for shift in range(6):
+            try:
+                if whole is not None:
+                    yield General(whole, shift, backward=backward)
+            except NoFamilyError:
+                return
+
+
+def _arm(nominal: Chain, locked: Sequence[int]) -> Arm:
+    screws = [
+        Screw(constant(axis), constant(point), sliding)
+        for axis, point, sliding in zip(nominal.axes, nominal.points, nominal.prismatic.tolist(), strict=True)
+    ]
+    return Arm(tuple(screws), tuple(range(nominal.dof)), frozenset(locked))
+
+
 def _of(arm: Arm) -> Iterator[Family]:
     """Return the families of an arm of six joints."""
     for ordered in _orders(arm):
         examples = _examples(ordered, np.zeros((3, 1, 1)))
         try:
-            yield Gantry(ordered, examples)
+            yield Gantry(ordered)
         except NoFamilyError:
             pass
         inner = ordered.inner
