@@ -3,8 +3,8 @@
     solver = make_solver(Chain.of(axes, points, lower=…, upper=…, T_base_tool=…))
     solver.solve(T_base_tool).of(0)
 
-Chains and poses are arrays; nothing here knows robots, files or windows. Nothing is compiled: a family is found from the
-axes, by numbers (``derive``), proved by random configurations, and answers batches of poses.
+Chains and poses are arrays; nothing here knows robots, files or windows. Nothing is compiled: a family is found from
+the axes, by numbers (``derive``), proved by random configurations, and answers batches of poses.
 """
 
 from ravemj.ik.chain import Chain

@@ -1,9 +1,10 @@
 """Chains: the joints of an arm as axes and points, its limits, and where its tool is.
 
-All is given in the frame of the base, in the posture in which every joint value is 0 (the product of exponentials: R. W.
-Brockett, 1983). A chain knows no links and no file format.
+All is given in the frame of the base, in the posture in which every joint value is 0 (the product of exponentials:
+R. W. Brockett, 1983). A chain knows no links and no file format.
 """
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -116,8 +117,8 @@ class Chain:
             frame[:3] = np.column_stack([side, np.cross(axis, side), axis, point])
             frames.append(frame)
         frames.append(self.T_base_tool)
-        steps = [np.linalg.solve(first, second) for first, second in zip(frames, frames[1:], strict=False)]
-        return [np.ascontiguousarray(step.T) for step in steps]
+        steps = [np.linalg.inv(first) @ second for first, second in itertools.pairwise(frames)]
+        return [np.array(step.T, dtype=float, order="C") for step in steps]
 
     def _frames(self, turns: Sequence[Floats]) -> list[Floats]:
         """Place the frames of the joints, each before its motion, and last the tool.

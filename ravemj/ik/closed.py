@@ -1,4 +1,4 @@
-"""Closed-form solvers: a family's answers, checked by forward kinematics of the true arm, refined, and without doubles."""
+"""Closed-form solvers: a family's answers, checked by forward kinematics of the true arm, and refined."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,9 +17,9 @@ ACCURATE = 1e-9
 """What has a larger error after that is no solution."""
 _CHUNK = 1536
 """So many poses at once: few enough that the arrays stay in the processor's cache."""
-_SAME = 1e-6
+_SAME = 1e-5
 """Solutions whose values differ by less are one."""
-_STEPS = 8
+_STEPS = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,12 +190,12 @@ class ClosedForm:
             missing = np.concatenate([target[3] - tool[3], turned / 2]).T * self._scale
             jacobians = jacobians * self._scale[:, None]
             part = jacobians[active_again][:, self._rows][:, :, free]
-            square = part.swapaxes(1, 2) @ part
+            square: Floats = part.swapaxes(1, 2) @ part
             square += 1e-13 * np.eye(len(free)) * (1 + np.trace(square, axis1=1, axis2=2)[:, None, None])
-            pull = (part.swapaxes(1, 2) @ missing[active_again][:, self._rows, None])
+            pull: Floats = part.swapaxes(1, 2) @ missing[active_again][:, self._rows, None]
             active = active[active_again]
-            moved = np.linalg.solve(square, pull)[:, :, 0]
-            values[np.ix_(active, free)] += np.clip(moved, -0.3, 0.3)
+            moved = np.asarray(np.linalg.solve(square, pull), dtype=float)[:, :, 0]
+            values[active[:, None], free] += np.clip(moved, -0.3, 0.3)
         turning = ~chain.prismatic
         values[:, turning] = np.mod(values[:, turning] + np.pi, 2 * np.pi) - np.pi
         return values, errors
@@ -223,5 +223,3 @@ def _mark_doubles(turns: Sequence[Floats], values: Floats, valid: Bools) -> None
                 valid[branch, pose] = False
             else:
                 kept.append(row)
-
-

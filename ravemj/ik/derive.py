@@ -60,7 +60,7 @@ def certify(solver: ClosedForm, *, count: int = SAMPLES, seed: int = 64) -> Cert
 
 
 def random_values(chain: Chain, count: int, rng: np.random.Generator) -> Floats:
-    """Return joint values, shape (count, n): any angle, and distances within the limits, or a reach if there are none."""
+    """Return joint values, shape (count, n): any angle, and distances within the limits."""
     bound = np.where(chain.prismatic, chain.reach, np.pi)
     low = np.where(chain.prismatic & np.isfinite(chain.lower), np.maximum(chain.lower, -bound), -bound)
     high = np.where(chain.prismatic & np.isfinite(chain.upper), np.minimum(chain.upper, bound), bound)

@@ -38,8 +38,8 @@ def nearest_turns(chain: Chain, values: Floats, near: Floats | float = 0.0) -> t
         wanted = np.round((np.where(chain.circular, 0.0, near) - values) / _TURN)
         turns = np.clip(wanted, least, np.maximum(most, least)) * turning
         moved = values + _TURN * turns
-        inside = ((moved >= lower - TOLERANCE) & (moved <= upper + TOLERANCE)).all(axis=-1)
-    return np.clip(moved, lower, upper), inside
+        good = (moved >= lower - TOLERANCE) & (moved <= upper + TOLERANCE)
+    return np.clip(moved, lower, upper), np.logical_and.reduce(good, axis=-1)
 
 
 def all_turns(chain: Chain, values: Floats) -> Floats:

@@ -2,8 +2,8 @@
 
 A step is that of K. Levenberg and D. Marquardt with a damping in proportion to the error that is left (T. Sugihara,
 "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method", 2011). A joint that a step would push
-beyond a limit stays there. One start finds a solution in 40 to 80 of 100 cases, so starts follow each other in a sequence
-that fills the space of joint values evenly (M. Roberts, 2018, after R. Kronecker).
+beyond a limit stays there. One start finds a solution in 40 to 80 of 100 cases, so starts follow each other in a
+sequence that fills the space of joint values evenly (M. Roberts, 2018, after R. Kronecker).
 """
 
 from collections.abc import Callable

@@ -3,8 +3,8 @@
 Rotations about lines that carry points to points, spheres, planes and other circles were named and solved by B. Paden
 (*Kinematics and control of robot manipulators*, 1985) and W. Kahan; A. J. Elias and J. T. Wen ("IK-Geo: Unified robot
 inverse kinematics using subproblem decomposition", 2022) count six of them, with their least-squares cases. Here they
-are few, as the rest follows: subproblem 1 is ``turn_between``; 3 (point to sphere) and 4 (point to plane) are the linear
-equation of ``solve_linear``, 2 is 4 followed by 1; 5 and 6 are the quadratic equation of ``solve_quadratic``.
+are few, as the rest follows: subproblem 1 is ``turn_between``; 3 (point to sphere) and 4 (point to plane) are the
+linear equation of ``solve_linear``, 2 is 4 followed by 1; 5 and 6 are the quadratic equation of ``solve_quadratic``.
 
 Nothing here says that there is no solution: then the result is the turn that comes nearest, and forward kinematics
 tells.

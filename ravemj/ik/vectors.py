@@ -1,8 +1,8 @@
 """Arrays of vectors, turns and rigid transforms, for many poses and many branches of solutions at once.
 
-The first axes are components, the last two are branches and poses: a vector is (3, B, N), a scalar (B, N), and B or N is 1
-where all branches or poses share a value. A *turn* is the cosine and sine of an angle, shape (2, B, N); what solves for
-angles needs no trigonometric function before the end.
+The first axes are components, the last two are branches and poses: a vector is (3, B, N), a scalar (B, N), and B or N
+is 1 where all branches or poses share a value. A *turn* is the cosine and sine of an angle, shape (2, B, N); what
+solves for angles needs no trigonometric function before the end.
 """
 
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ def skew(h: Floats) -> Floats:
 def perpendicular(h: Floats) -> Floats:
     """Return a unit vector at right angles to one of shape (3,)."""
     other = np.cross(h, np.eye(3)[np.argmin(np.abs(h))])
-    return other / np.linalg.norm(other)
+    return np.array(other / np.linalg.norm(other), dtype=float)
 
 
 def apply_matrix(matrix: Floats, vectors: Floats) -> Floats:
@@ -60,7 +60,8 @@ def tile(values: Floats, branches: int) -> Floats:
     count = values.shape[-2]
     if count in (1, branches):
         return values
-    return np.concatenate([values] * (branches // count), axis=-2)
+    repeated: Floats = np.concatenate([values] * (branches // count), axis=-2)
+    return repeated
 
 
 def angle(turn: Floats) -> Floats:

@@ -1,7 +1,7 @@
 """Three neighbouring joints that form a group of motions: rotations about a point, or motions of a plane.
 
-What the group keeps (the point, or the plane) gives equations without its three joints. When the other joints are known,
-so is the motion that the block has to make; it comes here as a function that moves directions and points.
+What the group keeps (the point, or the plane) gives equations without its three joints. When the other joints are
+known, so is the motion that the block has to make; it comes here as a function that moves directions and points.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.ik.families.carrying import CarryPoint
-from ravemj.ik.subproblems import solve_linear, turn_between
+from ravemj.ik.subproblems import turn_between
 from ravemj.ik.vectors import Floats, Screw, constant, cross, dot, perpendicular, skew, tile
 
 
@@ -37,8 +37,11 @@ class Wrist:
     def __init__(self, screws: Sequence[Screw], centre: Floats) -> None:
         self.screws, self.centre = tuple(screws), centre
         a, b, c = (screw.axis.ravel() for screw in screws)
-        across = np.eye(3) - np.outer(b, b)
-        self._cosine, self._sine, self._offset = a @ across @ c, a @ skew(b) @ c, (a @ b) * (b @ c)
+        cosine, sine = a @ c - (a @ b) * (b @ c), a @ skew(b) @ c
+        self._size = float(np.hypot(cosine, sine))
+        self._phase = cosine / self._size, sine / self._size
+        gaps = 1 - self._size - (a @ b) * (b @ c), 1 - self._size + (a @ b) * (b @ c)
+        self._gaps = [0.0 if abs(gap) < 1e-12 else gap for gap in gaps]
         self._side = constant(perpendicular(c))
 
     def describe(self, joints: Sequence[int]) -> tuple[str, str]:
@@ -49,12 +52,25 @@ class Wrist:
         """Return the turns of the three joints with two branches."""
         first, middle, last = self.screws
         tip = needed.turned(last.axis)
-        rest = dot(first.axis, tip) - self._offset
-        one = np.ones((1, 1))
-        two = solve_linear(self._cosine * one, self._sine * one, rest)
+        two = self._middle(tip)
         turn = turn_between(first.axis, middle.turned(two, last.axis), tile(tip, two.shape[-2]))
         side = first.turned_back(turn, tile(needed.turned(self._side), two.shape[-2]))
         return [turn, two, turn_between(last.axis, self._side, middle.turned_back(two, side))]
+
+    def _middle(self, tip: Floats) -> Floats:
+        """Return both turns of the middle joint for a direction of the last axis.
+
+        They come from the distances of unit vectors, not from the cosine of their angle, which would lose half of the
+        digits where the outer axes fall together.
+        """
+        axis = self.screws[0].axis
+        least, most = (dot(away, away) / 2 for away in (axis - tip, axis + tip))
+        below = np.maximum(least - self._gaps[0], 0.0)  # 1 - cos and 1 + cos of the angle from the phase, in proportion
+        above = np.maximum(most - self._gaps[1], 0.0)
+        cosine, sine = (above - below) / (above + below), 2 * np.sqrt(below * above) / (above + below)
+        c, s = self._phase
+        cosines, sines = [c * cosine - s * sine, c * cosine + s * sine], [s * cosine + c * sine, s * cosine - c * sine]
+        return np.stack([np.concatenate(cosines, axis=-2), np.concatenate(sines, axis=-2)])
 
 
 class Planar:
@@ -66,6 +82,7 @@ class Planar:
     Attributes:
         normal: The direction of the revolute axes, shape (3, 1, 1).
         centre: A point, shape (3, 1, 1).
+        backward: Whether the inverse of the motion is asked for.
     """
 
     def __init__(self, screws: Sequence[Screw]) -> None:
@@ -100,14 +117,8 @@ class Planar:
         """Return what the family is called, and why, for joints of these indices."""
         return "parallel axes", f"joints {_numbers(joints)} move a plane in itself"
 
-    def solve(self, needed: Motion, opposite: Motion) -> list[Floats]:
-        """Return the values of the three joints.
-
-        Args:
-            needed: The motion that they have to make.
-            opposite: Its inverse.
-        """
-        motion = opposite if self.backward else needed
+    def solve(self, motion: Motion) -> list[Floats]:
+        """Return the values of the three joints for the motion that they have to make, or its inverse if backward."""
         if self._carry is None:
             return self._solve_between(motion)
         first, middle, last = self._order
@@ -141,10 +152,11 @@ def common_point(screws: Sequence[Screw], tolerance: float) -> Floats | None:
         return None
     across = [np.eye(3) - np.outer(screw.axis, screw.axis) for screw in screws]
     points = [screw.point.ravel() for screw in screws]
-    total = np.sum(across, axis=0)
+    total: Floats = np.sum(across, axis=0)
     if np.linalg.matrix_rank(total, tol=1e-6) < 3:
         return None
-    centre = np.linalg.solve(total, np.sum([part @ point for part, point in zip(across, points, strict=True)], axis=0))
+    pulls: Floats = np.sum([part @ point for part, point in zip(across, points, strict=True)], axis=0)
+    centre = np.asarray(np.linalg.solve(total, pulls), dtype=float)
     missed = [np.linalg.norm(part @ (centre - point)) for part, point in zip(across, points, strict=True)]
     return centre if max(missed) < tolerance else None
 
@@ -158,5 +170,3 @@ def is_planar(screws: Sequence[Screw], tolerance: float) -> bool:
     if any(abs(turning[0] @ axis) > tolerance for axis in sliding):
         return False
     return len(sliding) < 2 or bool(np.linalg.norm(np.cross(sliding[0], sliding[1])) > tolerance)
-
-

@@ -227,4 +227,3 @@ def _crossing(screws: Screws) -> tuple[int | None, str]:
         if other.prismatic and np.sqrt(dot(normal, normal)).min() > _NEAR:
             return index, "across"
     return None, ""
-

@@ -1,11 +1,11 @@
 """Six revolute joints without any special geometry: up to sixteen solutions by an eigenvalue problem.
 
 M. Raghavan and B. Roth ("Inverse kinematics of the general 6R manipulator and related linkages", 1993) write
-E3 E4 E5 = E2⁻¹ E1⁻¹ X E6⁻¹ for a direction l and a point p of the sixth axis. Both sides of l, p, p·p, p·l, p×l and
+E3 E4 E5 = E2⁻¹ E1⁻¹ X E6⁻¹ for a direction l and a point p of the sixth axis. Both sides of l, p, p·p, p·l, p x l and
 (p·p) l - 2 (p·l) p are linear in products of cosines and sines, of joints 3, 4 and 5 on the left and of 1 and 2 on the
 right. Of these fourteen equations six are left when the eight products on the right are eliminated. With half-angle
-tangents they are polynomials in those of joints 4 and 5; with each multiplied by the tangent of joint 4 there are twelve
-equations in twelve monomials, and D. Manocha and J. F. Canny (1994) find the tangent of joint 3 as an eigenvalue of a
+tangents they are polynomials in those of joints 4 and 5; with each multiplied by the tangent of joint 4 there are
+twelve equations in twelve monomials, and D. Manocha and J. F. Canny (1994) find the tangent of joint 3 as an eigenvalue of a
 matrix of 24 rows, and the others in its eigenvector.
 
 The coefficients are taken from values at three angles of each joint, so no symbolic algebra is needed, and no frames of
@@ -15,13 +15,14 @@ Denavit and Hartenberg. Half angles are counted from angles that are in no way s
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ravemj.ik.families.carrying import NoFamilyError
 from ravemj.ik.families.loops import Arm, Locked
 from ravemj.ik.subproblems import normalized, turn_between
 from ravemj.ik.vectors import Floats, Screw, Transform, constant, cross, dot, perpendicular, turn_of
 
-_GRID = 2 * np.pi / 3 * np.arange(3)
+_GRID: Floats = np.array([0.0, 2 * np.pi / 3, 4 * np.pi / 3])
 _FIT = np.linalg.inv(np.stack([np.ones(3), np.cos(_GRID), np.sin(_GRID)], axis=1))
 """From values at three angles to factors of 1, cos and sin."""
 _HALF = np.array([[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]])
@@ -92,8 +93,9 @@ class General:
 
 def _left(screws: Sequence[Screw]) -> Floats:
     """Return the factors of the left sides, shape (N, 14, 27): of powers of three half-angle tangents, up to 2 each."""
-    angles = [grid.ravel() + origin for grid, origin in zip(np.meshgrid(*[_GRID] * 3, indexing="ij"), _ORIGINS, strict=True)]
-    values = _carried(screws, [turn_of(angle[:, None]) for angle in angles])
+    turns = [turn_of((_GRID + origin).reshape(3, 1)) for origin in _ORIGINS]
+    places = np.indices((3, 3, 3)).reshape(3, 27)
+    values = _carried(screws, [turn[:, place] for turn, place in zip(turns, places, strict=True)])
     polynomials = _FIT.T @ _HALF
     factors = np.einsum("ax,by,cz,eabcn->nexyz", *[polynomials] * 3, values.reshape(14, 3, 3, 3, -1))
     return factors.reshape(-1, 14, 27)
@@ -109,7 +111,7 @@ def _carried(screws: Sequence[Screw], turns: Sequence[Floats]) -> Floats:
 
 def _right(screws: Sequence[Screw], motion: Transform) -> Floats:
     """Return the factors of the right sides, shape (N, 14, 9): of 1, c2, s2, c1, c1 c2, c1 s2, s1, s1 c2, s1 s2."""
-    first, second = (turn_of(grid.reshape(9, 1)) for grid in np.meshgrid(_GRID, _GRID, indexing="ij"))
+    first, second = (turn_of(_GRID.reshape(3, 1))[:, place] for place in np.indices((3, 3)).reshape(2, 9))
     line, point = motion.turned(screws[5].axis), motion.moved(screws[5].point)
     line = screws[1].turned_back(second, screws[0].turned_back(first, line))
     point = screws[1].moved_back(second, screws[0].moved_back(first, point))
@@ -118,10 +120,12 @@ def _right(screws: Sequence[Screw], motion: Transform) -> Floats:
 
 
 def _numbers(line: Floats, point: Floats) -> Floats:
-    """Return l, p, p·p, p·l, p×l and (p·p) l - 2 (p·l) p."""
+    """Return l, p, p·p, p·l, p x l and (p·p) l - 2 (p·l) p."""
     line, point = np.broadcast_arrays(line, point)
     square, along = dot(point, point), dot(point, line)
-    return np.concatenate([line, point, square[None], along[None], cross(point, line), square * line - 2 * along * point])
+    return np.concatenate(
+        [line, point, square[None], along[None], cross(point, line), square * line - 2 * along * point]
+    )
 
 
 def _eigen(matrix: Floats) -> list[Floats]:
@@ -142,6 +146,8 @@ def _eigen(matrix: Floats) -> list[Floats]:
         noise = np.random.default_rng(12).normal(size=(12, 12))
         lead = whole[:, 2] + 1e-13 * np.abs(whole[:, 2]).max() * noise
         companion[:, 12:] = -np.linalg.solve(lead, np.concatenate([whole[:, 0], whole[:, 1]], axis=2))
+    roots: NDArray[np.complex128]
+    vectors: NDArray[np.complex128]
     roots, vectors = np.linalg.eig(companion)
     order = np.argsort(np.abs(roots.imag) / (1 + np.abs(roots) ** 2), axis=1, kind="stable")[:, :_BRANCHES]
     roots = np.take_along_axis(roots, order, axis=1)
@@ -150,7 +156,7 @@ def _eigen(matrix: Floats) -> list[Floats]:
     return [roots.real.T, _ratio(large[:, :-1], large[:, 1:]), _ratio(large[:, :, :-1], large[:, :, 1:])]
 
 
-def _ratio(low: Floats, high: Floats) -> Floats:
+def _ratio(low: NDArray[np.complex128], high: NDArray[np.complex128]) -> Floats:
     """Return the ratio of monomials that differ by one power, shape (16, N), where their product with it is largest."""
     low, high = (part.reshape(len(part), -1, part.shape[-1]) for part in (low, high))
     best = np.argmax(np.abs(low) + np.abs(high), axis=1)[:, None]

@@ -1,8 +1,8 @@
 """Arms as closed loops: three joints that form a block, and three others around it.
 
-An arm E1 … E6 has to make a motion X. With the block B anywhere among its joints, A B C = X, so B⁻¹ = C X⁻¹ A: the joints
-behind the block, the motion that is asked for, and the joints before it, in a circle. Moving X⁻¹ to the end of the
-circle leaves three joints, some of them seen from elsewhere (E(axis) X = X E(X⁻¹ axis)), that have to keep the block's
+An arm E1 … E6 has to make a motion X. With the block B anywhere among its joints, A B C = X, so B⁻¹ = C X⁻¹ A: the
+joints behind the block, the motion that is asked for, and the joints before it, in a circle. Moving X⁻¹ to the end of
+the circle leaves three joints, some of them seen from elsewhere (E(axis) X = X E(X⁻¹ axis)), that have to keep the block's
 point or plane. Joints that are locked at a value are constant motions in that circle.
 """
 
@@ -118,9 +118,7 @@ class Circle:
             seen = self._pass(place, seen, screws, locked)
         return screws, goal, seen
 
-    def _pass(
-        self, place: int, seen: Transform | None, screws: list[Screw], locked: Locked
-    ) -> Transform | None:
+    def _pass(self, place: int, seen: Transform | None, screws: list[Screw], locked: Locked) -> Transform | None:
         screw = self.arm.screws[place]
         if place not in self.arm.locked:
             screws.append(screw if seen is None else screw.carried(seen))
@@ -137,39 +135,50 @@ def _moved(transform: Transform | None, points: Floats) -> Floats:
     return points if transform is None else transform.moved(points)
 
 
-def _motions(
-    screws: Sequence[Screw], values: Sequence[Floats], goal: Transform | None, rest: Transform | None
-) -> tuple[Motion, Motion]:
-    """Return B = K⁻¹ F3⁻¹ F2⁻¹ F1⁻¹ W and its inverse."""
-    count = values[0].shape[-2]
-    back = None if rest is None else rest.inverse()
-    start = None if goal is None else goal.inverse()
+class _Around:
+    """The joints around a block with their values: B⁻¹ = W⁻¹ F1 F2 F3 K."""
 
-    def turned(vectors: Floats) -> Floats:
-        vectors = tile(_turned(goal, vectors), count)
-        for screw, value in zip(screws, values, strict=True):
-            vectors = screw.turned_back(value, vectors)
-        return _turned(back, vectors)
+    def __init__(
+        self, screws: Sequence[Screw], values: Sequence[Floats], goal: Transform | None, rest: Transform | None
+    ) -> None:
+        self._pairs, self._count = list(zip(screws, values, strict=True)), values[0].shape[-2]
+        self._goal, self._rest = goal, rest
 
-    def moved(points: Floats) -> Floats:
-        points = tile(_moved(goal, points), count)
-        for screw, value in zip(screws, values, strict=True):
-            points = screw.moved_back(value, points)
-        return _moved(back, points)
+    def needed(self) -> Motion:
+        """Return B = K⁻¹ F3⁻¹ F2⁻¹ F1⁻¹ W."""
+        back = None if self._rest is None else self._rest.inverse()
 
-    def turned_on(vectors: Floats) -> Floats:
-        vectors = tile(_turned(rest, vectors), count)
-        for screw, value in zip(reversed(screws), reversed(values), strict=True):
-            vectors = screw.turned(value, vectors)
-        return _turned(start, vectors)
+        def turned(vectors: Floats) -> Floats:
+            vectors = tile(_turned(self._goal, vectors), self._count)
+            for screw, value in self._pairs:
+                vectors = screw.turned_back(value, vectors)
+            return _turned(back, vectors)
 
-    def moved_on(points: Floats) -> Floats:
-        points = tile(_moved(rest, points), count)
-        for screw, value in zip(reversed(screws), reversed(values), strict=True):
-            points = screw.moved(value, points)
-        return _moved(start, points)
+        def moved(points: Floats) -> Floats:
+            points = tile(_moved(self._goal, points), self._count)
+            for screw, value in self._pairs:
+                points = screw.moved_back(value, points)
+            return _moved(back, points)
 
-    return Motion(turned, moved), Motion(turned_on, moved_on)
+        return Motion(turned, moved)
+
+    def opposite(self) -> Motion:
+        """Return B⁻¹."""
+        back = None if self._goal is None else self._goal.inverse()
+
+        def turned(vectors: Floats) -> Floats:
+            vectors = tile(_turned(self._rest, vectors), self._count)
+            for screw, value in reversed(self._pairs):
+                vectors = screw.turned(value, vectors)
+            return _turned(back, vectors)
+
+        def moved(points: Floats) -> Floats:
+            points = tile(_moved(self._rest, points), self._count)
+            for screw, value in reversed(self._pairs):
+                points = screw.moved(value, points)
+            return _moved(back, points)
+
+        return Motion(turned, moved)
 
 
 class BlockFamily:
@@ -217,10 +226,9 @@ class BlockFamily:
             values = self.carry.solve(screws, *points)
         else:
             values = self.carry.solve(screws, *planes)
-        needed, opposite = _motions(screws, values, goal, rest)
-        if isinstance(self.inside, Wrist):
-            return values + self.inside.solve(needed)
-        return values + self.inside.solve(needed, opposite)
+        around = _Around(screws, values, goal, rest)
+        backward = isinstance(self.inside, Planar) and self.inside.backward
+        return values + self.inside.solve(around.opposite() if backward else around.needed())
 
 
 def _degree(pair: Pair | None) -> tuple[bool, str]:
@@ -315,5 +323,3 @@ class PointFamily:
         """Return the values of the joints of ``order``."""
         screws, start = self._seen(locked)
         return self.carry.solve(screws, start, motion.translation)
-
-

@@ -1,10 +1,10 @@
 """Two equations in the values of two joints, which three joints leave when the middle one is eliminated.
 
-Let three joints in series have to carry something (a point, or a plane) from a start to a goal: F1 F2 F3 s = g. Whatever
-F2 does, it keeps two numbers of F3 s; F1⁻¹ g must have the same two. Each side depends on one joint only, linearly in the
-cosine and sine of a revolute one and as a polynomial of degree two in the value of a prismatic one. Where axes are
-parallel, meet, or are at right angles, an equation has one unknown only, and all is linear or quadratic; else what is
-left is a quartic (D. L. Pieper, 1968; subproblems 5 and 6 of IK-Geo).
+Let three joints in series have to carry something (a point, or a plane) from a start to a goal: F1 F2 F3 s = g.
+Whatever F2 does, it keeps two numbers of F3 s; F1⁻¹ g must have the same two. Each side depends on one joint only,
+linearly in the cosine and sine of a revolute one and as a polynomial of degree two in the value of a prismatic one.
+Where axes are parallel, meet, or are at right angles, an equation has one unknown only, and all is linear or quadratic; else
+what is left is a quartic (D. L. Pieper, 1968; subproblems 5 and 6 of IK-Geo).
 """
 
 from dataclasses import dataclass
@@ -215,4 +215,3 @@ def _in_order(side: int, first: Floats, second: Floats) -> tuple[Floats, Floats]
 
 def _safe(divisor: Floats) -> Floats:
     return np.where(divisor == 0, 1.0, divisor)
-

@@ -1,10 +1,11 @@
 """Which families an arm is of.
 
-An arm of fewer than six joints is completed with joints that have to stay at 0: a pair of axes that meet gets a third one
-through their point, and becomes a spherical wrist. What solves the completed arm gives all solutions of the arm, as those
-with other values of the added joints do not pass the check by forward kinematics.
+An arm of fewer than six joints is completed with joints that have to stay at 0: a pair of axes that meet gets a third
+one through their point, and becomes a spherical wrist. What solves the completed arm gives all solutions of the arm, as
+those with other values of the added joints do not pass the check by forward kinematics.
 """
 
+import contextlib
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -70,10 +71,8 @@ def _of(arm: Arm) -> Iterator[Family]:
     """Return the families of an arm of six joints."""
     for ordered in _orders(arm):
         examples = _examples(ordered, np.zeros((3, 1, 1)))
-        try:
+        with contextlib.suppress(NoFamilyError):
             yield Gantry(ordered)
-        except NoFamilyError:
-            pass
         inner = ordered.inner
         for block in range(inner[0], inner[-1] - 1):
             yield from _block(ordered, block, examples)
@@ -167,7 +166,7 @@ def _third(screws: Sequence[Screw], added: int) -> Iterator[list[Screw]]:
     if added == 1:
         centre = common_point(screws, EXACT)
         if centre is not None:
-            side = np.cross(*(screw.axis.ravel() for screw in screws))
+            side = np.cross(screws[0].axis.ravel(), screws[1].axis.ravel())
             yield _around(centre, side[None] / np.linalg.norm(side))
         elif is_planar(screws, EXACT):
             yield [Screw(constant(axis), constant(turning[0].point.ravel() + _generic(1)[0]))]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ravemj.ik.chain import Chain
 from ravemj.ik.families.blocks import common_point
-from ravemj.ik.vectors import Floats, Screw, constant
+from ravemj.ik.vectors import Bools, Floats, Screw, constant
 
 TOLERANCE = 1e-5
 """Lengths, in units of the reach, and sines of angles up to this are taken for 0."""
@@ -41,7 +41,7 @@ def _aligned(axes: Floats) -> Floats:
     return done
 
 
-def _joined(axes: Floats, points: Floats, prismatic: Floats) -> Floats:
+def _joined(axes: Floats, points: Floats, prismatic: Bools) -> Floats:
     """Move each revolute axis sideways to where it meets those before it."""
     points = points.copy()
     screws: list[Screw] = []
