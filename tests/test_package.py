@@ -30,7 +30,7 @@ LEVELS = [
         "collada",
         "kinematics openrave_xml tessellation",
         "coverage dynamics placement readers rendering trajectories",
-        "batch",
+        "batch ik",
         "simulation",
         "collision export studio",
         "physics",

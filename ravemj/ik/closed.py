@@ -1,7 +1,7 @@
 """Closed-form solvers: a family's answers, checked by forward kinematics of the true arm, and refined."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from string import ascii_lowercase
 
 import numpy as np
@@ -29,10 +29,12 @@ class Solutions:
     Attributes:
         values: Joint values, shape (N, B, n), angles in [-pi, pi]; rows that are no solutions have any numbers.
         valid: Which rows are solutions, shape (N, B).
+        merged: For which poses equal solutions were made one, shape (N,): those of singular postures.
     """
 
     values: Floats
     valid: Bools
+    merged: Bools
 
     def __len__(self) -> int:
         return len(self.values)
@@ -73,7 +75,7 @@ class ClosedForm:
         """The joints whose values are given."""
         return sorted(self._locked)
 
-    @property
+    @cached_property
     def branch_names(self) -> list[str]:
         """A name for each branch: for every choice the joint, counted from 1, and which of its solutions."""
         names = [""]
@@ -96,17 +98,17 @@ class ClosedForm:
         branches = len(self.branch_names)
         values = np.zeros((self.chain.dof, branches, len(poses)))
         valid = np.zeros((branches, len(poses)), dtype=bool)
+        merged = np.zeros(len(poses), dtype=bool)
         with np.errstate(all="ignore"):
             for first in range(0, len(poses), _CHUNK):
                 part = slice(first, first + _CHUNK)
-                self._solve_chunk(poses[part], given[part], values[..., part], valid[:, part])
-        return Solutions(values.transpose(2, 1, 0), valid.T)
+                self._solve_chunk(poses[part], given[part], values[..., part], valid[:, part], merged[part])
+        return Solutions(values.transpose(2, 1, 0), valid.T, merged)
 
-    def _solve_chunk(self, poses: Floats, locked: Floats, values: Floats, valid: Bools) -> None:
+    def _solve_chunk(self, poses: Floats, locked: Floats, values: Floats, valid: Bools, merged: Bools) -> None:
         turns = self._turns(poses, locked, valid.shape)
-        sliding = self.chain.prismatic.tolist()
         for joint, turn in enumerate(turns):
-            values[joint] = turn[0] if sliding[joint] else np.arctan2(turn[1], turn[0])
+            values[joint] = np.arctan2(turn[1], turn[0]) if len(turn) > 1 else turn[0]
         goal = np.ascontiguousarray(poses[:, :3].transpose(2, 1, 0))
         tool = self.chain.tool_columns([turn.reshape(len(turn), -1) for turn in turns])
         error = self._error(tool.reshape(4, 3, *valid.shape), goal[:, :, None])
@@ -114,7 +116,8 @@ class ClosedForm:
         doubtful = (error <= self.near) & ~valid
         if doubtful.any():
             self._refine(doubtful, goal, values, valid)
-        _mark_doubles(turns if not doubtful.any() else self.chain_turns(values), values, valid)
+            turns = self.chain_turns(values)
+        _merge(np.concatenate(turns), valid, merged)
 
     def chain_turns(self, values: Floats) -> list[Floats]:
         """Return values of shape (n, B, N) as turns (2, B, N) and distances (1, B, N)."""
@@ -136,7 +139,7 @@ class ClosedForm:
         for index, joint in self._answers:
             turns[joint] = found[index] * reach if self.chain.prismatic[joint] else found[index]
         branches = shape[0]
-        return [np.broadcast_to(tile(turn, branches), (len(turn), *shape)) for turn in turns]
+        return [_filled(tile(turn, branches), (len(turn), *shape)) for turn in turns]
 
     def _motion(self, poses: Floats, locked: dict[int, Floats]) -> Transform:
         """Return the motion that the joints have to make, or the place where the tool has to be, in units of reach."""
@@ -201,25 +204,30 @@ class ClosedForm:
         return values, errors
 
 
-def _mark_doubles(turns: Sequence[Floats], values: Floats, valid: Bools) -> None:
+def _filled(values: Floats, shape: tuple[int, ...]) -> Floats:
+    return values if values.shape == shape else np.broadcast_to(values, shape)
+
+
+def _merge(parts: Floats, valid: Bools, merged: Bools) -> None:
     """Keep one of solutions that are the same: where two axes or two branches fall together.
 
-    Equal rows have equal sums of cosines and sines with fixed weights, so only neighbours in their order are compared.
+    Equal rows have equal sums with fixed weights, so only neighbours in the order of these sums are compared.
+
+    Args:
+        parts: Cosines, sines and distances of all joints, shape (K, B, N).
+        valid: Which are solutions, shape (B, N); changed.
+        merged: Where some were the same, shape (N,); changed.
     """
-    mark, weight = np.zeros(valid.shape), 0.3
-    for turn in turns:
-        for part in turn:
-            weight = (weight * 7.31) % 1 + 0.2
-            mark += weight * part
+    weights = np.mod(np.arange(1, len(parts) + 1) * 0.618034, 1) + 0.5
+    mark = (weights @ parts.reshape(len(parts), -1)).reshape(valid.shape)
     mark[~valid] = np.inf
-    ordered = np.sort(mark, axis=0)
-    with np.errstate(invalid="ignore"):
-        close = (ordered[1:] - ordered[:-1] < 10 * _SAME).any(axis=0)
+    mark.sort(axis=0)
+    close = np.logical_or.reduce(mark[1:] - mark[:-1] < 10 * _SAME, axis=0)
     for pose in np.nonzero(close)[0]:
         kept: list[Floats] = []
         for branch in np.nonzero(valid[:, pose])[0]:
-            row = np.concatenate([turn[:, branch, pose] for turn in turns])
+            row = parts[:, branch, pose]
             if any(np.abs(row - other).max() < _SAME for other in kept):
-                valid[branch, pose] = False
+                valid[branch, pose], merged[pose] = False, True
             else:
                 kept.append(row)

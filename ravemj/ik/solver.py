@@ -107,7 +107,7 @@ class IKSolver:
         if limits:
             rows, inside = nearest_turns(self.chain, rows)
             valid = valid & inside
-        return Solutions(rows, valid)
+        return Solutions(rows, valid, found.merged.reshape(count, -1).any(axis=1))
 
     def _search_all(self, poses: Floats) -> Solutions:
         rows = [self.numeric.solve_all(pose) for pose in poses]
@@ -115,15 +115,15 @@ class IKSolver:
         values, valid = np.zeros((len(poses), most, self.chain.dof)), np.zeros((len(poses), most), dtype=bool)
         for index, found in enumerate(rows):
             values[index, : len(found)], valid[index, : len(found)] = found, True
-        return Solutions(values, valid)
+        return Solutions(values, valid, np.zeros(len(poses), dtype=bool))
 
     def solve_one(self, goal: ArrayLike, *, free: Floats | None = None, limits: bool = True) -> Floats:
         """Return all solutions of one goal, shape (K, n), with all turns within the limits, and singular ones spread.
 
         The arguments are those of ``solve``, for one goal. Without limits, every solution comes once.
         """
-        found = self.solve(np.asarray(goal, dtype=float)[None], free=free, limits=False).of(0)
-        rows = self._spread(found)
+        found = self.solve(np.asarray(goal, dtype=float)[None], free=free, limits=False)
+        rows = self._spread(found.of(0)) if found.merged[0] else found.of(0)
         return all_turns(self.chain, rows) if limits else rows
 
     def _spread(self, rows: Floats, at: Floats | None = None) -> Floats:
@@ -167,8 +167,10 @@ class IKSolver:
             if not len(part):
                 continue
             solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), part if self.free else None)
-            for rows, valid in zip(solutions.values, solutions.valid, strict=True):
-                best = self._best(rows[valid], seed, weights, accept)
+            for index in np.nonzero(solutions.valid.any(axis=1))[0]:
+                rows = solutions.of(index)
+                rows = self._spread(rows, seed) if solutions.merged[index] else rows
+                best = self._best(rows, seed, weights, accept)
                 if best is not None:
                     return best
         return None
@@ -176,7 +178,7 @@ class IKSolver:
     def _best(
         self, rows: Floats, seed: Floats, weights: Floats | None, accept: Callable[[Floats], bool] | None
     ) -> Floats | None:
-        moved, inside = nearest_turns(self.chain, self._spread(rows, seed), seed)
+        moved, inside = nearest_turns(self.chain, rows, seed)
         moved = moved[inside]
         for index in np.argsort(distances(self.chain, moved, seed, weights), kind="stable"):
             if accept is None or accept(moved[index]):

@@ -17,29 +17,30 @@ from ravemj.ik.vectors import TINY, Floats, cross, dot
 _SHIFTS = 2 * np.pi / 5 * np.arange(5).reshape(5, 1, 1)
 
 
-def normalized(turn: Floats) -> Floats:
-    """Return turns of unit length; what has no direction becomes the turn by 0."""
+def normalized(turn: Floats, least: float = TINY) -> Floats:
+    """Return turns of unit length; what is shorter than the least length becomes the turn by 0."""
     length = np.sqrt(turn[0] * turn[0] + turn[1] * turn[1])
-    if length.min() < TINY:
-        none = length < TINY
-        turn = np.stack([np.where(none, 1.0, turn[0]), np.where(none, 0.0, turn[1])])
+    if length.min(initial=np.inf) < least:
+        none = length < least
+        turn = np.array([np.where(none, 1.0, turn[0]), np.where(none, 0.0, turn[1])])
         length = np.where(none, 1.0, length)
     return turn / length
 
 
-def turn_between(axis: Floats, start: Floats, end: Floats) -> Floats:
+def turn_between(axis: Floats, start: Floats, end: Floats, least: float = TINY) -> Floats:
     """Return the turns about an axis through the origin that carry a point nearest to another (subproblem 1).
 
     Args:
         axis: Unit vectors, shape (3, B, N).
         start: Points, of such a shape.
         end: Points, of such a shape.
+        least: The product of their distances from the axis below which they count as being on it.
 
     Returns:
         Turns, shape (2, B, N); the turn by 0 where a point is on the axis.
     """
     cosine = dot(start, end) - dot(axis, start) * dot(axis, end)
-    return normalized(np.stack([cosine, dot(axis, cross(start, end))]))
+    return normalized(np.array([cosine, dot(axis, cross(start, end))]), least)
 
 
 def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:
@@ -50,7 +51,7 @@ def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:
         and both come as near as it goes.
     """
     length = np.sqrt(a * a + b * b)
-    if length.min() < TINY:
+    if length.min(initial=np.inf) < TINY:
         length = np.where(length < TINY, np.inf, length)
         a = np.where(np.isinf(length), 1.0, a / length)
         b, d = b / length, np.where(np.isinf(length), 1.0, d / length)
@@ -59,7 +60,7 @@ def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:
     d = np.clip(d, -1.0, 1.0)
     root = np.sqrt(1 - d * d)
     ad, bd, ar, br = a * d, b * d, a * root, b * root
-    return np.stack([np.concatenate([ad - br, ad + br], axis=-2), np.concatenate([bd + ar, bd - ar], axis=-2)])
+    return np.array([np.concatenate([ad - br, ad + br], axis=-2), np.concatenate([bd + ar, bd - ar], axis=-2)])
 
 
 def solve_parabola(a: Floats, b: Floats, d: Floats) -> Floats:
@@ -99,7 +100,7 @@ def solve_quadratic(k: Floats, linear: Floats, square: Floats) -> Floats:
         slope = b1 * c1 - a1 * s1 + 2 * (b2 * c2 - a2 * s2)
         slope = np.where(slope == 0, np.inf, slope)
         angles = angles - np.clip(value / slope, -1e-2, 1e-2)
-    return np.stack([np.cos(angles), np.sin(angles)])
+    return np.array([np.cos(angles), np.sin(angles)])
 
 
 def _quartic(a: Floats, b: Floats, c: Floats, d: Floats, e: Floats) -> Floats:
@@ -119,7 +120,7 @@ def _quartic(a: Floats, b: Floats, c: Floats, d: Floats, e: Floats) -> Floats:
     s = np.where(small, 0.0, s)
     one = np.sqrt(np.maximum(s * s / 4 - first, 0.0))
     two = np.sqrt(np.maximum(s * s / 4 - second, 0.0))
-    return np.stack([s / 2 + one, s / 2 - one, -s / 2 + two, -s / 2 - two]) - b / 4
+    return np.array([s / 2 + one, s / 2 - one, -s / 2 + two, -s / 2 - two]) - b / 4
 
 
 def _largest_root(a: Floats, b: Floats, c: Floats) -> Floats:

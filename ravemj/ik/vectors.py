@@ -22,14 +22,14 @@ TINY = 1e-14
 
 def dot(a: Floats, b: Floats) -> Floats:
     """Return the dot products of vectors along their first axis."""
-    return (a * b).sum(axis=0)
+    return np.add.reduce(a * b, axis=0)
 
 
 def cross(a: Floats, b: Floats) -> Floats:
     """Return the cross products of vectors along their first axis."""
     ax, ay, az = a
     bx, by, bz = b
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def constant(vector: Floats) -> Floats:
@@ -52,7 +52,7 @@ def apply_matrix(matrix: Floats, vectors: Floats) -> Floats:
     """Multiply a constant matrix (K, 3), or one for each pose (K, 3, B, N), with vectors (3, B, N)."""
     if matrix.ndim == 2:
         return (matrix @ vectors.reshape(3, -1)).reshape(len(matrix), *vectors.shape[1:])
-    return (matrix * vectors).sum(axis=1)
+    return np.add.reduce(matrix * vectors, axis=1)
 
 
 def tile(values: Floats, branches: int) -> Floats:

@@ -13,6 +13,9 @@ from ravemj.ik.families.carrying import CarryPoint
 from ravemj.ik.subproblems import turn_between
 from ravemj.ik.vectors import Floats, Screw, constant, cross, dot, perpendicular, skew, tile
 
+_SINGULAR = 2e-11
+"""Outer axes of a wrist that are nearer to parallel fall together: any turn of the first is exact enough."""
+
 
 class Motion(NamedTuple):
     """A rigid motion that is applied, not stored: functions of vectors (3, B, N)."""
@@ -53,7 +56,7 @@ class Wrist:
         first, middle, last = self.screws
         tip = needed.turned(last.axis)
         two = self._middle(tip)
-        turn = turn_between(first.axis, middle.turned(two, last.axis), tile(tip, two.shape[-2]))
+        turn = turn_between(first.axis, middle.turned(two, last.axis), tile(tip, two.shape[-2]), _SINGULAR)
         side = first.turned_back(turn, tile(needed.turned(self._side), two.shape[-2]))
         return [turn, two, turn_between(last.axis, self._side, middle.turned_back(two, side))]
 
@@ -70,7 +73,7 @@ class Wrist:
         cosine, sine = (above - below) / (above + below), 2 * np.sqrt(below * above) / (above + below)
         c, s = self._phase
         cosines, sines = [c * cosine - s * sine, c * cosine + s * sine], [s * cosine + c * sine, s * cosine - c * sine]
-        return np.stack([np.concatenate(cosines, axis=-2), np.concatenate(sines, axis=-2)])
+        return np.array([np.concatenate(cosines, axis=-2), np.concatenate(sines, axis=-2)])
 
 
 class Planar:

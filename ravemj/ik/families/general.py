@@ -5,8 +5,8 @@ E3 E4 E5 = E2⁻¹ E1⁻¹ X E6⁻¹ for a direction l and a point p of the sixt
 (p·p) l - 2 (p·l) p are linear in products of cosines and sines, of joints 3, 4 and 5 on the left and of 1 and 2 on the
 right. Of these fourteen equations six are left when the eight products on the right are eliminated. With half-angle
 tangents they are polynomials in those of joints 4 and 5; with each multiplied by the tangent of joint 4 there are
-twelve equations in twelve monomials, and D. Manocha and J. F. Canny (1994) find the tangent of joint 3 as an eigenvalue of a
-matrix of 24 rows, and the others in its eigenvector.
+twelve equations in twelve monomials, and D. Manocha and J. F. Canny (1994) find the tangent of joint 3 as an eigenvalue
+of a matrix of 24 rows, and the others in its eigenvector.
 
 The coefficients are taken from values at three angles of each joint, so no symbolic algebra is needed, and no frames of
 Denavit and Hartenberg. Half angles are counted from angles that are in no way special.

@@ -2,8 +2,8 @@
 
 An arm E1 … E6 has to make a motion X. With the block B anywhere among its joints, A B C = X, so B⁻¹ = C X⁻¹ A: the
 joints behind the block, the motion that is asked for, and the joints before it, in a circle. Moving X⁻¹ to the end of
-the circle leaves three joints, some of them seen from elsewhere (E(axis) X = X E(X⁻¹ axis)), that have to keep the block's
-point or plane. Joints that are locked at a value are constant motions in that circle.
+the circle leaves three joints, some of them seen from elsewhere (E(axis) X = X E(X⁻¹ axis)), that have to keep the
+block's point or plane. Joints that are locked at a value are constant motions in that circle.
 """
 
 from collections.abc import Mapping, Sequence

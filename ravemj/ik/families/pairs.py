@@ -3,8 +3,8 @@
 Let three joints in series have to carry something (a point, or a plane) from a start to a goal: F1 F2 F3 s = g.
 Whatever F2 does, it keeps two numbers of F3 s; F1⁻¹ g must have the same two. Each side depends on one joint only,
 linearly in the cosine and sine of a revolute one and as a polynomial of degree two in the value of a prismatic one.
-Where axes are parallel, meet, or are at right angles, an equation has one unknown only, and all is linear or quadratic; else
-what is left is a quartic (D. L. Pieper, 1968; subproblems 5 and 6 of IK-Geo).
+Where axes are parallel, meet, or are at right angles, an equation has one unknown only, and all is linear or quadratic;
+else what is left is a quartic (D. L. Pieper, 1968; subproblems 5 and 6 of IK-Geo).
 """
 
 from dataclasses import dataclass
@@ -182,22 +182,22 @@ class Pair:
         a, b = slider[1]
         k = a * start + b * start * start - rest[1]
         linear = turn[1] + (a + 2 * b * start) * slope
-        square = np.stack([b * slope[0] ** 2, b * slope[0] * slope[1], b * slope[1] ** 2])
+        square = np.array([b * slope[0] ** 2, b * slope[0] * slope[1], b * slope[1] ** 2])
         found = solve_quadratic(k, linear, square)
         distance = tile(start, found.shape[-2]) + tile(slope[0], found.shape[-2]) * found[0]
         return (distance + tile(slope[1], found.shape[-2]) * found[1])[None], found
 
     def _two_turns(self, one: Floats, three: Floats, rest: Floats) -> tuple[Floats, Floats]:
         """Solve A x + C y = rest for unit vectors: |adj(A) (rest - C y)|² = det(A)²."""
-        adjugate = np.stack([np.stack([one[1, 1], -one[0, 1]]), np.stack([-one[1, 0], one[0, 0]])])
+        adjugate = np.array([np.array([one[1, 1], -one[0, 1]]), np.array([-one[1, 0], one[0, 0]])])
         determinant = one[0, 0] * one[1, 1] - one[0, 1] * one[1, 0]
         scale = np.abs(one).max(axis=(0, 1))
         adjugate, determinant = adjugate / _safe(scale), determinant / _safe(scale)
         m = [row[0] * rest[0] + row[1] * rest[1] for row in adjugate]
         c = [[row[0] * three[0, j] + row[1] * three[1, j] for j in range(2)] for row in adjugate]
         k = m[0] * m[0] + m[1] * m[1] - determinant * determinant
-        linear = np.stack([-2 * (m[0] * c[0][j] + m[1] * c[1][j]) for j in range(2)])
-        square = np.stack([c[0][i] * c[0][j] + c[1][i] * c[1][j] for i, j in ((0, 0), (0, 1), (1, 1))])
+        linear = np.array([-2 * (m[0] * c[0][j] + m[1] * c[1][j]) for j in range(2)])
+        square = np.array([c[0][i] * c[0][j] + c[1][i] * c[1][j] for i, j in ((0, 0), (0, 1), (1, 1))])
         found = solve_quadratic(k, linear, square)
         sign = np.where(determinant < 0, -1.0, 1.0)
         values = [
