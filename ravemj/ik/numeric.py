@@ -21,6 +21,7 @@ ACCURATE = 1e-9
 """The error, in units of the reach and in radians, below which a posture is a solution."""
 Kinematics = Callable[[Floats], tuple[Floats, Floats, Floats]]
 _STEPS = 40
+_NEAREST_STEPS = 100
 _DISTINCT = 1e-3
 
 
@@ -68,38 +69,39 @@ class NumericSolver:
         self._highest = np.where(chain.circular, np.inf, chain.upper)
         self._identity = np.eye(chain.dof)
 
-    def descend(self, pose: Floats, start: Floats, weights: Floats | None = None) -> Nearest:
-        """Follow the error down from a start, to a solution or to where no step makes it smaller.
+    def descend(self, pose: Floats, start: Floats) -> Nearest:
+        """Follow the error from a start, to a solution or to where it stays: the fast way, if there is a solution.
 
         Args:
             pose: The pose, shape (4, 4).
             start: Joint values, shape (n,).
-            weights: How much errors along x, y, z and about them count, shape (6,); all the same if None.
         """
-        scale = self._scale if weights is None else self._scale * weights
-        lowest, highest, rows = self._lowest, self._highest, self._rows
-        values = np.minimum(np.maximum(start, lowest), highest)
-        best, at, stalled = np.inf, values, 0
-        missing, step = np.empty(6), 0
+        values = np.minimum(np.maximum(start, self._lowest), self._highest)
+        best, at, stalled, step = np.inf, values, 0, 0
         for step in range(_STEPS):  # noqa: B007 - it is in the answer
-            rotation, place, jacobian = self._kinematics(values)
-            missing[:3] = pose[:3, 3] - place
-            missing[3:] = _rotation_between(rotation, pose)
-            error, slope = missing * scale, jacobian * scale[:, None]
-            if rows is not None:
-                error, slope = error[rows], slope[rows]
+            error, slope = self._linear(pose, values, self._scale)
             square = float(error @ error)
             stalled = 0 if square < best * 0.98 else stalled + 1
             if square < best:
                 best, at = square, values
             if square < 1e-24 or stalled > 6:
                 break
-            values = self._step(values, error, slope, square)
+            values = self._step(values, error, slope, 0.05 * square + 1e-12)
         return Nearest(at, float(np.sqrt(best)), step + 1)
 
-    def _step(self, values: Floats, error: Floats, slope: Floats, square: float) -> Floats:
+    def _linear(self, pose: Floats, values: Floats, scale: Floats) -> tuple[Floats, Floats]:
+        """Return the scaled error of a posture and how it changes with the joint values."""
+        rotation, place, jacobian = self._kinematics(values)
+        missing = np.empty(6)
+        missing[:3] = pose[:3, 3] - place
+        missing[3:] = _rotation_between(rotation, pose)
+        error, slope = missing * scale, jacobian * scale[:, None]
+        return (error, slope) if self._rows is None else (error[self._rows], slope[self._rows])
+
+    def _step(self, values: Floats, error: Floats, slope: Floats, damping: float) -> Floats:
+        """Return the values after a damped step within the limits."""
         pull = slope.T @ error
-        matrix = slope.T @ slope + (0.05 * square + 1e-12) * self._identity
+        matrix = slope.T @ slope + damping * self._identity
         moved = np.linalg.solve(matrix, pull)
         ahead = values + moved
         beyond = (ahead < self._lowest) | (ahead > self._highest)
@@ -151,12 +153,31 @@ class NumericSolver:
     def nearest(self, pose: Floats, seed: Floats, weights: Floats | None = None) -> Nearest:
         """Return the posture that comes as near to a pose as it can from a seed, reachable or not.
 
+        Every step makes the error smaller, by a damping that grows until it does.
+
         Args:
             pose: The pose, shape (4, 4).
             seed: Joint values to start at, shape (n,); the answer is in the same valley.
-            weights: How much errors along x, y, z and about them count, shape (6,).
+            weights: How much errors along x, y, z and about them count, shape (6,); all the same if None.
         """
-        return self.descend(pose, seed, weights)
+        scale = self._scale if weights is None else self._scale * weights
+        values = np.minimum(np.maximum(seed, self._lowest), self._highest)
+        error, slope = self._linear(pose, values, scale)
+        square, damping, step = float(error @ error), 1e-3, 0
+        for step in range(_NEAREST_STEPS):  # noqa: B007 - it is in the answer
+            ahead = self._step(values, error, slope, damping * (1e-9 + square))
+            error_ahead, slope_ahead = self._linear(pose, ahead, scale)
+            square_ahead = float(error_ahead @ error_ahead)
+            if square_ahead < square:
+                gained, damping = square - square_ahead, max(damping / 4, 1e-9)
+                values, error, slope, square = ahead, error_ahead, slope_ahead, square_ahead
+                if square < 1e-24 or gained < 1e-10 * square:
+                    break
+            else:
+                damping *= 8
+                if damping > 1e9:
+                    break
+        return Nearest(values, float(np.sqrt(square)), step + 1)
 
 
 def _rotation_between(rotation: Floats, pose: Floats) -> Floats:
