@@ -8,6 +8,7 @@ import numpy as np
 
 from ravemj.ik.chain import Chain
 from ravemj.ik.families.loops import Family
+from ravemj.ik.limits import nearest_turns
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Bools, Floats, Ints, Transform, cross, tile
 
@@ -17,6 +18,7 @@ ACCURATE = 1e-9
 """What has a larger error after that is no solution."""
 _CHUNK = 1536
 """So many poses at once: few enough that the arrays stay in the processor's cache."""
+_MARGIN = 0.05
 _SAME = 1e-5
 """Solutions whose values differ by less are one."""
 _STEPS = 12
@@ -87,12 +89,13 @@ class ClosedForm:
                 names = [f"{before} {label}{sign}".lstrip() for sign in signs for before in names]
         return names
 
-    def solve(self, poses: Floats, locked: Floats | None = None) -> Solutions:
-        """Return all solutions, whatever the limits.
+    def solve(self, poses: Floats, locked: Floats | None = None, *, limits: bool = False) -> Solutions:
+        """Return all solutions, whatever the limits, or at least those within them.
 
         Args:
             poses: Poses of the tool in the base, shape (N, 4, 4).
             locked: Values of the locked joints, shape (N, k).
+            limits: Whether solutions far from the limits may be left out, where they would have to be refined.
         """
         given = np.zeros((len(poses), 0)) if locked is None else locked
         branches = len(self.branch_names)
@@ -102,11 +105,14 @@ class ClosedForm:
         with np.errstate(all="ignore"):
             for first in range(0, len(poses), _CHUNK):
                 part = slice(first, first + _CHUNK)
-                self._solve_chunk(poses[part], given[part], values[..., part], valid[:, part], merged[part])
+                turns = self._turns(poses[part], given[part], valid[:, part].shape)
+                self._check(poses[part], turns, values[..., part], valid[:, part], merged[part], limits=limits)
         return Solutions(values.transpose(2, 1, 0), valid.T, merged)
 
-    def _solve_chunk(self, poses: Floats, locked: Floats, values: Floats, valid: Bools, merged: Bools) -> None:
-        turns = self._turns(poses, locked, valid.shape)
+    def _check(
+        self, poses: Floats, turns: list[Floats], values: Floats, valid: Bools, merged: Bools, *, limits: bool
+    ) -> None:
+        """Fill in values, and which of them are solutions, for what the family says."""
         for joint, turn in enumerate(turns):
             values[joint] = np.arctan2(turn[1], turn[0]) if len(turn) > 1 else turn[0]
         goal = np.ascontiguousarray(poses[:, :3].transpose(2, 1, 0))
@@ -114,6 +120,8 @@ class ClosedForm:
         error = self._error(tool.reshape(4, 3, *valid.shape), goal[:, :, None])
         np.less_equal(error, EXACT, out=valid)
         doubtful = (error <= self.near) & ~valid
+        if limits and doubtful.any():
+            doubtful &= nearest_turns(self.chain, np.moveaxis(values, 0, -1), tolerance=_MARGIN)[1]
         if doubtful.any():
             self._refine(doubtful, goal, values, valid)
             turns = self.chain_turns(values)

@@ -14,14 +14,16 @@ class CompiledKinematics:
 
     Attributes:
         chain: The chain.
+        model: The model.
+        data: Its state.
     """
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
-        self._model = mujoco.MjModel.from_xml_string(_mjcf(chain))
-        self._data = mujoco.MjData(self._model)
-        self._qpos, self._place = self._data.qpos, self._data.site_xpos[0]
-        self._rows = self._data.site_xmat[0].reshape(3, 3)
+        self.model = mujoco.MjModel.from_xml_string(_mjcf(chain))
+        self.data = mujoco.MjData(self.model)
+        self._qpos, self._place = self.data.qpos, self.data.site_xpos[0]
+        self._rows = self.data.site_xmat[0].reshape(3, 3)
         self._jacobian = np.zeros((6, chain.dof))
         self._parts = self._jacobian[:3], self._jacobian[3:]
 
@@ -31,9 +33,9 @@ class CompiledKinematics:
     def __call__(self, values: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the tool's rotation (3, 3), its place (3,) and the Jacobian (6, n); the next call overwrites them."""
         self._qpos[:] = values
-        mujoco.mj_kinematics(self._model, self._data)
-        mujoco.mj_comPos(self._model, self._data)
-        mujoco.mj_jacSite(self._model, self._data, *self._parts, 0)
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+        mujoco.mj_jacSite(self.model, self.data, *self._parts, 0)
         return self._rows, self._place, self._jacobian
 
 

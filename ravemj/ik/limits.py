@@ -17,7 +17,9 @@ def _bounds(chain: Chain) -> tuple[Floats, Floats]:
     return lower, np.where(chain.circular, np.inf, chain.upper)
 
 
-def nearest_turns(chain: Chain, values: Floats, near: Floats | float = 0.0) -> tuple[Floats, Bools]:
+def nearest_turns(
+    chain: Chain, values: Floats, near: Floats | float = 0.0, *, tolerance: float = TOLERANCE
+) -> tuple[Floats, Bools]:
     """Move revolute joints by whole turns to where they are within their limits, and as near as possible to others.
 
     Circular joints have no limits; they come to [-pi, pi], so that their distance is that of angles.
@@ -26,6 +28,7 @@ def nearest_turns(chain: Chain, values: Floats, near: Floats | float = 0.0) -> t
         chain: The arm.
         values: Joint values, shape (..., n).
         near: Joint values to be near to, which broadcast against them.
+        tolerance: How far values may be beyond a limit.
 
     Returns:
         The values, and for each row whether all are within the limits, shape (...).
@@ -33,12 +36,12 @@ def nearest_turns(chain: Chain, values: Floats, near: Floats | float = 0.0) -> t
     lower, upper = _bounds(chain)
     turning = ~chain.prismatic
     with np.errstate(invalid="ignore"):
-        least = np.ceil((lower - TOLERANCE - values) / _TURN)
-        most = np.floor((upper + TOLERANCE - values) / _TURN)
+        least = np.ceil((lower - tolerance - values) / _TURN)
+        most = np.floor((upper + tolerance - values) / _TURN)
         wanted = np.round((np.where(chain.circular, 0.0, near) - values) / _TURN)
         turns = np.clip(wanted, least, np.maximum(most, least)) * turning
         moved = values + _TURN * turns
-        good = (moved >= lower - TOLERANCE) & (moved <= upper + TOLERANCE)
+        good = (moved >= lower - tolerance) & (moved <= upper + tolerance)
     return np.clip(moved, lower, upper), np.logical_and.reduce(good, axis=-1)
 
 

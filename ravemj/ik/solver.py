@@ -27,7 +27,8 @@ ANGLE_STEP = 0.1
 SLIDE_STEP = 0.01
 """Step of a prismatic free joint, in units of the reach."""
 _TRIED = 12
-_FIRST_SAMPLES = 8
+_SAMPLES = (5, 15, 35)
+"""Where the samples of free joints are cut: values near the present ones are tried first, and mostly are enough."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +102,7 @@ class IKSolver:
         count, tries = len(poses), len(values)
         if tries != 1 or len(self.free):
             poses, values = np.repeat(poses, tries, axis=0), np.tile(values, (count, 1))
-        found = self.closed.solve(poses, values if self.free else None)
+        found = self.closed.solve(poses, values if self.free else None, limits=limits)
         shape = (count, -1) if count else (0, len(self.closed.branch_names) * tries)
         rows, valid = found.values.reshape(*shape, self.chain.dof), found.valid.reshape(shape)
         if limits:
@@ -162,11 +163,9 @@ class IKSolver:
             found = self.numeric.solve(pose, seed)
             return found if found is None or accept is None or accept(found) else None
         values = self.free_samples(seed[list(self.free)])
-        first = _FIRST_SAMPLES if self.free else 1
-        for part in (values[:first], values[first:]):
-            if not len(part):
-                continue
-            solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), part if self.free else None)
+        for part in np.split(values, [count for count in _SAMPLES if count < len(values)]):
+            given = part if self.free else None
+            solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), given, limits=True)
             for index in np.nonzero(solutions.valid.any(axis=1))[0]:
                 rows = solutions.of(index)
                 rows = self._spread(rows, seed) if solutions.merged[index] else rows
