@@ -27,8 +27,8 @@ ANGLE_STEP = 0.1
 SLIDE_STEP = 0.01
 """Step of a prismatic free joint, in units of the reach."""
 _TRIED = 12
-_SAMPLES = (5, 15, 35)
-"""Where the samples of free joints are cut: values near the present ones are tried first, and mostly are enough."""
+_FIRST, _NEXT = 12, 96
+"""So many samples of free joints are tried at once; those near the present values mostly are enough."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +163,7 @@ class IKSolver:
             found = self.numeric.solve(pose, seed)
             return found if found is None or accept is None or accept(found) else None
         values = self.free_samples(seed[list(self.free)])
-        for part in np.split(values, [count for count in _SAMPLES if count < len(values)]):
+        for part in np.split(values, range(_FIRST, len(values), _NEXT)):
             given = part if self.free else None
             solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), given, limits=True)
             for index in np.nonzero(solutions.valid.any(axis=1))[0]:

@@ -12,7 +12,7 @@ tells.
 
 import numpy as np
 
-from ravemj.ik.vectors import TINY, Floats, cross, dot
+from ravemj.ik.vectors import TINY, Floats, Screw, dot
 
 _SHIFTS = 2 * np.pi / 5 * np.arange(5).reshape(5, 1, 1)
 
@@ -27,20 +27,20 @@ def normalized(turn: Floats, least: float = TINY) -> Floats:
     return turn / length
 
 
-def turn_between(axis: Floats, start: Floats, end: Floats, least: float = TINY) -> Floats:
-    """Return the turns about an axis through the origin that carry a point nearest to another (subproblem 1).
+def turn_between(joint: Screw, start: Floats, end: Floats, least: float = TINY) -> Floats:
+    """Return the turns of a joint that carry a direction nearest to another (subproblem 1).
 
     Args:
-        axis: Unit vectors, shape (3, B, N).
-        start: Points, of such a shape.
-        end: Points, of such a shape.
+        joint: The joint; for points, they are relative to its own.
+        start: Vectors, shape (3, B, N).
+        end: Vectors, of such a shape.
         least: The product of their distances from the axis below which they count as being on it.
 
     Returns:
-        Turns, shape (2, B, N); the turn by 0 where a point is on the axis.
+        Turns, shape (2, B, N); the turn by 0 where a vector is along the axis.
     """
-    cosine = dot(start, end) - dot(axis, start) * dot(axis, end)
-    return normalized(np.array([cosine, dot(axis, cross(start, end))]), least)
+    _, across, later = joint.split(end)
+    return normalized(np.array([dot(start, across), -dot(start, later)]), least)
 
 
 def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:

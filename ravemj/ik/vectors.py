@@ -133,18 +133,20 @@ class Screw:
         """Return directions after the motion."""
         if self.prismatic:
             return directions
-        along, across, later = apply_matrix(self.parts, directions).reshape(3, 3, *self._shape(directions))
+        along, across, later = self.split(directions)
         return along + value[0] * across + value[1] * later
 
     def turned_back(self, value: Floats, directions: Floats) -> Floats:
         """Return directions after the opposite motion."""
         if self.prismatic:
             return directions
-        along, across, later = apply_matrix(self.parts, directions).reshape(3, 3, *self._shape(directions))
+        along, across, later = self.split(directions)
         return along + value[0] * across - value[1] * later
 
-    def _shape(self, vectors: Floats) -> tuple[int, ...]:
-        return vectors.shape[1:] if self.shared else np.broadcast_shapes(vectors.shape[1:], self.axis.shape[1:])
+    def split(self, vectors: Floats) -> Floats:
+        """Return the parts of vectors along the axis, across it, and that a quarter turn later, shape (3, 3, B, N)."""
+        parts = apply_matrix(self.parts, vectors)
+        return parts.reshape(3, 3, *parts.shape[1:])
 
     def moved(self, value: Floats, points: Floats) -> Floats:
         """Return points after the motion."""

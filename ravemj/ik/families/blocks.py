@@ -56,9 +56,9 @@ class Wrist:
         first, middle, last = self.screws
         tip = needed.turned(last.axis)
         two = self._middle(tip)
-        turn = turn_between(first.axis, middle.turned(two, last.axis), tile(tip, two.shape[-2]), _SINGULAR)
+        turn = turn_between(first, middle.turned(two, last.axis), tile(tip, two.shape[-2]), _SINGULAR)
         side = first.turned_back(turn, tile(needed.turned(self._side), two.shape[-2]))
-        return [turn, two, turn_between(last.axis, self._side, middle.turned_back(two, side))]
+        return [turn, two, turn_between(last, self._side, middle.turned_back(two, side))]
 
     def _middle(self, tip: Floats) -> Floats:
         """Return both turns of the middle joint for a direction of the last axis.
@@ -128,13 +128,13 @@ class Planar:
         goal = motion.moved(last.point)
         one, two, _ = self._carry.solve(self._carried, last.point, goal)
         side = tile(motion.turned(self._side), one.shape[-2])
-        three = turn_between(last.axis, self._side, middle.turned_back(two, first.turned_back(one, side)))
+        three = turn_between(last, self._side, middle.turned_back(two, first.turned_back(one, side)))
         return [three, two, one] if self.backward else [one, two, three]
 
     def _solve_between(self, motion: Motion) -> list[Floats]:
         """Solve for a revolute joint between two prismatic ones: its turn is that of the motion, the rest is linear."""
         first, middle, last = self._order
-        turn = turn_between(middle.axis, self._side, motion.turned(self._side))
+        turn = turn_between(middle, self._side, motion.turned(self._side))
         way = motion.moved(middle.point) - middle.point
         direction = middle.turned(turn, last.axis)
         area = dot(self.normal, cross(first.axis, direction))

@@ -7,7 +7,7 @@ import numpy as np
 
 from ravemj.ik.families.pairs import Measure, Pair, Side
 from ravemj.ik.subproblems import solve_linear, turn_between
-from ravemj.ik.vectors import Floats, Screw, apply_matrix, cross, dot, tile
+from ravemj.ik.vectors import Floats, Screw, cross, dot, tile
 
 Screws = Sequence[Screw]
 _NEAR = 1e-9
@@ -94,7 +94,7 @@ class CarryPoint:
         if middle.prismatic:
             two = dot(middle.axis, before - after)[None]
         else:
-            two = turn_between(middle.axis, after - middle.point, before - middle.point)
+            two = turn_between(middle, after - middle.point, before - middle.point)
         return [one, two, three]
 
 
@@ -148,15 +148,15 @@ class CarryPlane:
         one, three = self.pair.solve(*self._sides(screws, start, goal))
         before = first.turned_back(one, tile(goal.normal, one.shape[-2]))
         after = third.turned(three, tile(start.normal, three.shape[-2]))
-        return [one, turn_between(middle.axis, after, before), three]
+        return [one, turn_between(middle, after, before), three]
 
     def _solve_sliding(self, screws: Screws, start: Plane, goal: Plane) -> list[Floats]:
         """Turn the normal by the revolute joints (subproblem 2), then move the plane by the prismatic one."""
         first, second = (screw for screw in screws if not screw.prismatic)
-        along, across, later = apply_matrix(second.parts, start.normal).reshape(3, 3, *_joint_shape(second, start))
+        along, across, later = second.split(start.normal)
         rest = dot(first.axis, goal.normal) - dot(first.axis, along)
         late = solve_linear(dot(first.axis, across), dot(first.axis, later), rest)
-        early = turn_between(first.axis, second.turned(late, start.normal), tile(goal.normal, late.shape[-2]))
+        early = turn_between(first, second.turned(late, start.normal), tile(goal.normal, late.shape[-2]))
         turns = iter((early, late))
         values = [np.zeros((1, 1, 1)) if screw.prismatic else next(turns) for screw in screws]
         point, direction = start.point, np.zeros((3, 1, 1))
@@ -171,10 +171,6 @@ class CarryPlane:
 
 class NoFamilyError(Exception):
     """The geometry is not of this family."""
-
-
-def _joint_shape(joint: Screw, plane: Plane) -> tuple[int, ...]:
-    return np.broadcast_shapes(plane.normal.shape[1:], joint.axis.shape[1:])
 
 
 def _plane_side(joint: Screw, middle: Screw, foot: Floats, plane: Plane, sign: float) -> Side:

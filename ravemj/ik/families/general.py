@@ -88,7 +88,7 @@ class General:
         end = needed.turned(side)
         for screw, turn in zip(screws, turns, strict=False):
             end = screw.turned_back(turn, end)
-        return [*turns, turn_between(screws[5].axis, side, end)]
+        return [*turns, turn_between(screws[5], side, end)]
 
 
 def _left(screws: Sequence[Screw]) -> Floats:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.ik.subproblems import normalized, solve_linear, solve_parabola, solve_quadratic
-from ravemj.ik.vectors import Floats, Screw, apply_matrix, dot, tile
+from ravemj.ik.vectors import Floats, Screw, dot, tile
 
 NEGLIGIBLE = 1e-9
 """A coefficient that stays below this in all examples, of those of its equation, is 0 by the arm's geometry."""
@@ -53,7 +53,7 @@ class Measure:
         if joint.prismatic:
             return self._sliding(joint, point, sign)
         arm = point - joint.point
-        along, across, later = apply_matrix(joint.parts, arm).reshape(3, 3, *_shape(joint, arm))
+        along, across, later = joint.split(arm)
         still = along + joint.point
         rows = [dot(self.first, still)], [[dot(self.first, across), sign * dot(self.first, later)]]
         if self.sphere:
@@ -77,10 +77,6 @@ class Measure:
             constants.append(dot(self.second, point))
             factors.append([sign * dot(self.second, joint.axis), np.zeros((1, 1))])
         return _side(constants, factors)
-
-
-def _shape(joint: Screw, vectors: Floats) -> tuple[int, ...]:
-    return vectors.shape[1:] if joint.shared else np.broadcast_shapes(vectors.shape[1:], joint.axis.shape[1:])
 
 
 def _side(constants: list[Floats], factors: list[list[Floats]]) -> Side:
