@@ -113,7 +113,9 @@ def test_no_poses():
     assert make_solver(PANDA).solve(np.zeros((0, 4, 4))).values.shape[0] == 0
 
 
-@pytest.mark.parametrize("tilt", [0.0, 1e-14, 1e-11, 1e-9, 1e-7, 1e-5, 1e-3, np.pi])
+@pytest.mark.parametrize(
+    "tilt", [0.0, 1e-14, 1e-11, 3e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-3, np.pi, 3.14159265]
+)
 def test_singular_wrists(tilt):
     values = np.array([0.3, -0.8, 0.9, 0.4, tilt, 0.6])
     T = PUMA.forward(values)

@@ -98,11 +98,14 @@ class IKSolver:
         poses = goal_poses(self.chain, self.task, goals)
         if self.closed is None:
             return self._search_all(poses)
-        values = self.free_samples() if free is None else np.asarray(free, dtype=float).reshape(-1, len(self.free))
-        count, tries = len(poses), len(values)
-        if tries != 1 or len(self.free):
+        count, tries = len(poses), 1
+        if self.free:
+            values = self.free_samples() if free is None else np.asarray(free, dtype=float).reshape(-1, len(self.free))
+            tries = len(values)
             poses, values = np.repeat(poses, tries, axis=0), np.tile(values, (count, 1))
-        found = self.closed.solve(poses, values if self.free else None, limits=limits)
+            found = self.closed.solve(poses, values, limits=limits)
+        else:
+            found = self.closed.solve(poses, limits=limits)
         shape = (count, -1) if count else (0, len(self.closed.branch_names) * tries)
         rows, valid = found.values.reshape(*shape, self.chain.dof), found.valid.reshape(shape)
         if limits:
@@ -162,26 +165,33 @@ class IKSolver:
         if self.closed is None:
             found = self.numeric.solve(pose, seed)
             return found if found is None or accept is None or accept(found) else None
+        if not self.free:
+            return self._best(self.closed.solve(pose[None], limits=True), 0, seed, weights, accept)
         values = self.free_samples(seed[list(self.free)])
         for part in np.split(values, range(_FIRST, len(values), _NEXT)):
-            given = part if self.free else None
-            solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), given, limits=True)
+            solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), part, limits=True)
             for index in np.nonzero(solutions.valid.any(axis=1))[0]:
-                rows = solutions.of(index)
-                rows = self._spread(rows, seed) if solutions.merged[index] else rows
-                best = self._best(rows, seed, weights, accept)
+                best = self._best(solutions, int(index), seed, weights, accept)
                 if best is not None:
                     return best
         return None
 
     def _best(
-        self, rows: Floats, seed: Floats, weights: Floats | None, accept: Callable[[Floats], bool] | None
+        self,
+        solutions: Solutions,
+        index: int,
+        seed: Floats,
+        weights: Floats | None,
+        accept: Callable[[Floats], bool] | None,
     ) -> Floats | None:
+        """Return the solution for one pose that is nearest to a posture, within the limits and accepted."""
+        rows = solutions.of(index)
+        rows = self._spread(rows, seed) if solutions.merged[index] else rows
         moved, inside = nearest_turns(self.chain, rows, seed)
         moved = moved[inside]
-        for index in np.argsort(distances(self.chain, moved, seed, weights), kind="stable"):
-            if accept is None or accept(moved[index]):
-                return moved[index]
+        for row in moved[np.argsort(distances(self.chain, moved, seed, weights), kind="stable")]:
+            if accept is None or accept(row):
+                return row
         return None
 
     def approach(self, goal: ArrayLike, seed: Floats, weights: Floats | None = None) -> Nearest:

@@ -14,6 +14,8 @@ import numpy as np
 
 from ravemj.ik.vectors import TINY, Floats, Screw, dot
 
+_ON_AXIS = 2e-11
+"""Unit vectors that are nearer to an axis count as being along it: any turn is exact enough."""
 _SHIFTS = 2 * np.pi / 5 * np.arange(5).reshape(5, 1, 1)
 
 
@@ -27,20 +29,20 @@ def normalized(turn: Floats, least: float = TINY) -> Floats:
     return turn / length
 
 
-def turn_between(joint: Screw, start: Floats, end: Floats, least: float = TINY) -> Floats:
+def turn_between(joint: Screw, start: Floats, end: Floats) -> Floats:
     """Return the turns of a joint that carry a direction nearest to another (subproblem 1).
 
     Args:
         joint: The joint; for points, they are relative to its own.
         start: Vectors, shape (3, B, N).
         end: Vectors, of such a shape.
-        least: The product of their distances from the axis below which they count as being on it.
 
     Returns:
         Turns, shape (2, B, N); the turn by 0 where a vector is along the axis.
     """
     _, across, later = joint.split(end)
-    return normalized(np.array([dot(start, across), -dot(start, later)]), least)
+    start = joint.across(start)  # else the rounding of what is along the axis counts, where that is most
+    return normalized(np.array([dot(start, across), -dot(start, later)]), _ON_AXIS**2)
 
 
 def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:

@@ -148,6 +148,10 @@ class Screw:
         parts = apply_matrix(self.parts, vectors)
         return parts.reshape(3, 3, *parts.shape[1:])
 
+    def across(self, vectors: Floats) -> Floats:
+        """Return the parts of vectors across the axis."""
+        return apply_matrix(self.parts[3:6], vectors)
+
     def moved(self, value: Floats, points: Floats) -> Floats:
         """Return points after the motion."""
         if self.prismatic:

@@ -13,9 +13,6 @@ from ravemj.ik.families.carrying import CarryPoint
 from ravemj.ik.subproblems import turn_between
 from ravemj.ik.vectors import Floats, Screw, constant, cross, dot, perpendicular, skew, tile
 
-_SINGULAR = 2e-11
-"""Outer axes of a wrist that are nearer to parallel fall together: any turn of the first is exact enough."""
-
 
 class Motion(NamedTuple):
     """A rigid motion that is applied, not stored: functions of vectors (3, B, N)."""
@@ -56,7 +53,7 @@ class Wrist:
         first, middle, last = self.screws
         tip = needed.turned(last.axis)
         two = self._middle(tip)
-        turn = turn_between(first, middle.turned(two, last.axis), tile(tip, two.shape[-2]), _SINGULAR)
+        turn = turn_between(first, middle.turned(two, last.axis), tile(tip, two.shape[-2]))
         side = first.turned_back(turn, tile(needed.turned(self._side), two.shape[-2]))
         return [turn, two, turn_between(last, self._side, middle.turned_back(two, side))]
 
