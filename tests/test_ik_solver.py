@@ -166,6 +166,17 @@ class TestSingular:
         found = make_solver(PUMA).nearest(PUMA.forward(values), values)
         np.testing.assert_allclose(found, values, atol=1e-9)
 
+    @pytest.mark.parametrize("bend", [0.0, np.pi, 1e-9])
+    def test_four_parallel_axes(self, bend):
+        solver = make_solver(UR5)
+        for values in random_values(UR5, 20, np.random.default_rng(3)) * 0.8:
+            values[4] = bend
+            T = UR5.forward(values)
+            found = solver.nearest(T, values)
+            assert worst(UR5, found, T) < 1e-8
+            if bend == 0:
+                np.testing.assert_allclose(found, values, atol=1e-6)
+
 
 class TestFreeJoints:
     def test_samples_go_outwards_from_a_start(self):

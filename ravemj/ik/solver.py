@@ -18,7 +18,7 @@ from ravemj.ik.closed import ClosedForm, Solutions
 from ravemj.ik.compiled import CompiledKinematics
 from ravemj.ik.derive import Certificate, derive
 from ravemj.ik.limits import all_turns, distances, nearest_turns
-from ravemj.ik.numeric import Kinematics, Nearest, NumericSolver
+from ravemj.ik.numeric import ACCURATE, Kinematics, Nearest, NumericSolver
 from ravemj.ik.tasks import Task, goal_poses
 from ravemj.ik.vectors import Floats
 
@@ -147,7 +147,9 @@ class IKSolver:
     ) -> Floats | None:
         """Return the solution within the limits that is nearest to a posture.
 
-        Free joints come first: the value nearest to theirs in the posture with any solution ends the search.
+        Free joints come first: the value nearest to theirs in the posture with any solution ends the search. In
+        singular postures a closed form shows some of infinitely many solutions; there, and where no sample has a
+        solution, one descent from the posture adds what it finds.
 
         Args:
             goal: A pose (4, 4), or what else the task asks for.
@@ -166,7 +168,9 @@ class IKSolver:
             found = self.numeric.solve(pose, seed)
             return found if found is None or accept is None or accept(found) else None
         if not self.free:
-            return self._best(self.closed.solve(pose[None], limits=True), 0, seed, weights, accept)
+            solutions = self.closed.solve(pose[None], limits=True)
+            more = self._descent(pose, seed) if solutions.merged[0] or not solutions.valid.any() else None
+            return self._best(solutions, 0, seed, weights, accept, more)
         values = self.free_samples(seed[list(self.free)])
         for part in np.split(values, range(_FIRST, len(values), _NEXT)):
             solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), part, limits=True)
@@ -174,7 +178,13 @@ class IKSolver:
                 best = self._best(solutions, int(index), seed, weights, accept)
                 if best is not None:
                     return best
-        return None
+        found = self._descent(pose, seed)
+        return next((row for row in found if accept is None or accept(row)), None)
+
+    def _descent(self, pose: Floats, seed: Floats) -> Floats:
+        """Return the solution below a posture, shape (1, n), or none, shape (0, n)."""
+        found = self.numeric.descend(pose, seed)
+        return found.values[None][: int(found.error < ACCURATE)]
 
     def _best(
         self,
@@ -183,10 +193,12 @@ class IKSolver:
         seed: Floats,
         weights: Floats | None,
         accept: Callable[[Floats], bool] | None,
+        more: Floats | None = None,
     ) -> Floats | None:
-        """Return the solution for one pose that is nearest to a posture, within the limits and accepted."""
+        """Return the solution for one pose, or of some more, that is nearest, within the limits and accepted."""
         rows = solutions.of(index)
         rows = self._spread(rows, seed) if solutions.merged[index] else rows
+        rows = rows if more is None else np.vstack([rows, more])
         moved, inside = nearest_turns(self.chain, rows, seed)
         moved = moved[inside]
         for row in moved[np.argsort(distances(self.chain, moved, seed, weights), kind="stable")]:
