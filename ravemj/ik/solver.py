@@ -111,7 +111,7 @@ class IKSolver:
         if limits:
             rows, inside = nearest_turns(self.chain, rows)
             valid = valid & inside
-        return Solutions(rows, valid, found.merged.reshape(count, tries).any(axis=1))
+        return Solutions(rows, valid, np.logical_or.reduce(found.merged.reshape(count, tries), axis=1))
 
     def _search_all(self, poses: Floats) -> Solutions:
         rows = [self.numeric.solve_all(pose) for pose in poses]

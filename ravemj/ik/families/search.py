@@ -13,8 +13,9 @@ import numpy as np
 from ravemj.ik.chain import Chain
 from ravemj.ik.families.blocks import Planar, Wrist, common_point, is_planar
 from ravemj.ik.families.carrying import NoFamilyError
+from ravemj.ik.families.gantry import Gantry
 from ravemj.ik.families.general import General
-from ravemj.ik.families.loops import Arm, BlockFamily, Family, Gantry, Locked, PointFamily
+from ravemj.ik.families.loops import Arm, BlockFamily, Family, Locked, PointFamily
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats, Screw, Transform, constant, perpendicular, turn_of
 
