@@ -54,8 +54,9 @@ def all_turns(chain: Chain, values: Floats) -> Floats:
     lower, upper = _bounds(chain)
     first, inside = nearest_turns(chain, values)
     rows = first[inside]
-    wide = ~chain.prismatic & ~chain.circular & (upper - lower >= _TURN - 2 * TOLERANCE)
-    for joint in np.nonzero(wide)[0]:
+    turning = ~chain.prismatic & ~chain.circular
+    more = turning & ((rows - _TURN >= lower - TOLERANCE) | (rows + _TURN <= upper + TOLERANCE)).any(axis=0)
+    for joint in np.nonzero(more)[0]:
         least = np.ceil((lower[joint] - TOLERANCE - rows[:, joint]) / _TURN).astype(int)
         most = np.floor((upper[joint] + TOLERANCE - rows[:, joint]) / _TURN).astype(int)
         counts = most - least + 1
