@@ -21,6 +21,7 @@ ROOMS = [
     "formats",
     "engine",
     "trajectories",
+    "ik",
     "graphics",
     "gui",
     "rave",

@@ -1,0 +1,28 @@
+"""Inverse kinematics of arms: all solutions in closed form where the geometry allows it, a search where not.
+
+    solver = make_solver(Chain.of(axes, points, lower=…, upper=…, T_base_tool=…))
+    solver.solve(T_base_tool).of(0)
+
+Chains and poses are arrays; nothing here knows robots, files or windows. Nothing is compiled: a family is found from
+the axes, by numbers (``derive``), proved by random configurations, and answers batches of poses.
+"""
+
+from ravemj.ik.chain import Chain
+from ravemj.ik.closed import ClosedForm, Solutions
+from ravemj.ik.derive import Certificate, derive
+from ravemj.ik.numeric import Nearest, NumericSolver
+from ravemj.ik.solver import IKSolver, make_solver
+from ravemj.ik.tasks import Task
+
+__all__ = [
+    "Certificate",
+    "Chain",
+    "ClosedForm",
+    "IKSolver",
+    "Nearest",
+    "NumericSolver",
+    "Solutions",
+    "Task",
+    "derive",
+    "make_solver",
+]

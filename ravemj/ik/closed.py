@@ -1,0 +1,241 @@
+"""Closed-form solvers: a family's answers, checked by forward kinematics of the true arm, and refined."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from string import ascii_lowercase
+
+import numpy as np
+
+from ravemj.ik.chain import Chain
+from ravemj.ik.families.loops import Family
+from ravemj.ik.limits import nearest_turns
+from ravemj.ik.tasks import Task
+from ravemj.ik.vectors import Bools, Floats, Ints, Transform, cross, tile
+
+EXACT = 1e-10
+"""A solution with a larger error is refined by Newton's method."""
+ACCURATE = 1e-9
+"""What has a larger error after that is no solution."""
+_CHUNK = 1536
+"""So many poses at once: few enough that the arrays stay in the processor's cache."""
+_MARGIN = 0.05
+_SAME = 1e-5
+"""Solutions whose values differ by less are one."""
+_STEPS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Solutions:
+    """Solutions for many poses.
+
+    Attributes:
+        values: Joint values, shape (N, B, n), angles in [-pi, pi]; rows that are no solutions have any numbers.
+        valid: Which rows are solutions, shape (N, B).
+        merged: For which poses equal solutions were made one, shape (N,): those of singular postures.
+    """
+
+    values: Floats
+    valid: Bools
+    merged: Bools
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def of(self, pose: int) -> Floats:
+        """Return the solutions for one of the poses, shape (K, n)."""
+        return self.values[pose][self.valid[pose]]
+
+    @property
+    def rows(self) -> tuple[Floats, Ints, Ints]:
+        """All solutions, shape (K, n), with the index of the pose and that of the branch, shape (K,)."""
+        pose, branch = np.nonzero(self.valid)
+        return self.values[pose, branch], pose, branch
+
+
+class ClosedForm:
+    """A solver by a family; locked joints have values that come with each question.
+
+    Attributes:
+        chain: The true arm.
+        task: What of the pose counts.
+        family: The family.
+        near: The greatest error with which what the family says is worth a refinement.
+    """
+
+    def __init__(self, chain: Chain, task: Task, family: Family, *, snapped: bool) -> None:
+        self.chain, self.task, self.family = chain, task, family
+        self.near = 0.03 if snapped or family.coupled else 1e-4
+        self._tool = np.linalg.inv(chain.T_base_tool)
+        joints = family.arm.joints
+        self._answers = [(index, joints[place]) for index, place in enumerate(family.order) if joints[place] >= 0]
+        self._locked = {joints[place]: place for place in family.arm.locked}
+        self._scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
+        self._rows = np.array(task.rows)
+
+    @property
+    def locked(self) -> list[int]:
+        """The joints whose values are given."""
+        return sorted(self._locked)
+
+    @cached_property
+    def branch_names(self) -> list[str]:
+        """A name for each branch: for every choice the joint, counted from 1, and which of its solutions."""
+        names = [""]
+        for place, count in self.family.names():
+            joint = self.family.arm.joints[place]
+            label = f"j{joint + 1}" if joint >= 0 else "added"
+            if count > 1:
+                signs = "+-" if count == 2 else ascii_lowercase[:count]
+                names = [f"{before} {label}{sign}".lstrip() for sign in signs for before in names]
+        return names
+
+    def solve(self, poses: Floats, locked: Floats | None = None, *, limits: bool = False) -> Solutions:
+        """Return all solutions, whatever the limits, or at least those within them.
+
+        Args:
+            poses: Poses of the tool in the base, shape (N, 4, 4).
+            locked: Values of the locked joints, shape (N, k).
+            limits: Whether solutions far from the limits may be left out, where they would have to be refined.
+        """
+        given = np.zeros((len(poses), 0)) if locked is None else locked
+        branches = len(self.branch_names)
+        values = np.zeros((self.chain.dof, branches, len(poses)))
+        valid = np.zeros((branches, len(poses)), dtype=bool)
+        merged = np.zeros(len(poses), dtype=bool)
+        with np.errstate(all="ignore"):
+            for first in range(0, len(poses), _CHUNK):
+                part = slice(first, first + _CHUNK)
+                turns = self._turns(poses[part], given[part], valid[:, part].shape)
+                self._check(poses[part], turns, values[..., part], valid[:, part], merged[part], limits=limits)
+        return Solutions(values.transpose(2, 1, 0), valid.T, merged)
+
+    def _check(
+        self, poses: Floats, turns: list[Floats], values: Floats, valid: Bools, merged: Bools, *, limits: bool
+    ) -> None:
+        """Fill in values, and which of them are solutions, for what the family says."""
+        for joint, turn in enumerate(turns):
+            values[joint] = np.arctan2(turn[1], turn[0]) if len(turn) > 1 else turn[0]
+        goal = np.ascontiguousarray(poses[:, :3].transpose(2, 1, 0))
+        tool = self.chain.tool_columns([turn.reshape(len(turn), -1) for turn in turns])
+        error = self._error(tool.reshape(4, 3, *valid.shape), goal[:, :, None])
+        np.less_equal(error, EXACT, out=valid)
+        doubtful = (error <= self.near) & ~valid
+        if limits and doubtful.any():
+            doubtful &= nearest_turns(self.chain, np.moveaxis(values, 0, -1), tolerance=_MARGIN)[1]
+        if doubtful.any():
+            self._refine(doubtful, goal, values, valid)
+            turns = self.chain_turns(values)
+        _merge(np.concatenate(turns), valid, merged)
+
+    def chain_turns(self, values: Floats) -> list[Floats]:
+        """Return values of shape (n, B, N) as turns (2, B, N) and distances (1, B, N)."""
+        flat = self.chain.turns(values.reshape(len(values), -1).T)
+        return [turn.reshape(len(turn), *values.shape[1:]) for turn in flat]
+
+    def _turns(self, poses: Floats, locked: Floats, shape: tuple[int, ...]) -> list[Floats]:
+        """Return what the family says for each joint of the chain, turns (2, B, N) or distances (1, B, N)."""
+        reach = self.chain.reach
+        given: dict[int, Floats] = {}
+        turns: list[Floats] = [np.zeros((1, *shape))] * self.chain.dof
+        for column, joint in zip(locked.T, self.locked, strict=True):
+            if self.chain.prismatic[joint]:
+                given[joint], turns[joint] = column[None, None] / reach, column[None, None]
+            else:
+                given[joint] = turns[joint] = np.stack([np.cos(column), np.sin(column)])[:, None]
+        at = {self._locked[joint]: value for joint, value in given.items()}
+        found = self.family.solve(self._motion(poses, at), at)
+        for index, joint in self._answers:
+            turns[joint] = found[index] * reach if self.chain.prismatic[joint] else found[index]
+        branches = shape[0]
+        return [_filled(tile(turn, branches), (len(turn), *shape)) for turn in turns]
+
+    def _motion(self, poses: Floats, locked: dict[int, Floats]) -> Transform:
+        """Return the motion that the joints have to make, or the place where the tool has to be, in units of reach."""
+        whole = self.task in (Task.TRANSFORM, Task.PLANAR)
+        motion = poses @ self._tool if whole else poses
+        rotation = np.ascontiguousarray(motion[:, :3, :3].transpose(1, 2, 0))[:, :, None]
+        transform = Transform(rotation, motion[:, :3, 3].T[:, None] / self.chain.reach)
+        return self.family.arm.trimmed(transform, locked) if whole and locked else transform
+
+    def _error(self, tool: Floats, goal: Floats) -> Floats:
+        """Return the error of tool columns: the length of the differences, in units of the reach and in radians."""
+        way = (tool[3] - goal[3])[self._rows[self._rows < 3]]
+        square = np.einsum("i...,i...->...", way, way) * self._scale[0] ** 2
+        if self._rows[-1] > 2:
+            turned = (tool[:3] - goal[:3]).reshape(9, *square.shape)
+            square += np.einsum("i...,i...->...", turned, turned) / 2
+        return np.sqrt(square)
+
+    def errors(self, values: Floats, poses: Floats) -> Floats:
+        """Return the errors of values (M, n) for poses (M, 4, 4), in units of the reach and in radians."""
+        tool = self.chain.tool_columns(self.chain.turns(values))
+        return self._error(tool, poses[:, :3].transpose(2, 1, 0))
+
+    def _refine(self, doubtful: Bools, goal: Floats, values: Floats, valid: Bools) -> None:
+        """Refine solutions with Newton's method, and say which reach their pose."""
+        branch, pose = np.nonzero(doubtful)
+        start = values[:, branch, pose].T
+        refined, error = self.refine(start, goal[:, :, pose])
+        near = np.abs(refined - start).max(axis=1) < 0.5
+        good = (error <= ACCURATE) & near
+        values[:, branch[good], pose[good]] = refined[good].T
+        valid[branch[good], pose[good]] = True
+
+    def refine(self, values: Floats, goal: Floats) -> tuple[Floats, Floats]:
+        """Improve values (M, n) for tool columns (4, 3, M) by damped Newton steps; return them and their errors (M,).
+
+        Locked joints stay.
+        """
+        chain, free = self.chain, [joint for joint in range(self.chain.dof) if joint not in self._locked]
+        values = values.copy()
+        errors = np.full(len(values), np.inf)
+        active = np.arange(len(values))
+        for step in range(_STEPS):
+            tool, jacobians = chain.forward_and_jacobian(values[active])
+            target = goal[:, :, active]
+            errors[active] = self._error(tool, target)
+            active_again = errors[active] > EXACT / 10
+            if step == _STEPS - 1 or not active_again.any():
+                break
+            turned = cross(tool[0], target[0]) + cross(tool[1], target[1]) + cross(tool[2], target[2])
+            missing = np.concatenate([target[3] - tool[3], turned / 2]).T * self._scale
+            jacobians = jacobians * self._scale[:, None]
+            part = jacobians[active_again][:, self._rows][:, :, free]
+            square: Floats = part.swapaxes(1, 2) @ part
+            square += 1e-13 * np.eye(len(free)) * (1 + np.trace(square, axis1=1, axis2=2)[:, None, None])
+            pull: Floats = part.swapaxes(1, 2) @ missing[active_again][:, self._rows, None]
+            active = active[active_again]
+            moved = np.asarray(np.linalg.solve(square, pull), dtype=float)[:, :, 0]
+            values[active[:, None], free] += np.clip(moved, -0.3, 0.3)
+        turning = ~chain.prismatic
+        values[:, turning] = np.mod(values[:, turning] + np.pi, 2 * np.pi) - np.pi
+        return values, errors
+
+
+def _filled(values: Floats, shape: tuple[int, ...]) -> Floats:
+    return values if values.shape == shape else np.broadcast_to(values, shape)
+
+
+def _merge(parts: Floats, valid: Bools, merged: Bools) -> None:
+    """Keep one of solutions that are the same: where two axes or two branches fall together.
+
+    Equal rows have equal sums with fixed weights, so only neighbours in the order of these sums are compared.
+
+    Args:
+        parts: Cosines, sines and distances of all joints, shape (K, B, N).
+        valid: Which are solutions, shape (B, N); changed.
+        merged: Where some were the same, shape (N,); changed.
+    """
+    weights = np.mod(np.arange(1, len(parts) + 1) * 0.618034, 1) + 0.5
+    mark = (weights @ parts.reshape(len(parts), -1)).reshape(valid.shape)
+    mark[~valid] = np.inf
+    mark.sort(axis=0)
+    close = np.logical_or.reduce(mark[1:] - mark[:-1] < 10 * _SAME, axis=0)
+    for pose in np.nonzero(close)[0]:
+        kept: list[Floats] = []
+        for branch in np.nonzero(valid[:, pose])[0]:
+            row = parts[:, branch, pose]
+            if any(np.abs(row - other).max() < _SAME for other in kept):
+                valid[branch, pose], merged[pose] = False, True
+            else:
+                kept.append(row)

@@ -1,0 +1,129 @@
+"""From a chain to a solver in closed form that has proved itself, or to the reasons why there is none."""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ravemj.ik.chain import Chain
+from ravemj.ik.closed import ClosedForm
+from ravemj.ik.families.search import families, general_families
+from ravemj.ik.families.snapping import nominal
+from ravemj.ik.tasks import Task
+from ravemj.ik.vectors import Floats
+
+SAMPLES = 64
+"""Configurations of a certificate."""
+_FEW = 8
+_TRIED = 32
+"""Families that are tried, at most, for one choice of locked joints."""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What a solver did with random configurations.
+
+    Attributes:
+        configurations: How many there were.
+        found: In how many cases the configuration was among the solutions.
+        error: The worst error of a solution, in units of the reach and in radians.
+        solutions: The mean number of solutions.
+    """
+
+    configurations: int
+    found: int
+    error: float
+    solutions: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether nothing was missed."""
+        return self.found == self.configurations and self.error <= 1e-9
+
+
+def certify(solver: ClosedForm, *, count: int = SAMPLES, seed: int = 64) -> Certificate:
+    """Ask a solver for the poses of random configurations, and look for these among its answers.
+
+    Joints turn by up to ±pi whatever their limits, as a solver in closed form knows none.
+    """
+    chain = solver.chain
+    values = random_values(chain, count, np.random.default_rng(seed))
+    poses = chain.forward(values)
+    solutions = solver.solve(poses, values[:, solver.locked])
+    away = solutions.values - values[:, None]
+    away[:, :, ~chain.prismatic] = np.abs(np.sin(away[:, :, ~chain.prismatic] / 2)) * 2
+    near = (np.abs(away).max(axis=2, initial=0.0) < 1e-5) & solutions.valid
+    rows, pose, _ = solutions.rows
+    error = solver.errors(rows, poses[pose]).max(initial=0.0)
+    return Certificate(count, int(near.any(axis=1).sum()), float(error), len(rows) / count)
+
+
+def random_values(chain: Chain, count: int, rng: np.random.Generator) -> Floats:
+    """Return joint values, shape (count, n): any angle, and distances within the limits."""
+    bound = np.where(chain.prismatic, chain.reach, np.pi)
+    low = np.where(chain.prismatic & np.isfinite(chain.lower), np.maximum(chain.lower, -bound), -bound)
+    high = np.where(chain.prismatic & np.isfinite(chain.upper), np.minimum(chain.upper, bound), bound)
+    return rng.uniform(np.minimum(low, high), high, (count, chain.dof))
+
+
+def derive(
+    chain: Chain, task: Task = Task.TRANSFORM, locked: Sequence[int] = (), *, general: bool = False
+) -> tuple[ClosedForm, Certificate] | None:
+    """Find a solver in closed form, and prove it.
+
+    Args:
+        chain: The arm.
+        task: What is asked for.
+        locked: Joints whose values will be given; as many others are left as the task fixes, or fewer.
+        general: Whether to try the eigenvalue problem of general arms, instead of the families of special ones.
+
+    Returns:
+        The solver and its certificate; None where no family fits.
+    """
+    free = [joint for joint in range(chain.dof) if joint not in locked]
+    if not free or len(free) > task.dof or not _regular(chain, task, free):
+        return None
+    exact = nominal(chain)
+    if (task is Task.PLANAR and not _is_planar(exact)) or (general and task is not Task.TRANSFORM):
+        return None
+    deviation = np.abs(exact.axes - chain.axes).max() + _sideways(exact, chain)
+    found = general_families(exact, locked) if general else families(exact, task, locked)
+    for family in itertools.islice(found, _TRIED):
+        solver = ClosedForm(chain, task, family, snapped=deviation > 1e-12)
+        certificate = _prove(solver)
+        if certificate is not None:
+            return solver, certificate
+    return None
+
+
+def _prove(solver: ClosedForm) -> Certificate | None:
+    """Return a certificate that holds, if there is one; a few configurations are asked for first."""
+    try:
+        if certify(solver, count=_FEW).holds:
+            certificate = certify(solver)
+            return certificate if certificate.holds else None
+    except np.linalg.LinAlgError:  # nothing but singular matrices
+        pass
+    return None
+
+
+def _regular(chain: Chain, task: Task, free: Sequence[int]) -> bool:
+    """Return whether the joints move the tool independently: solutions are then finite in number."""
+    values = random_values(chain, 4, np.random.default_rng(4))
+    _, jacobians = chain.forward_and_jacobian(values)
+    scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
+    part = (jacobians * scale[:, None])[:, list(task.rows)][:, :, list(free)]
+    part = part / np.maximum(np.linalg.norm(part, axis=1, keepdims=True), 1e-12)
+    return bool(np.linalg.svd(part, compute_uv=False)[:, -1].max() > 1e-4)
+
+
+def _is_planar(chain: Chain) -> bool:
+    upright = np.abs(chain.axes[:, 2])
+    return bool(np.where(chain.prismatic, upright < 1e-9, upright > 1 - 1e-12).all())
+
+
+def _sideways(exact: Chain, chain: Chain) -> float:
+    """Return how far revolute axes were moved, in units of the reach."""
+    away = np.cross(exact.points - chain.points / chain.reach, exact.axes)[~chain.prismatic]
+    return float(np.abs(away).max(initial=0.0))

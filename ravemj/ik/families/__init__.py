@@ -1,0 +1,1 @@
+"""Families of arms that can be solved in closed form."""

@@ -1,0 +1,172 @@
+"""Three neighbouring joints that form a group of motions: rotations about a point, or motions of a plane.
+
+What the group keeps (the point, or the plane) gives equations without its three joints. When the other joints are
+known, so is the motion that the block has to make; it comes here as a function that moves directions and points.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.ik.families.carrying import CarryPoint
+from ravemj.ik.subproblems import turn_between
+from ravemj.ik.vectors import Floats, Screw, constant, cross, dot, perpendicular, skew, tile
+
+
+class Motion(NamedTuple):
+    """A rigid motion that is applied, not stored: functions of vectors (3, B, N)."""
+
+    turned: Callable[[Floats], Floats]
+    moved: Callable[[Floats], Floats]
+
+
+class Wrist:
+    """Three revolute joints whose axes meet in a point: R_a R_b R_c = R.
+
+    The middle one follows from the angle between the outer axes (subproblem 4), the first one from where the third axis
+    points (subproblem 1), the last one from what is left, so that only their sum counts where the outer axes fall
+    together; there the first one is put to 0.
+
+    Attributes:
+        centre: The point, shape (3, 1, 1).
+    """
+
+    names = ((1, 2),)
+
+    def __init__(self, screws: Sequence[Screw], centre: Floats) -> None:
+        self.screws, self.centre = tuple(screws), centre
+        a, b, c = (screw.axis.ravel() for screw in screws)
+        cosine, sine = a @ c - (a @ b) * (b @ c), a @ skew(b) @ c
+        self._size = float(np.hypot(cosine, sine))
+        self._phase = cosine / self._size, sine / self._size
+        gaps = 1 - self._size - (a @ b) * (b @ c), 1 - self._size + (a @ b) * (b @ c)
+        self._gaps = [0.0 if abs(gap) < 1e-12 else gap for gap in gaps]
+        self._side = constant(perpendicular(c))
+
+    def describe(self, joints: Sequence[int]) -> tuple[str, str]:
+        """Return what the family is called, and why, for joints of these indices."""
+        return "spherical wrist", f"the axes of joints {_numbers(joints)} meet in a point"
+
+    def solve(self, needed: Motion) -> list[Floats]:
+        """Return the turns of the three joints with two branches."""
+        first, middle, last = self.screws
+        tip = needed.turned(last.axis)
+        two = self._middle(tip)
+        turn = turn_between(first, middle.turned(two, last.axis), tile(tip, two.shape[-2]))
+        side = first.turned_back(turn, tile(needed.turned(self._side), two.shape[-2]))
+        return [turn, two, turn_between(last, self._side, middle.turned_back(two, side))]
+
+    def _middle(self, tip: Floats) -> Floats:
+        """Return both turns of the middle joint for a direction of the last axis.
+
+        They come from the distances of unit vectors, not from the cosine of their angle, which would lose half of the
+        digits where the outer axes fall together.
+        """
+        axis = self.screws[0].axis
+        least, most = (dot(away, away) / 2 for away in (axis - tip, axis + tip))
+        below = np.maximum(least - self._gaps[0], 0.0)  # 1 - cos and 1 + cos of the angle from the phase, in proportion
+        above = np.maximum(most - self._gaps[1], 0.0)
+        cosine, sine = (above - below) / (above + below), 2 * np.sqrt(below * above) / (above + below)
+        c, s = self._phase
+        cosines, sines = [c * cosine - s * sine, c * cosine + s * sine], [s * cosine + c * sine, s * cosine - c * sine]
+        return np.array([np.concatenate(cosines, axis=-2), np.concatenate(sines, axis=-2)])
+
+
+class Planar:
+    """Three joints that move a plane in itself: revolute ones with parallel axes, prismatic ones across them.
+
+    The last revolute joint is set aside: the two before it carry a point of its axis, then it turns the rest. Where the
+    last joint is prismatic, the block is solved from its other end.
+
+    Attributes:
+        normal: The direction of the revolute axes, shape (3, 1, 1).
+        centre: A point, shape (3, 1, 1).
+        backward: Whether the inverse of the motion is asked for.
+    """
+
+    def __init__(self, screws: Sequence[Screw]) -> None:
+        """Prepare the solution.
+
+        Raises:
+            NoFamilyError: the joints cannot move the plane freely.
+        """
+        revolute = [screw for screw in screws if not screw.prismatic]
+        self.screws, self.normal, self.centre = tuple(screws), revolute[0].axis, revolute[0].point
+        self._side = constant(perpendicular(self.normal.ravel()))
+        self.backward = screws[2].prismatic and not screws[0].prismatic
+        self._between = screws[0].prismatic and screws[2].prismatic
+        self._carry: CarryPoint | None = None
+        if self.backward:
+            self._order = tuple(Screw(-screw.axis, screw.point, screw.prismatic) for screw in reversed(screws))
+        else:
+            self._order = self.screws
+        self._carried = (*self._order[:2], Screw(self.normal, self.centre, prismatic=True))
+        if not self._between:
+            rng = np.random.default_rng(0)
+            places = constant(self._order[2].point.ravel()) + rng.normal(size=(3, 1, 32))
+            self._carry = CarryPoint(self._carried, self._order[2].point, places)
+
+    @property
+    def names(self) -> tuple[tuple[int, int], ...]:
+        """For each choice between solutions the joint, 0 to 2, and the number of solutions."""
+        names = self._carry.names if self._carry is not None else []
+        return tuple((2 - joint if self.backward else joint, count) for joint, count in names)
+
+    def describe(self, joints: Sequence[int]) -> tuple[str, str]:
+        """Return what the family is called, and why, for joints of these indices."""
+        return "parallel axes", f"joints {_numbers(joints)} move a plane in itself"
+
+    def solve(self, motion: Motion) -> list[Floats]:
+        """Return the values of the three joints for the motion that they have to make, or its inverse if backward."""
+        if self._carry is None:
+            return self._solve_between(motion)
+        first, middle, last = self._order
+        goal = motion.moved(last.point)
+        one, two, _ = self._carry.solve(self._carried, last.point, goal)
+        side = tile(motion.turned(self._side), one.shape[-2])
+        three = turn_between(last, self._side, middle.turned_back(two, first.turned_back(one, side)))
+        return [three, two, one] if self.backward else [one, two, three]
+
+    def _solve_between(self, motion: Motion) -> list[Floats]:
+        """Solve for a revolute joint between two prismatic ones: its turn is that of the motion, the rest is linear."""
+        first, middle, last = self._order
+        turn = turn_between(middle, self._side, motion.turned(self._side))
+        way = motion.moved(middle.point) - middle.point
+        direction = middle.turned(turn, last.axis)
+        area = dot(self.normal, cross(first.axis, direction))
+        area = np.where(area == 0, np.inf, area)
+        one = dot(self.normal, cross(*np.broadcast_arrays(way, direction))) / area
+        return [one[None], turn, (dot(self.normal, cross(first.axis, way)) / area)[None]]
+
+
+def _numbers(joints: Sequence[int]) -> str:
+    names = [f"{joint + 1}" for joint in joints if joint >= 0]
+    added = len(joints) - len(names)
+    return ", ".join(names) + (f" and {added} added" if added else "")
+
+
+def common_point(screws: Sequence[Screw], tolerance: float) -> Floats | None:
+    """Return the point, shape (3,), in which the axes of revolute joints meet; None if they miss it."""
+    if any(screw.prismatic for screw in screws):
+        return None
+    across = [np.eye(3) - np.outer(screw.axis, screw.axis) for screw in screws]
+    points = [screw.point.ravel() for screw in screws]
+    total: Floats = np.sum(across, axis=0)
+    if np.linalg.matrix_rank(total, tol=1e-6) < 3:
+        return None
+    pulls: Floats = np.sum([part @ point for part, point in zip(across, points, strict=True)], axis=0)
+    centre = np.asarray(np.linalg.solve(total, pulls), dtype=float)
+    missed = [np.linalg.norm(part @ (centre - point)) for part, point in zip(across, points, strict=True)]
+    return centre if max(missed) < tolerance else None
+
+
+def is_planar(screws: Sequence[Screw], tolerance: float) -> bool:
+    """Return whether joints move a plane in itself, with two directions at least."""
+    turning = [screw.axis.ravel() for screw in screws if not screw.prismatic]
+    sliding = [screw.axis.ravel() for screw in screws if screw.prismatic]
+    if not turning or any(np.linalg.norm(np.cross(turning[0], axis)) > tolerance for axis in turning):
+        return False
+    if any(abs(turning[0] @ axis) > tolerance for axis in sliding):
+        return False
+    return len(sliding) < 2 or bool(np.linalg.norm(np.cross(sliding[0], sliding[1])) > tolerance)

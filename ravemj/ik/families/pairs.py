@@ -1,0 +1,213 @@
+"""Two equations in the values of two joints, which three joints leave when the middle one is eliminated.
+
+Let three joints in series have to carry something (a point, or a plane) from a start to a goal: F1 F2 F3 s = g.
+Whatever F2 does, it keeps two numbers of F3 s; F1⁻¹ g must have the same two. Each side depends on one joint only,
+linearly in the cosine and sine of a revolute one and as a polynomial of degree two in the value of a prismatic one.
+Where axes are parallel, meet, or are at right angles, an equation has one unknown only, and all is linear or quadratic;
+else what is left is a quartic (D. L. Pieper, 1968; subproblems 5 and 6 of IK-Geo).
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.ik.subproblems import normalized, solve_linear, solve_parabola, solve_quadratic
+from ravemj.ik.vectors import Floats, Screw, dot, tile
+
+NEGLIGIBLE = 1e-9
+"""A coefficient that stays below this in all examples, of those of its equation, is 0 by the arm's geometry."""
+
+
+class Side(NamedTuple):
+    """The two numbers of one side: constant + factors · (cos, sin), or (value, value²), of its joint.
+
+    Attributes:
+        constant: For both equations, shape (2, B, N).
+        factors: For both equations, two each, shape (2, 2, B, N).
+    """
+
+    constant: Floats
+    factors: Floats
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What the middle joint keeps of a point, or of a plane given by its normal and an offset.
+
+    Attributes:
+        first: The first number is this vector's product with the point or normal, shape (3, B, N).
+        second: The second one, too; for spheres it is the place that squared distances are taken from.
+        sphere: Whether the second number is a squared distance.
+    """
+
+    first: Floats
+    second: Floats
+    sphere: bool
+
+    def side(self, joint: Screw, point: Floats, sign: float) -> Side:
+        """Return the numbers of points that a joint has moved, or moved back where the sign is -1.
+
+        For a normal, the joint's point and its distance are left out by the caller.
+        """
+        if joint.prismatic:
+            return self._sliding(joint, point, sign)
+        arm = point - joint.point
+        along, across, later = joint.split(arm)
+        still = along + joint.point
+        rows = [dot(self.first, still)], [[dot(self.first, across), sign * dot(self.first, later)]]
+        if self.sphere:
+            away = joint.point - self.second
+            distance = dot(arm, arm) + dot(away, away) + 2 * dot(away, along)
+            rows[0].append(distance)
+            rows[1].append([2 * dot(away, across), 2 * sign * dot(away, later)])
+        else:
+            rows[0].append(dot(self.second, still))
+            rows[1].append([dot(self.second, across), sign * dot(self.second, later)])
+        return _side(*rows)
+
+    def _sliding(self, joint: Screw, point: Floats, sign: float) -> Side:
+        constants = [dot(self.first, point)]
+        factors = [[sign * dot(self.first, joint.axis), np.zeros((1, 1))]]
+        if self.sphere:
+            away = point - self.second
+            constants.append(dot(away, away))
+            factors.append([2 * sign * dot(away, joint.axis), np.ones((1, 1))])
+        else:
+            constants.append(dot(self.second, point))
+            factors.append([sign * dot(self.second, joint.axis), np.zeros((1, 1))])
+        return _side(constants, factors)
+
+
+def _side(constants: list[Floats], factors: list[list[Floats]]) -> Side:
+    shape = np.broadcast_shapes(*(one.shape for one in constants), *(one.shape for row in factors for one in row))
+    constant, factor = np.empty((2, *shape)), np.empty((2, 2, *shape))
+    for row in range(2):
+        constant[row] = constants[row]
+        factor[row, 0], factor[row, 1] = factors[row]
+    return Side(constant, factor)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """How to solve the two equations of an arm, found by ``Pair.of`` from examples.
+
+    Attributes:
+        sliding: Whether the joints of the two sides are prismatic.
+        alone: A side and an equation that has no other unknown; None where both equations have both.
+        sphere: Whether the second equation is of degree two in the value of a prismatic joint.
+        branches: The number of solutions.
+    """
+
+    sliding: tuple[bool, bool]
+    alone: tuple[int, int] | None
+    sphere: bool
+
+    @classmethod
+    def of(cls, sides: tuple[Side, Side], sliding: tuple[bool, bool], *, sphere: bool) -> "Pair | None":
+        """Find out which unknown is in which equation; None where a joint is in neither of them."""
+        sizes = np.array([np.abs(side.factors).max(axis=(1, 2, 3)) for side in sides])  # side, equation
+        present = sizes > NEGLIGIBLE * np.maximum(sizes.max(axis=0), sizes.max(axis=0).max() * 1e-3)
+        if not present.any(axis=1).all() or not present.any(axis=0).all():
+            return None
+        for equation in range(2):
+            for side in range(2):
+                if not present[1 - side, equation]:
+                    return cls(sliding, (side, equation), sphere) if present[1 - side, 1 - equation] else None
+        return cls(sliding, None, sphere)
+
+    @property
+    def choices(self) -> tuple[int, int]:
+        """Number of solutions for the side that is solved first, and for the other one."""
+        if self.alone is None:
+            return (2 if all(self.sliding) else 4), 1
+        side, equation = self.alone
+        return self._degree(side, equation), self._degree(1 - side, 1 - equation)
+
+    @property
+    def branches(self) -> int:
+        """Number of solutions."""
+        return self.choices[0] * self.choices[1]
+
+    def _degree(self, side: int, equation: int) -> int:
+        return 1 if self.sliding[side] and not (self.sphere and equation == 1) else 2
+
+    def solve(self, one: Side, three: Side) -> tuple[Floats, Floats]:
+        """Return the values of the first and the third joint, turns or distances, with all branches."""
+        factors = (one.factors, -three.factors)
+        rest = three.constant - one.constant
+        if self.alone is not None:
+            return self._one_by_one(factors, rest, *self.alone)
+        if all(self.sliding):
+            return self._both_sliding(factors, rest)
+        slider = 1 if self.sliding[1] else 0
+        if any(self.sliding):
+            return _in_order(slider, *self._slider_and_turn(factors[slider], factors[1 - slider], rest))
+        turn, other = self._two_turns(factors[0], factors[1], rest)
+        return turn, other
+
+    def _one_by_one(
+        self, factors: tuple[Floats, Floats], rest: Floats, side: int, equation: int
+    ) -> tuple[Floats, Floats]:
+        """Solve the equation with one unknown, put it into the other equation, and solve that."""
+        first = self._single(side, equation, factors[side][equation], rest[equation])
+        known = factors[side][1 - equation]
+        left = rest[1 - equation] - (known[0] * first[0] + known[1] * (first[1] if len(first) > 1 else first[0] ** 2))
+        second = self._single(1 - side, 1 - equation, factors[1 - side][1 - equation], left)
+        return _in_order(side, tile(first, second.shape[-2]), second)
+
+    def _single(self, side: int, equation: int, factors: Floats, rest: Floats) -> Floats:
+        if not self.sliding[side]:
+            return solve_linear(factors[0], factors[1], rest)
+        if self._degree(side, equation) == 1:
+            return (rest / _safe(factors[0]))[None]
+        return solve_parabola(factors[0], factors[1], rest)
+
+    def _both_sliding(self, factors: tuple[Floats, Floats], rest: Floats) -> tuple[Floats, Floats]:
+        """Solve for two distances: x from the first equation, which is linear, into the second."""
+        slope, start = -factors[1][0, 0] / factors[0][0, 0], rest[0] / factors[0][0, 0]
+        (a1, b1), (a3, b3) = factors[0][1], factors[1][1]
+        linear, square = a3 + a1 * slope + 2 * b1 * start * slope, b3 + b1 * slope * slope
+        left = rest[1] - a1 * start - b1 * start * start
+        other = solve_parabola(linear, square, left) if self.sphere else (left / linear)[None]
+        return tile(start, other.shape[-2]) + slope * other, other
+
+    def _slider_and_turn(self, slider: Floats, turn: Floats, rest: Floats) -> tuple[Floats, Floats]:
+        """Solve for a distance, linear in the turn x by the first equation, and x by the second."""
+        start, slope = rest[0] / slider[0, 0], -turn[0] / slider[0, 0]
+        a, b = slider[1]
+        k = a * start + b * start * start - rest[1]
+        linear = turn[1] + (a + 2 * b * start) * slope
+        square = np.array([b * slope[0] ** 2, b * slope[0] * slope[1], b * slope[1] ** 2])
+        found = solve_quadratic(k, linear, square)
+        distance = tile(start, found.shape[-2]) + tile(slope[0], found.shape[-2]) * found[0]
+        return (distance + tile(slope[1], found.shape[-2]) * found[1])[None], found
+
+    def _two_turns(self, one: Floats, three: Floats, rest: Floats) -> tuple[Floats, Floats]:
+        """Solve A x + C y = rest for unit vectors: |adj(A) (rest - C y)|² = det(A)²."""
+        adjugate = np.array([np.array([one[1, 1], -one[0, 1]]), np.array([-one[1, 0], one[0, 0]])])
+        determinant = one[0, 0] * one[1, 1] - one[0, 1] * one[1, 0]
+        scale = np.abs(one).max(axis=(0, 1))
+        adjugate, determinant = adjugate / _safe(scale), determinant / _safe(scale)
+        m = [row[0] * rest[0] + row[1] * rest[1] for row in adjugate]
+        c = [[row[0] * three[0, j] + row[1] * three[1, j] for j in range(2)] for row in adjugate]
+        k = m[0] * m[0] + m[1] * m[1] - determinant * determinant
+        linear = np.array([-2 * (m[0] * c[0][j] + m[1] * c[1][j]) for j in range(2)])
+        square = np.array([c[0][i] * c[0][j] + c[1][i] * c[1][j] for i, j in ((0, 0), (0, 1), (1, 1))])
+        found = solve_quadratic(k, linear, square)
+        sign = np.where(determinant < 0, -1.0, 1.0)
+        values = [
+            tile(sign * m[i], found.shape[-2])
+            - tile(sign * c[i][0], found.shape[-2]) * found[0]
+            - tile(sign * c[i][1], found.shape[-2]) * found[1]
+            for i in range(2)
+        ]
+        return normalized(np.stack(values)), found
+
+
+def _in_order(side: int, first: Floats, second: Floats) -> tuple[Floats, Floats]:
+    return (first, second) if side == 0 else (second, first)
+
+
+def _safe(divisor: Floats) -> Floats:
+    return np.where(divisor == 0, 1.0, divisor)

@@ -1,0 +1,205 @@
+"""Numeric inverse kinematics: damped least squares within limits, from many starts.
+
+A step is that of K. Levenberg and D. Marquardt with a damping in proportion to the error that is left (T. Sugihara,
+"Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method", 2011). A joint that a step would push
+beyond a limit stays there. One start finds a solution in 40 to 80 of 100 cases, so starts follow each other in a
+sequence that fills the space of joint values evenly (M. Roberts, 2018, after R. Kronecker).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ravemj.ik.chain import Chain
+from ravemj.ik.compiled import CompiledKinematics
+from ravemj.ik.limits import nearest_turns
+from ravemj.ik.tasks import Task
+from ravemj.ik.vectors import Floats
+
+ACCURATE = 1e-9
+"""The error, in units of the reach and in radians, below which a posture is a solution."""
+Kinematics = Callable[[Floats], tuple[Floats, Floats, Floats]]
+_STEPS = 40
+_NEAREST_STEPS = 100
+_DISTINCT = 1e-3
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The posture that comes nearest to a pose.
+
+    Attributes:
+        values: Joint values, shape (n,).
+        error: The weighted error that is left, in units of the reach and in radians.
+        steps: How many steps it took.
+    """
+
+    values: Floats
+    error: float
+    steps: int
+
+
+class NumericSolver:
+    """Searches postures for poses, one after the other.
+
+    Attributes:
+        chain: The arm.
+        task: What of the pose counts.
+        starts: How many starts a search has at most.
+    """
+
+    def __init__(
+        self,
+        chain: Chain,
+        task: Task = Task.TRANSFORM,
+        *,
+        starts: int = 200,
+        kinematics: Callable[[Chain], Kinematics] = CompiledKinematics,
+    ) -> None:
+        self.chain, self.task, self.starts = chain, task, starts
+        self._kinematics = kinematics(chain)
+        self._rows = None if task is Task.TRANSFORM else np.array(task.rows)
+        self._scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
+        endless = chain.circular | ~(np.isfinite(chain.lower) & np.isfinite(chain.upper))
+        span = np.where(chain.prismatic, chain.reach, np.pi)
+        self._low = np.where(endless, -span, chain.lower)
+        self._high = np.where(endless, span, chain.upper)
+        self._lowest = np.where(chain.circular, -np.inf, chain.lower)
+        self._highest = np.where(chain.circular, np.inf, chain.upper)
+        self._identity = np.eye(chain.dof)
+
+    def descend(self, pose: Floats, start: Floats) -> Nearest:
+        """Follow the error from a start, to a solution or to where it stays: the fast way, if there is a solution.
+
+        Args:
+            pose: The pose, shape (4, 4).
+            start: Joint values, shape (n,).
+        """
+        values = np.minimum(np.maximum(start, self._lowest), self._highest)
+        best, at, stalled, step = np.inf, values, 0, 0
+        for step in range(_STEPS):  # noqa: B007 - it is in the answer
+            error, slope = self._linear(pose, values, self._scale)
+            square = float(error @ error)
+            stalled = 0 if square < best * 0.98 else stalled + 1
+            if square < best:
+                best, at = square, values
+            if square < 1e-24 or stalled > 6:
+                break
+            values = self._step(values, error, slope, 0.05 * square + 1e-12)
+        return Nearest(at, float(np.sqrt(best)), step + 1)
+
+    def _linear(self, pose: Floats, values: Floats, scale: Floats) -> tuple[Floats, Floats]:
+        """Return the scaled error of a posture and how it changes with the joint values."""
+        rotation, place, jacobian = self._kinematics(values)
+        missing = np.empty(6)
+        missing[:3] = pose[:3, 3] - place
+        missing[3:] = _rotation_between(rotation, pose)
+        error, slope = missing * scale, jacobian * scale[:, None]
+        return (error, slope) if self._rows is None else (error[self._rows], slope[self._rows])
+
+    def _step(self, values: Floats, error: Floats, slope: Floats, damping: float) -> Floats:
+        """Return the values after a damped step within the limits."""
+        pull = slope.T @ error
+        matrix = slope.T @ slope + damping * self._identity
+        moved = np.linalg.solve(matrix, pull)
+        ahead = values + moved
+        beyond = (ahead < self._lowest) | (ahead > self._highest)
+        if beyond.any():
+            held = beyond & ((values <= self._lowest) | (values >= self._highest))
+            if held.any() and not held.all():
+                free = ~held
+                moved = np.zeros_like(values)
+                moved[free] = np.linalg.solve(matrix[np.ix_(free, free)], pull[free])
+                ahead = values + moved
+            ahead = np.minimum(np.maximum(ahead, self._lowest), self._highest)
+        return ahead
+
+    def start(self, number: int) -> Floats:
+        """Return one of the starts, shape (n,), which fill the range of joint values evenly."""
+        return self._low + (self._high - self._low) * _evenly(self.chain.dof, number)
+
+    def solve(self, pose: Floats, seed: Floats | None = None) -> Floats | None:
+        """Return one solution within the limits, shape (n,), or None where no start finds any.
+
+        Args:
+            pose: The pose, shape (4, 4).
+            seed: Joint values to start at.
+        """
+        for number in range(self.starts):
+            start = seed if seed is not None and number == 0 else self.start(number)
+            found = self.descend(pose, start)
+            if found.error < ACCURATE:
+                values, inside = nearest_turns(self.chain, found.values, 0.0 if seed is None else seed)
+                return values if inside else found.values
+        return None
+
+    def solve_all(self, pose: Floats) -> Floats:
+        """Return the solutions within the limits that the starts find, shape (K, n); there may be more."""
+        rows: list[Floats] = []
+        for number in range(self.starts):
+            found = self.descend(pose, self.start(number))
+            if found.error < ACCURATE:
+                values, inside = nearest_turns(self.chain, found.values)
+                values = values if inside else found.values
+                if all(self._distance(values, other) > _DISTINCT for other in rows):
+                    rows.append(values)
+        return np.array(rows).reshape(-1, self.chain.dof)
+
+    def _distance(self, one: Floats, other: Floats) -> float:
+        away = np.where(self.chain.prismatic, (one - other) / self.chain.reach, 2 * np.sin((one - other) / 2))
+        return float(np.abs(away).max())
+
+    def nearest(self, pose: Floats, seed: Floats, weights: Floats | None = None) -> Nearest:
+        """Return the posture that comes as near to a pose as it can from a seed, reachable or not.
+
+        Every step makes the error smaller, by a damping that grows until it does.
+
+        Args:
+            pose: The pose, shape (4, 4).
+            seed: Joint values to start at, shape (n,); the answer is in the same valley.
+            weights: How much errors along x, y, z and about them count, shape (6,); all the same if None.
+        """
+        scale = self._scale if weights is None else self._scale * weights
+        values = np.minimum(np.maximum(seed, self._lowest), self._highest)
+        error, slope = self._linear(pose, values, scale)
+        square, damping, step = float(error @ error), 1e-3, 0
+        for step in range(_NEAREST_STEPS):  # noqa: B007 - it is in the answer
+            ahead = self._step(values, error, slope, damping * (1e-9 + square))
+            error_ahead, slope_ahead = self._linear(pose, ahead, scale)
+            square_ahead = float(error_ahead @ error_ahead)
+            if square_ahead < square:
+                gained, damping = square - square_ahead, max(damping / 4, 1e-9)
+                values, error, slope, square = ahead, error_ahead, slope_ahead, square_ahead
+                if square < 1e-24 or gained < 1e-10 * square:
+                    break
+            else:
+                damping *= 8
+                if damping > 1e9:
+                    break
+        return Nearest(values, float(np.sqrt(square)), step + 1)
+
+
+def _rotation_between(rotation: Floats, pose: Floats) -> Floats:
+    """Return the rotation vector, in base axes, from a rotation (3, 3) to that of a pose."""
+    (a, b, c), (d, e, f), (g, h, i) = (pose[:3, :3] @ rotation.T).tolist()
+    x, y, z = h - f, c - g, d - b
+    sine, cosine = (x * x + y * y + z * z) ** 0.5, a + e + i - 1  # twice both
+    if sine > 1e-6:
+        factor = float(np.arctan2(sine, cosine)) / sine
+    elif cosine > 0:
+        factor = 0.5
+    else:  # half a turn: the axis is in the sum of the matrix and its transpose
+        square = np.array([a, e, i]) + 1
+        axis = int(np.argmax(square))
+        column = np.array([[2 * a + 2, b + d, c + g], [b + d, 2 * e + 2, f + h], [c + g, f + h, 2 * i + 2]])[axis]
+        return np.pi * column / np.linalg.norm(column)
+    return np.array([x * factor, y * factor, z * factor])
+
+
+def _evenly(count: int, number: int) -> Floats:
+    """Return a point of the unit cube, of a sequence in which any first ones are spread evenly."""
+    ratio = 2.0
+    for _ in range(30):
+        ratio = (1 + ratio) ** (1 / (count + 1))
+    return np.mod(0.5 + number * ratio ** -np.arange(1.0, count + 1), 1.0)

@@ -1,0 +1,99 @@
+"""What is left open: joints that can have any value, and postures in which two joints turn about one line."""
+
+import itertools
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ravemj.ik.chain import Chain
+from ravemj.ik.tasks import Task
+from ravemj.ik.vectors import Floats
+
+SINGULAR_STEP = np.pi / 8
+"""Where two joints turn about one line, the first of them is shown at every such angle."""
+_COAXIAL = 1e-9
+_POSTURES = 4
+
+
+def rank(chain: Chain, task: Task) -> int:
+    """Return how many independent motions of the tool that count the joints can make."""
+    values = np.random.default_rng(7).uniform(-3, 3, (_POSTURES, chain.dof)) * np.where(chain.prismatic, 0.1, 1.0)
+    _, jacobians = chain.forward_and_jacobian(values)
+    scaled = jacobians * np.array([1 / chain.reach] * 3 + [1.0] * 3)[:, None]
+    return int(np.linalg.matrix_rank(scaled[:, list(task.rows)], tol=1e-4).max(initial=0))
+
+
+def choices(chain: Chain, task: Task) -> Iterator[tuple[int, ...]]:
+    """Return sets of joints that can be left free, so many that the others are not too many.
+
+    The last joint comes first and the first one second: with these locked, the geometry of the rest does not depend on
+    their value. The others follow from the tool to the base.
+    """
+    count = chain.dof - rank(chain, task)
+    order = [chain.dof - 1, 0, *range(chain.dof - 2, 0, -1)][: chain.dof]
+    for chosen in itertools.combinations(order, count):
+        yield tuple(sorted(chosen))
+
+
+def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Floats | None = None) -> Floats:
+    """Return values of free joints within their limits: a start, or 0, then a step more, a step less, and so on.
+
+    Args:
+        chain: The arm.
+        free: The free joints, k of them.
+        steps: A step for each [rad or m].
+        start: Values to start at, shape (k,).
+
+    Returns:
+        Values, shape (K, k); one row of no values if there is no free joint. The last of several joints changes first.
+    """
+    columns: list[list[float]] = []
+    for index, (joint, step) in enumerate(zip(free, steps, strict=True)):
+        low, high = chain.lower[joint], chain.upper[joint]
+        if chain.circular[joint] or (not chain.prismatic[joint] and high - low > 2 * np.pi):
+            low, high = -np.pi, np.pi
+        centre = float(np.clip(0.0 if start is None else start[index], low, high))
+        up = centre + step * np.arange(1, int((high - centre) / step + 1e-9) + 1)
+        down = centre - step * np.arange(1, int((centre - low) / step + 1e-9) + 1)
+        both = itertools.zip_longest(up.tolist(), down.tolist())
+        columns.append([centre, *(value for pair in both for value in pair if value is not None)])
+    rows = list(itertools.product(*columns))
+    return np.array(rows, dtype=float).reshape(len(rows), len(columns))
+
+
+def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, float]]:
+    """Find the postures, of rows (K, n), in which two joints turn about the same line.
+
+    Returns:
+        For each of them the row, the two joints, and 1 or -1 for the same or the opposite direction.
+    """
+    axes, points = chain.placed_axes(rows)
+    turning = np.nonzero(~chain.prismatic)[0].tolist()
+    found: list[tuple[Floats, int, int, float]] = []
+    for first, second in itertools.combinations(turning, 2):
+        tilt = np.abs(np.cross(axes[first], axes[second])).max(axis=1)
+        if tilt.min() < _COAXIAL:
+            away = np.abs(np.cross(axes[first], points[second] - points[first])).max(axis=1) / chain.reach
+            for row in np.nonzero((tilt < _COAXIAL) & (away < _COAXIAL))[0]:
+                found.append((rows[row], first, second, float(np.sign(axes[first, row] @ axes[second, row]))))
+    return found
+
+
+def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:
+    """Return other postures (K, n) with the tool's pose of one in which two joints turn about one line.
+
+    Args:
+        chain: The arm.
+        singular: The posture, the joints and the sign, of ``singular_rows``.
+        seed: A posture that the first of the two joints, or the second one, shall be like in one of the answers.
+    """
+    row, first, second, sign = singular
+    angles = np.arange(-np.pi + SINGULAR_STEP, np.pi + 1e-9, SINGULAR_STEP)
+    if seed is not None:
+        angles = np.append(angles, [seed[first], row[first] - sign * (seed[second] - row[second])])
+    rows = np.repeat(row[None], len(angles), axis=0)
+    rows[:, first] = angles
+    rows[:, second] -= sign * (angles - row[first])
+    turning = ~chain.prismatic
+    rows[:, turning] = np.mod(rows[:, turning] + np.pi, 2 * np.pi) - np.pi
+    return rows

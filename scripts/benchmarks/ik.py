@@ -1,0 +1,128 @@
+"""Inverse kinematics: deriving a solver, one pose, many poses, free joints, and the search."""
+
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+
+from benchmarks.measure import ROOT, Row, microseconds, take_turns
+from ravemj.core.transforms import Floats
+from ravemj.formats.readers import read_file
+from ravemj.ik import Chain, NumericSolver, make_solver
+from ravemj.ik.arms import chain_of
+from ravemj.ik.compiled import CompiledKinematics
+
+MANY = 20000
+POSES = 200
+
+
+def rows() -> list[Row]:
+    """Measure the arms of our models, and one with three parallel axes."""
+    puma, panda, parallel = _model("puma560.xml"), _model("panda.xml"), _parallel()
+    found = [_derived(name, chain) for name, chain in (("PUMA", puma), ("Panda", panda), ("UR-like", parallel))]
+    found += [_batch("PUMA", puma, 8.0), _batch("UR-like", parallel, None), _batch("six general joints", _odd(), None)]
+    found += [_one(puma), _first(panda)]
+    return found + _searches("PUMA", puma) + _searches("Panda", panda)
+
+
+def _model(name: str) -> Chain:
+    scene = read_file(ROOT / "models" / name).scene
+    body = next(body for body in scene.bodies if body.manipulators)
+    return chain_of(body, body.manipulators[0])
+
+
+def _parallel() -> Chain:
+    """Return an arm of the shape of the UR5."""
+    y, z = [0, 1, 0], [0, 0, 1]
+    points = [[0, 0, 0.09], [0, 0, 0.09], [0.425, 0, 0.09], [0.817, 0, 0.09], [0.817, 0.109, 0.09], [0.817, 0.109, 0]]
+    tool = np.array([[1.0, 0, 0, 0.817], [0, 0, 1, 0.191], [0, -1, 0, -0.005], [0, 0, 0, 1]])
+    return Chain.of([z, y, y, y, [0, 0, -1], y], points, T_base_tool=tool)
+
+
+def _odd() -> Chain:
+    rng = np.random.default_rng(0)
+    return Chain.of(rng.normal(size=(6, 3)), rng.uniform(-1, 1, (6, 3)))
+
+
+def _poses(chain: Chain, count: int) -> tuple[Floats, Floats]:
+    values = np.random.default_rng(7).uniform(chain.lower, chain.upper, (count, chain.dof))
+    return values, chain.forward(values)
+
+
+def _derived(name: str, chain: Chain) -> Row:
+    (measured,) = take_turns([microseconds(lambda: make_solver(replace(chain)))], 9)
+    return Row(f"{name}: derive, certificate included", "ms", measured / 1e3, 1.0, 50.0, note="limit in ms")
+
+
+def _batch(name: str, chain: Chain, limit: float | None) -> Row:
+    """Compare with MuJoCo's forward kinematics of one posture, in a loop, which slows down as we do."""
+    solver = make_solver(chain).closed
+    if solver is None:
+        raise RuntimeError(f"{name} has no closed form")
+    count = MANY if limit else MANY // 10
+    values, poses = _poses(chain, count)
+    found = solver.solve(poses)
+    if not found.valid.any(axis=1).all():
+        raise RuntimeError("a pose has no solution")
+    batch, floor = take_turns([microseconds(lambda: solver.solve(poses)), microseconds(_floor(chain, values), 1)], 5)
+    mean = found.valid.sum() / count
+    note = f"{mean:.1f} solutions a pose; the limit is that of µs on an idle machine, where the floor is 1"
+    return Row(
+        f"{name}: all solutions, a pose of a batch : mj_kinematics", "µs", batch / count, floor / 100, limit, note=note
+    )
+
+
+def _floor(chain: Chain, values: Floats) -> Callable[[], None]:
+    compiled = CompiledKinematics(chain)
+    model, data = compiled.model, compiled.data
+
+    def place() -> None:
+        for row in values[:100]:
+            data.qpos[:] = row
+            mujoco.mj_kinematics(model, data)
+
+    return place
+
+
+def _one(chain: Chain) -> Row:
+    solver = make_solver(chain)
+    _, poses = _poses(chain, POSES)
+
+    def each() -> None:
+        for pose in poses:
+            solver.solve_one(pose)
+
+    (measured,) = take_turns([microseconds(each)], 5)
+    return Row("PUMA: all solutions of one pose", "µs", measured / POSES)
+
+
+def _first(chain: Chain) -> Row:
+    solver = make_solver(chain)
+    _, poses = _poses(chain, POSES)
+    median, share = _median([lambda pose=pose: solver.nearest(pose, np.zeros(chain.dof)) for pose in poses])
+    return Row("Panda: nearest solution within limits, median", "µs", median, note=f"{share:.1%} of the poses")
+
+
+def _searches(name: str, chain: Chain) -> list[Row]:
+    solver = NumericSolver(chain)
+    values, poses = _poses(chain, POSES)
+    near = values + np.random.default_rng(1).uniform(-0.2, 0.2, values.shape)
+    anywhere, share = _median([lambda pose=pose: solver.solve(pose) for pose in poses])
+    tracking, _ = _median([lambda pair=pair: solver.solve(*pair) for pair in zip(poses, near, strict=True)])
+    return [
+        Row(f"{name}: search from anywhere, median", "µs", anywhere, note=f"{share:.1%} of the poses"),
+        Row(f"{name}: search from nearby, median", "µs", tracking),
+    ]
+
+
+def _median(calls: list[Callable[[], Floats | None]]) -> tuple[float, float]:
+    """Return the median time of calls [µs], and the share of them that return something."""
+    times, found = list[float](), 0
+    for call in calls:
+        begin = time.process_time()
+        found += call() is not None
+        times.append((time.process_time() - begin) * 1e6)
+    return statistics.median(times), found / len(calls)
