@@ -1,4 +1,4 @@
-"""Mass properties: from a tensor to principal axes, and back."""
+"""Principal axes and moments of inertia."""
 
 import numpy as np
 

@@ -35,7 +35,7 @@ from ravemj.model.scene import KinBody
 
 
 class _Marks(NamedTuple):
-    """How many parts a body had at some moment; manipulators change their order, so they are kept themselves."""
+    """The numbers of parts that a body has at some moment, and its manipulators, whose order changes."""
 
     links: int
     joints: int
@@ -158,9 +158,9 @@ class _Scope:
         """Read a ``<Translation>`` of the whole element."""
         self.placement.translate(element, self.context.diagnostics)
 
-    def turn(self, element: Element) -> None:
+    def rotate(self, element: Element) -> None:
         """Read a rotation of the whole element."""
-        self.placement.turn(element, self.context.diagnostics)
+        self.placement.rotate(element, self.context.diagnostics)
 
     def read_default_mass(self, element: Element) -> None:
         """Read the ``<Mass>`` that the following Bodies share."""
@@ -218,7 +218,7 @@ class _Scope:
 
 
 _SCOPE_TAGS: dict[str, Tag[_Scope]] = {
-    **placement_tags(_Scope.translate, _Scope.turn),
+    **placement_tags(_Scope.translate, _Scope.rotate),
     "jointvalues": Tag(_Scope.read_joint_values, "values of all DOFs [rad, m]"),
 }
 ROBOT_TAGS: dict[str, Tag[_Scope]] = {
