@@ -1,4 +1,4 @@
-"""Where things are in a file, what is wrong with them, and the exceptions of ravemj.
+"""Sources (places in files), diagnostics and exceptions.
 
 ::
 

@@ -10,6 +10,10 @@ from hypothesis import strategies as st
 from strategies import examples, scene_node, scenes, xml
 
 import ravemj
+from ravemj import KinBody
+from ravemj.core.transforms import Pose
+from ravemj.model import scene
+from ravemj.model.shape_bodies import shape_geometry
 
 ARM = """<Robot name="arm"><KinBody>
   <Body name="base"><Geom type="box"><extents>.2 .2 .1</extents></Geom></Body>
@@ -284,3 +288,32 @@ class TestManipulators:
         assert [link.GetName() for link in arm.GetChildLinks()] == ["fore", "tip"]
         assert arm.GetChildJoints() == []
         assert arm.IsChildLink(robot.GetLink("tip"))
+
+
+SHAPES = [
+    scene.Box((1, 2, 3)),
+    scene.CalibrationBoard((1, 2, 3)),
+    scene.Sphere(1),
+    scene.Cylinder(1, 2),
+    scene.Capsule(1, 2),
+    scene.Container((4, 5, 6), (3, 4, 5), (1, 2, 3), (2, 1, 3)),
+    scene.Prism(((0, 0), (1, 0), (0, 1)), 2),
+    scene.TriMesh(scene.Mesh(np.eye(3), np.array([[0, 1, 2]]))),
+    scene.NoShape(),
+]
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: type(shape).__name__)
+def test_every_type_of_geometry_is_described_and_made(shape):
+    info = KinBody.GeometryInfo.of(shape_geometry(shape, Pose(), visible=True))
+    assert info.geometry().shape == shape
+    assert type(info.geometry().shape) is type(shape)
+
+
+def test_these_are_all_types_of_geometry():
+    assert {one.shape for one in scene.SHAPE_TYPES} == {type(shape) for shape in SHAPES}
+
+
+def test_what_a_shape_does_not_need_is_not_looked_at():
+    info = KinBody.GeometryInfo(_vGeomData="not a number")
+    assert info.geometry().shape == scene.NoShape()

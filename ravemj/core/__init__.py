@@ -1,1 +1,1 @@
-"""What knows nothing of robots: poses, arrays, files that appear whole."""
+"""Foundations without robots: poses, arrays, graphs, handles, output files."""

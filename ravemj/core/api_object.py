@@ -1,21 +1,21 @@
-"""How objects of the API show themselves in a prompt."""
+"""The base class of API objects: how they appear in an interactive prompt."""
 
 from collections.abc import Iterable
 from typing import ClassVar
 
 
 class _ApiType(type):
-    """Completes names of classes like those of their objects; IPython lists both behind an object."""
+    """Gives classes the same ``dir`` as their objects: IPython completes an object by the union of both."""
 
     def __dir__(cls) -> list[str]:
         return _listed(cls, super().__dir__())
 
 
 class ApiObject(metaclass=_ApiType):
-    """Shows no address, and completes to what users call.
+    """An object with a ``repr`` without an address, and a ``dir`` of the names that users call.
 
-    ``dir`` and tab completion leave out names with an underscore, and those in ``_internal``: what other rooms of this
-    package call.
+    ``dir`` and tab completion leave out names with an underscore, and those in ``_internal``, which other modules of
+    this package call. (An underscore instead would make these calls an access to private names.)
     """
 
     _internal: ClassVar[tuple[str, ...]] = ()

@@ -1,4 +1,4 @@
-"""Arrays that users hand in, checked once."""
+"""Checks of arrays that users pass in."""
 
 from types import EllipsisType
 
@@ -9,10 +9,10 @@ from ravemj.core.transforms import Floats, Ints, normalize, rows_from_wxyz, wxyz
 from ravemj.errors import ArgumentError
 
 NOT_RIGID = 1e-3
-"""How far a rotation times its transpose may be from the identity."""
+"""Tolerance of a rotation matrix: the largest entry of R R^T - I."""
 
 ROUNDING = 1e-12
-"""How far it may be to be taken as it is."""
+"""Below this deviation a rotation matrix is not orthonormalized, so that exact input stays exact."""
 
 
 def checked_numbers(values: ArrayLike, name: str) -> Floats:

@@ -1,4 +1,4 @@
-"""Handles: objects that undo something when they are closed, or when nobody holds them any more."""
+"""Handles: objects that release something when they are closed or garbage-collected."""
 
 import weakref
 from collections.abc import Callable
@@ -11,7 +11,7 @@ _Arguments = ParamSpec("_Arguments")
 
 
 class Handle(ApiObject):
-    """Holds something for as long as somebody holds the handle."""
+    """Keeps something for as long as the handle is in use."""
 
     def __init__(
         self, release: Callable[_Arguments, object], *args: _Arguments.args, **kwargs: _Arguments.kwargs
@@ -27,7 +27,7 @@ class Handle(ApiObject):
         self._release.atexit = False
 
     def Close(self) -> None:  # noqa: N802 - OpenRAVE's name
-        """Let go now; a second call does nothing."""
+        """Release it now; a second call does nothing."""
         self._release()
 
     close = Close
@@ -38,5 +38,5 @@ class Handle(ApiObject):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        """Let go."""
+        """Release it."""
         self._release()

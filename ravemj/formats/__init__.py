@@ -1,1 +1,1 @@
-"""Files that are read and written."""
+"""Readers and writers of file formats."""

@@ -1,4 +1,4 @@
-"""Finds a file and reads it by its kind."""
+"""Search for files, and the choice of a reader by their kind."""
 
 import os
 from collections.abc import Callable

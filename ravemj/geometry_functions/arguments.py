@@ -1,4 +1,4 @@
-"""Arguments of the geometry functions, checked.
+"""Checks of the arguments of the geometry functions.
 
 As in OpenRAVE, what is too short is refused, and of what is too long the beginning is taken.
 """

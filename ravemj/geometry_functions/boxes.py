@@ -37,7 +37,7 @@ class Ray(ApiObject):
 
 
 class AABB(ApiObject):
-    """A box along the axes of the world.
+    """An axis-aligned box.
 
     Example:
         >>> box = robot.ComputeAABB()
@@ -68,7 +68,7 @@ class AABB(ApiObject):
 
 
 class OrientedBox(ApiObject):
-    """A box that may be turned."""
+    """An oriented box."""
 
     def __init__(self, transform: ArrayLike = (1, 0, 0, 0, 0, 0, 0), extents: ArrayLike = ZERO) -> None:
         self._pose = arguments.pose(transform, "transform")
@@ -114,7 +114,7 @@ def OrientedBoxFromAABB(aabb: AABB, transform: ArrayLike) -> OrientedBox:
 
 
 def AABBFromOrientedBox(obb: OrientedBox) -> AABB:
-    """Return the smallest box along the axes of the world that holds a box.
+    """Return the smallest axis-aligned box around an oriented box.
 
     Args:
         obb: The turned box.
@@ -124,7 +124,7 @@ def AABBFromOrientedBox(obb: OrientedBox) -> AABB:
 
 
 def CheckAABBCollision(aabb1: AABB, aabb2: AABB) -> bool:
-    """Return whether two boxes along the axes of the world overlap or touch.
+    """Return whether two axis-aligned boxes overlap or touch.
 
     Args:
         aabb1: A box.
@@ -150,7 +150,7 @@ def CheckOBBCollision(obb1: OrientedBox, obb2: OrientedBox) -> bool:
 
 
 def CheckAABBAndOBBCollision(aabb: AABB, obb: OrientedBox) -> bool:
-    """Return whether a box along the axes of the world and another box overlap or touch.
+    """Return whether an axis-aligned box and an oriented box overlap or touch.
 
     Args:
         aabb: The box.

@@ -1,4 +1,4 @@
-"""Circles, spheres and crossings of lines that fit best."""
+"""Least-squares fits of circles and spheres, and the closest points of lines."""
 
 from collections.abc import Sequence
 

@@ -1,1 +1,1 @@
-"""What OpenRAVE has in memory after loading, and what follows from it alone."""
+"""The scene, OpenRAVE's content of memory after loading, and everything that follows from it alone."""

@@ -1,4 +1,4 @@
-"""Which pairs of links of a body are never tested against each other."""
+"""Adjacent links: pairs that self-collision tests leave out."""
 
 from ravemj.core.graphs import Pair, connected_components, ordered_pair
 from ravemj.model.scene import KinBody

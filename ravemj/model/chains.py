@@ -1,4 +1,4 @@
-"""Questions about the graph of links and joints of a body.
+"""The graph of links and joints of a body: chains, loops, rigid parts.
 
 Joints are counted as in a body's list: active ones, then passive ones.
 """

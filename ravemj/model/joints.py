@@ -1,4 +1,4 @@
-"""How a joint moves its child: poses from values, and values from poses."""
+"""Joint kinematics: the relative pose of two links from joint values, and joint values from poses."""
 
 import math
 from collections.abc import Sequence
@@ -51,7 +51,7 @@ def reported_anchor(joint: Joint) -> Vec3:
 
 
 def rotation(joint: Joint, values: Sequence[float]) -> Wxyz:
-    """Return how far a joint has turned from ``T_parent_child``, in the parent's axes."""
+    """Return the rotation of a joint from ``T_parent_child``, in the parent's axes."""
     if joint.kind == "spherical":
         return wxyz_from_rotation_vector((values[0], values[1], values[2]))
     turned: Wxyz = (1.0, 0.0, 0.0, 0.0)
@@ -61,12 +61,12 @@ def rotation(joint: Joint, values: Sequence[float]) -> Wxyz:
 
 
 def about(anchor: Vec3, wxyz: Wxyz) -> Pose:
-    """Return the motion that turns about a point."""
+    """Return the rotation about a point as a transform."""
     return Pose(add(anchor, scale(rotate(wxyz, anchor), -1.0)), wxyz)
 
 
 def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
-    """Return the values of a joint that the poses of its links show.
+    """Return the values of a joint that follow from the poses of its links.
 
     Args:
         joint: The joint.

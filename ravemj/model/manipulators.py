@@ -1,4 +1,4 @@
-"""Manipulators: from the names of a file to the DOFs of an arm."""
+"""Manipulators: the links, joints and DOFs that a file names."""
 
 import math
 from dataclasses import dataclass, field

@@ -36,18 +36,18 @@ def motion_bounds(body: KinBody) -> Floats:
 
 
 def _joint_reach(body: KinBody, joint: Joint) -> Floats:
-    """Return for each axis of a joint how far the shapes beyond it are from it at most; for a slider 1."""
+    """Return for each axis of a joint the greatest distance of the shapes that it moves; for a slider 1."""
     if joint.kind == "slider":
         return np.ones(1)
     if joint.static or not joint.places_child:
         return np.zeros(len(joint.axes))
-    axis = _turned(joint, np.array(joint.axes[0].direction)) if joint.kind == "hinge" else np.zeros(3)
-    reach = _farthest(body, joint.child, _moved(joint, np.array(joint.anchor)), axis)
+    axis = _direction_in_child(joint, np.array(joint.axes[0].direction)) if joint.kind == "hinge" else np.zeros(3)
+    reach = _farthest(body, joint.child, _point_in_child(joint, np.array(joint.anchor)), axis)
     return np.full(len(joint.axes), max(0.0, reach))
 
 
 def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
-    """Return how far the shapes of a link and of those that hang on it get from a point, across an axis.
+    """Return the greatest distance of the shapes of a link and its descendants from a point, perpendicular to an axis.
 
     Args:
         body: The body.
@@ -65,35 +65,35 @@ def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
         if joint.parent != link or not joint.places_child:
             continue
         if joint.static or joint.kind == "slider":
-            beyond = _farthest(body, joint.child, _moved(joint, point), _turned(joint, axis))
+            beyond = _farthest(body, joint.child, _point_in_child(joint, point), _direction_in_child(joint, axis))
             off = _stroke(joint) * across @ joint.axes[0].direction
         else:
             anchor = np.array(joint.anchor)
-            beyond = _farthest(body, joint.child, _moved(joint, anchor), np.zeros(3))
+            beyond = _farthest(body, joint.child, _point_in_child(joint, anchor), np.zeros(3))
             off = across @ (anchor - point)
         found.append(beyond + float(np.linalg.norm(off)))
     return max(found)
 
 
 def _stroke(joint: Joint) -> float:
-    """Return how far a slider gets from where ``T_parent_child`` holds; 0 for a weld."""
+    """Return the greatest displacement of a slider from ``T_parent_child``; 0 for a weld."""
     (axis, *_) = joint.axes
     return 0.0 if joint.static else max(abs(axis.lower - axis.reference), abs(axis.upper - axis.reference))
 
 
-def _moved(joint: Joint, point: Floats) -> Floats:
+def _point_in_child(joint: Joint, point: Floats) -> Floats:
     """Return a point of a joint's parent in the frame of the child, at the joint's reference."""
     T_child_parent = joint.T_parent_child.inverse().matrix()
     return T_child_parent[:3, :3] @ point + T_child_parent[:3, 3]
 
 
-def _turned(joint: Joint, direction: Floats) -> Floats:
+def _direction_in_child(joint: Joint, direction: Floats) -> Floats:
     """Return a direction in a joint's parent in the frame of the child, at the joint's reference."""
     return joint.T_parent_child.inverse().matrix()[:3, :3] @ direction
 
 
 def _rates(body: KinBody) -> list[Floats]:
-    """Return how fast each axis of each joint moves at most per unit of each DOF: arrays of shape (axes, dof)."""
+    """Return bounds on |d axis / d DOF| for each joint: arrays of shape (axes, dof)."""
     joints, numbers, dof = body.all_joints, np.random.default_rng(0), 0
     rates = [np.zeros((len(joint.axes), len(body.dof_axes))) for joint in joints]
     samples: dict[str, Floats] = {}

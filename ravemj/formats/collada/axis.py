@@ -1,4 +1,4 @@
-"""The numbers of an axis: limits, speeds, and what planners need, from up to three elements."""
+"""The parameters of an axis: limits, velocities, weights and resolutions, from up to three elements."""
 
 import math
 from dataclasses import dataclass

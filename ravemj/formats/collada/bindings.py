@@ -1,4 +1,4 @@
-"""What ``<scene>`` binds: models to the nodes that show them, and axes to nodes and values."""
+"""The bindings of a ``<scene>``: models to the nodes that show them, and axes to nodes and values."""
 
 from dataclasses import dataclass
 

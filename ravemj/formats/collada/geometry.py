@@ -1,4 +1,4 @@
-"""Shapes of links: the triangles of nodes, and the primitives that OpenRAVE writes beside them."""
+"""Geometries of links: the triangles of nodes, and the primitives that OpenRAVE writes beside them."""
 
 import math
 from collections.abc import Callable, Iterator

@@ -64,7 +64,7 @@ class SceneContext:
 
 
 class _Names:
-    """Names that are taken, each with the number to try next behind it."""
+    """The names in use, each with the number to append to the next one like it."""
 
     def __init__(self, taken: Iterable[str]) -> None:
         self._next = dict.fromkeys(taken, 1)
@@ -80,7 +80,7 @@ class _Names:
 
 
 class _FoundJoint(NamedTuple):
-    """A joint that an attachment names.
+    """A joint that an attachment refers to.
 
     Attributes:
         keys: All elements that stand for the joint.

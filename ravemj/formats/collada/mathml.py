@@ -1,4 +1,4 @@
-"""MathML to the text of a mimic equation."""
+"""Translation of MathML into mimic equations."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

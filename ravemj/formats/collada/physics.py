@@ -1,4 +1,4 @@
-"""Masses: the rigid bodies of the physics scenes, by the nodes that they target."""
+"""Rigid bodies of the physics scenes, which give the links their masses."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""4x4 matrices, which may scale, to poses, which may not."""
+"""Polar decomposition of 4x4 matrices, which may scale, into poses, which may not."""
 
 import numpy as np
 
@@ -7,14 +7,14 @@ from ravemj.errors import Source, SourceError
 
 
 def polar_decomposition(matrix: Floats, source: Source) -> tuple[Pose, Floats | None]:
-    """Take a matrix apart: ``matrix = pose @ rest``.
+    """Decompose a matrix into a pose and a stretch: ``matrix = pose @ stretch``.
 
     Args:
         matrix: Shape (4, 4).
         source: Where it comes from.
 
     Returns:
-        The pose, and what is left to do before it, shape (3, 3); None for a matrix that is rigid.
+        The pose, and the stretch, shape (3, 3); None for a matrix that is rigid.
 
     Raises:
         SourceError: A number in it is not finite.
@@ -31,7 +31,7 @@ def polar_decomposition(matrix: Floats, source: Source) -> tuple[Pose, Floats | 
 
 
 def rigid_part(matrix: Floats, source: Source) -> Pose:
-    """Return the pose of a matrix, without what it scales.
+    """Return the pose of a matrix, without its stretch.
 
     Raises:
         SourceError: A number in it is not finite.

@@ -1,4 +1,4 @@
-"""References by scoped names: ``a/b/c``, and the parameters that stand for them."""
+"""Resolution of scoped ids (SID paths such as ``a/b/c``) and of the parameters that stand for them."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ _MODELS = {
 
 
 class Found(NamedTuple):
-    """What a reference leads to.
+    """The result of resolving a reference.
 
     Attributes:
         element: The element.
@@ -35,7 +35,7 @@ class Found(NamedTuple):
 
 
 class References:
-    """Finds elements by scoped names; remembers what is in which scope."""
+    """Resolves SID paths, and keeps an index of each scope."""
 
     def __init__(self, library: Library) -> None:
         self._library = library

@@ -1,4 +1,4 @@
-"""What OpenRAVE writes beside the standard: kind of body, manipulators, sensors, motors, links that never collide."""
+"""OpenRAVE's ``<extra>`` elements: the kind of a body, manipulators, sensors, motors and adjacent links."""
 
 import math
 from collections.abc import Iterator

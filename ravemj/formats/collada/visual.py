@@ -38,7 +38,7 @@ class Node:
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """Its name, else its id."""
         return self.element.get("name") or self.element.get("id") or self.element.get("sid") or ""
 
     @property

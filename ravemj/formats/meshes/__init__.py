@@ -1,4 +1,4 @@
-"""Mesh files to triangles and colours, and triangles to what MuJoCo loads.
+"""Readers of mesh files, which return triangles and colours, and checks of what MuJoCo can load.
 
 ``read_mesh`` reads STL, OBJ, COLLADA, Inventor and VRML itself, PLY, OFF and glTF through trimesh, and gives what
 OpenRAVE gives: the same triangles, parts and colours. Nothing here knows of links.

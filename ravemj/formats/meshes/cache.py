@@ -1,4 +1,4 @@
-"""Parsed meshes kept on disk, by the content of their files.
+"""A cache of parsed meshes on disk, by the content of their files.
 
 An entry (``.mesh``) is named after the hash of the file, the end of its name and the source of the readers, so that
 no entry outlives a change of them. It lists the files that the mesh refers to with their hashes, and counts only while
@@ -35,7 +35,7 @@ _log = logging.getLogger(__name__)
 MAX_BYTES = 1 << 30
 """The cache is pruned to this size, those files first that were used least recently."""
 
-_PRUNE_EVERY = 64  # files written by this process between two looks at the size
+_PRUNE_EVERY = 64  # files written by this process between two checks of the size
 _TICK = 2 * 10**9  # ns; the coarsest clock of a file system
 _RECENT = 24 * 3600  # s; a file that was used that recently is not marked again
 _READ = os.O_RDONLY | getattr(os, "O_BINARY", 0)
@@ -45,8 +45,8 @@ _written = 0
 _T = TypeVar("_T")
 
 
-def remembered_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, ReferencedFiles]]) -> Parts:
-    """Return what ``read`` makes of a file, from the cache if it is there.
+def cached_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, ReferencedFiles]]) -> Parts:
+    """Return the parts that ``read`` makes of a file, from the cache where possible.
 
     Args:
         path: The file.
@@ -61,7 +61,7 @@ def remembered_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, R
         return read(read_bytes(path))[0]
     began, stamp = time.time_ns(), stamp_of(path)
     place = os.path.join(os.getcwd(), path) if stamp else ""  # as it is: behind a link, ".." leads elsewhere
-    shortcut = f"{folder}/{_name(_readers_unread(), kind.encode(), os.fsencode(place))}.path"
+    shortcut = f"{folder}/{_name(_readers_stamp(), kind.encode(), os.fsencode(place))}.path"
     entry = _loaded(shortcut, follow_shortcut) if stamp else None
     found = _loaded(f"{folder}/{entry}", unpack_entry) if entry else None
     if found:
@@ -74,8 +74,8 @@ def remembered_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, R
     return parts
 
 
-def remembered(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
-    """Return what ``read`` gives, from the cache if it is there.
+def cached(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
+    """Return the parts that ``read`` returns, from the cache where possible.
 
     Args:
         content: What the result is made from.
@@ -89,7 +89,7 @@ def remembered(content: bytes, kind: str, read: Callable[[], Parts]) -> Parts:
 
 
 def cache_folder() -> Path | None:
-    """Return the folder of the meshes, or None if it is switched off."""
+    """Return the folder of the cache, or None if it is switched off."""
     chosen = os.environ.get("RAVEMJ_CACHE", "")
     if chosen.lower() == "off":
         return None
@@ -111,8 +111,8 @@ def _by_content(
 
     Where there are such files, the entry belongs to the folder ``home``: elsewhere the same names are other files.
     """
-    alone = f"{_name(_readers(), kind.encode(), content)}.mesh"
-    at_home = f"{_name(_readers(), kind.encode(), content, os.fsencode(home))}.mesh"
+    alone = f"{_name(_readers_digest(), kind.encode(), content)}.mesh"
+    at_home = f"{_name(_readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"
     for entry in (alone, at_home):
         found = _loaded(f"{folder}/{entry}", unpack_entry)
         if found:
@@ -127,7 +127,7 @@ def _by_content(
 
 
 def _name(readers: bytes, *parts: bytes) -> str:
-    """Return a name for what the readers make of something."""
+    """Return the name of a cache file: a hash of the readers and of what the content depends on."""
     key = hashlib.sha256(readers)
     for part in parts:
         key.update(b"%d\0" % len(part))
@@ -136,8 +136,8 @@ def _name(readers: bytes, *parts: bytes) -> str:
 
 
 @functools.cache
-def _readers() -> bytes:
-    """Return a hash of the source that makes what is kept."""
+def _readers_digest() -> bytes:
+    """Return a hash of the source of the readers."""
     digest = hashlib.sha256()
     with contextlib.suppress(OSError):
         for path in _sources():
@@ -147,8 +147,8 @@ def _readers() -> bytes:
 
 
 @functools.cache
-def _readers_unread() -> bytes:
-    """Return a hash that changes with the source, though it is not read."""
+def _readers_stamp() -> bytes:
+    """Return a hash of the stamps of that source, which is faster than reading it."""
     with contextlib.suppress(OSError):
         return hashlib.sha256("\n".join(f"{path} {stamp_of(path)}" for path in _sources()).encode()).digest()
     return b""
@@ -169,7 +169,7 @@ def _modules(folder: str) -> Iterator[str]:
 
 
 def _loaded(file: str, unpack: Callable[[bytes], _T]) -> _T | None:
-    """Return what a file of the cache holds, or None if it is not there or damaged."""
+    """Return the content of a cache file, or None if it is missing or damaged."""
     try:
         descriptor = os.open(file, _READ)  # a model has many meshes, and ``open`` takes twice the time
         try:
@@ -189,7 +189,7 @@ def _loaded(file: str, unpack: Callable[[bytes], _T]) -> _T | None:
 
 
 def _store(file: Path, content: bytes) -> None:
-    """Write a file under another name first, so that no reader ever sees half of it."""
+    """Write a cache file under a temporary name and rename it, so that no process ever reads half of it."""
     global _written  # noqa: PLW0603 - a counter
     name = None
     try:
@@ -209,7 +209,7 @@ def _store(file: Path, content: bytes) -> None:
 
 
 def prune(folder: Path, max_bytes: int = MAX_BYTES) -> None:
-    """Delete files that were not used for the longest time, until the rest fits.
+    """Delete the least recently used files until the rest fits.
 
     Args:
         folder: The folder of the cache.

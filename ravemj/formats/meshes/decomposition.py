@@ -1,4 +1,4 @@
-"""Concave meshes to convex pieces, through CoACD."""
+"""Approximate convex decomposition of meshes, with CoACD."""
 
 import importlib
 from typing import Any
@@ -37,7 +37,7 @@ def decompose(mesh: Mesh, threshold: float = 0.15, max_pieces: int = 8) -> tuple
         return tuple(MeshPart(piece) for piece in _pieces(mesh, threshold, max_pieces))
 
     settings = f"coacd {threshold!r} {max_pieces} {_SETTINGS}"
-    return tuple(part.mesh for part in cache.remembered(mesh.digest.encode(), settings, read))
+    return tuple(part.mesh for part in cache.cached(mesh.digest.encode(), settings, read))
 
 
 def _pieces(mesh: Mesh, threshold: float, max_pieces: int) -> list[Mesh]:

@@ -1,4 +1,6 @@
-"""What the files of the cache hold: numbers as they lie in memory, behind a check sum and a short header.
+"""The format of cache files: arrays as they lie in memory, behind a check sum and a JSON header.
+
+NumPy's own format would take several times as long to load, and pickles can run code.
 
 An entry is the parts of a mesh, with what takes time to find out about them. A shortcut says which entry belongs to
 files as long as their stamps stay. Both begin with ``_MAGIC`` and the CRC-32 of the rest.
@@ -10,7 +12,7 @@ import zlib
 import numpy as np
 
 from ravemj.formats.meshes.files import stamp_of
-from ravemj.formats.meshes.hulls import collision_form, remember_form
+from ravemj.formats.meshes.hulls import collision_form, store_form
 from ravemj.formats.meshes.parts import MeshPart
 from ravemj.model.scene import Mesh
 
@@ -64,7 +66,7 @@ def unpack_entry(content: bytes) -> tuple[Parts, dict[str, str]]:
         for numbers in (points, corners):
             numbers.flags.writeable = False  # so that the mesh takes them as they are
         mesh = Mesh(points, corners, digest)
-        remember_form(mesh, form)
+        store_form(mesh, form)
         parts.append(MeshPart(mesh, tuple(diffuse), tuple(ambient), transparency))
     return tuple(parts), digests
 

@@ -1,4 +1,4 @@
-"""Files of meshes and the files that they name: read whole, bounded, and remembered for the cache."""
+"""Mesh files and the files that they refer to, read within bounds and recorded for the cache."""
 
 import hashlib
 import os
@@ -29,7 +29,7 @@ class ReferencedFiles:
     _bytes_left: int = MAX_BYTES
 
     def read(self, path: str) -> bytes | None:
-        """Return a file's unpacked content, or None if it cannot be read or goes beyond the bounds of all together."""
+        """Return a file's decompressed content, or None if it cannot be read or all files together get too large."""
         if path not in self.digests and len(self.digests) < _MAX_REFERENCES:
             self.stamps[path] = stamp_of(path)
             self.digests[path] = ""
@@ -47,7 +47,7 @@ class ReferencedFiles:
 
 @dataclass(frozen=True, slots=True)
 class FileContent:
-    """A file in memory.
+    """The content of a file.
 
     Attributes:
         path: Where it lies.
@@ -91,9 +91,9 @@ def digest_of(path: str) -> str:
 
 
 def stamp_of(path: str) -> str:
-    """Return a line that changes with a file, though it is not read; empty for what is not there.
+    """Return a stamp of a file, which changes when the file does; empty for one that is missing.
 
-    It is number, size, and times of the last changes of content and status [ns].
+    It has the inode, the size, and the times of the last changes of content and status [ns].
     """
     try:
         status = os.stat(path)
@@ -103,7 +103,7 @@ def stamp_of(path: str) -> str:
 
 
 def changed_at(stamp: str) -> int:
-    """Return the time of the last change in a stamp [ns]; the beginning of time for what is not there."""
+    """Return the time of the last change in a stamp [ns]; 0 for a missing file."""
     return max(map(int, stamp.split()[2:]), default=0)
 
 
@@ -130,7 +130,7 @@ def read_bytes(path: str) -> bytes:
 
 
 def unpacked(data: bytes, path: str) -> bytes:
-    """Undo gzip, within bounds; other data comes back as it is.
+    """Return data decompressed if gzip compressed it, within bounds.
 
     Raises:
         SourceError: The data is damaged or unpacks to more than ``MAX_BYTES``.

@@ -1,4 +1,4 @@
-"""What MuJoCo can do with a mesh: it collides with convex hulls, and makes none of flat ones."""
+"""How MuJoCo can use a mesh: it collides as its convex hull, and a flat mesh has none."""
 
 import math
 from typing import Literal
@@ -23,7 +23,7 @@ _forms: WeakKeyDictionary[Mesh, CollisionForm] = WeakKeyDictionary()
 
 
 def collision_form(mesh: Mesh) -> CollisionForm:
-    """Say what MuJoCo can make of a mesh.
+    """Return how MuJoCo can use a mesh.
 
     Returns:
         ``hull`` if the mesh has a convex hull with volume, and so can collide; ``visual`` if it is flat, so that it
@@ -36,7 +36,7 @@ def collision_form(mesh: Mesh) -> CollisionForm:
     return form
 
 
-def remember_form(mesh: Mesh, form: CollisionForm) -> None:
+def store_form(mesh: Mesh, form: CollisionForm) -> None:
     """Store what ``collision_form`` returns for a mesh."""
     _forms[mesh] = form
 
@@ -58,10 +58,10 @@ def _form(mesh: Mesh) -> CollisionForm:
 
 
 def _is_plainly_solid(mesh: Mesh) -> bool:
-    """Tell from some of the triangles whether the mesh has a volume; False where it takes all of them.
+    """Return True if a sample of the triangles shows that the mesh has a volume; False decides nothing.
 
-    In no direction is a mesh thinner than twice the standard deviation of some of its points, nor is it longer
-    anywhere than the diagonal of a box around it and the origin.
+    In no direction is a mesh thinner than twice the standard deviation of a sample of its points, nor is it
+    longer anywhere than the diagonal of a box around it and the origin.
     """
     corners = mesh.vertices[mesh.triangles[:: len(mesh.triangles) // _SAMPLE + 1]]
     if not len(corners) or _area(corners) <= _MIN_AREA:

@@ -1,4 +1,4 @@
-"""Transforms with scale, as 4x4 matrices, which a ``Pose`` cannot hold."""
+"""Affine transforms as 4x4 matrices, since a ``Pose`` cannot scale."""
 
 import numpy as np
 

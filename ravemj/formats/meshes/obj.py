@@ -1,4 +1,4 @@
-"""Wavefront OBJ: read with its materials, and written for MuJoCo."""
+"""The reader of Wavefront OBJ with its materials, and the writer of OBJ for MuJoCo."""
 
 from dataclasses import dataclass, field
 

@@ -1,4 +1,4 @@
-"""What a mesh file becomes: parts, each of one colour, and the bounds that keep hostile files harmless."""
+"""Parts of mesh files, each of one colour, and the bounds that keep hostile files harmless."""
 
 from dataclasses import dataclass
 
@@ -37,7 +37,7 @@ class MeshPart:
 
 
 def weld(corners: ArrayLike) -> Mesh:
-    """Join the equal corners of separate triangles, in order of their first appearance.
+    """Return separate triangles as a mesh with shared vertices, in order of their first appearance.
 
     Coordinates are rounded to single precision first: OpenRAVE's importers and MuJoCo know no finer ones, so
     corners that OpenRAVE takes for the same are the same here too.
@@ -73,7 +73,7 @@ def rgb(numbers: ArrayLike) -> Rgb:
 
 
 def check_size(triangles: int, source: Source) -> None:
-    """Refuse more triangles than anyone can mean.
+    """Refuse a file with far more triangles than any model has.
 
     Raises:
         SourceError: There are more than ``MAX_TRIANGLES``.

@@ -1,4 +1,4 @@
-"""A mesh file to its parts: the reader is chosen by the file's name, as OpenRAVE does it."""
+"""The choice of a reader for a mesh file: by the end of its name, as in OpenRAVE."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -39,10 +39,10 @@ def _collada(file: FileContent) -> tuple[MeshPart, ...]:
     return read_collada(file)
 
 
-def _exchange(file: FileContent) -> tuple[MeshPart, ...]:
-    from ravemj.formats.meshes.trimesh_formats import read_exchange  # noqa: PLC0415
+def _through_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
+    from ravemj.formats.meshes.trimesh_formats import read_with_trimesh  # noqa: PLC0415
 
-    return read_exchange(file)
+    return read_with_trimesh(file)
 
 
 _READERS: dict[str, _Reader] = {
@@ -52,10 +52,10 @@ _READERS: dict[str, _Reader] = {
     ".stl": _stl,
     ".obj": _obj,
     ".dae": _collada,
-    ".ply": _exchange,
-    ".off": _exchange,
-    ".glb": _exchange,
-    ".gltf": _exchange,
+    ".ply": _through_trimesh,
+    ".off": _through_trimesh,
+    ".glb": _through_trimesh,
+    ".gltf": _through_trimesh,
 }
 
 
@@ -85,7 +85,7 @@ def read_mesh(path: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
         parts, references = _read(FileContent(path, unpacked(raw, path)), _READERS[suffix])
         return parts if scale == UNSCALED else tuple(_scaled(part, scale) for part in parts), references
 
-    return cache.remembered_file(path, kind, read)
+    return cache.cached_file(path, kind, read)
 
 
 def _read(file: FileContent, reader: _Reader) -> tuple[tuple[MeshPart, ...], ReferencedFiles]:

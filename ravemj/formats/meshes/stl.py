@@ -1,4 +1,4 @@
-"""STL, binary and text."""
+"""The reader of STL, binary and text."""
 
 import re
 

@@ -1,4 +1,7 @@
-"""Polygons to triangles."""
+"""Triangulation of polygons: fans for convex ones, ear clipping for the others.
+
+Conformance cases fix the order of the triangles, so this is no package's triangulation.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,12 +9,12 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats, Ints
 
 _MAX_CLIPPED = 500  # corners of a polygon; larger ones become fans, whatever their shape
-_TESTS_PER_CORNER = 10  # so that the work stays proportional to the size of the file
-_STRAIGHT = 1e-7
+_TESTS_PER_CORNER = 10  # bounds the work, which is quadratic else; what is left then becomes a fan
+_STRAIGHT = 1e-7  # sine of a turn that counts as none: single precision
 
 
 def fans(starts: Ints, sizes: Ints) -> Ints:
-    """Cut polygons into fans about their first corners, as is right for convex ones.
+    """Triangulate convex polygons as fans about their first corners.
 
     Args:
         starts: For each polygon the position of its first corner in a list of corners.
@@ -27,7 +30,7 @@ def fans(starts: Ints, sizes: Ints) -> Ints:
 
 
 def clipped(points: Floats, starts: Ints, sizes: Ints) -> Ints:
-    """Cut polygons that may be concave into triangles.
+    """Triangulate polygons that may be concave.
 
     Args:
         points: The list of corners, shape (n, 3).
@@ -45,7 +48,7 @@ def clipped(points: Floats, starts: Ints, sizes: Ints) -> Ints:
 
 
 def clip_ears(polygon: Floats) -> Ints:
-    """Cut one polygon into triangles, ear by ear; a corner that repeats the one before it is left out.
+    """Triangulate one polygon by ear clipping; a corner that repeats the one before it is left out.
 
     Args:
         polygon: Its corners in order, shape (n, 3).
@@ -78,7 +81,7 @@ def split(index: Ints) -> tuple[Ints, Ints]:
 
 
 def strips(sizes: Ints, index: Ints) -> Ints:
-    """Return the triangles of strips, every second one turned round so that all have the same side outside."""
+    """Return the triangles of strips, every second one reversed so that all have the same side outside."""
     starts = np.cumsum(sizes) - sizes
     counts = np.maximum(sizes - 2, 0)
     step = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -111,7 +114,7 @@ def _flattened(polygon: Floats) -> Floats:
 
 
 def _ear(points: Floats) -> tuple[int, int]:
-    """Find a corner that can be cut off: convex, and no other corner inside its triangle.
+    """Find an ear: a convex corner without any other corner inside its triangle.
 
     Returns:
         Its position, and how many corners had to be looked at; some position if there is none.

@@ -1,4 +1,4 @@
-"""Formats that are rare with OpenRAVE, through trimesh: PLY, OFF, GLB and glTF."""
+"""The reader of PLY, OFF, GLB and glTF, formats that are rare with OpenRAVE: it uses trimesh."""
 
 import importlib
 import io
@@ -23,7 +23,7 @@ _COLOURS: dict[str, tuple[Rgb, Rgb]] = {
 """Diffuse and ambient colours that OpenRAVE's importer gives to files without materials."""
 
 
-def read_exchange(file: FileContent) -> tuple[MeshPart, ...]:
+def read_with_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
     """Read a PLY, OFF, GLB or glTF file: one part for each colour, in the order of the file.
 
     Raises:

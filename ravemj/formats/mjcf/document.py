@@ -25,7 +25,7 @@ Actuators = Literal["position", "velocity", "torque"]
 
 
 class Options(NamedTuple):
-    """What a translation adds that the file does not say.
+    """Options of a translation.
 
     Attributes:
         free_bases: Whether bodies without a static link can fall, as OpenRAVE's physics engines have it; else every
@@ -45,7 +45,7 @@ class Options(NamedTuple):
 
 
 class BodyNames(NamedTuple):
-    """What a body's parts are called in the MJCF.
+    """Names of the parts of a body in the MJCF.
 
     Attributes:
         links: Name of the MuJoCo body of each link.
@@ -143,7 +143,7 @@ def _write_look(out: Lines, view: View, meshes: Lines) -> None:
 
 @dataclass(slots=True)
 class _Names:
-    """Names that are taken, so that each is given once."""
+    """The names in use, so that each is given once."""
 
     diagnostics: Diagnostics
     taken: dict[str, set[str]] = field(default_factory=lambda: {"body": {"world"}, "joint": set[str]()})
@@ -161,7 +161,7 @@ class _Names:
 
 
 class _Writer:
-    """The parts of the document, filled body by body."""
+    """The sections of the document, filled body by body."""
 
     def __init__(self, diagnostics: Diagnostics, options: Options) -> None:
         self.diagnostics = diagnostics

@@ -1,4 +1,4 @@
-"""Mimic joints in MuJoCo: equality constraints, which act when time runs.
+"""Equality constraints for mimic joints, which act when MuJoCo simulates.
 
 A constraint is a polynomial of degree 4 at most, in the displacements from ``ref``, of one other joint. Followers of
 several joints become a fixed tendon where they are linear.
@@ -131,6 +131,6 @@ class EqualityWriter:
 
 
 def _without_welds(expression: "Expression", joints: Sequence[Joint], names: Sequence[tuple[str, ...]]) -> "Expression":
-    """Put the values of joints that move nothing in place of their variables."""
+    """Return the expression with constants in place of joints that do not move."""
     fixed = {f"joint{index}": joints[index].axes[0].value for index in leaders(expression) if not names[index]}
     return expression.with_values(fixed) if fixed else expression

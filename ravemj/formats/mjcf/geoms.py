@@ -1,4 +1,4 @@
-"""Shapes: which geoms and meshes a geometry becomes."""
+"""The geoms and meshes of a geometry."""
 
 from ravemj.core.transforms import Pose
 from ravemj.errors import Diagnostics
@@ -115,6 +115,6 @@ class GeomWriter:
 
 
 def rgba(colour: Rgb, transparency: float) -> tuple[float, ...]:
-    """Return colour and opacity in the range from 0 to 1, beyond which nothing looks different."""
+    """Return a colour and its opacity, clamped to the range from 0 to 1."""
     rgba = (*colour, 1.0 - transparency)
     return rgba if min(rgba) >= 0.0 and max(rgba) <= 1.0 else tuple(min(max(part, 0.0), 1.0) for part in rgba)

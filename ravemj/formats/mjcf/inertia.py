@@ -1,4 +1,4 @@
-"""Mass properties that MuJoCo takes."""
+"""Mass properties that MuJoCo accepts."""
 
 import math
 
@@ -16,7 +16,7 @@ _ROUNDING = 1e-11
 
 
 def is_rounding(legal: Inertial, given: Inertial) -> bool:
-    """Tell whether mass properties were changed by no more than rounding."""
+    """Return whether mass properties differ by no more than rounding."""
     inertia = np.array(given.inertia)
     if not np.isfinite(inertia).all():
         return False
@@ -25,7 +25,7 @@ def is_rounding(legal: Inertial, given: Inertial) -> bool:
 
 
 def legal_inertial(inertial: Inertial) -> Inertial:
-    """Return the nearest mass properties that MuJoCo takes: positive, and no moment above the sum of the others."""
+    """Return the nearest mass properties that MuJoCo accepts: positive ones that fulfil the triangle inequality."""
     if _is_legal_diagonal(inertial):
         return inertial
     mass = max(inertial.mass, SMALLEST) if math.isfinite(inertial.mass) else SMALLEST

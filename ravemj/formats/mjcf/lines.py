@@ -16,7 +16,7 @@ _ESCAPED = frozenset(map(chr, _ESCAPES))
 
 
 class Lines:
-    """XML in the making, one element a line.
+    """An XML text under construction, one element a line.
 
     Attributes:
         text: The lines.

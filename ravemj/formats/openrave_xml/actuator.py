@@ -1,4 +1,4 @@
-"""``<actuator>``: the motor of a joint, of which the torque limit comes."""
+"""``<actuator>``: the motor of a joint, which gives the torque limit and the armature."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

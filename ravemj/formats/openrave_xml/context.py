@@ -1,4 +1,4 @@
-"""What every part of the reader needs: where to report, where files are, and how to walk over an element."""
+"""The context of a reading: diagnostics, the search for files, and the walk over the children of an element."""
 
 import functools
 import os
@@ -18,12 +18,12 @@ _LONGEST_NAME = 80
 
 
 def uncomputable(element: Element) -> SourceError:
-    """Return the error for an element with numbers that arithmetic cannot cope with."""
+    """Return the error for an element whose numbers overflow."""
     return SourceError(f"a number in this <{element.spelled}> is too large to compute with", element.source)
 
 
 class Context:
-    """One reading of one file, with the files that it includes.
+    """The context of reading one file and the files that it includes.
 
     Attributes:
         diagnostics: Takes every finding.

@@ -48,7 +48,7 @@ _KNOWN_CLASSES = {
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What became of a file.
+    """The result of reading a file.
 
     Attributes:
         scene: What was read; with a failure, what was read before it.

@@ -41,7 +41,7 @@ _NO_PART = MeshPart(Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)))
 
 
 class GeometryScope(NamedTuple):
-    """What a Geom takes over from the elements around it.
+    """What a Geom inherits from the elements around it.
 
     Attributes:
         models_folder: Where meshes are looked for first, or None.
@@ -54,7 +54,7 @@ class GeometryScope(NamedTuple):
 
 @dataclass(slots=True)
 class _Geom:
-    """What the children of a ``<Geom>`` have said so far."""
+    """An open ``<Geom>``: what its children have set so far."""
 
     context: Context
     name: str = ""
@@ -70,8 +70,8 @@ class _Geom:
     def translate(self, element: Element) -> None:
         self.placement.translate(element, self.context.diagnostics)
 
-    def turn(self, element: Element) -> None:
-        self.placement.turn(element, self.context.diagnostics)
+    def rotate(self, element: Element) -> None:
+        self.placement.rotate(element, self.context.diagnostics)
 
     def read_half_extents(self, element: Element) -> None:
         self.sizes["half_extents"] = vector(element, self.context.diagnostics)
@@ -122,7 +122,7 @@ class _Geom:
 
 
 GEOM_TAGS: dict[str, Tag[_Geom]] = {
-    **placement_tags(_Geom.translate, _Geom.turn),
+    **placement_tags(_Geom.translate, _Geom.rotate),
     "extents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
     "halfextents": Tag(_Geom.read_half_extents, "of a box: half sizes x y z [m]"),
     "fullextents": Tag(_Geom.read_full_extents, "of a box: sizes x y z [m]"),

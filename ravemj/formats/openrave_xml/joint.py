@@ -30,7 +30,7 @@ _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1
 
 @dataclass(slots=True)
 class _JointReader:
-    """What the children of a ``<Joint>`` have said so far."""
+    """An open ``<Joint>``: what its children have set so far."""
 
     context: Context
     body: BodyBuilder

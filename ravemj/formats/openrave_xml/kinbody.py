@@ -119,9 +119,9 @@ class _Scope:
         """Read a ``<Translation>`` of the whole element."""
         self.placement.translate(element, self.context.diagnostics)
 
-    def turn(self, element: Element) -> None:
+    def rotate(self, element: Element) -> None:
         """Read a rotation of the whole element."""
-        self.placement.turn(element, self.context.diagnostics)
+        self.placement.rotate(element, self.context.diagnostics)
 
     def read_default_mass(self, element: Element) -> None:
         """Read the ``<Mass>`` that the following Bodies share."""
@@ -179,7 +179,7 @@ class _Scope:
 
 
 _SCOPE_TAGS: dict[str, Tag[_Scope]] = {
-    **placement_tags(_Scope.translate, _Scope.turn),
+    **placement_tags(_Scope.translate, _Scope.rotate),
     "jointvalues": Tag(_Scope.read_joint_values, "values of all DOFs [rad, m]"),
 }
 ROBOT_TAGS: dict[str, Tag[_Scope]] = {

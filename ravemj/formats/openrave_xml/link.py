@@ -74,9 +74,9 @@ class _LinkScope:
         """Read a ``<Translation>``."""
         self.placement.translate(element, self.context.diagnostics)
 
-    def turn(self, element: Element) -> None:
+    def rotate(self, element: Element) -> None:
         """Read a rotation."""
-        self.placement.turn(element, self.context.diagnostics)
+        self.placement.rotate(element, self.context.diagnostics)
 
     def read_offset(self, element: Element) -> None:
         """Read the name of the link that the pose is relative to."""
@@ -93,7 +93,7 @@ class _LinkScope:
 
 
 LINK_TAGS: dict[str, Tag[_LinkScope]] = {
-    **placement_tags(_LinkScope.translate, _LinkScope.turn),
+    **placement_tags(_LinkScope.translate, _LinkScope.rotate),
     "offsetfrom": Tag(_LinkScope.read_offset, "name of the Body that the pose is relative to"),
     "geom": Tag(_LinkScope.read_geometry, "see below"),
     "geometry": Tag(_LinkScope.read_geometry, "the same as Geom"),

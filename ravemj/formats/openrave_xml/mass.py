@@ -22,7 +22,7 @@ TOTAL_DENSITY = 1000.0  # OpenRAVE's density for shapes whose total mass is give
 
 
 class MassRule(NamedTuple):
-    """How the mass of a link is found.
+    """How the mass properties of a link are computed.
 
     Attributes:
         kind: ``mimicgeom``, ``sphere``, ``box`` or ``custom``.
@@ -45,7 +45,7 @@ _SPHERE = MassRule()
 
 
 class MassReader:
-    """Reads ``<Mass>`` elements one after the other; what one leaves out keeps its value.
+    """Reads ``<Mass>`` elements in order; what one leaves out keeps its value.
 
     Attributes:
         rule: The rule so far, or None before the first ``<Mass>``.

@@ -1,4 +1,4 @@
-"""What only robots have: ``<Manipulator>`` and ``<AttachedSensor>``."""
+"""``<Manipulator>`` and ``<AttachedSensor>``, which only robots have."""
 
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.sensor import Device, read_device
@@ -23,9 +23,9 @@ class _ManipulatorScope:
         """Read a ``<Translation>`` of the tool."""
         self.placement.translate(element, self.context.diagnostics)
 
-    def turn(self, element: Element) -> None:
+    def rotate(self, element: Element) -> None:
         """Read a rotation of the tool."""
-        self.placement.turn(element, self.context.diagnostics)
+        self.placement.rotate(element, self.context.diagnostics)
 
     def read_base(self, element: Element) -> None:
         """Read the name of the link that the arm starts from."""
@@ -56,7 +56,7 @@ class _ManipulatorScope:
 
 
 MANIPULATOR_TAGS: dict[str, Tag[_ManipulatorScope]] = {
-    **placement_tags(_ManipulatorScope.translate, _ManipulatorScope.turn),
+    **placement_tags(_ManipulatorScope.translate, _ManipulatorScope.rotate),
     "base": Tag(_ManipulatorScope.read_base, "name of the Body that the arm starts from"),
     "effector": Tag(_ManipulatorScope.read_effector, "name of the Body that carries the tool"),
     "joints": Tag(_ManipulatorScope.read_gripper, "names of the gripper's joints"),
@@ -104,9 +104,9 @@ class _SensorScope:
         """Read a ``<Translation>``."""
         self.placement.translate(element, self.context.diagnostics)
 
-    def turn(self, element: Element) -> None:
+    def rotate(self, element: Element) -> None:
         """Read a rotation."""
-        self.placement.turn(element, self.context.diagnostics)
+        self.placement.rotate(element, self.context.diagnostics)
 
     def read_link(self, element: Element) -> None:
         """Read the name of the link that carries the sensor."""
@@ -123,7 +123,7 @@ class _SensorScope:
 
 SENSOR_TAGS: dict[str, Tag[_SensorScope]] = {
     "link": Tag(_SensorScope.read_link, "name of the Body that carries it"),
-    **placement_tags(_SensorScope.translate, _SensorScope.turn),
+    **placement_tags(_SensorScope.translate, _SensorScope.rotate),
     "sensor": Tag(_SensorScope.read_device, "see below"),
 }
 SENSOR_ATTRIBUTES = {"name": "name of the sensor"}

@@ -17,7 +17,7 @@ _KNOWN_TYPES = {
 
 
 class Device(NamedTuple):
-    """What stands behind an attached sensor.
+    """The device of an attached sensor.
 
     Attributes:
         type: OpenRAVE's name of its kind, or None for a frame without a device.

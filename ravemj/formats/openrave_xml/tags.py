@@ -29,14 +29,14 @@ class Tag(NamedTuple, Generic[Target]):
 
 
 def placement_tags(
-    translate: Callable[[Target, Element], None], turn: Callable[[Target, Element], None]
+    translate: Callable[[Target, Element], None], rotate: Callable[[Target, Element], None]
 ) -> dict[str, Tag[Target]]:
-    """Return the tags that place an element: those that translate and those that turn it."""
+    """Return the tags that place an element: translations and rotations."""
     return {
         "translation": Tag(translate, "x y z [m]; several add up, and rotations do not turn them"),
-        "rotationaxis": Tag(turn, "axis x y z of any length, angle [deg]"),
-        "rotationmat": Tag(turn, "nine numbers, row by row"),
-        "quat": Tag(turn, "w x y z"),
+        "rotationaxis": Tag(rotate, "axis x y z of any length, angle [deg]"),
+        "rotationmat": Tag(rotate, "nine numbers, row by row"),
+        "quat": Tag(rotate, "w x y z"),
     }
 
 

@@ -1,4 +1,4 @@
-"""Numbers and rotations in the text of an element, by OpenRAVE's rules, with a warning where they surprise."""
+"""Numbers and rotations in the text of an element, by OpenRAVE's rules, with a warning where these are surprising."""
 
 import math
 import re
@@ -127,12 +127,12 @@ def is_false(value: str) -> bool:
 
 
 def hadamard(a: Vec3, b: Vec3) -> Vec3:
-    """Return the products of the parts of two vectors."""
+    """Return the elementwise product of two vectors."""
     return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
 
 
 class Placement:
-    """The transform elements of one element, applied in document order.
+    """The transform that the children of an element make, applied in document order.
 
     Translations add up and are never rotated; rotations multiply from the left. The order between the two
     kinds does not matter.
@@ -159,7 +159,7 @@ class Placement:
         """Apply a ``<Translation>``: x y z [m]."""
         self._position = add(self._position, hadamard(self._scale, vector(element, diagnostics)))
 
-    def turn(self, element: Element, diagnostics: Diagnostics) -> None:
+    def rotate(self, element: Element, diagnostics: Diagnostics) -> None:
         """Apply one of the rotation elements."""
         self._wxyz = multiply(ROTATIONS[element.tag](element, diagnostics), self._wxyz)
 

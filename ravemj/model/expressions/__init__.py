@@ -1,4 +1,4 @@
-"""The language of mimic equations: how one joint follows others.
+"""The language of mimic equations.
 
 OpenRAVE reads such equations with the library fparser 4.5; this package has the same language and its own
 implementation, which runs nothing of what it reads: text becomes a tree, and only the tree is evaluated.

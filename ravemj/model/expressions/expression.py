@@ -1,4 +1,4 @@
-"""An equation that was read: its values, its derivatives, its text."""
+"""Parsed equations: their values, derivatives and text."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -217,7 +217,7 @@ def first_within(candidates: Sequence[float], lower: float, upper: float) -> flo
 
 
 def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:
-    """Return a function that works out ``node`` from the values of the nodes that have places."""
+    """Return a function that evaluates ``node`` from the values of the nodes that have places."""
     if node in places:
         place = places[node]
         return lambda values: float(values[place])

@@ -1,4 +1,4 @@
-"""What an expression is made of: numbers, variables and calls, which refer to each other without cycles.
+"""Nodes of expressions: numbers, variables and calls, in an acyclic graph.
 
 Operators are calls as well: ``1 - x`` is ``Call("sub", (Number(1), Variable("x")))``. Nodes never change, so
 expressions share them: an inline variable that is used twice is one node with two users. A ``Graph`` makes the nodes
@@ -44,7 +44,7 @@ Node = Number | Variable | Call
 
 
 class Graph:
-    """Makes nodes, each of them once, and computes what is constant."""
+    """A factory of nodes: it makes no two alike (hash consing), and folds constants."""
 
     def __init__(self, nodes: Iterable[Node] = ()) -> None:
         """Start with the nodes of an expression, each after its arguments."""
@@ -83,7 +83,7 @@ def _key(node: Node) -> tuple[object, ...]:
 
 
 def ordered(root: Node) -> list[Node]:
-    """Return the nodes below and including ``root``, each once and after its arguments."""
+    """Return the nodes of an expression in topological order: each once and after its arguments."""
     found: list[Node] = []
     seen: set[Node] = set()
     waiting: list[tuple[Node, bool]] = [(root, False)]
@@ -100,7 +100,7 @@ def ordered(root: Node) -> list[Node]:
 
 
 def steps(nodes: list[Node], most_nested: int) -> list[Node]:
-    """Choose the calls to work out one after the other, so that no node is worked out twice.
+    """Choose the calls to evaluate one after the other, so that no node is evaluated twice.
 
     The steps are the calls with several users, and every so often one within deep nesting. What lies between
     two steps is a tree of at most ``most_nested`` levels, so that recursion is safe there.

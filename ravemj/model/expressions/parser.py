@@ -1,4 +1,4 @@
-"""From text to nodes: the grammar of fparser 4.5, in which OpenRAVE reads mimic equations.
+"""The parser of mimic equations, in the grammar of fparser 4.5, which OpenRAVE uses.
 
 ::
 

@@ -1,4 +1,4 @@
-"""Polynomials in one variable: what an expression is where it is one exactly."""
+"""Exact coefficients of expressions that are polynomials in one variable."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""From nodes back to text, with no more parentheses than needed."""
+"""The text of expressions, with no more parentheses than needed."""
 
 import math
 from collections.abc import Mapping, Sequence

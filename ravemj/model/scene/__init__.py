@@ -1,4 +1,4 @@
-"""What OpenRAVE has in memory after loading: frozen, resolved, nothing of XML and nothing of MuJoCo.
+"""The scene: frozen dataclasses with what OpenRAVE has in memory after loading, without XML and without MuJoCo.
 
 Readers make a ``Scene`` (through ``ravemj.model.builder``), writers and the runtime read it. Lengths are metres,
 angles radians, masses kilograms. Links are referred to by their index in ``KinBody.links``.

@@ -1,4 +1,4 @@
-"""Bodies, and what robots have besides."""
+"""Bodies, manipulators and attached sensors."""
 
 from dataclasses import dataclass
 

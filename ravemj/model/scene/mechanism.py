@@ -36,7 +36,7 @@ class Inertial(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Parameters(Record):
-    """What scripts attach to a link or a joint: names, and what they stand for."""
+    """Named values that scripts attach to a link or a joint."""
 
     floats: tuple[tuple[str, tuple[float, ...]], ...] = ()
     integers: tuple[tuple[str, tuple[int, ...]], ...] = ()
@@ -112,7 +112,7 @@ class Axis(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Mimic(Record):
-    """How a joint follows others.
+    """The equations of a mimic joint.
 
     Attributes:
         position: The equation as written; it has the names of the joints.

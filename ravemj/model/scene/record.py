@@ -1,10 +1,10 @@
-"""What the dataclasses of a scene have in common."""
+"""The base class of the scene's dataclasses."""
 
 from typing import ClassVar
 
 
 class Record:
-    """Compares, hashes and prints by its fields.
+    """A dataclass that compares, hashes and prints by its fields.
 
     ``dataclass`` would write these methods too, but it compiles them anew for each class, which takes a tenth of the
     time of ``import ravemj``.

@@ -6,6 +6,7 @@ A shape knows what it consists of. Everything else asks it, so a new type of geo
 
 # ruff: noqa: D102 - the base class says what the methods return
 
+import functools
 import math
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
@@ -59,6 +60,7 @@ class Shape(Record):
     __slots__ = ()
 
     @classmethod
+    @functools.cache
     def sizes(cls) -> tuple[Size, ...]:
         """Return the sizes that make the shape, in the order of its fields."""
         own: Any = cls  # ``fields`` wants a dataclass, which every shape is

@@ -10,7 +10,7 @@ from ravemj.model.scene.shapes import Rgb
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class View(Record):
-    """How a file wants to be looked at.
+    """The view that a file asks for.
 
     Attributes:
         background: Colour behind everything.

@@ -162,8 +162,10 @@ class GeometryInfo(Info):
                 sizes[name] = tuple((x, y) for x, y in corners.tolist())
             elif form == Vec3:
                 sizes[name] = vector(getattr(self, next(vectors)), "GeometryInfo._vGeomData")
-        numbers = [size.name for size in kind.sizes() if size.type is float]
-        return kind.of_sizes({**sizes, **dict(zip(numbers, self._numbers(len(numbers)), strict=True))})
+        names = [size.name for size in kind.sizes() if size.type is float]
+        if names:
+            sizes.update(zip(names, self._numbers(len(names)), strict=True))
+        return kind.of_sizes(sizes)
 
     def _numbers(self, count: int) -> list[float]:
         """Return the first numbers of ``_vGeomData``."""

@@ -1,4 +1,4 @@
-"""COLLADA files as plain meshes: the visual scene flattened, one part for each material.
+"""The reader of COLLADA files as meshes: it flattens the visual scene to one part for each material.
 
 As OpenRAVE's importer does it, the file is scaled by its unit and turned to y up. The arrays of one ``<geometry>``
 (``geometry``), colours (``materials``) and transforms (``placement``) are read by functions of their own, for the

@@ -7,7 +7,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import SourceError
 from ravemj.formats.meshes import triangulation
-from ravemj.formats.meshes.cache import remembered
+from ravemj.formats.meshes.cache import cached
 from ravemj.formats.meshes.collada.document import (
     ColladaDocument,
     Element,
@@ -93,7 +93,7 @@ def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float)
         return tuple(MeshPart(weld(item)) for item in corners)
 
     key = f"{document.digest} {document.place(geometry)} {metres!r}"
-    parts = remembered(key.encode(), "geometry", read)
+    parts = cached(key.encode(), "geometry", read)
     symbols = [element.get("material", "") for element in children(_mesh(geometry), *_OF_ROBOTS)]
     return [(symbol, part.mesh) for symbol, part in zip(symbols, parts, strict=True) if len(part.mesh.triangles)]
 
@@ -179,9 +179,5 @@ def _corners(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats:
     if not good.any():
         return np.zeros((0, 3, 3))
     corners = points[np.where(wrong, 0, index)]
-    cut = (
-        triangulation.clipped(corners, starts[good], sizes[good])
-        if concave
-        else triangulation.fans(starts[good], sizes[good])
-    )
-    return corners[cut]
+    starts, sizes = starts[good], sizes[good]
+    return corners[triangulation.clipped(corners, starts, sizes) if concave else triangulation.fans(starts, sizes)]

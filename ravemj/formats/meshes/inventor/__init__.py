@@ -1,4 +1,4 @@
-"""Inventor 1.0 to 2.1, in text and binary, VRML 1.0 and VRML97: a file to one part of one colour.
+"""The reader of Inventor 1.0 to 2.1, as text and binary, of VRML 1.0 and of VRML97.
 
 OpenRAVE loads these files through Coin and takes every triangle of the file, flattened, and the last material.
 So does this reader: ``ascii`` or ``binary`` make nodes, ``old`` or ``vrml97`` handle each kind of
@@ -36,8 +36,12 @@ def read_inventor(file: FileContent) -> tuple[MeshPart, ...]:
     check_finite(corners, file.source)
     if not len(corners):
         return ()
-    mesh, finish = weld(corners), traversal.finish
-    return (MeshPart(mesh) if finish is None else MeshPart(mesh, finish.diffuse, finish.ambient, finish.transparency),)
+    mesh, material = weld(corners), traversal.material
+    return (
+        MeshPart(mesh)
+        if material is None
+        else MeshPart(mesh, material.diffuse, material.ambient, material.transparency),
+    )
 
 
 def _nodes(file: FileContent) -> list[Node]:

@@ -1,4 +1,4 @@
-"""Inventor and VRML text to nodes.
+"""The parser of Inventor and VRML text.
 
 One grammar serves Inventor 1.0 to 2.1, VRML 1.0 and VRML97: a node is ``Kind { … }``, with fields and, in the older
 dialects, child nodes between the braces. What a field holds shows in its first character, so no table of the

@@ -1,4 +1,4 @@
-"""Binary Inventor to nodes.
+"""The parser of binary Inventor.
 
 Everything is big-endian and in steps of four bytes: a string is its length and its bytes, a node its class, flags
 and fields, then its children if it is a group. A field is its name, its value and flags. Nothing says how long a
@@ -136,7 +136,7 @@ class _Reader:
         return self._node()
 
     def image(self) -> None:
-        """Pass over a picture."""
+        """Skip an image."""
         width, height, components = (self._integer() for _ in range(3))
         self._take(max(width, 0) * max(height, 0) * max(components, 0))
 

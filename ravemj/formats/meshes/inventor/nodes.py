@@ -1,4 +1,4 @@
-"""The syntax tree that the ASCII and binary readers of Inventor and VRML make."""
+"""The syntax tree of Inventor and VRML files, which both parsers make."""
 
 from dataclasses import dataclass, field
 from typing import NoReturn, Union
@@ -38,7 +38,7 @@ class InventorDocument:
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """Numbers that nobody has needed yet: their text, separated by commas or white space. Normals stay so."""
+    """Unparsed numbers, separated by commas or white space. Most are never needed, normals for instance."""
 
     text: str
 

@@ -1,4 +1,4 @@
-"""Inventor 1.0 to 2.1 and VRML 1.0: nodes change a state that the shapes after them use."""
+"""The node types of Inventor 1.0 to 2.1 and VRML 1.0: nodes change a state that the shapes after them use."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ from ravemj.core.transforms import Ints
 from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.inventor import primitives
 from ravemj.formats.meshes.inventor.nodes import Node
-from ravemj.formats.meshes.inventor.traversal import Finish, Handler, State, Traversal, moved, transform
+from ravemj.formats.meshes.inventor.traversal import Handler, Material, State, Traversal, moved, transform
 from ravemj.formats.meshes.matrices import rotation, translation
 from ravemj.formats.meshes.parts import rgb
 
@@ -53,12 +53,12 @@ def _switch(traversal: Traversal, node: Node, state: State) -> State:
 
 def _first_child(traversal: Traversal, node: Node, state: State) -> State:
     after = traversal.visit(node.children[:1], state)
-    traversal.look(node.children[1:], state)
+    traversal.collect_materials(node.children[1:], state)
     return after
 
 
 def _include(traversal: Traversal, node: Node, state: State) -> State:
-    return traversal.include(node.words("name", ()), node, state, painting=False)
+    return traversal.include(node.words("name", ()), node, state, with_materials=False)
 
 
 def _translation(_traversal: Traversal, node: Node, state: State) -> State:
@@ -120,7 +120,7 @@ def _vertex_property(_traversal: Traversal, node: Node, state: State) -> State:
 def _material(traversal: Traversal, node: Node, state: State) -> State:
     gray = node.floats("diffuseColor", 3, (0.8, 0.8, 0.8))
     ambient = node.floats("ambientColor", 3, (0.2, 0.2, 0.2))
-    traversal.paint(Finish(rgb(gray), rgb(ambient), node.number("transparency", 0.0)))
+    traversal.set_material(Material(rgb(gray), rgb(ambient), node.number("transparency", 0.0)))
     return state
 
 

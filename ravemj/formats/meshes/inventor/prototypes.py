@@ -1,4 +1,4 @@
-"""VRML97's PROTO: nodes with blanks, filled in for each use."""
+"""Prototypes of VRML97 (PROTO): nodes with parameters, instantiated for each use."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

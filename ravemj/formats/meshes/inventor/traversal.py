@@ -1,4 +1,4 @@
-"""Nodes to triangles: what all dialects of Inventor and VRML share."""
+"""Traversal of the node tree, which all dialects of Inventor and VRML share: it collects triangles."""
 
 import logging
 from collections.abc import Callable, Iterable
@@ -23,7 +23,7 @@ _MAX_LEVELS = 200  # of nodes and of files that files include
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What nodes before a shape have set.
+    """The traversal state: what the nodes before a shape have set.
 
     Attributes:
         matrix: From the shape's frame to the file's, 4x4.
@@ -41,7 +41,7 @@ class State:
 
 
 @dataclass(frozen=True, slots=True)
-class Finish:
+class Material:
     """A material; several values for several faces are reduced to their first, as OpenRAVE does it."""
 
     diffuse: Rgb
@@ -50,23 +50,23 @@ class Finish:
 
 
 Handler = Callable[["Traversal", Node, State], State]
-"""Draws a node; the state that it returns is that of the nodes after it."""
+"""Handles a node; returns the state of the nodes after it."""
 
 Opener = Callable[["Traversal", FileContent, State], State]
-"""Draws a file that another one includes; returns the state at its end."""
+"""Traverses a file that another one includes; returns the state at its end."""
 
 
 class Traversal:
     """Triangles collected from a file and those that it includes.
 
     Attributes:
-        file: The file being drawn.
-        finish: The last material so far.
+        file: The file that is traversed.
+        material: The last material so far.
     """
 
     def __init__(self, file: FileContent, opener: Opener) -> None:
         self.file: FileContent = file
-        self.finish: Finish | None = None
+        self.material: Material | None = None
         self._opener = opener
         self._handlers: dict[str, Handler] = {}
         self._pieces: list[Floats] = []
@@ -74,20 +74,20 @@ class Traversal:
         self._corners_left = 5 * MAX_TRIANGLES
         self._visits = 0
         self._levels = 0
-        self._painting = True
-        self._showing = True
+        self._materials_count = True
+        self._shapes_count = True
 
     def corners(self) -> Floats:
         """Return all triangles, shape (n, 3, 3)."""
         return np.concatenate([np.zeros((0, 3, 3)), *self._pieces])
 
     def nodes(self, nodes: Iterable[Node], handlers: dict[str, Handler], state: State) -> State:
-        """Draw the nodes of a file, in the dialect of ``handlers``."""
+        """Traverse the nodes of a file, in the dialect of ``handlers``."""
         self._handlers = handlers
         return self.visit(nodes, state)
 
     def visit(self, nodes: Iterable[Node], state: State) -> State:
-        """Draw nodes one after the other; what is unknown is passed over, but not its children."""
+        """Traverse nodes in order; an unknown one is skipped, but not its children."""
         self._levels += 1
         for node in nodes:
             self._visits += 1
@@ -98,15 +98,15 @@ class Traversal:
         self._levels -= 1
         return state
 
-    def look(self, nodes: Iterable[Node], state: State) -> None:
-        """Go through nodes for their materials alone: those of hidden levels of detail count in OpenRAVE."""
-        before, self._showing = self._showing, False
+    def collect_materials(self, nodes: Iterable[Node], state: State) -> None:
+        """Traverse nodes for their materials alone: in OpenRAVE, those of hidden levels of detail count."""
+        before, self._shapes_count = self._shapes_count, False
         self.visit(nodes, state)
-        self._showing = before
+        self._shapes_count = before
 
     def add(self, corners: Floats, node: Node, state: State) -> State:
         """Keep triangles given in the shape's frame."""
-        if not self._showing:
+        if not self._shapes_count:
             return state
         self._count += len(corners)
         if self._count > MAX_TRIANGLES:
@@ -138,14 +138,14 @@ class Traversal:
             triangles = triangulation.fans(starts, sizes)
         return self.add(state.points[index[triangles]], node, state)
 
-    def include(self, names: Iterable[str], node: Node, state: State, painting: bool) -> State:
-        """Draw the first of the named files that can be read; none is no error, as in OpenRAVE.
+    def include(self, names: Iterable[str], node: Node, state: State, with_materials: bool) -> State:
+        """Traverse the first of the named files that can be read; none is no error, as in OpenRAVE.
 
         Args:
             names: The files.
             node: The node that names them.
             state: What is in force.
-            painting: Whether the materials of the file count.
+            with_materials: Whether the materials of the file count.
 
         Returns:
             The state at the end of the file.
@@ -155,19 +155,23 @@ class Traversal:
         if file is None:
             _log.warning("%s: %s: nothing to include", node.document.path, node.kind)
             return state
-        before = self.file, self._handlers, self._painting, self._showing, self._levels
-        self.file, self._painting, self._levels = file, self._painting and painting, self._levels + 1
+        before = self.file, self._handlers, self._materials_count, self._shapes_count, self._levels
+        self.file, self._materials_count, self._levels = (
+            file,
+            self._materials_count and with_materials,
+            self._levels + 1,
+        )
         try:
             state = self._opener(self, file, state)
         except SourceError as error:
             _log.warning("%s", error)
-        self.file, self._handlers, self._painting, self._showing, self._levels = before
+        self.file, self._handlers, self._materials_count, self._shapes_count, self._levels = before
         return state
 
-    def paint(self, finish: Finish) -> None:
-        """Remember the last material."""
-        if self._painting:
-            self.finish = finish
+    def set_material(self, material: Material) -> None:
+        """Set the material of the file: the last one counts."""
+        if self._materials_count:
+            self.material = material
 
 
 def moved(state: State, step: Floats) -> State:

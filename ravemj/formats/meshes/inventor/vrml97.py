@@ -1,11 +1,11 @@
-"""VRML97: shapes below groups that move them."""
+"""The node types of VRML97."""
 
 import numpy as np
 
 from ravemj.formats.meshes import triangulation
 from ravemj.formats.meshes.inventor import primitives
 from ravemj.formats.meshes.inventor.nodes import Node
-from ravemj.formats.meshes.inventor.traversal import Finish, Handler, State, Traversal, moved, transform
+from ravemj.formats.meshes.inventor.traversal import Handler, Material, State, Traversal, moved, transform
 from ravemj.formats.meshes.parts import rgb
 
 
@@ -29,12 +29,12 @@ def _switch(traversal: Traversal, node: Node, state: State) -> State:
 def _level_of_detail(traversal: Traversal, node: Node, state: State) -> State:
     levels = node.nodes("level") or node.nodes("children")
     traversal.visit(levels[:1], state)
-    traversal.look(levels[1:], state)
+    traversal.collect_materials(levels[1:], state)
     return state
 
 
 def _inline(traversal: Traversal, node: Node, state: State) -> State:
-    traversal.include(node.words("url", ()), node, state, painting=True)
+    traversal.include(node.words("url", ()), node, state, with_materials=True)
     return state
 
 
@@ -52,7 +52,7 @@ def _appearance(traversal: Traversal, node: Node, state: State) -> State:
 def _material(traversal: Traversal, node: Node, state: State) -> State:
     diffuse = node.floats("diffuseColor", 3, (0.8, 0.8, 0.8))
     ambient = np.repeat(node.number("ambientIntensity", 0.2), 3)
-    traversal.paint(Finish(rgb(diffuse), rgb(ambient), node.number("transparency", 0.0)))
+    traversal.set_material(Material(rgb(diffuse), rgb(ambient), node.number("transparency", 0.0)))
     return state
 
 
