@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _execute(script: str, main: ModuleType, py2: bool) -> int:
     """Run a script as the main module; what it raises is shown as Python does, and gives 1."""
-    endings.leave_interrupts_to_python()
+    endings.leave_signals_to_python()
     try:
         with open(script, "rb") as file:
             source = file.read()
@@ -87,7 +87,7 @@ def shell(options: argparse.Namespace) -> int:
 def _start_ipython(arguments: list[str], names: Mapping[str, object] | None = None) -> int:
     from IPython import start_ipython  # noqa: PLC0415 - slow to import  # pyright: ignore[reportUnknownVariableType]
 
-    endings.leave_interrupts_to_python()
+    endings.leave_signals_to_python()
     status: object = start_ipython(argv=arguments, user_ns=dict(names or {}))
     return status if isinstance(status, int) else 0
 
