@@ -1,5 +1,7 @@
 """Joints: their setters, and the graph that they make of the links."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -156,3 +158,56 @@ class TestGraph:
         env.GetKinBody("tree").SetName("larger")
         env.LoadData(TREE.replace("2*r", "3*r"))
         assert env.GetKinBody("tree").GetKinematicsGeometryHash() != plain
+
+
+class TestLinkTransformations:
+    """Poses of links look alike full turns of a hinge apart."""
+
+    CORNERS = [math.pi, -math.pi, 3.1415926, -3.1415926, 3, -3, 9.5, -9.5, 3 * math.pi, 2 * math.pi, 0, 100]
+
+    @pytest.mark.parametrize("angle", CORNERS)
+    @pytest.mark.parametrize("other", [0, 3.1, -3.1, 50])
+    def test_with_joint_values_they_come_back_exactly(self, tree, angle, other):
+        tree.SetDOFValues([0.5, 0.25, angle])
+        transforms, values = tree.GetLinkTransformations(True)
+        tree.SetDOFValues([-0.5, 0, other])
+        tree.SetLinkTransformations(transforms, values)
+        np.testing.assert_allclose(tree.GetDOFValues(), [0.5, 0.25, angle], atol=1e-12)
+        np.testing.assert_allclose(tree.GetLinkTransformations(), transforms, atol=1e-12)
+
+    @pytest.mark.parametrize("last", CORNERS)
+    @pytest.mark.parametrize("angle", CORNERS)
+    def test_a_hinge_gets_the_value_next_to_the_given_one(self, tree, angle, last):
+        tree.SetDOFValues([0, 0, angle])
+        transforms = tree.GetLinkTransformations()
+        tree.SetLinkTransformations(transforms, doflastsetvalues=[0, 0, last])
+        value = tree.GetDOFValues()[2]
+        assert abs(value - last) <= math.pi + 1e-6
+        np.testing.assert_allclose(np.exp(1j * value), np.exp(1j * angle), atol=1e-9)
+
+    def test_without_joint_values_a_hinge_goes_on_from_where_it_is(self, tree):
+        """OpenRAVE's rule for all values that it reads off poses: next to the last one."""
+        poses = []
+        for angle in np.linspace(-10, 10, 41):
+            tree.SetDOFValues([angle / 4, 0, angle])
+            poses.append(tree.GetLinkTransformations())
+        tree.SetDOFValues([-2.5, 0, -10])
+        for angle, transforms in zip(np.linspace(-10, 10, 41), poses, strict=True):
+            tree.SetLinkTransformations(transforms)
+            np.testing.assert_allclose(tree.GetDOFValues(), [angle / 4, 0, angle], atol=1e-12)
+
+    def test_turns_are_kept_also_before_anything_is_compiled(self, env, tree):
+        tree.SetDOFValues([0.5, 0.25, 9])
+        transforms, values = tree.GetLinkTransformations(True)
+        tree.SetDOFValues([0, 0, 0])
+        env.LoadData('<KinBody name="another"><Body name="b"/></KinBody>')
+        tree.SetLinkTransformations(transforms, values)
+        np.testing.assert_allclose(tree.GetDOFValues(), [0.5, 0.25, 9], atol=1e-12)
+
+    def test_joint_values_of_a_body_outside_of_the_environment_are_refused(self, env, tree):
+        transforms, values = tree.GetLinkTransformations(True)
+        env.Remove(tree)
+        tree.SetLinkTransformations(transforms)
+        with pytest.raises(ravemj.openrave_exception) as caught:
+            tree.SetLinkTransformations(transforms, values)
+        assert caught.value.GetCode() == "NotInitialized"
