@@ -338,6 +338,8 @@ class BodyState:
         self.scene = replace(self.scene, **changes)
         if self._kinematics is not None:
             self._kinematics.describe(self.scene)
+        if "passive_joints" in changes:
+            self._dynamics = self._batch = None  # which of several values a follower has depends on its limits
 
     def edit_link(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Link
         """Change the description of a link."""
