@@ -29,6 +29,17 @@ def seen_colour(env):
     return env.render(32, 32, camera=camera, background=[0, 0, 0])[16, 16].astype(int)
 
 
+def cylinder(turn):
+    """A link of one cylinder and its mass; OpenRAVE's XML lays the cylinder along y of its element."""
+    rotation = f"<RotationAxis>{turn}</RotationAxis>" if turn else ""
+    shape = f"<radius>0.1</radius><height>0.4</height>{rotation}<Translation>0 0 0.3</Translation>"
+    body = ravemj.Environment().ReadKinBodyData(
+        f"""<KinBody name="k"><Body name="b"><Mass type="mimicgeom"><density>100</density></Mass>
+        <Geom type="cylinder">{shape}</Geom></Body></KinBody>"""
+    )
+    return body.GetLinks()[0]
+
+
 class TestMass:
     def test_inverse_dynamics_uses_what_was_set(self, robot, env):
         before, model = robot.ComputeInverseDynamics(None), env.model
@@ -65,6 +76,23 @@ class TestMass:
         np.testing.assert_allclose(link.GetPrincipalMomentsOfInertia(), [0.3, 0.1, 0.2], atol=1e-12)
         np.testing.assert_allclose(link.GetLocalMassFrame(), T, atol=1e-12)
         np.testing.assert_allclose(np.linalg.eigvalsh(link.GetLocalInertia()), [0.1, 0.2, 0.3], atol=1e-12)
+
+    @pytest.mark.parametrize("turn", ["", "1 0 0 90", "0 0 1 90", "0 1 0 -90", "1 0 0 270", "1 1 0 180"])
+    def test_frame_of_a_cylinder_has_the_axes_of_its_link(self, turn):
+        """Also where the quarter turns of the cylinder leave rounding in its tensor."""
+        link = cylinder(turn)
+        axis = np.abs(link.GetGeometries()[0].GetTransform()[:3, 2]).round()
+        expected = np.where(axis == 1, 0.5 * 0.01, 0.25 * 0.01 + 0.16 / 12) * link.GetMass()
+        np.testing.assert_allclose(link.GetLocalMassFrame(), matrixFromPose([1, 0, 0, 0, 0, 0, 0.3]), atol=1e-9)
+        np.testing.assert_allclose(link.GetPrincipalMomentsOfInertia(), expected, rtol=1e-9)
+
+    def test_frame_of_a_turned_cylinder_has_its_axis(self):
+        link = cylinder("1 2 3 40")
+        moments, T = link.GetPrincipalMomentsOfInertia(), link.GetLocalMassFrame()
+        axis = T[:3, moments.argmin()]
+        assert abs(axis @ link.GetGeometries()[0].GetTransform()[:3, 2]) == pytest.approx(1)
+        assert np.linalg.det(T) == pytest.approx(1)
+        np.testing.assert_allclose(T[:3, :3] @ np.diag(moments) @ T[:3, :3].T, link.GetLocalInertia(), atol=1e-12)
 
     @pytest.mark.parametrize(
         "call",
