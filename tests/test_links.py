@@ -173,8 +173,36 @@ class TestShapes:
         assert world.Triangulate(body).vertices.max() == 3
         corners = world.model.mesh_vert
         assert np.linalg.norm(corners[:, None] - corners, axis=2).max() == pytest.approx(3 * 2**0.5)
-        with pytest.raises(ravemj.openrave_exception, match="Box"):
-            box(world).GetLinks()[0].GetGeometries()[0].SetCollisionMesh(MESH)
+
+    def test_a_mesh_set_for_another_shape_is_the_one_that_scripts_get(self, world):
+        body = box(world)
+        link = body.GetLinks()[0]
+        geometry = link.GetGeometries()[0]
+        before, bounds = geometry.GetCollisionMesh(), body.ComputeAABB().extents()
+        far = ravemj.TriMesh(MESH.vertices + [9, 0, 0], MESH.indices)
+        geometry.SetCollisionMesh(far)
+        copy = ravemj.RaveCreateKinBody(world, "")
+        copy.InitFromGeometries([geometry.GetInfo()])
+        for one in (geometry, copy.GetLinks()[0].GetGeometries()[0]):
+            assert one.GetType() == ravemj.GeometryType.Box
+            np.testing.assert_array_equal(one.GetCollisionMesh().vertices, far.vertices)
+            np.testing.assert_array_equal(one.GetCollisionMesh().indices, far.indices)
+            np.testing.assert_array_equal(one.GetBoxExtents(), geometry.GetBoxExtents())
+        np.testing.assert_array_equal(link.GetCollisionData().vertices[:, 0].min(), 9)
+        assert world.Triangulate(body).vertices[:, 0].min() == 9
+        np.testing.assert_array_equal(body.ComputeAABB().extents(), bounds)
+        ray = ravemj.Ray([9.1, 0.1, 5], [0, 0, -10])
+        assert not world.CheckCollision(ray)
+        assert geometry.InitCollisionMesh()
+        np.testing.assert_array_equal(geometry.GetCollisionMesh().vertices, before.vertices)
+
+    @pytest.mark.parametrize("wrong", [None, 3, ravemj.TriMesh([[0, 0, 0]], [[0, 1, 2]])])
+    def test_a_wrong_mesh_changes_nothing(self, world, wrong):
+        geometry = box(world).GetLinks()[0].GetGeometries()[0]
+        before = geometry.GetCollisionMesh()
+        with pytest.raises(ravemj.openrave_exception):
+            geometry.SetCollisionMesh(wrong)
+        np.testing.assert_array_equal(geometry.GetCollisionMesh().vertices, before.vertices)
 
     def test_groups_can_be_swapped_in(self, world):
         link = box(world).GetLinks()[0]
