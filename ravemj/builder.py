@@ -201,7 +201,7 @@ def follow(joints: Sequence[scene.Joint], values: list[list[float]]) -> None:
     """Compute the values of the followers from those of the others, in place, inside their limits."""
     mimics = {index: joint.mimic for index, joint in enumerate(joints) if joint.mimic is not None}
     for index in evaluation_order(mimics):
-        expression = mimics[index].expression
+        expression = joints[index].equation
         axis = joints[index].axes[0]
         if expression is not None:
             named = {f"joint{leader}": values[leader][0] for leader in leaders(expression)}

@@ -138,7 +138,10 @@ class BodyKinematics:
         bounds = list(zip(self._lowest.tolist(), self._highest.tolist(), strict=True))
         self._bounds = bounds if self.dof <= FEW else None
         self._joints = (*body.joints, *body.passive_joints)
-        self.followers = [one._replace(axis=self._joints[one.joint].axes[0]) for one in self.followers]
+        for place, follower in enumerate(self.followers):
+            axis = self._joints[follower.joint].axes[0]
+            if axis is not follower.axis:
+                self.followers[place] = follower._replace(axis=axis, evaluate=self._compiled(follower.joint))
 
     def _find_balls(self, names: "BodyNames") -> list[Ball]:
         balls: list[Ball] = []
@@ -162,16 +165,20 @@ class BodyKinematics:
         if not self.body.joints:
             return []
         mimics = {index: joint.mimic for index, joint in enumerate(self._joints) if joint.mimic is not None}
-        variables = [f"joint{index}" for index in range(len(self._joints))]
         followers: list[Follower] = []
         for index in evaluation_order(mimics):
-            expression = mimics[index].expression
-            if expression is not None:
+            if mimics[index].expression is not None:
                 joint_names = names.joints[index]
                 qpos = _qpos_index(self.model, joint_names[0]) if joint_names else WELDED
                 axis = self._joints[index].axes[0]
-                followers.append(Follower(index, qpos, axis, expression.compiled(variables)))
+                followers.append(Follower(index, qpos, axis, self._compiled(index)))
         return followers
+
+    def _compiled(self, joint: int) -> Callable[[Sequence[float]], float]:
+        """Return what a mimic joint follows, as a function of the first values of all joints."""
+        equation = self._joints[joint].equation
+        assert equation is not None
+        return equation.compiled([f"joint{index}" for index in range(len(self._joints))])
 
     def _find_loose(self, names: "BodyNames") -> list[tuple[int, Joint]]:
         """Return the joints that close a loop, with their first DOF."""

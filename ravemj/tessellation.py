@@ -5,13 +5,18 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ravemj.scene import Mesh, Prism, Shape, TriMesh
+from ravemj.scene import Geometry, Mesh, Prism, Shape, TriMesh
 from ravemj.transforms import Floats, Ints, Pose
 
 SUBDIVISIONS = 3
 """How often an icosahedron is refined to a sphere."""
 SIDES = 51
 """Sides of a cylinder."""
+
+
+def triangles_of(geometry: Geometry) -> Mesh:
+    """Return what scripts get as triangles of a geometry, in its frame: those that were set, else of its shape."""
+    return triangulated(geometry.shape) if geometry.collision_mesh is None else geometry.collision_mesh
 
 
 def triangulated(shape: Shape) -> Mesh:

@@ -15,7 +15,6 @@ from ravemj.errors import RavemjError
 from ravemj.expressions import (
     Expression,
     ExpressionError,
-    first_within,
     fit_polynomial,
     joint_variables,
     linear_mimic,
@@ -329,13 +328,13 @@ def trees(graph, leaves, functions, max_leaves=12):
 
 
 @st.composite
-def equations(draw, functions=tuple(FUNCTIONS), numbers=literals):
+def equations(draw, functions=tuple(OPERATORS | NAMED), numbers=literals):
     graph = Graph()
     leaves = st.sampled_from(NAMES).map(graph.variable) | numbers.map(graph.number)
     return Expression(draw(trees(graph, leaves, functions)))
 
 
-one_valued = tuple(name for name in FUNCTIONS if FUNCTIONS[name].roots is None)
+one_valued = tuple(name for name, function in (OPERATORS | NAMED).items() if function.roots is None)
 point = st.fixed_dictionaries({name: st.floats(-3, 3) for name in NAMES})
 coarse_point = st.fixed_dictionaries({name: st.integers(-200, 200).map(lambda n: n / 64) for name in NAMES})
 
@@ -403,13 +402,50 @@ def test_missing_values_raise():
 
 def test_candidates_and_limits():
     roots = parse("polyroots3(1, 0, -1, x)", NAMES)
-    found = roots.candidates({"x": 0.0})
-    assert found == pytest.approx((-1, 0, 1), abs=1e-12)
-    assert first_within(found, 0.5, 2) == pytest.approx(1)
-    assert first_within(found, -2, 2) == pytest.approx(-1)
-    assert first_within(found, 5, 6) == pytest.approx(-1)
-    assert math.isnan(first_within((), 0, 1))
-    assert roots.evaluate({"x": 0.0}) == found[0]
+    values = {"x": 0.0}
+    assert roots.candidates(values) == pytest.approx((-1, 0, 1), abs=1e-12)
+    assert roots.evaluate(values) == roots.candidates(values)[0]
+    for limits, expected in {(0.5, 2): 1, (-2, 2): -1, (-0.5, 2): 0, (5, 6): -1, (-1, -1): -1}.items():
+        assert roots.within(*limits).evaluate(values) == pytest.approx(expected, abs=1e-12)
+    assert math.isnan(parse("polyroots2(1, 0, 1)", NAMES).within(0, 1).evaluate({}))
+
+
+SEVERAL = [
+    "polyroots2(1, 1, -1-x)",
+    "2*polyroots2(1, y, -1) - x",
+    "r := polyroots2(1, -3, 2+x/9); r*r + y",
+    "polyroots2(1, -3, 2) + 3*polyroots3(1, 0, -1, x/9)",
+    "SSSA(1.5, 2, 1.5+x/9) + y",
+    "sqrt(polyroots2(1, x, -1))",
+]
+
+
+@pytest.mark.parametrize("text", SEVERAL)
+@quick
+@given(st.floats(-1, 1), st.floats(-1, 1), st.floats(-3, 3), st.floats(0.1, 4))
+def test_within_limits_is_the_first_candidate_there(text, x, y, lower, width):
+    equation, values = parse(text, NAMES), {"x": x, "y": y, "z": 0.0}
+    values = {name: values[name] for name in equation.variables}
+    candidates = equation.candidates(values)
+    assume(all(abs(value - edge) > 1e-6 for value in candidates for edge in (lower, lower + width)))
+    inside = [value for value in candidates if lower <= value <= lower + width]
+    chosen = equation.within(lower, lower + width)
+    assert chosen.variables == equation.variables
+    if inside:
+        assert chosen.evaluate(values) == pytest.approx(inside[0], abs=1e-9)
+        assert chosen.evaluate_many(values) == pytest.approx(inside[0], abs=1e-9)
+        assert chosen.compiled()([values[name] for name in chosen.variables]) == chosen.evaluate(values)
+        for name in chosen.variables:
+            step = 1e-6
+            ends = [chosen.evaluate(values | {name: values[name] + way * step}) for way in (-1, 1)]
+            slope = chosen.derivative(name).evaluate(values)
+            if abs(ends[1] - ends[0]) < 0.1:  # the choice may change in between
+                assert slope == pytest.approx((ends[1] - ends[0]) / (2 * step), rel=1e-3, abs=1e-3)
+
+
+def test_limits_change_nothing_where_there_is_one_value():
+    equation = parse("SASS(x, y, 2) + 1", NAMES)
+    assert equation.within(-1, 1) is equation
 
 
 def test_candidates_choose_the_same_root_everywhere():

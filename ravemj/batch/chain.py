@@ -154,11 +154,10 @@ class Chain:
         known = first_values(kinematics, values)
         joints = (*kinematics.body.joints, *kinematics.body.passive_joints)
         for follower in kinematics.followers:
-            mimic, axis = joints[follower.joint].mimic, follower.axis
-            assert mimic is not None
-            assert mimic.expression is not None
-            named = {name: known[int(name.removeprefix("joint"))] for name in mimic.expression.variables}
-            value = np.broadcast_to(mimic.expression.evaluate_many(named), values.shape[1:])
+            expression, axis = joints[follower.joint].equation, follower.axis
+            assert expression is not None
+            named = {name: known[int(name.removeprefix("joint"))] for name in expression.variables}
+            value = np.broadcast_to(expression.evaluate_many(named), values.shape[1:])
             known[follower.joint] = value if axis.circular else np.clip(value, axis.lower, axis.upper)
         return {follower.joint: known[follower.joint] for follower in kinematics.followers}
 

@@ -92,10 +92,9 @@ class VelocityMap:
 
     def _expression(self, follower: Follower) -> "Expression":
         body = self._kinematics.body
-        mimic = (*body.joints, *body.passive_joints)[follower.joint].mimic
-        assert mimic is not None
-        assert mimic.expression is not None
-        return mimic.expression
+        expression = (*body.joints, *body.passive_joints)[follower.joint].equation
+        assert expression is not None
+        return expression
 
     def at(self, values: Floats, *, second: bool = True) -> Slopes:
         """Return P and its derivative.

@@ -16,14 +16,13 @@ values it can have are bounded, and evaluation takes time in proportion to the l
 """
 
 from ravemj.expressions.errors import ExpressionError
-from ravemj.expressions.expression import Expression, first_within, parse
+from ravemj.expressions.expression import Expression, parse
 from ravemj.expressions.mimic import joint_variables, linear_mimic, partials, substitute
 from ravemj.expressions.polynomials import fit_polynomial
 
 __all__ = [
     "Expression",
     "ExpressionError",
-    "first_within",
     "fit_polynomial",
     "joint_variables",
     "linear_mimic",

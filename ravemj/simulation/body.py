@@ -233,15 +233,16 @@ class BodyState:
             self._kinematics.set_root_wxyz(T_world_link0.wxyz)
 
     def place_links(self, T_world_links: Floats, last_values: Floats | None = None) -> None:
-        """Put every link at a pose; joints get the values that the poses show. This never compiles.
+        """Put every link at a pose; joints get the values that the poses show.
 
         Args:
             T_world_links: Shape (links, 4, 4).
-            last_values: Joint values whose full turns are kept [rad or m], shape (dof,); None: the present ones.
+            last_values: Joint values to which those of hinges are next, full turns apart [rad or m], shape (dof,);
+                the body is in the world. None: the present values; this never compiles.
         """
-        if self._kinematics is not None:
-            last = self._kinematics.values() if last_values is None else last_values
-            place_links(self._kinematics, T_world_links, last)
+        kinematics = self._kinematics if last_values is None else self.kinematics
+        if kinematics is not None:
+            place_links(kinematics, T_world_links, kinematics.values() if last_values is None else last_values)
         else:
             self._poses, self._is_moved = T_world_links.copy(), True
         self.moved()
@@ -337,6 +338,8 @@ class BodyState:
         self.scene = replace(self.scene, **changes)
         if self._kinematics is not None:
             self._kinematics.describe(self.scene)
+        if "passive_joints" in changes:
+            self._dynamics = self._batch = None  # which of several values a follower has depends on its limits
 
     def edit_link(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Link
         """Change the description of a link."""

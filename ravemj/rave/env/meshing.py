@@ -12,7 +12,7 @@ from ravemj.rave.trimesh import TriMesh, trimesh_of
 from ravemj.scene import KinBody as Description
 from ravemj.scene import Mesh
 from ravemj.simulation import BodyState
-from ravemj.tessellation import merged, moved, triangulated
+from ravemj.tessellation import merged, moved, triangles_of
 
 _LOG = logging.getLogger("ravemj")
 
@@ -95,7 +95,7 @@ _CHOICES: dict[TriangulateOptions, Callable[[Description, str], bool]] = {
 def _triangles(state: BodyState) -> Mesh:
     transforms = state.link_transforms()
     return merged(
-        moved(triangulated(geometry.shape), transforms[index] @ geometry.T_link_geometry.matrix())
+        moved(triangles_of(geometry), transforms[index] @ geometry.T_link_geometry.matrix())
         for index, link in enumerate(state.scene.links)
         for geometry in link.geometries
     )

@@ -9,7 +9,7 @@ from ravemj.rave.infos import GeometryInfo
 from ravemj.rave.infos.link import geometries_of
 from ravemj.rave.links.base import LinkPart
 from ravemj.rave.trimesh import TriMesh, trimesh_of
-from ravemj.tessellation import merged, moved, triangulated
+from ravemj.tessellation import merged, moved, triangles_of
 
 
 class LinkShapes(LinkPart):
@@ -35,7 +35,7 @@ class LinkShapes(LinkPart):
     def GetCollisionData(self) -> TriMesh:
         """Return all shapes of the link as triangles, in the link's frame; copies."""
         return trimesh_of(
-            merged(moved(triangulated(one.shape), one.T_link_geometry.matrix()) for one in self._scene.geometries)
+            merged(moved(triangles_of(one), one.T_link_geometry.matrix()) for one in self._scene.geometries)
         )
 
     def InitGeometries(self, geometryinfos: Sequence[GeometryInfo]) -> None:
