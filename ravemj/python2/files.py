@@ -75,6 +75,11 @@ class File:
         for line in lines:
             self.write(line)
 
+    def __del__(self) -> None:
+        """Close without a warning, as Python 2 did."""
+        if "buffer" in vars(self):
+            self.buffer.close()
+
     def __enter__(self) -> Self:
         return self
 

@@ -98,7 +98,11 @@ NAMES: dict[str, dict[str, object]] = {
     "collections": _same("collections.abc", " ".join(collections.abc.__all__)),
     "exceptions": {name: value for name, value in vars(builtins).items() if name.endswith("Error")},
     "fractions": {"gcd": "math.gcd"},
-    "imp": {"load_source": "ravemj.python2.finder.load_source", "new_module": "types.ModuleType"},
+    "imp": {
+        "load_source": "ravemj.python2.finder.load_source",
+        "new_module": "types.ModuleType",
+        "reload": "importlib.reload",
+    },
     "inspect": {"getargspec": _getargspec},
     "itertools": {
         "ifilter": "builtins.filter",

@@ -7,6 +7,7 @@ from ravemj.python2 import methods
 METHOD, MESSAGE, CODE, ITEM = "__method__", "__message__", "__code__", "__item__"
 """Names of what calls methods, reads ``error.message``, compiles for ``exec`` and ``eval``, reads numbers."""
 _ERROR = "__error__"
+_EXC_INFO = ["exc_type", "exc_value", "exc_traceback"]
 _ORDER = {"__lt__": "<", "__le__": "<=", "__gt__": ">", "__ge__": ">=", "__eq__": "==", "__ne__": "!="}
 
 
@@ -33,12 +34,11 @@ class Statements(ast.NodeTransformer):
         names = self._names(node.args)
         if names:
             targets = "".join(f"{self._targets[name]}, " for name in names)
-            statement = _at(node, f"[None for ({targets}) in [({', '.join(names)},)]][0]")
-            assert isinstance(statement, ast.Expr)
-            assert isinstance(statement.value, ast.Subscript)
-            assert isinstance(statement.value.value, ast.ListComp)
-            statement.value.value.elt = node.body
-            node.body = statement.value
+            first = _expression(node, f"[None for ({targets}) in [({', '.join(names)},)]][0]")
+            assert isinstance(first, ast.Subscript)
+            assert isinstance(first.value, ast.ListComp)
+            first.value.elt = node.body
+            node.body = first
         return node
 
     def _names(self, arguments: ast.arguments) -> list[str]:
@@ -96,11 +96,20 @@ class Statements(ast.NodeTransformer):
         return node
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        """Read the ``message`` of exceptions."""
+        """Read the ``message`` of exceptions, and ``sys.exc_type`` and its like."""
         self.generic_visit(node)
+        if isinstance(node.value, ast.Name) and node.value.id == "sys" and node.attr in _EXC_INFO:
+            return _expression(node, f"sys.exc_info()[{_EXC_INFO.index(node.attr)}]")
         if node.attr == "message" and isinstance(node.ctx, ast.Load):
             return ast.Call(ast.Name(MESSAGE, ast.Load()), [node.value], [])
         return node
+
+
+def _expression(place: ast.expr, text: str) -> ast.expr:
+    """Return the tree of an expression, as if it stood at a place."""
+    statement = _at(place, text)
+    assert isinstance(statement, ast.Expr)
+    return statement.value
 
 
 def _at(place: ast.stmt | ast.expr | ast.excepthandler, text: str) -> ast.stmt:
