@@ -131,6 +131,12 @@ def test_expressions_mean_what_they_did(expression, value):
         ("class A:\n    def __nonzero__(self): return False\nx = bool(A())", False),
         ("try: raise Exception\nexcept StandardError: x = 3", 3),
         ("x = 'a\\d'", "a\\d"),
+        ("x = 2\nglobal x\ndef f():\n    'doc'\n    print x\n    global x\n    x = 3\nf()", 3),
+        ("class A:\n    global x\n    x = 4", 4),
+        (
+            "def f():\n    from math import *\n    from numpy import *\n    return product([ceil(1.5), 0.25])\nx = f()",
+            0.5,
+        ),
     ],
 )
 def test_statements_do_what_they_did(statements, value):

@@ -20,12 +20,40 @@ class Statements(ast.NodeTransformer):
 
     def __init__(self, targets: dict[str, str]) -> None:
         self._targets = targets
+        self._scopes: list[ast.AST] = []  # those that are visited, the innermost last
+        self._globals: list[str] = []  # what the innermost one has declared
+
+    def _visit_scope(self, node: ast.Module | ast.FunctionDef | ast.ClassDef) -> None:
+        """Visit what is inside; declare what is global before it is used, as Python 3 asks."""
+        outer, self._globals = self._globals, []
+        self._scopes.append(node)
+        self.generic_visit(node)
+        self._scopes.pop()
+        if self._globals:
+            node.body.insert(_start(node.body), ast.Global(self._globals))
+        self._globals = outer
+
+    def visit_Module(self, node: ast.Module) -> ast.AST:
+        """Visit it as a scope."""
+        self._visit_scope(node)
+        return node
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
         """Unpack tuples among the parameters first."""
-        self.generic_visit(node)
-        start = 0 if ast.get_docstring(node, clean=False) is None else 1
+        start = _start(node.body)
         node.body[start:start] = [_at(node, f"{self._targets[name]} = {name}") for name in self._names(node.args)]
+        self._visit_scope(node)
+        return node
+
+    def visit_Global(self, node: ast.Global) -> ast.AST:
+        """Take note of it."""
+        self._globals += node.names
+        return ast.copy_location(ast.Pass(), node)
+
+    def visit_ImportFrom(self, node: ast.ImportFrom) -> ast.AST:
+        """Let functions import ``*``, which Python 3 does not: its names are global then."""
+        if node.names[0].name == "*" and isinstance(self._scopes[-1], ast.FunctionDef):
+            return _at(node, f"exec({ast.unparse(node)!r}, globals())")
         return node
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.AST:
@@ -46,7 +74,7 @@ class Statements(ast.NodeTransformer):
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
         """Iterate by ``next``, order by ``__cmp__``, or by identity; what is equal by ``__eq__`` has a hash."""
-        self.generic_visit(node)
+        self._visit_scope(node)
         own = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
         is_plain = all(isinstance(base, ast.Name) and base.id == "object" for base in node.bases)
         added: dict[str, str] = {}
@@ -103,6 +131,15 @@ class Statements(ast.NodeTransformer):
         if node.attr == "message" and isinstance(node.ctx, ast.Load):
             return ast.Call(ast.Name(MESSAGE, ast.Load()), [node.value], [])
         return node
+
+
+def _start(body: list[ast.stmt]) -> int:
+    """Return where statements can be put in first: after the docstring, and after what is imported from the future."""
+    for number, statement in enumerate(body):
+        is_docstring = number == 0 and isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+        if not is_docstring and not (isinstance(statement, ast.ImportFrom) and statement.module == "__future__"):
+            return number
+    return len(body)
 
 
 def _expression(place: ast.expr, text: str) -> ast.expr:
