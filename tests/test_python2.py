@@ -71,6 +71,7 @@ def run(source: str, path: str = "old.py") -> dict[str, Any]:
         ("eval('7 / 2') + eval(' 010') + eval(compile('9 / 2', 'name', 'eval'))", 3 + 8 + 4),
         ("{1: 2}.items()[0] + tuple({3: 4}.iterkeys())", (1, 2, 3)),
         ("{1: 2}.itervalues().next() + len({1: 2}.viewkeys())", 3),
+        ("'%s' % u'\xe4'.encode('utf-8') + str.decode('a') + '\xe4'.encode('latin-1').decode('latin-1')", "\xe4a\xe4"),
         ("'a'.decode('utf-8') + numpy.array([97], numpy.uint8).tostring().decode()", "aa"),
         ("float(numpy.array([2.5])) + int(numpy.array([[3]])) + math.sqrt(numpy.array([4.0]))", 7.5),
         ("(lambda x, (a, b): x + a * b)(1, (2, 3))", 7),
@@ -341,7 +342,7 @@ def test_the_standard_library_has_its_older_names(tmp_path, monkeypatch):
 
 
 FILES = """
-import csv, json, numpy, pickle, struct, subprocess, sys
+import codecs, csv, hashlib, json, numpy, pickle, struct, subprocess, sys
 writer = csv.writer(open("a.csv", "wb")); writer.writerow([1, "b,c"]); writer.writerow(["d", 2.5]); del writer
 rows = list(csv.reader(open("a.csv", "rb")))
 table = list(csv.DictReader(open("a.csv", "rb")))
@@ -369,6 +370,10 @@ log = open("a.log", "w", 0); log.write("now"); logged = open("a.log").read(); lo
 old = sys.stdout; sys.stdout = open("out", "w"); print "caught"; sys.stdout.close(); sys.stdout = old
 f = open("sub", "w"); subprocess.call([sys.executable, "-c", "print(5)"], stdout=f); f.close()
 others = open("out").read(), open("sub").read()
+answer = subprocess.check_output([sys.executable, "-c", "print(7)"]).split("\\n")[0]
+p = subprocess.Popen([sys.executable, "-c", "print(input())"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+answers = [answer, p.communicate("8\\n")[0].strip(), hashlib.md5("a").hexdigest()[:4]]
+stream = codecs.getwriter("utf-8")(sys.stdout); stream.write(u"written\\n")
 latin = open("latin", "wb"); latin.write(bytearray([228, 10])); latin.close()
 copy = open("copy", "w"); copy.write(open("latin").read()); copy.close(); same = open("copy", "rb").read()
 with open("latin", encoding="latin-1") as f: asked = f.read()  # as only Python 3 can be asked
@@ -391,6 +396,7 @@ def test_files_take_and_give_text_and_bytes(tmp_path, monkeypatch):
     assert space["arrays"] == [[0, 1, 2], [0, 1, 2], [1, 2]]
     assert (space["read_json"], space["logged"]) == ({"a": 1}, "now")
     assert space["others"] == ("caught\n", "5" + os.linesep)
+    assert space["answers"] == ["7", "8", "0cc1"]
     assert (space["same"], space["asked"]) == (b"\xe4\n", "\xe4\n")
 
 
