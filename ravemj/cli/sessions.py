@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     main.__file__ = script
     if options.py2:
         python2.install_finder(folder)
-        np.set_printoptions(legacy="1.25")  # lists of numbers print as [1.0], not as [np.float64(1.0)]
+        np.set_printoptions(legacy="1.21")  # lists of numbers print as [1.0], not as [np.float64(1.0)]
     status = _execute(script, main, options.py2)
     if options.interactive:
         main.__dict__.pop("__builtins__", None)  # the prompt is Python 3
