@@ -521,9 +521,21 @@ def test_warnings_of_a_model_are_said_and_strict_makes_them_errors(folder):
     _check_failure(ravemj_command(folder, "info", "odd.xml", "--strict"), 1, f"odd.xml:{line}: error: ")
 
 
-def test_commands_raise_no_warnings_of_python(folder):
-    words = ("play", "env.xml", "-o", "a.mp4", *SMALL, "--fps", "3")
-    said(ravemj_command(folder, *words, PYTHONWARNINGS="error", PYTHONDEVMODE="1"))
+@pytest.mark.parametrize(
+    "words",
+    [
+        "play env.xml -o a.mp4 --size 96x72 --fps 3",
+        "render env.xml -o a.png --size 96x72",
+        "convert env.xml",
+        "check env.xml",
+        "info env.xml",
+        "run script.py",
+    ],
+)
+def test_commands_import_what_they_need_and_raise_no_warnings_of_python(folder, words):
+    """In processes of their own, which most other tests do not start; ``alias``, ``shell`` and ``view`` do."""
+    (folder / "script.py").write_text("import openravepy\nprint(openravepy.Environment())\n")
+    assert said(ravemj_command(folder, *words.split(), PYTHONWARNINGS="error", PYTHONDEVMODE="1"))
 
 
 def test_plain_removes_what_steers_terminals():
