@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pexpect
 from forks import Forks
+from waiting import PATIENCE
 
 import ravemj
 from ravemj.rendering import Camera
@@ -20,7 +21,6 @@ PACKAGE_ROOT = Path(ravemj.__file__).resolve().parent.parent
 TUTORIAL = Path(__file__).resolve().parent / "data" / "tutorial"
 TUTORIAL_CAMERA = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 PRINTED_BY_THE_SCRIPT = "2\n[0. 0.]\n[[ 0.  0. -1.  1.]\n [ 1.  0.  0.  0.]\n [ 0. -1.  0.  0.]\n [ 0.  0.  0.  1.]]\n"
-PATIENCE = 60
 
 
 def environment(folder: Path, **changes: str) -> dict[str, str]:

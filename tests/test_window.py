@@ -12,7 +12,8 @@ from command_line import (
     on_terminal,
     ravemj_command,
 )
-from screens import NEEDS_A_SCREEN, Display, Started, await_that
+from screens import NEEDS_A_SCREEN, Display, Started
+from waiting import await_that
 
 pytestmark = NEEDS_A_SCREEN
 PLAY = ("-m", "ravemj", "play", "env.xml", "--camera", "camera.json", "--background", "1,1,0")

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from command_line import TUTORIAL, colour_of
 from desk import ASLANT, DISTANCE, SIZE, Desk
-from screens import NEEDS_A_SCREEN, await_that
+from screens import NEEDS_A_SCREEN
+from waiting import await_that
 from test_interaction import SLIDING
 
 from ravemj.interaction import Button, Resize, Tool, tools

@@ -7,7 +7,8 @@ import imageio.v3
 import numpy as np
 import pytest
 from command_line import on_terminal
-from screens import NEEDS_A_SCREEN, await_that
+from screens import NEEDS_A_SCREEN
+from waiting import await_that
 
 from ravemj.interaction import Board, Control
 

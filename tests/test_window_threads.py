@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from command_line import finish, on_terminal
 from desk import ASLANT, DISTANCE, SIZE
-from screens import NEEDS_A_SCREEN, await_that
+from screens import NEEDS_A_SCREEN
+from waiting import await_that
 
 import ravemj
 from ravemj.interaction import View

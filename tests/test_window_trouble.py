@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from command_line import TUTORIAL, finish, on_terminal
 from desk import SIZE, Desk
-from screens import NEEDS_A_SCREEN, Started, await_that, virtual_screen
+from screens import NEEDS_A_SCREEN, Started, virtual_screen
+from waiting import await_that
 
 from ravemj.interaction import Tool, tools
 from ravemj.interaction.cube import Cube
@@ -40,7 +41,7 @@ def test_a_display_that_goes_away_takes_the_window_and_not_the_script(folder, st
         display.await_window()
         time.sleep(0.5)
         server.kill()
-        code, printed, complaints = command.end(30)
+        code, printed, complaints = command.end()
     assert (code, printed) == (0, "True True\nTrue True\n")
     assert "the connection to the display broke" in complaints
 
@@ -64,7 +65,7 @@ while viewer.is_open and time.monotonic() < end:
 print(viewer.is_open, env.render(64, 48).std() > 1)
 """)
     with Started(display, folder, "fails.py") as command:
-        assert command.end(30)[:2] == (0, "False True\n")
+        assert command.end()[:2] == (0, "False True\n")
     await_that(lambda: not display.windows(), "the window stays")
 
 
