@@ -390,11 +390,15 @@ class TestPage:
         )
         page = desk.open_page()
         page.wait_for_selector("[data-crisp=true]")
-        page.wait_for_timeout(300)
+
+        def is_still():
+            count = len(frames)
+            page.wait_for_timeout(700)
+            return len(frames) == count
+
+        await_that(is_still, "it is sent again and again")
         count = len(frames)
-        assert 2 <= count <= 6  # text and picture, once while it moves and once crisp
-        page.wait_for_timeout(700)
-        assert len(frames) == count
+        assert 2 <= count <= 10  # text and picture, once while it moves and once crisp; more often on slow machines
         desk.robot.SetDOFValues([0.5, 0])
         await_that(lambda: (page.wait_for_timeout(20), len(frames) > count)[1], "nothing was sent")
 
