@@ -25,6 +25,7 @@ from command_line import (
     ravemj_command,
 )
 from PIL import Image, ImageSequence
+from waiting import PATIENCE, await_that
 
 from ravemj.cli import main
 
@@ -171,21 +172,14 @@ def test_interrupting_a_long_play_leaves_nothing(folder):
     for name in ("long.mp4", "long.gif", "long"):
         command = [sys.executable, "-m", "ravemj", "play", "env.xml", "-o", name, *SMALL, "--duration", "1000"]
         with subprocess.Popen(command, cwd=folder, env=environment(folder), stdout=-1, stderr=-1, text=True) as process:
-            _wait_for(lambda: list(folder.glob(".ravemj-*")))
+            await_that(lambda: list(folder.glob(".ravemj-*")))
             time.sleep(0.3)
             process.send_signal(signal.SIGINT)
-            printed = process.communicate(timeout=30)
+            printed = process.communicate(timeout=PATIENCE)
         assert (process.returncode, *printed) == (130, "", "ravemj: interrupted\n")
         assert listing(folder) == before
         assert not list(folder.glob(".ravemj-*"))
         assert not (folder / name).exists()
-
-
-def _wait_for(condition) -> None:
-    end = time.monotonic() + 30
-    while not condition():
-        assert time.monotonic() < end, "it did not come"
-        time.sleep(0.02)
 
 
 def test_progress_is_shown_on_a_terminal_until_ctrl_c(folder):
@@ -519,9 +513,21 @@ def test_warnings_of_a_model_are_said_and_strict_makes_them_errors(folder):
     _check_failure(ravemj_command(folder, "info", "odd.xml", "--strict"), 1, f"odd.xml:{line}: error: ")
 
 
-def test_commands_raise_no_warnings_of_python(folder):
-    words = ("play", "env.xml", "-o", "a.mp4", *SMALL, "--fps", "3")
-    said(ravemj_command(folder, *words, PYTHONWARNINGS="error", PYTHONDEVMODE="1"))
+@pytest.mark.parametrize(
+    "words",
+    [
+        "play env.xml -o a.mp4 --size 96x72 --fps 3",
+        "render env.xml -o a.png --size 96x72",
+        "convert env.xml",
+        "check env.xml",
+        "info env.xml",
+        "run script.py",
+    ],
+)
+def test_commands_import_what_they_need_and_raise_no_warnings_of_python(folder, words):
+    """In processes of their own, which most other tests do not start; ``alias``, ``shell`` and ``view`` do."""
+    (folder / "script.py").write_text("import openravepy\nprint(openravepy.Environment())\n")
+    assert said(ravemj_command(folder, *words.split(), PYTHONWARNINGS="error", PYTHONDEVMODE="1"))
 
 
 def test_plain_removes_what_steers_terminals():

@@ -92,7 +92,7 @@ turns = st.tuples(*[st.floats(-3, 3)] * 3)
 positions = st.tuples(*[st.floats(-2, 2)] * 3)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.tuples(positions, turns, st.tuples(*[st.floats(0.05, 1.0)] * 3)), min_size=2, max_size=7))
 def test_all_pairs_of_boxes_are_found(boxes):
     """Against separating axes, for every pair of bodies, none of which ever moves by a joint."""
@@ -118,7 +118,7 @@ def test_all_pairs_of_boxes_are_found(boxes):
         assert env.CheckCollision(one, other) == (frozenset((one.GetName(), other.GetName())) in expected)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.tuples(positions, st.floats(0.05, 1.0)), min_size=2, max_size=7))
 def test_distances_and_contacts_of_spheres(spheres):
     env = ravemj.Environment()
@@ -198,7 +198,7 @@ class TestReportsOfDistances:
         assert (report.minDistance, report.collisionInfos, report.plink1) == (1e20, [], None)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(positions, turns, st.tuples(*[st.floats(0.15, 1.0)] * 3))  # too thick to be inside of a leg
 def test_meshes_are_their_triangles(position, turn, half):
     """A box against a U of three boxes, whose hull is no answer."""
@@ -530,7 +530,7 @@ def test_tolerance(env):
         assert report.numWithinTol == count
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(positions, positions, turns, st.tuples(*[st.floats(0.1, 1.0)] * 3))
 def test_rays_at_a_box(start, end, turn, half):
     """Against slabs."""
@@ -632,7 +632,7 @@ def test_thousands_of_bodies(env):
 SHAPES = st.sampled_from(["box", "sphere", "cylinder", "capsule", "trimesh"])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SHAPES, positions, turns, st.tuples(*[st.floats(0.1, 1.0)] * 3))
 def test_bounds_hold_the_shape_tightly(kind, position, turn, sizes):
     """Against many points of the surface."""

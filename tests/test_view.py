@@ -10,6 +10,7 @@ import urllib.request
 import pytest
 from command_line import environment, heed_interrupts, ravemj_command
 from screens import NEEDS_A_SCREEN, Started
+from waiting import PATIENCE
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 from websockets.sync.client import connect
@@ -35,7 +36,7 @@ class Page:
     def end(self, number):
         """Send a signal; return the exit code and what else was printed."""
         self.process.send_signal(number)
-        return self.process.wait(20), *self.process.communicate()
+        return self.process.wait(PATIENCE), *self.process.communicate()
 
 
 @pytest.mark.parametrize(
@@ -49,15 +50,15 @@ class Page:
 )
 def test_one_address_is_printed_and_a_signal_ends_it(folder, options, number, end):
     with Page(folder, *options) as page:
-        with urllib.request.urlopen(page.url, timeout=10) as answer:
+        with urllib.request.urlopen(page.url, timeout=PATIENCE) as answer:
             assert b"<canvas" in answer.read()
         address = page.url.replace("http", "ws", 1) + "socket"
         with connect(address, origin=page.url.rsplit("/", 2)[0], compression=None) as connection:
             connection.send('{"type": "ready"}')
-            assert json.loads(connection.recv(20))["mode"] == "camera"
+            assert json.loads(connection.recv(PATIENCE))["mode"] == "camera"
             assert page.end(number) == end
             with pytest.raises(ConnectionClosed) as closed:
-                while connection.recv(20):
+                while connection.recv(PATIENCE):
                     pass
             assert closed.value.rcvd.code == CloseCode.GOING_AWAY, "the page is told"
 
@@ -78,7 +79,7 @@ def test_another_host_is_served_with_a_warning(folder):
         port = page.url.split(":")[2].split("/")[0]
         token = page.url.split("/")[3]
         request = urllib.request.Request(f"http://127.0.0.1:{port}/{token}/", headers={"Host": "robots.example"})
-        with urllib.request.urlopen(request, timeout=10) as answer:
+        with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
             assert b"<canvas" in answer.read()
         code, _, warning = page.end(signal.SIGINT)
         assert code == 0
