@@ -23,6 +23,7 @@ TEST = [*RUN, *GROUPS["test"], *GROUPS["notebook"], *EXTRAS["all"]]
 WANTED = {
     "run": RUN,
     "test": TEST,
+    "browser": [*RUN, *GROUPS["browser"]],
     "check": [*TEST, *GROUPS["check"]],
     "docs": [*RUN, *GROUPS["notebook"], *GROUPS["docs"]],
 }
@@ -70,9 +71,10 @@ def test_lock_satisfies_the_project_file(name: str, python: str):
 def test_one_environment_can_hold_every_lock(python: str):
     largest = versions("check", python)
     assert versions("run", python).items() <= versions("test", python).items() <= largest.items()
-    pages = versions("docs", python)
-    assert versions("run", python).items() <= pages.items()
-    assert {name: pages[name] for name in pages.keys() & largest.keys()}.items() <= largest.items()
+    assert versions("run", python).items() <= versions("docs", python).items()
+    for name in ("docs", "browser"):
+        others = versions(name, python)
+        assert {name: others[name] for name in others.keys() & largest.keys()}.items() <= largest.items()
 
 
 def test_node_of_the_type_checker_comes_with_the_lock():
@@ -188,6 +190,19 @@ def test_moved_repository_is_set_up_again(copy: Path):
     moved = copy.rename(copy.with_name("moved"))
     done = run(moved / "scripts/play", TMPDIR="/nowhere")
     assert done.stderr.splitlines()[-1] == "play: cannot make a temporary folder"
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_what_drives_a_browser_is_installed_where_there_is_one(copy: Path, tmp_path: Path, there: bool):
+    (copy / ".venv" / "ready-browser").unlink()
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    for name in ("cat", "cksum", "dirname", "mktemp"):
+        (programs / name).symlink_to(str(shutil.which(name)))
+    if there:
+        make_program(programs / "chromium")
+    done = run(copy / "scripts/test", PATH=str(programs), TMPDIR="/nowhere")
+    assert (done.returncode, "cannot make a temporary folder" in done.stderr) == (int(there), there)
 
 
 def test_all_takes_every_extra():
