@@ -16,11 +16,13 @@ from waiting import PATIENCE
 
 import ravemj
 from ravemj.rendering import Camera
+from ravemj.rendering.contexts import requested_backend
 
 PACKAGE_ROOT = Path(ravemj.__file__).resolve().parent.parent
 TUTORIAL = Path(__file__).resolve().parent / "data" / "tutorial"
 TUTORIAL_CAMERA = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 PRINTED_BY_THE_SCRIPT = "2\n[0. 0.]\n[[ 0.  0. -1.  1.]\n [ 1.  0.  0.  0.]\n [ 0. -1.  0.  0.]\n [ 0.  0.  0.  1.]]\n"
+RAYS_DREW = "ravemj: no OpenGL here, so rays drew the picture; faster: apt-get install libegl1 libgl1\n"
 
 
 def environment(folder: Path, **changes: str) -> dict[str, str]:
@@ -57,8 +59,25 @@ def _forks() -> Forks:
 
 
 def ravemj_command(folder: Path, *arguments: str | Path, **variables: str) -> subprocess.CompletedProcess[str]:
-    """Run ``ravemj ARGUMENTS`` in a folder."""
-    return run(folder, "-m", "ravemj", *arguments, variables=variables)
+    """Run ``ravemj ARGUMENTS`` in a folder.
+
+    Where there is no OpenGL, a line says so once a picture is drawn: it is checked here, and taken away.
+    """
+    done = run(folder, "-m", "ravemj", *arguments, variables=variables)
+    if done.stdout.startswith("wrote ") and arguments[0] in {"play", "render"}:
+        note = note_on_rays()
+        assert done.stderr.endswith(note)
+        done.stderr = done.stderr.removesuffix(note)
+    return done
+
+
+@functools.cache
+def note_on_rays() -> str:
+    """What commands say where rays drew for want of OpenGL; nothing where it works, or ``MUJOCO_GL`` has chosen."""
+    if requested_backend() is not None:
+        return ""
+    code = "from ravemj.rendering.doctor import probe_backends; print(*(r.name for r in probe_backends() if r.works))"
+    return RAYS_DREW if run(PACKAGE_ROOT, "-c", code).stdout == "ray\n" else ""
 
 
 def on_terminal(folder: Path, *arguments: str, simple: bool = True, **variables: str) -> pexpect.spawn:

@@ -14,6 +14,7 @@ import mujoco
 import numpy as np
 import pytest
 from command_line import (
+    RAYS_DREW,
     TUTORIAL_CAMERA,
     colour_at,
     environment,
@@ -28,6 +29,7 @@ from PIL import Image, ImageSequence
 from waiting import PATIENCE, await_that
 
 from ravemj.cli import main
+from ravemj.rendering import contexts
 
 DATA = Path(__file__).resolve().parent / "data"
 MODELS = DATA.parent.parent / "models"
@@ -228,6 +230,16 @@ def test_render_draws_the_pose_from_the_camera(folder):
     elbow = 0.2 * np.array([0, np.sin(q), -np.cos(q)])
     assert colour_at(picture, tuple(elbow / 2)) == "red"
     assert colour_at(picture, tuple(elbow + 0.1 * np.array([0, np.sin(2 * q), -np.cos(2 * q)]))) == "blue"
+
+
+@pytest.mark.parametrize(("variable", "note"), [("", RAYS_DREW), ("disable", "")])
+def test_rays_are_explained_unless_they_are_asked_for(folder, monkeypatch, capsys, variable, note):
+    monkeypatch.setattr(contexts, "_order", lambda: ())
+    monkeypatch.setenv("MUJOCO_GL", variable)
+    monkeypatch.chdir(folder)
+    for words in (("render", "-o", "a.png"), ("play", "-o", "a.mp4", "--fps", "2")):
+        assert main([*words, "env.xml", *SMALL]) == 0
+        assert capsys.readouterr().err == note
 
 
 @pytest.mark.parametrize(
