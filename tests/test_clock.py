@@ -189,7 +189,7 @@ def test_a_failing_step_stops_time_with_a_message(caplog):
     assert clock.now == 0
     caplog.clear()
     clock.wake()
-    assert wait_until(lambda: "no step of 0.001" in caplog.text)
+    await_that(lambda: "no step of 0.001" in caplog.text)
     clock.stop()
 
 
@@ -206,11 +206,11 @@ def test_commands_that_fail_in_the_thread_end_and_the_next_one_runs(env, caplog)
     for _ in range(2):
         robot.SetDOFValues([0, 0])
         controller.SetPath(trajectory)
-        assert robot.WaitForController(60)
-        assert wait_until(lambda: "speed limit" in caplog.text, 60)
+        assert robot.WaitForController(PATIENCE)
+        await_that(lambda: "speed limit" in caplog.text)
         caplog.clear()
     controller.SetDesired([0.1, 0.1])
-    assert robot.WaitForController(60)
+    assert robot.WaitForController(PATIENCE)
 
 
 def test_the_thread_does_not_keep_python_alive():

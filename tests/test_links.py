@@ -179,7 +179,7 @@ class TestShapes:
         link = body.GetLinks()[0]
         geometry = link.GetGeometries()[0]
         before, bounds = geometry.GetCollisionMesh(), body.ComputeAABB().extents()
-        far = ravemj.TriMesh(MESH.vertices + [9, 0, 0], MESH.indices)
+        far = ravemj.TriMesh(MESH.vertices + np.array([9, 0, 0]), MESH.indices)
         geometry.SetCollisionMesh(far)
         copy = ravemj.RaveCreateKinBody(world, "")
         copy.InitFromGeometries([geometry.GetInfo()])
