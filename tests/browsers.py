@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from PIL import Image
+from waiting import PATIENCE, await_that
 
 import ravemj
 from ravemj.graphics.rendering import Camera
@@ -52,16 +53,9 @@ def browser():
         browser.close()
 
 
-def await_that(condition: Callable[[], object], otherwise: str, seconds: float = 10) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, otherwise
-        time.sleep(0.02)
-
-
 def await_equal(picture: Callable[[], np.ndarray], expected: Callable[[], np.ndarray]) -> None:
     """Wait until a picture is as expected, but for what JPEG does to it where the machine is busy."""
-    end = time.monotonic() + 10
+    end = time.monotonic() + PATIENCE
     while (away := np.abs(picture() - expected())).max() > 40 or away.mean() > 0.5:
         wrong = np.argwhere(away.max(axis=2) > 40)
         assert time.monotonic() < end, f"{wrong[0]} to {wrong[-1]} is wrong, by up to {away.max()} of 255"
@@ -79,6 +73,7 @@ class Desk:
         self._start = self.robot.GetTransform()
         self.core = self.fresh_core()
         self.context = browser.new_context(viewport={"width": SIZE[0], "height": SIZE[1]}, has_touch=True, **context)
+        self.context.set_default_timeout(1000 * PATIENCE)
         self.troubles: list[str] = []
         self.page = self.open_page()
 

@@ -1,5 +1,6 @@
 """Runs the commands as users do: in processes of their own, on pipes and on terminals."""
 
+import functools
 import os
 import re
 import signal
@@ -10,15 +11,18 @@ from pathlib import Path
 
 import numpy as np
 import pexpect
+from forks import Forks
+from waiting import PATIENCE
 
 import ravemj
 from ravemj.graphics.rendering import Camera
+from ravemj.graphics.rendering.contexts import requested_backend
 
 PACKAGE_ROOT = Path(ravemj.__file__).resolve().parent.parent
 TUTORIAL = Path(__file__).resolve().parent / "data" / "tutorial"
 TUTORIAL_CAMERA = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 PRINTED_BY_THE_SCRIPT = "2\n[0. 0.]\n[[ 0.  0. -1.  1.]\n [ 1.  0.  0.  0.]\n [ 0. -1.  0.  0.]\n [ 0.  0.  0.  1.]]\n"
-PATIENCE = 60
+RAYS_DREW = "ravemj: no OpenGL here, so rays drew the picture; faster: apt-get install libegl1 libgl1\n"
 
 
 def environment(folder: Path, **changes: str) -> dict[str, str]:
@@ -33,11 +37,14 @@ def environment(folder: Path, **changes: str) -> dict[str, str]:
 def run(
     folder: Path, *arguments: str | Path, variables: Mapping[str, str] | None = None
 ) -> subprocess.CompletedProcess[str]:
-    """Run Python on some arguments and return what came of it."""
+    """Run Python on some arguments and return what came of it; modules without variables in a fork, which is quick."""
+    words, made = [str(argument) for argument in arguments], environment(folder, **(variables or {}))
+    if words[0] == "-m" and not variables:
+        return _forks().run(words[1], words[2:], folder, made)
     return subprocess.run(
-        [sys.executable, *map(str, arguments)],
+        [sys.executable, *words],
         cwd=folder,
-        env=environment(folder, **(variables or {})),
+        env=made,
         capture_output=True,
         text=True,
         timeout=PATIENCE,
@@ -46,9 +53,31 @@ def run(
     )
 
 
+@functools.cache
+def _forks() -> Forks:
+    return Forks(environment(PACKAGE_ROOT), PATIENCE)
+
+
 def ravemj_command(folder: Path, *arguments: str | Path, **variables: str) -> subprocess.CompletedProcess[str]:
-    """Run ``ravemj ARGUMENTS`` in a folder."""
-    return run(folder, "-m", "ravemj", *arguments, variables=variables)
+    """Run ``ravemj ARGUMENTS`` in a folder.
+
+    Where there is no OpenGL, a line says so once a picture is drawn: it is checked here, and taken away.
+    """
+    done = run(folder, "-m", "ravemj", *arguments, variables=variables)
+    if done.stdout.startswith("wrote ") and arguments[0] in {"play", "render"}:
+        note = note_on_rays()
+        assert done.stderr.endswith(note)
+        done.stderr = done.stderr.removesuffix(note)
+    return done
+
+
+@functools.cache
+def note_on_rays() -> str:
+    """What commands say where rays drew for want of OpenGL; nothing where it works, or ``MUJOCO_GL`` has chosen."""
+    if requested_backend() is not None:
+        return ""
+    code = "from ravemj.graphics.rendering import doctor; print(*(r.name for r in doctor.probe_backends() if r.works))"
+    return RAYS_DREW if run(PACKAGE_ROOT, "-c", code).stdout == "ray\n" else ""
 
 
 def on_terminal(folder: Path, *arguments: str, simple: bool = True, **variables: str) -> pexpect.spawn:

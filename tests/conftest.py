@@ -5,12 +5,17 @@ from pathlib import Path
 
 import pytest
 from browsers import browser  # noqa: F401 - a fixture
+from hypothesis import HealthCheck, settings
 from screens import display, folder  # noqa: F401 - fixtures
 
 import ravemj
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 MODELS = REPOSITORY / "models"
+
+# Examples may take as long as a busy machine needs for them.
+settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("patient")
 
 
 @pytest.fixture

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 from command_line import colour_of, on_terminal
-from screens import Display, await_that
+from screens import Display
+from waiting import await_that
 
 import ravemj
 from ravemj.graphics.rendering import Camera
@@ -117,7 +118,7 @@ class Desk:
         return colour_of(self.picture()[y - 1 : y + 2, x - 1 : x + 2])
 
     def await_colour(self, point, name: str) -> None:
-        await_that(lambda: self.colour(point) == name, f"it is not {name} at {self.at(point)}", seconds=15)
+        await_that(lambda: self.colour(point) == name, f"it is not {name} at {self.at(point)}")
 
     def on_link(self, index: int, point=(0.1, 0, 0)) -> np.ndarray:
         """A point of a link in the world; at first the middle of an arm of the pendulum."""

@@ -6,20 +6,17 @@ nothing pass but a scene or a ``RavemjError``.
 
 import random
 import re
-import signal
 import tempfile
-import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import FrameType
 
 import numpy as np
 from lxml import etree
 from strategies import Node, RandomChoices, SceneModel, document, draw_scene, scene_node, split, xml
+from waiting import PATIENCE, time_limit
 
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import Diagnostics, RavemjError, RavemjWarning
@@ -69,29 +66,6 @@ EQUATIONS = [
 
 NAMES = {"name", "body1", "body2", "joint", "joint1", "joint2", "tendon1", "mesh", "file", "class"}
 _NOT_FINITE = re.compile(r"\b(?:nan|inf)\b")
-
-
-class Hang(BaseException):
-    """Reading took too long; no ``except Exception`` swallows it."""
-
-
-@contextmanager
-def time_limit(seconds: float) -> Iterator[None]:
-    """Raise ``Hang`` in this thread after some time; in other threads than the main one there is no limit."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def hang(number: int, frame: FrameType | None) -> None:
-        raise Hang(f"longer than {seconds} s")
-
-    before = signal.signal(signal.SIGALRM, hang)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
 
 
 # ---------------------------------------------------------------------------------------------------- seeds
@@ -347,7 +321,7 @@ class Trial:
         deep: Whether to compile the model and to move it.
     """
 
-    seconds: float = 10.0
+    seconds: float = PATIENCE
     deep: bool = False
 
     def run(self, files: Files) -> Outcome:

@@ -9,14 +9,14 @@ import select
 import shutil
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from command_line import TUTORIAL, TUTORIAL_CAMERA, environment, heed_interrupts, pose
 from PIL import Image, ImageGrab, features
+from waiting import PATIENCE, await_that
 
 NEEDS_A_SCREEN = [
     pytest.mark.gui,
@@ -62,13 +62,6 @@ class Display:
     def await_pose(self, window: int, name: str) -> np.ndarray:
         await_that(lambda: pose(self.picture(window)) == name, f"the pendulum never was {name}")
         return self.picture(window)
-
-
-def await_that(condition: Callable[[], object], otherwise: str, seconds: float = 30) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, otherwise
-        time.sleep(0.05)
 
 
 class _ClientMessage(ctypes.Structure):
@@ -126,7 +119,7 @@ def virtual_screen() -> Generator[tuple[Display, subprocess.Popen[bytes]]]:
     server = subprocess.Popen(command, pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(writing)
     try:
-        ready, _, _ = select.select([reading], [], [], 30)
+        ready, _, _ = select.select([reading], [], [], PATIENCE)
         number = os.read(reading, 16).decode().strip() if ready else ""
         if not number:
             pytest.skip("Xvfb does not start here")
@@ -134,7 +127,7 @@ def virtual_screen() -> Generator[tuple[Display, subprocess.Popen[bytes]]]:
     finally:
         os.close(reading)
         server.terminate()
-        server.wait(10)
+        server.wait(PATIENCE)
 
 
 @pytest.fixture
@@ -168,6 +161,6 @@ class Started:
     def runs(self) -> bool:
         return self.process.poll() is None
 
-    def end(self, seconds: float = 15) -> tuple[int, str, str]:
-        printed = self.process.communicate(timeout=seconds)
+    def end(self) -> tuple[int, str, str]:
+        printed = self.process.communicate(timeout=PATIENCE)
         return (self.process.returncode, *printed)

@@ -31,7 +31,6 @@ def examples(count: int) -> settings:
     return settings(
         max_examples=count * 20 if dev else count,
         derandomize=not dev,
-        deadline=None,
         database=None,
         phases=[Phase.explicit, Phase.generate, Phase.shrink] if dev else [Phase.explicit, Phase.generate],
         suppress_health_check=[

@@ -22,6 +22,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from waiting import PATIENCE
 
 from ravemj.compat import alias
 
@@ -29,7 +30,6 @@ CASES = Path(__file__).parent / "data" / "api-conformance"
 NAMES = sorted(path.stem for path in CASES.glob("*.py"))
 LIST = CASES / "not-yet.txt"
 NOT_YET = set(LIST.read_text().split())
-PATIENCE = 60
 
 SLIDER_FORCES = {
     "dynamics-01-gravity-only": r"(zeros|none)\[2\]$",

@@ -344,13 +344,13 @@ def compare(expected, body):
         assert body.GetActiveDOFIndices().tolist() == expected.active
 
 
-World.TestCase.settings = settings(max_examples=60, stateful_step_count=30, deadline=None)
+World.TestCase.settings = settings(max_examples=60, stateful_step_count=30)
 TestWorld = World.TestCase
 
 
 @pytest.mark.stress
 class TestWorldForLonger(World.TestCase):
-    settings = settings(max_examples=500, stateful_step_count=60, deadline=None)
+    settings = settings(max_examples=500, stateful_step_count=60)
 
 
 def test_a_hundred_added_bodies_are_compiled_once():

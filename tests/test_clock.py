@@ -7,8 +7,10 @@ import sys
 import threading
 import time
 import weakref
+from types import SimpleNamespace
 
 import pytest
+from waiting import PATIENCE, await_that
 
 import ravemj
 from ravemj.engine.clock import Clock
@@ -18,14 +20,6 @@ PENDULUM = "models/env.xml"
 
 def time_threads():
     return [thread for thread in threading.enumerate() if thread.name == "simulation time"]
-
-
-def wait_until(condition, seconds=5.0):
-    """Wait for something that takes milliseconds."""
-    deadline = time.monotonic() + seconds
-    while not condition() and time.monotonic() < deadline:
-        time.sleep(1e-3)
-    return condition()
 
 
 @pytest.fixture
@@ -56,7 +50,7 @@ def test_a_command_lets_time_pass_until_it_is_done(env):
     robot = robot_in(env)
     assert robot.GetController().SetDesired([0.3, -0.3])
     assert not robot.GetController().IsDone()
-    assert robot.WaitForController(5)
+    assert robot.WaitForController(PATIENCE)
     assert env.GetSimulationTime() >= 10_000
 
 
@@ -74,7 +68,7 @@ def test_stopped_time_stands_still_and_steps_by_hand(env):
 def test_start_sets_step_and_pace(env):
     env.StartSimulation(0.5, realtime=False)
     assert env.IsSimulationRunning()
-    assert wait_until(lambda: env.GetSimulationTime() > 5_000_000)
+    await_that(lambda: env.GetSimulationTime() > 5_000_000)
     assert env.GetSimulationTime() % 500_000 == 0
     env.StopSimulation()
     stopped = env.GetSimulationTime()
@@ -82,16 +76,45 @@ def test_start_sets_step_and_pace(env):
     assert env.GetSimulationTime() == stopped
 
 
-def test_real_time_keeps_pace_with_the_wall():
-    steps = []
-    clock = Clock(threading.RLock(), steps.append)
+class Wall(threading.Event):
+    """The clock on the wall, which waiting turns, and what ends the simulation's time, after 100 waits."""
+
+    now, waits = 0.0, 0
+
+    def wait(self, timeout=None):
+        self.now += timeout
+        self.waits += 1
+        return self.is_set()
+
+    def is_set(self):
+        return self.waits > 100
+
+
+@pytest.mark.parametrize(
+    ("usual", "longest", "lost"),
+    [
+        (0.0, 0.0, 0.0),
+        (0.004, 0.0, 0.0),
+        (0.0, 0.09, 0.0),  # a short break is made up for
+        (0.0, 1.0, 0.9),  # a long one is not
+        (0.01, 0.0, 100 * 0.0051),  # steps follow one another as fast as they can
+    ],
+)
+def test_real_time_keeps_pace_with_the_wall(monkeypatch, usual, longest, lost):
+    """Steps of 5 ms take some time on the wall each, and one of them takes longer."""
+    wall, steps = Wall(), []
+    monkeypatch.setattr("ravemj.engine.clock.time", SimpleNamespace(monotonic=lambda: wall.now))
+    monkeypatch.setattr("ravemj.engine.clock.Event", lambda: wall)
+
+    def step(timestep):
+        steps.append(timestep)
+        wall.now += longest if len(steps) == 50 else usual
+
+    clock = Clock(threading.RLock(), step)
     clock.start(0.005, realtime=True)
-    began = time.monotonic()
-    time.sleep(0.2)
-    clock.stop()
-    passed = time.monotonic() - began
-    assert 0.3 * passed < clock.now * 1e-6 < passed + 0.005
-    assert set(steps) == {0.005}
+    await_that(lambda: not time_threads())
+    assert steps == [0.005] * 100
+    assert wall.now - clock.now * 1e-6 == pytest.approx(lost, abs=0.011)
 
 
 @pytest.mark.parametrize("timestep", [-0.01, float("nan"), float("inf")])
@@ -110,7 +133,7 @@ def test_time_stands_still_while_the_environment_is_held(env):
         assert env.GetSimulationTime() == held
         env.StepSimulation(0.25)
         assert env.GetSimulationTime() == held + 250_000
-    assert wait_until(lambda: env.GetSimulationTime() > held + 250_000)
+    await_that(lambda: env.GetSimulationTime() > held + 250_000)
 
 
 def test_stopping_inside_a_locked_block_does_not_hang(env):
@@ -152,7 +175,7 @@ def test_forgotten_environments_leave_no_thread():
         gc.collect()
         return gone() is None and not time_threads()
 
-    assert wait_until(is_gone)
+    await_that(is_gone)
 
 
 def test_a_failing_step_stops_time_with_a_message(caplog):
@@ -161,12 +184,12 @@ def test_a_failing_step_stops_time_with_a_message(caplog):
 
     clock = Clock(threading.RLock(), fail)
     clock.start(0.001, realtime=True)
-    assert wait_until(lambda: "no step of 0.001" in caplog.text)
-    assert wait_until(lambda: not time_threads())
+    await_that(lambda: "no step of 0.001" in caplog.text)
+    await_that(lambda: not time_threads())
     assert clock.now == 0
     caplog.clear()
     clock.wake()
-    assert wait_until(lambda: "no step of 0.001" in caplog.text)
+    await_that(lambda: "no step of 0.001" in caplog.text)
     clock.stop()
 
 
@@ -183,11 +206,11 @@ def test_commands_that_fail_in_the_thread_end_and_the_next_one_runs(env, caplog)
     for _ in range(2):
         robot.SetDOFValues([0, 0])
         controller.SetPath(trajectory)
-        assert robot.WaitForController(60)
-        assert wait_until(lambda: "speed limit" in caplog.text, 60)
+        assert robot.WaitForController(PATIENCE)
+        await_that(lambda: "speed limit" in caplog.text)
         caplog.clear()
     controller.SetDesired([0.1, 0.1])
-    assert robot.WaitForController(60)
+    assert robot.WaitForController(PATIENCE)
 
 
 def test_the_thread_does_not_keep_python_alive():
@@ -200,5 +223,5 @@ while env.GetSimulationTime() == 0:
     time.sleep(0.001)
 print("done")
 """
-    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False)
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert (run.returncode, run.stdout, run.stderr) == (0, "done\n", "")

@@ -9,8 +9,9 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from fuzzing import NUMBERS, time_limit
+from fuzzing import NUMBERS
 from lxml import etree
+from waiting import time_limit
 
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import Diagnostics, RavemjError, RavemjWarning
@@ -92,7 +93,7 @@ class Mutator:
 
 def meaning(data: bytes, deep: bool = False) -> tuple[int, str, list[str]]:
     """Read and translate a document; return how many links it has, what becomes of it, and what is said about it."""
-    with time_limit(10), warnings.catch_warnings():
+    with time_limit(), warnings.catch_warnings():
         warnings.simplefilter("error")
         warnings.simplefilter("ignore", RavemjWarning)
         reading = read_data(data)

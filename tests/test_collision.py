@@ -92,7 +92,7 @@ turns = st.tuples(*[st.floats(-3, 3)] * 3)
 positions = st.tuples(*[st.floats(-2, 2)] * 3)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.tuples(positions, turns, st.tuples(*[st.floats(0.05, 1.0)] * 3)), min_size=2, max_size=7))
 def test_all_pairs_of_boxes_are_found(boxes):
     """Against separating axes, for every pair of bodies, none of which ever moves by a joint."""
@@ -118,7 +118,7 @@ def test_all_pairs_of_boxes_are_found(boxes):
         assert env.CheckCollision(one, other) == (frozenset((one.GetName(), other.GetName())) in expected)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.tuples(positions, st.floats(0.05, 1.0)), min_size=2, max_size=7))
 def test_distances_and_contacts_of_spheres(spheres):
     env = ravemj.Environment()
@@ -136,7 +136,69 @@ def test_distances_and_contacts_of_spheres(spheres):
             np.testing.assert_allclose(contact.norm, np.subtract(p, q) / math.dist(p, q), atol=1e-6)
 
 
-@settings(max_examples=40, deadline=None)
+class TestReportsOfDistances:
+    """Who is nearest, and how near."""
+
+    @pytest.fixture
+    def checker(self, env):
+        checker = env.GetCollisionChecker()
+        checker.SetCollisionOptions(CollisionOptions.Distance)
+        return checker
+
+    def test_name_the_nearest_links(self, env, arm, checker):
+        box(env, "far", (0, 5, 0.3), (0.1, 0.1, 0.1))
+        near = box(env, "near", (2.2, 0, 0.3), (0.05, 0.05, 0.05))
+        report = CollisionReport()
+        assert not env.CheckCollision(arm, report)
+        assert report.minDistance == pytest.approx(2.15 - (1.1 + 0.8 + 0.15), abs=1e-9)
+        assert (report.plink1, report.plink2) == (arm.GetLink("finger"), near.GetLinks()[0])
+        assert (report.pgeom1, report.pgeom2) == (report.plink1.GetGeometries()[0], report.plink2.GetGeometries()[0])
+        (info,) = report.collisionInfos
+        assert info.ExtractFirstBodyLinkGeomNames()[:2] == ("arm", "finger")
+        assert info.ExtractSecondBodyLinkGeomNames()[:2] == ("near", "base")
+        assert (report.numCols, report.vLinkColliding, report.contacts) == (0, [], [])
+
+    def test_name_the_first_argument_first(self, env, arm, checker):
+        thing = box(env, "thing", (2.5, 0, 0.3), (0.05, 0.05, 0.05))
+        report = CollisionReport()
+        for one, other in ((arm, thing), (thing, arm), (arm.GetLink("fore"), thing), (thing, arm.GetLink("upper"))):
+            assert not env.CheckCollision(one, other, report)
+            names = [getattr(part, "GetParent", lambda part=part: part)().GetName() for part in (one, other)]
+            assert [link.GetParent().GetName() for link in (report.plink1, report.plink2)] == names
+            assert 0 < report.minDistance < 3
+
+    def test_of_a_body_to_itself(self, arm, checker):
+        report = CollisionReport()
+        arm.SetDOFValues([0, 2.6, 0])
+        assert not arm.CheckSelfCollision(report)
+        assert {report.plink1.GetName(), report.plink2.GetName()} == {"base", "finger"}
+        assert 0 < report.minDistance < 1
+
+    def test_are_those_of_collisions_where_there_is_one(self, env, arm, checker):
+        wall = box(env, "wall", (1.5, 0, 0.3), (0.1, 0.1, 0.1))
+        report = CollisionReport()
+        assert env.CheckCollision(arm, report)
+        assert (report.minDistance, report.numCols) == (0, 1)
+        assert report.vLinkColliding == [(arm.GetLink("fore"), wall.GetLinks()[0])]
+
+    def test_keep_the_nearest_of_several_questions(self, env, arm, checker):
+        one, other = (box(env, name, (x, 0, 0.3), (0.1, 0.1, 0.1)) for name, x in (("one", 4), ("other", 3)))
+        for order in ([one, other], [other, one]):
+            report = CollisionReport()
+            report.nKeepPrevious = 1
+            for body in order:
+                env.CheckCollision(arm, body, report)
+            assert report.plink2.GetParent() == other
+            assert report.minDistance == pytest.approx(2.9 - 2.05)
+            assert len(report.collisionInfos) == 1
+
+    def test_are_empty_where_there_is_nothing_else(self, env, arm, checker):
+        report = CollisionReport()
+        assert not env.CheckCollision(arm, report)
+        assert (report.minDistance, report.collisionInfos, report.plink1) == (1e20, [], None)
+
+
+@settings(max_examples=40)
 @given(positions, turns, st.tuples(*[st.floats(0.15, 1.0)] * 3))  # too thick to be inside of a leg
 def test_meshes_are_their_triangles(position, turn, half):
     """A box against a U of three boxes, whose hull is no answer."""
@@ -468,7 +530,7 @@ def test_tolerance(env):
         assert report.numWithinTol == count
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(positions, positions, turns, st.tuples(*[st.floats(0.1, 1.0)] * 3))
 def test_rays_at_a_box(start, end, turn, half):
     """Against slabs."""
@@ -570,7 +632,7 @@ def test_thousands_of_bodies(env):
 SHAPES = st.sampled_from(["box", "sphere", "cylinder", "capsule", "trimesh"])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SHAPES, positions, turns, st.tuples(*[st.floats(0.1, 1.0)] * 3))
 def test_bounds_hold_the_shape_tightly(kind, position, turn, sizes):
     """Against many points of the surface."""

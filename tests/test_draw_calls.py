@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import MODELS
 from PIL import Image
+from waiting import PATIENCE
 
 import ravemj
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -195,7 +196,7 @@ def test_threads_draw_and_drop_while_pictures_are_drawn(env):
     finally:
         stop.set()
     for thread in threads:
-        thread.join(10)
+        thread.join(PATIENCE)
         assert not thread.is_alive()
     assert not failures
     gc.collect()
@@ -207,7 +208,7 @@ def test_dropping_a_handle_waits_for_no_lock(env):
     with env:
         thread = threading.Thread(target=lambda: (env.plot3(P, 3), handles.pop()))
         thread.start()
-        thread.join(5)
+        thread.join(PATIENCE)
         assert not thread.is_alive()
     assert drawn(env) == 0
 

@@ -1,13 +1,12 @@
 """Damaged and hostile documents: a scene or a ``RavemjError``, after little work, and nothing on stderr."""
 
 import os
-import threading
 import time
-from pathlib import Path
 
 import pytest
-from fuzzing import MAIN, Fuzzer, Outcome, Trial, parsed, smaller, time_limit
+from fuzzing import MAIN, Fuzzer, Outcome, Trial, parsed, smaller
 from lxml import etree
+from waiting import time_limit
 
 import ravemj
 from ravemj.errors import Diagnostics
@@ -66,10 +65,10 @@ def run(tmp_path, monkeypatch):
     """Read, translate and compile a document."""
     monkeypatch.chdir(tmp_path)
 
-    def run(content: str | bytes, seconds: float = 10.0, **files: str | bytes) -> Outcome:
+    def run(content: str | bytes, **files: str | bytes) -> Outcome:
         named = {MAIN: content, **{f"{name}.xml": text for name, text in files.items()}}
         encoded = {name: text if isinstance(text, bytes) else text.encode() for name, text in named.items()}
-        return Trial(seconds, deep=True).run(encoded)
+        return Trial(deep=True).run(encoded)
 
     return run
 
@@ -141,7 +140,7 @@ class TestHostile:
         (tmp_path / MAIN).write_text(
             body(f"<Body name='A'><Geom type='trimesh'><data>{name}</data></Geom></Body>", f"file='{name}'")
         )
-        with time_limit(10):
+        with time_limit():
             reading = read_file(tmp_path / MAIN)
         assert reading.failure is None
         assert {finding.code for finding in reading.diagnostics} == {"missing-file"}
@@ -159,21 +158,22 @@ class TestHostile:
         (tmp_path / "other.xml").symlink_to(MAIN)
         for name in ("other.xml", "round/main.xml", "round/round/other.xml"):
             (tmp_path / MAIN).write_text(body("", f"file='{name}'"))
-            with time_limit(10):
+            with time_limit():
                 assert "includes itself" in str(read_file(tmp_path / MAIN).failure)
 
     def test_many_bodies_in_linear_time(self, tmp_path):
         def seconds(count: int) -> float:
+            """The time of this thread alone, whatever else the machine does."""
             bodies = "".join(f"<KinBody name='b{i}'><Body name='l'/></KinBody>" for i in range(count))
             (tmp_path / MAIN).write_text(f"<Environment>{bodies}</Environment>")
-            start = time.process_time()
+            start = time.thread_time()
             reading = read_file(tmp_path / MAIN)
             mjcf.write(reading.scene, Diagnostics())
             assert len(reading.scene.bodies) == count
-            return time.process_time() - start
+            return time.thread_time() - start
 
-        seconds(100)
-        assert seconds(4000) < 12 * seconds(1000)
+        few = min(seconds(250) for _ in range(3))
+        assert seconds(4000) < 5 * 16 * few, "in quadratic time it is 256 times as long"
 
 
 THREE = TWO + "<Body name='C'/>" + HINGE.format("")
@@ -242,7 +242,7 @@ class TestFound:
             f"f{i}": f"<KinBody><KinBody file='f{i + 1}.xml'/><KinBody file='f{i + 1}.xml'/></KinBody>"
             for i in range(40)
         }
-        run(body("", "file='f0.xml'"), 30, f40="<KinBody/>", **files)
+        run(body("", "file='f0.xml'"), f40="<KinBody/>", **files)
 
     def test_size_of_the_mjcf_is_linear(self, tmp_path):
         def size(count: int) -> int:
@@ -255,7 +255,7 @@ class TestFound:
         links = "".join(f"<Body name='l{i}'/>" for i in range(1202))
         joint = "<Joint name='j{0}' mimic_pos='{1}'><Body>l0</Body><Body>l{0}</Body></Joint>"
         joints = "".join(joint.format(i, f"j{i + 1}") for i in range(1, 1201))
-        assert run(body(links + joints + joint.format(1201, "").replace("mimic_pos=''", "")), 60).links == 1202
+        assert run(body(links + joints + joint.format(1201, "").replace("mimic_pos=''", ""))).links == 1202
 
     @pytest.mark.parametrize("links", [496, 497])
     def test_long_chains_of_links(self, tmp_path, links):
@@ -294,14 +294,5 @@ class TestFound:
 
     def test_loading_a_pipe(self, tmp_path):
         os.mkfifo(tmp_path / "pipe.xml")
-        answers: list[bool] = []
-        thread = threading.Thread(
-            target=lambda: answers.append(ravemj.Environment().Load(tmp_path / "pipe.xml")), daemon=True
-        )
-        thread.start()
-        thread.join(1)
-        if thread.is_alive():  # let it go
-            Path(tmp_path / "pipe.xml").write_text("<x/>")
-            thread.join(5)
-            pytest.fail("it waits for a writer")
-        assert answers == [False]
+        with time_limit():  # it would wait for a writer
+            assert ravemj.Environment().Load(tmp_path / "pipe.xml") is False

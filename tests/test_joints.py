@@ -1,5 +1,7 @@
 """Joints: their setters, and the graph that they make of the links."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -156,3 +158,120 @@ class TestGraph:
         env.GetKinBody("tree").SetName("larger")
         env.LoadData(TREE.replace("2*r", "3*r"))
         assert env.GetKinBody("tree").GetKinematicsGeometryHash() != plain
+
+
+class TestLinkTransformations:
+    """Poses of links look alike full turns of a hinge apart."""
+
+    CORNERS = (math.pi, -math.pi, 3.1415926, -3.1415926, 3, -3, 9.5, -9.5, 3 * math.pi, 2 * math.pi, 0, 100)
+
+    @pytest.mark.parametrize("angle", CORNERS)
+    @pytest.mark.parametrize("other", [0, 3.1, -3.1, 50])
+    def test_with_joint_values_they_come_back_exactly(self, tree, angle, other):
+        tree.SetDOFValues([0.5, 0.25, angle])
+        transforms, values = tree.GetLinkTransformations(True)
+        tree.SetDOFValues([-0.5, 0, other])
+        tree.SetLinkTransformations(transforms, values)
+        np.testing.assert_allclose(tree.GetDOFValues(), [0.5, 0.25, angle], atol=1e-12)
+        np.testing.assert_allclose(tree.GetLinkTransformations(), transforms, atol=1e-12)
+
+    @pytest.mark.parametrize("last", CORNERS)
+    @pytest.mark.parametrize("angle", CORNERS)
+    def test_a_hinge_gets_the_value_next_to_the_given_one(self, tree, angle, last):
+        tree.SetDOFValues([0, 0, angle])
+        transforms = tree.GetLinkTransformations()
+        tree.SetLinkTransformations(transforms, doflastsetvalues=[0, 0, last])
+        value = tree.GetDOFValues()[2]
+        assert abs(value - last) <= math.pi + 1e-6
+        np.testing.assert_allclose(np.exp(1j * value), np.exp(1j * angle), atol=1e-9)
+
+    def test_without_joint_values_a_hinge_goes_on_from_where_it_is(self, tree):
+        """OpenRAVE's rule for all values that it reads off poses: next to the last one."""
+        poses = []
+        for angle in np.linspace(-10, 10, 41):
+            tree.SetDOFValues([angle / 4, 0, angle])
+            poses.append(tree.GetLinkTransformations())
+        tree.SetDOFValues([-2.5, 0, -10])
+        for angle, transforms in zip(np.linspace(-10, 10, 41), poses, strict=True):
+            tree.SetLinkTransformations(transforms)
+            np.testing.assert_allclose(tree.GetDOFValues(), [angle / 4, 0, angle], atol=1e-12)
+
+    def test_turns_are_kept_also_before_anything_is_compiled(self, env, tree):
+        tree.SetDOFValues([0.5, 0.25, 9])
+        transforms, values = tree.GetLinkTransformations(True)
+        tree.SetDOFValues([0, 0, 0])
+        env.LoadData('<KinBody name="another"><Body name="b"/></KinBody>')
+        tree.SetLinkTransformations(transforms, values)
+        np.testing.assert_allclose(tree.GetDOFValues(), [0.5, 0.25, 9], atol=1e-12)
+
+    def test_joint_values_of_a_body_outside_of_the_environment_are_refused(self, env, tree):
+        transforms, values = tree.GetLinkTransformations(True)
+        env.Remove(tree)
+        tree.SetLinkTransformations(transforms)
+        with pytest.raises(ravemj.openrave_exception) as caught:
+            tree.SetLinkTransformations(transforms, values)
+        assert caught.value.GetCode() == "NotInitialized"
+
+
+POLYNOMIAL = """<Environment><KinBody name="m">
+  <Body name="r"/><Body name="a"/><Body name="b"/><Body name="c"/>
+  <Joint name="lead"><Body>r</Body><Body>a</Body><axis>0 1 0</axis><limitsrad>-1 1.5</limitsrad></Joint>
+  <Joint name="follow" mimic_pos="polyroots2(1,1,-1-lead)"><Body>r</Body><Body>b</Body><axis>0 1 0</axis>
+  <limitsrad>%s</limitsrad></Joint>
+  <Joint name="after" mimic_pos="2*follow"><Body>b</Body><Body>c</Body><axis>0 0 1</axis><limitsrad>-9 9</limitsrad>
+  </Joint></KinBody></Environment>"""
+
+
+@pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
+class TestEquationsWithSeveralValues:
+    """OpenRAVE's answers in the case ``name-33-polyroots``: the first root within the limits."""
+
+    @staticmethod
+    def roots(lead):
+        square = np.sqrt(1.25 + lead)
+        return -0.5 - square, -0.5 + square
+
+    @pytest.fixture
+    def body(self, env, request):
+        env.LoadData(POLYNOMIAL % getattr(request, "param", "0 3"))
+        return env.GetKinBody("m")
+
+    def expected(self, body, lead):
+        (lower,), (upper,) = body.GetJoint("follow").GetLimits()
+        return next((root for root in self.roots(lead) if lower <= root <= upper), None)
+
+    @pytest.mark.parametrize("body", ["0 3", "-3 3", "-3 0"], indirect=True)
+    def test_where_the_joint_is(self, body):
+        assert body.GetJoint("follow").GetValue() == pytest.approx(self.expected(body, 0), abs=1e-9)  # when loaded
+        for lead in (0, 0.2, 0.5, 1, 1.4):
+            body.SetDOFValues([lead])
+            expected = self.expected(body, lead)
+            assert body.GetJoint("follow").GetValue() == pytest.approx(expected, abs=1e-9)
+            assert body.GetJoint("after").GetValue() == pytest.approx(2 * expected, abs=1e-9)
+            poses = body.batch_link_transforms([[lead], [0.1]])
+            np.testing.assert_allclose(poses[0], body.link_transforms(), atol=1e-9)
+
+    @pytest.mark.parametrize("body", ["0 3", "-3 0"], indirect=True)
+    def test_how_fast_it_moves(self, body):
+        link, point = body.GetLink("c"), [0.3, 0.2, 0.1]
+        body.SetDOFValues([0.4])
+        local = np.linalg.inv(link.GetTransform()) @ [*point, 1]
+        slope = body.ComputeJacobianTranslation(link.GetIndex(), point)[:, 0]
+        ends = []
+        for lead in (0.4 - 1e-6, 0.4 + 1e-6):
+            body.SetDOFValues([lead])
+            ends.append((link.GetTransform() @ local)[:3])
+        np.testing.assert_allclose(slope, (ends[1] - ends[0]) / 2e-6, atol=1e-6)
+
+    def test_other_limits_choose_another_root(self, body):
+        for lower, upper in ((0, 3), (-3, 0), (-3, 3)):
+            body.GetJoint("follow").SetLimits([lower], [upper])
+            body.SetDOFValues([0.5])
+            assert body.GetJoint("follow").GetValue() == pytest.approx(self.expected(body, 0.5), abs=1e-9)
+            jacobian = body.ComputeJacobianAxisAngle(2)[1, 0]
+            assert jacobian == pytest.approx(1 / (2 * self.expected(body, 0.5) + 1))
+
+    def test_without_a_root_there_it_stops_at_a_limit(self, body):
+        body.GetJoint("follow").SetLimits([1], [2])
+        body.SetDOFValues([0.5])
+        assert body.GetJoint("follow").GetValue() == 1

@@ -29,6 +29,17 @@ def seen_colour(env):
     return env.render(32, 32, camera=camera, background=[0, 0, 0])[16, 16].astype(int)
 
 
+def cylinder(turn):
+    """A link of one cylinder and its mass; OpenRAVE's XML lays the cylinder along y of its element."""
+    rotation = f"<RotationAxis>{turn}</RotationAxis>" if turn else ""
+    shape = f"<radius>0.1</radius><height>0.4</height>{rotation}<Translation>0 0 0.3</Translation>"
+    body = ravemj.Environment().ReadKinBodyData(
+        f"""<KinBody name="k"><Body name="b"><Mass type="mimicgeom"><density>100</density></Mass>
+        <Geom type="cylinder">{shape}</Geom></Body></KinBody>"""
+    )
+    return body.GetLinks()[0]
+
+
 class TestMass:
     def test_inverse_dynamics_uses_what_was_set(self, robot, env):
         before, model = robot.ComputeInverseDynamics(None), env.model
@@ -65,6 +76,23 @@ class TestMass:
         np.testing.assert_allclose(link.GetPrincipalMomentsOfInertia(), [0.3, 0.1, 0.2], atol=1e-12)
         np.testing.assert_allclose(link.GetLocalMassFrame(), T, atol=1e-12)
         np.testing.assert_allclose(np.linalg.eigvalsh(link.GetLocalInertia()), [0.1, 0.2, 0.3], atol=1e-12)
+
+    @pytest.mark.parametrize("turn", ["", "1 0 0 90", "0 0 1 90", "0 1 0 -90", "1 0 0 270", "1 1 0 180"])
+    def test_frame_of_a_cylinder_has_the_axes_of_its_link(self, turn):
+        """Also where the quarter turns of the cylinder leave rounding in its tensor."""
+        link = cylinder(turn)
+        axis = np.abs(link.GetGeometries()[0].GetTransform()[:3, 2]).round()
+        expected = np.where(axis == 1, 0.5 * 0.01, 0.25 * 0.01 + 0.16 / 12) * link.GetMass()
+        np.testing.assert_allclose(link.GetLocalMassFrame(), matrixFromPose([1, 0, 0, 0, 0, 0, 0.3]), atol=1e-9)
+        np.testing.assert_allclose(link.GetPrincipalMomentsOfInertia(), expected, rtol=1e-9)
+
+    def test_frame_of_a_turned_cylinder_has_its_axis(self):
+        link = cylinder("1 2 3 40")
+        moments, T = link.GetPrincipalMomentsOfInertia(), link.GetLocalMassFrame()
+        axis = T[:3, moments.argmin()]
+        assert abs(axis @ link.GetGeometries()[0].GetTransform()[:3, 2]) == pytest.approx(1)
+        assert np.linalg.det(T) == pytest.approx(1)
+        np.testing.assert_allclose(T[:3, :3] @ np.diag(moments) @ T[:3, :3].T, link.GetLocalInertia(), atol=1e-12)
 
     @pytest.mark.parametrize(
         "call",
@@ -145,8 +173,36 @@ class TestShapes:
         assert world.Triangulate(body).vertices.max() == 3
         corners = world.model.mesh_vert
         assert np.linalg.norm(corners[:, None] - corners, axis=2).max() == pytest.approx(3 * 2**0.5)
-        with pytest.raises(ravemj.openrave_exception, match="Box"):
-            box(world).GetLinks()[0].GetGeometries()[0].SetCollisionMesh(MESH)
+
+    def test_a_mesh_set_for_another_shape_is_the_one_that_scripts_get(self, world):
+        body = box(world)
+        link = body.GetLinks()[0]
+        geometry = link.GetGeometries()[0]
+        before, bounds = geometry.GetCollisionMesh(), body.ComputeAABB().extents()
+        far = ravemj.TriMesh(MESH.vertices + np.array([9, 0, 0]), MESH.indices)
+        geometry.SetCollisionMesh(far)
+        copy = ravemj.RaveCreateKinBody(world, "")
+        copy.InitFromGeometries([geometry.GetInfo()])
+        for one in (geometry, copy.GetLinks()[0].GetGeometries()[0]):
+            assert one.GetType() == ravemj.GeometryType.Box
+            np.testing.assert_array_equal(one.GetCollisionMesh().vertices, far.vertices)
+            np.testing.assert_array_equal(one.GetCollisionMesh().indices, far.indices)
+            np.testing.assert_array_equal(one.GetBoxExtents(), geometry.GetBoxExtents())
+        np.testing.assert_array_equal(link.GetCollisionData().vertices[:, 0].min(), 9)
+        assert world.Triangulate(body).vertices[:, 0].min() == 9
+        np.testing.assert_array_equal(body.ComputeAABB().extents(), bounds)
+        ray = ravemj.Ray([9.1, 0.1, 5], [0, 0, -10])
+        assert not world.CheckCollision(ray)
+        assert geometry.InitCollisionMesh()
+        np.testing.assert_array_equal(geometry.GetCollisionMesh().vertices, before.vertices)
+
+    @pytest.mark.parametrize("wrong", [None, 3, ravemj.TriMesh([[0, 0, 0]], [[0, 1, 2]])])
+    def test_a_wrong_mesh_changes_nothing(self, world, wrong):
+        geometry = box(world).GetLinks()[0].GetGeometries()[0]
+        before = geometry.GetCollisionMesh()
+        with pytest.raises(ravemj.openrave_exception):
+            geometry.SetCollisionMesh(wrong)
+        np.testing.assert_array_equal(geometry.GetCollisionMesh().vertices, before.vertices)
 
     def test_groups_can_be_swapped_in(self, world):
         link = box(world).GetLinks()[0]

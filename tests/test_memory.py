@@ -5,12 +5,12 @@ import gc
 import itertools
 import sys
 import threading
-import time
 import warnings
 import weakref
 from pathlib import Path
 
 import pytest
+from waiting import await_that
 
 import ravemj
 
@@ -175,10 +175,10 @@ def test_forgotten_environments_go_with_their_threads(monkeypatch):
 
     before = set(threading.enumerate())
     references = use()
-    deadline = time.monotonic() + 10
-    while set(threading.enumerate()) - before and time.monotonic() < deadline:
+
+    def are_gone():
         gc.collect()
-        time.sleep(0.01)
-    gc.collect()
-    assert not set(threading.enumerate()) - before
+        return not set(threading.enumerate()) - before
+
+    await_that(are_gone, "threads stay")
     assert [reference() for reference in references] == [None, None]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from waiting import PATIENCE
 
 from ravemj.errors import SourceError
 from ravemj.formats.meshes import cache, collision_form, read_mesh, reading
@@ -394,7 +395,7 @@ def test_many_processes_at_once(tmp_path):
     workers = [context.Process(target=_many_reads, args=(str(tmp_path), mesh, results)) for _ in range(2)]
     for worker in workers:
         worker.start()
-    digests = [results.get(timeout=60) for _ in workers]
+    digests = [results.get(timeout=PATIENCE) for _ in workers]
     for worker in workers:
         worker.join()
         assert worker.exitcode == 0

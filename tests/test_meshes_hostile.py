@@ -1,7 +1,6 @@
 """Files that mean harm, or were merely damaged: a SourceError and nothing else, after little work."""
 
 import gzip
-import time
 import warnings
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from waiting import time_limit
 
 from ravemj.errors import SourceError
 from ravemj.formats.meshes import MESH_SUFFIXES, files, read_mesh
@@ -32,14 +32,12 @@ def _no_cache(monkeypatch):
 
 @pytest.fixture
 def refused(tmp_path):
-    """Write a file; reading it has to fail soon."""
+    """Write a file; reading it has to fail, after little work."""
 
     def refused(name, text, match="."):
         (tmp_path / name).write_bytes(text if isinstance(text, bytes) else text.encode())
-        start = time.monotonic()
-        with pytest.raises(SourceError, match=match):
+        with time_limit(), pytest.raises(SourceError, match=match):
             read_mesh(str(tmp_path / name))
-        assert time.monotonic() - start < 60
 
     return refused
 
@@ -76,7 +74,7 @@ def damaged(name, edits):
     survives(name, bytes(data))
 
 
-calm = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+calm = settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 PLACES = st.floats(0, 1, exclude_max=True)
 
 
@@ -155,11 +153,9 @@ def test_repeated_files(tmp_path, refused):
     for number in range(40):
         inner = f'Inline {{ url "{number - 1}.wrl" }} ' * 2 if number else "Shape { geometry Box { } }"
         (tmp_path / f"{number}.wrl").write_text(f"#VRML V2.0 utf8\n{inner}")
-    start = time.monotonic()
     refused(
         "all.wrl", '#VRML V2.0 utf8\nInline { url "39.wrl" } ' * 3 + "Shape { geometry Box { } }", "too often|triangles"
     )
-    assert time.monotonic() - start < 60
 
 
 def test_repeated_collada_nodes(refused):
@@ -207,6 +203,5 @@ def test_many_corners_are_cut_in_time(tmp_path):
     points = "".join(f"v {x:.3f} {y:.3f} {z:.3f}\n" for x, y, z in rng.normal(size=(5000, 3)))
     faces = "".join("f " + " ".join(map(str, rng.integers(1, 5001, 400))) + "\n" for _ in range(8))
     (tmp_path / "tangle.obj").write_text(points + faces)
-    start = time.monotonic()
-    assert read_mesh(str(tmp_path / "tangle.obj"))
-    assert time.monotonic() - start < 60
+    with time_limit():
+        assert read_mesh(str(tmp_path / "tangle.obj"))

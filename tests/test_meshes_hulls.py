@@ -140,7 +140,7 @@ def test_welding_joins_equal_corners_only():
     assert len(weld(np.zeros((0, 3, 3))).vertices) == 0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(st.floats(0.2, 1), min_size=4, max_size=40),
     st.sampled_from([np.eye(3), np.eye(3)[[1, 2, 0]], -np.eye(3)[[0, 2, 1]]]),
@@ -159,7 +159,7 @@ def test_ears_of_star_shaped_polygons(radii, axes):
     assert whole.shape == (3,)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=1, max_size=30))
 def test_any_polygon_is_cut_somehow(points):
     polygon = np.array(points, float)

@@ -16,7 +16,7 @@ from ravemj.trajectories.motion import Motion, read_motion
 
 JOINTS = ["Arm0", "Arm1", "Slider"]
 CURRENT = [0.1, 0.2, 0.3]
-FILES = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=150)
+FILES = settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 
 finite = st.floats(-1e6, 1e6)
 

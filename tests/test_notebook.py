@@ -13,6 +13,7 @@ from browsers import NEEDS_A_BROWSER
 from conftest import MODELS
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
+from waiting import PATIENCE
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
@@ -110,7 +111,7 @@ def test_pages_of_the_notebooks_server_only_are_let_in(proxied, env, headers, or
     if is_let_in:
         with come() as connection:
             connection.send('{"type": "ready"}')
-            assert "camera" in connection.recv(20)
+            assert "camera" in connection.recv(PATIENCE)
     else:
         with pytest.raises(InvalidStatus, match="403"):
             come()

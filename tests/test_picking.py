@@ -91,7 +91,7 @@ numbers = st.floats(-1, 1, allow_subnormal=False)
 
 
 @pytest.mark.parametrize("kind", SHAPES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(arrays(float, 3, elements=numbers), arrays(float, 3, elements=numbers))
 def test_rays_meet_every_shape_where_it_begins(kind, aside, towards):
     away = np.linalg.norm(aside)

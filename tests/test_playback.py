@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from test_interaction import SIZE, Hand
+from waiting import PATIENCE
 
 import ravemj
 from ravemj.errors import ArgumentError
@@ -259,7 +260,7 @@ def test_scripts_and_the_viewer_share_the_playback(viewer):
         playback.step(-3)
         playback.play()
     for thread in threads:
-        thread.join(10)
+        thread.join(PATIENCE)
         assert not thread.is_alive()
     assert not wrong
 
@@ -493,14 +494,14 @@ def test_the_label_of_a_control_is_shown_under_the_pointer(panel):
 
 def test_notices_go_away_by_themselves(panel):
     notices = panel.gui.controls.notices
-    notices.say("Saved a.png", 5)
-    notices.say("Saved b.png", 50)
+    notices.say("Saved a.png", 500)
+    notices.say("Saved b.png", 5000)
     now = time.monotonic()
     assert panel.lines() == ("Saved a.png", "Saved b.png")
     before = panel.gui.version
     panel.gui.pass_time(now + 1)
     assert panel.gui.version == before
-    panel.gui.pass_time(now + 6)
+    panel.gui.pass_time(now + 600)
     assert panel.gui.version > before
     assert panel.gui.overlay().lines == ("Saved b.png",)
 

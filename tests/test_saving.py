@@ -5,13 +5,16 @@ import re
 import threading
 import time
 import weakref
+from types import SimpleNamespace
 
 import imageio.v3
 import numpy as np
 import pytest
 from command_line import colour_of
+from waiting import PATIENCE, await_that
 
 import ravemj
+from ravemj.gui.viewers import recorder
 from ravemj.gui.viewers.recorder import FrameSource, free_path
 
 SIZE = 320, 240
@@ -39,11 +42,8 @@ def record(viewer) -> None:
 
 def wait_for(viewer) -> str:
     """Wait until something is saved, and return what the viewer says about it."""
-    end = time.monotonic() + 30
     notices = viewer.interaction.controls.notices
-    while notices.recording or not notices.lines:
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    await_that(lambda: notices.lines and not notices.recording)
     return notices.lines[-1]
 
 
@@ -101,22 +101,33 @@ def test_a_video_of_a_motion_has_each_frame_at_its_time(viewer, robot, tmp_path)
     assert not viewer.playback.playing
 
 
-def test_without_a_motion_a_video_is_what_happens_until_it_is_stopped(viewer, robot, tmp_path):
+class Clock(threading.Event):
+    """A clock that waiting turns, in no time."""
+
+    now = 0.0
+
+    def wait(self, timeout=None):
+        self.now += timeout or 0
+        return self.is_set()
+
+
+def test_without_a_motion_a_video_is_what_happens_until_it_is_stopped(viewer, robot, tmp_path, monkeypatch):
+    clock = viewer._saving._stop = Clock()
+    monkeypatch.setattr(recorder, "time", SimpleNamespace(monotonic=lambda: clock.now, strftime=time.strftime))
     notices = viewer.interaction.controls.notices
-    start = time.monotonic()
     record(viewer)
     assert notices.recording
     assert viewer.interaction.controls.all()[1].label == "Stop recording"
-    time.sleep(0.5)
+    await_that(lambda: clock.now > 0.5)
     robot.SetDOFValues([np.pi, 0])
-    time.sleep(0.5)
+    seen = clock.now
+    await_that(lambda: clock.now > seen + 0.5)
     assert list(tmp_path.glob("*.mp4")) == []
     record(viewer)
     wait_for(viewer)
-    took = time.monotonic() - start
     (file,) = tmp_path.iterdir()
     video = imageio.v3.imread(file)
-    assert 10 <= len(video) <= 30 * took + 2
+    assert len(video) == pytest.approx(30 * clock.now, abs=2)
     assert shows(viewer, video[0], 0.0)
     assert shows(viewer, video[-1], np.pi)
     assert viewer.interaction.controls.all()[1].label == "Record a video (MP4)"
@@ -125,15 +136,15 @@ def test_without_a_motion_a_video_is_what_happens_until_it_is_stopped(viewer, ro
 def test_another_motion_ends_a_video(viewer, tmp_path):
     viewer.play(ravemj.Motion.line([0, 0], [np.pi, 0], 600.0))
     record(viewer)
-    while not viewer.playback.time > 0.1:
-        time.sleep(0.01)
+    await_that(lambda: viewer.playback.time > 0.1)
     viewer.play(SWING)
     wait_for(viewer)
     (file,) = tmp_path.iterdir()
-    assert 3 <= len(imageio.v3.imread(file)) < 600
+    assert 3 <= len(imageio.v3.imread(file)) < 30 * 600
 
 
-def test_a_viewer_that_closes_ends_its_video_and_leaves_whole_files(viewer, tmp_path):
+def test_a_viewer_that_closes_ends_its_video_and_leaves_whole_files(viewer, tmp_path, monkeypatch):
+    monkeypatch.setattr(recorder, "_LONGEST_END", PATIENCE)
     record(viewer)
     time.sleep(0.2)
     viewer._recorder.save_picture(look(viewer))
@@ -153,9 +164,10 @@ def test_a_video_does_not_keep_a_forgotten_environment(models, tmp_path, monkeyp
     time.sleep(0.2)
     reference = weakref.ref(env)
     del env
-    end = time.monotonic() + 20
-    while reference() is not None or any(thread.name == "ravemj saving" for thread in threading.enumerate()):
+
+    def is_gone():
         gc.collect()
-        assert time.monotonic() < end
-        time.sleep(0.05)
+        return reference() is None and not any(thread.name == "ravemj saving" for thread in threading.enumerate())
+
+    await_that(is_gone)
     assert len(list(tmp_path.glob("*.mp4"))) == 1

@@ -1,20 +1,12 @@
 """Scripts as users of OpenRAVE wrote them, of its version 0.9 and later ones: each runs, and its answer is right.
 
 What a script prints is compared with what follows from the sizes of its models: words as they are, numbers at 1e-6.
-Most scripts run in a process forked from this one, some by the command ``ravemj run``.
 """
 
 import ast
-import contextlib
 import math
-import os
 import re
 import shutil
-import signal
-import subprocess
-import sys
-import time
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -22,24 +14,9 @@ import pytest
 from command_line import ravemj_command
 from conftest import MODELS
 
-from ravemj.cli import main
-
 SCRIPTS = Path(__file__).parent / "scripts"
 NAMES = sorted(path.stem for path in SCRIPTS.glob("*.py"))
 NEIGHBOURS = {"homework2_utils"}
-BY_COMMAND = {
-    "camera",
-    "exceptions",
-    "homework2_py2",
-    "new_names",
-    "old_names",
-    "play_trajectory",
-    "plotting",
-    "sensors",
-    "uncaught",
-}
-PATIENCE = 60
-
 UPPER, FORE, TOOL, HEIGHT = 0.4, 0.3, 0.08, 0.3
 """Lengths of the arm, and how high it is [m]."""
 
@@ -145,40 +122,6 @@ def folder(tmp_path) -> Path:
     return tmp_path
 
 
-def forked(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run ``ravemj ARGUMENTS`` in a folder, in a process forked from this one."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # the threads that others started sleep
-        child = os.fork()
-    if child == 0:
-        _be_the_command(folder, arguments)
-    deadline = time.monotonic() + PATIENCE
-    while (ended := os.waitpid(child, os.WNOHANG)) == (0, 0):
-        if time.monotonic() > deadline:
-            os.kill(child, signal.SIGKILL)
-            os.waitpid(child, 0)
-            raise TimeoutError
-        time.sleep(0.01)
-    texts = [(folder / name).read_text() for name in ("stdout", "stderr")]
-    return subprocess.CompletedProcess(arguments, os.waitstatus_to_exitcode(ended[1]), *texts)
-
-
-def _be_the_command(folder: Path, arguments: tuple[str, ...]) -> None:
-    """Never returns."""
-    status = 70
-    with contextlib.suppress(BaseException):
-        os.chdir(folder)
-        for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
-            os.environ.pop(variable, None)
-        warnings.resetwarnings()
-        with Path("stdout").open("w") as sys.stdout, Path("stderr").open("w") as sys.stderr:
-            try:
-                status = main(list(arguments))
-            except SystemExit as end:
-                status = int(end.code or 0)
-    os._exit(status)
-
-
 def words(text: str) -> list[list[str]]:
     """The words of each line, without brackets and commas around them."""
     return [re.sub(r"[\[\](),]", " ", line).split() for line in text.splitlines()]
@@ -206,12 +149,10 @@ def agree(text: str, expected: str) -> bool:
     )
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in NEIGHBOURS])
 def test_script(name, folder):
     options = ["--py2"] if name.endswith("_py2") else []
-    run = ravemj_command if name in BY_COMMAND else forked
-    done = run(folder, "run", *options, f"{name}.py")
+    done = ravemj_command(folder, "run", *options, f"{name}.py")
     assert done.returncode == STATUS.get(name, 0), done.stderr
     assert agree(done.stdout, EXPECTED[name]), done.stdout
     assert re.search(ERRORS.get(name, ""), done.stderr, re.MULTILINE)
@@ -222,7 +163,7 @@ def test_script(name, folder):
 def test_there_are_enough_scripts_and_each_says_what_it_prints():
     assert len(EXPECTED) >= 30
     assert set(EXPECTED) == set(NAMES) - NEIGHBOURS
-    assert set(BY_COMMAND) | set(STATUS) | set(ERRORS) <= set(EXPECTED)
+    assert set(STATUS) | set(ERRORS) <= set(EXPECTED)
 
 
 def test_texts_agree_when_words_and_numbers_do():
@@ -247,13 +188,13 @@ def test_examples_take_options(folder):
 
 
 def test_the_files_of_trajectories_are_openraves(folder):
-    assert forked(folder, "run", "trajectory_file.py").returncode == 0
+    assert ravemj_command(folder, "run", "trajectory_file.py").returncode == 0
     assert (folder / "mine.xml").read_text().startswith("<trajectory")
     assert b"joint_velocities" in (folder / "mine.traj").read_bytes()
 
 
 def test_scripts_of_python_2_say_so(folder):
-    done = forked(folder, "run", "homework2_py2.py")
+    done = ravemj_command(folder, "run", "homework2_py2.py")
     assert done.returncode == 1
     assert "--py2" in done.stderr
 

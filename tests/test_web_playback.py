@@ -6,8 +6,9 @@ import re
 import imageio.v3
 import numpy as np
 import pytest
-from browsers import NEEDS_A_BROWSER, SIZE, Desk, await_that
+from browsers import NEEDS_A_BROWSER, SIZE, Desk
 from conftest import MODELS
+from waiting import await_that
 
 import ravemj
 
@@ -179,7 +180,7 @@ def test_a_picture_is_downloaded_as_it_is_seen_without_buttons(desk):
 def test_a_video_is_written_into_the_working_folder(desk, tmp_path):
     desk.viewer.play(ravemj.Motion.line([0, 0], [2.0, -1.0], 0.3))
     button(desk, "MP4").click()
-    await_that(lambda: list(tmp_path.glob("*.mp4")), "there is no video", seconds=30)
+    await_that(lambda: list(tmp_path.glob("*.mp4")), "there is no video")
     (file,) = tmp_path.iterdir()
     assert imageio.v3.imread(file).shape == (10, SIZE[1], SIZE[0], 3)
     await_that(lambda: f"Saved {file.name} in {tmp_path}" in desk.page.inner_text("#text"), "the page does not say it")

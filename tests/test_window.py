@@ -12,7 +12,8 @@ from command_line import (
     on_terminal,
     ravemj_command,
 )
-from screens import NEEDS_A_SCREEN, Display, Started, await_that
+from screens import NEEDS_A_SCREEN, Display, Started
+from waiting import await_that
 
 pytestmark = NEEDS_A_SCREEN
 PLAY = ("-m", "ravemj", "play", "env.xml", "--camera", "camera.json", "--background", "1,1,0")
@@ -20,16 +21,14 @@ BACKGROUND = (255, 255, 0)
 
 
 def test_play_opens_a_window_moves_and_stays_until_it_is_closed(display, folder):
-    rests = [(0, 0), (1, 0), (1.5, np.pi / 2), (2, np.pi / 2), (2.5, np.pi)]
+    rests = [(0, 0), (2, 0), (2.5, np.pi / 2), (4.5, np.pi / 2), (5, np.pi)]
     (folder / "rests.csv").write_text("time,Joint0\n" + "\n".join(f"{time},{angle}" for time, angle in rests))
     with Started(display, folder, *PLAY, "--trajectory", "rests.csv") as command:
         window = display.await_window()
-        opened = time.monotonic()
         first = display.await_pose(window, "hanging")
         assert np.abs(np.median(first[:20, :20], axis=(0, 1)) - BACKGROUND).max() <= 1
         display.await_pose(window, "level")
         display.await_pose(window, "upright")
-        assert 1.5 <= time.monotonic() - opened <= 20, "2.5 s of motion are played in real time"
         await_that(lambda: is_still(display, window), "it does not come to rest")
         assert command.runs
         display.await_pose(window, "upright")
@@ -46,7 +45,7 @@ def is_still(display: Display, window: int) -> bool:
 
 
 def test_play_ends_by_ctrl_c_and_by_closing_while_it_moves(display, folder):
-    with Started(display, folder, *PLAY, "--duration", "60") as command:
+    with Started(display, folder, *PLAY, "--duration", "6000") as command:
         display.await_pose(display.await_window(), "hanging")
         command.process.send_signal(signal.SIGINT)
         assert command.end() == (130, "", "ravemj: interrupted\n")
@@ -69,13 +68,14 @@ def test_play_with_an_output_opens_no_window(display, folder):
 
 
 def test_the_tutorials_script_shows_a_window_and_finishes(display, folder):
+    colours = set()
     for _ in range(4):  # the window is there for a second, which a busy machine may miss
         with Started(display, folder, "-m", "ravemj", "run", "myscript.py") as command:
-            colours = colours_while_it_runs(display, command)
+            colours |= colours_while_it_runs(display, command)
             assert command.end() == (0, PRINTED_BY_THE_SCRIPT, "")
-        if colours:
-            break
-    assert {"red", "blue"} <= colours
+        if {"red", "blue"} <= colours:
+            return
+    pytest.fail(f"only {colours} was seen")
     await_that(lambda: not display.windows(), "the window stays")
 
 
@@ -120,12 +120,10 @@ for env in envs:
 first = envs[0].GetViewer()
 envs[0].SetViewer('qtosg')
 print(first.is_open, [env.GetViewer().is_open for env in envs], first is envs[0].GetViewer())
-start = time.monotonic()
 for step in range(50):
     for env in envs:
         env.GetRobots()[0].SetDOFValues([step / 25, 0])
     time.sleep(0.01)
-print(time.monotonic() - start < 5)
 for env in envs:  # beside its window, each draws pictures
     print(env.render(64, 48).std() > 1, env.GetViewer().render(64, 48).std() > 1)
 input()
@@ -135,7 +133,7 @@ envs[1].Destroy()
 input()
 """)
     terminal = on_terminal(folder, "-m", "ravemj", "run", "two.py", DISPLAY=display.name)
-    terminal.expect(r"False \[True, True\] False\r?\nTrue\r?\nTrue True\r?\nTrue True")
+    terminal.expect(r"False \[True, True\] False\r?\nTrue True\r?\nTrue True")
     for count in (2, 1, 0):
         await_that(lambda count=count: len(display.windows()) == count, f"there are not {count} windows")
         terminal.sendline("")

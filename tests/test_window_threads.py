@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from command_line import finish, on_terminal
 from desk import ASLANT, DISTANCE, SIZE
-from screens import NEEDS_A_SCREEN, await_that
+from screens import NEEDS_A_SCREEN
+from waiting import await_that
 
 import ravemj
 from ravemj.graphics.rendering import Camera
@@ -24,22 +25,13 @@ env.Add(box)
 box.SetTransform([1, 0, 0, 0, 0.2, -0.05, 0.05])
 """
 SCRIPT = """
-import sys, threading, time
+import threading, time
 import numpy as np
 import ravemj
 from ravemj.gui.interaction import Key
 env = ravemj.load('env.xml')
 robot = env.GetRobots()[0]
 BOX
-def run(seconds):
-    count, start = 0, time.monotonic()
-    while time.monotonic() < start + seconds:
-        angle = np.sin(time.monotonic())
-        robot.SetDOFValues([angle, -2 * angle])
-        count += 1
-        time.sleep(0.01)
-    return count / (time.monotonic() - start)
-
 def turn(T_one, T_other):
     rotation = T_one[:3, :3].T @ T_other[:3, :3]
     return np.arctan2(rotation[1, 0], rotation[0, 0])
@@ -64,7 +56,12 @@ def draw():
         pictures[0] += other.render(160, 120).std() > 1
         time.sleep(0.2)
 
-alone = run(1.5)
+def wait():
+    input()
+    while np.linalg.norm(box.GetTransform()[:3, 3] - [0.2, -0.05, 0.05]) < 0.005:  # until the user's moves have come
+        time.sleep(0.01)
+    ending.set()
+
 env.SetViewer('window')
 viewer, other = env.GetViewer(), ravemj.RaveCreateViewer(env, 'offscreen')
 viewer.SetSize(*SIZE)
@@ -75,47 +72,50 @@ viewer.EnvironmentSync()
 workers = [threading.Thread(target=work) for work in (look, draw)]
 for worker in workers:
     worker.start()
+threading.Thread(target=wait).start()
+turns, steps = [], 0
+counting = viewer.RegisterViewerThreadCallback(lambda: turns.append(1))
 print('ready', flush=True)
-rate = run(float(sys.argv[1]))
-ending.set()
+while not ending.is_set():
+    angle = np.sin(time.monotonic())
+    robot.SetDOFValues([angle, -2 * angle])
+    steps += 1
+    time.sleep(0.01)
+print('=', steps, len(turns))
 for worker in workers:
-    worker.join(20)
-print('=', sum(worker.is_alive() for worker in workers), torn[:3], looks[0] > 20, pictures[0] > 2)
+    worker.join()
+print('=', torn[:3], looks[0] > 0, pictures[0] > 0)
 print('=', box.GetTransform().tolist())
-env.SetViewer('')
-alone = min(alone, run(1.5))
-print('=', rate / alone)
 env.Destroy()
 """
 
 
-@pytest.mark.parametrize("seconds", [5, pytest.param(60, marks=pytest.mark.stress)])
-def test_a_script_a_user_and_another_viewer_at_once(display, folder, seconds):
+@pytest.mark.parametrize("moves", [50, pytest.param(1000, marks=pytest.mark.stress)])
+def test_a_script_a_user_and_another_viewer_at_once(display, folder, moves):
     values = {"BOX": BOX, "SIZE": repr(SIZE), "CAMERA": repr(ASLANT.tolist()), "DISTANCE": repr(DISTANCE)}
     text = SCRIPT
     for name, value in values.items():
         text = text.replace(name, value)
     (folder / "moves.py").write_text(text)
-    terminal = on_terminal(folder, "moves.py", str(seconds), DISPLAY=display.name)
-    terminal.timeout = seconds + 60
+    terminal = on_terminal(folder, "moves.py", DISPLAY=display.name)
     terminal.expect("ready")
     window = display.await_window()
     await_that(lambda: display.picture(window).shape == (SIZE[1], SIZE[0], 3), "the window has another size")
-    drags = drag_about(display, window, seconds - 1)
-    terminal.expect(r"= (\d+) (\[.*?\]) (\w+) (\w+)\r?\n")
-    assert terminal.match.groups() == ("0", "[]", "True", "True")
+    drag_about(display, window, moves)
+    terminal.sendline("")
+    terminal.expect(r"= (\d+) (\d+)\r?\n")
+    steps, turns = map(int, terminal.match.groups())
+    assert steps > turns, "the script has too little time beside its viewers"
+    terminal.expect(r"= (\[.*?\]) (\w+) (\w+)\r?\n")
+    assert terminal.match.groups() == ("[]", "True", "True")
     terminal.expect(r"= (\[\[.*?\]\])")
     moved = np.array(eval(terminal.match[1]))
     np.testing.assert_allclose(moved[:3, :3], np.eye(3), atol=1e-9)
-    assert np.linalg.norm(moved[:3, 3] - [0.2, -0.05, 0.05]) > 0.005
-    assert drags > 5 * (seconds - 1)
-    terminal.expect(r"= (\S+)\r?\n")
-    assert float(terminal.match[1]) >= 0.6, "the script has too little time beside its viewers"
     assert finish(terminal)[1] == 0
 
 
-def drag_about(display, window, seconds) -> int:
-    """Select the box and drag it about for a while; return by how many moves."""
+def drag_about(display, window, moves) -> None:
+    """Select the box and drag it about."""
     env = ravemj.Environment()
     exec(BOX, {"env": env, "ravemj": ravemj})
     box = env.GetKinBody("box")
@@ -130,11 +130,8 @@ def drag_about(display, window, seconds) -> int:
     cube = Cube.around(box._state)
     x, y = at((cube.T_world_cube @ [cube.half[0], 0, 0, 1])[:3])  # the middle of a face
     display.tool(*place, str(x), str(y), "mousedown", "1")
-    count, start = 0, time.monotonic()
-    while time.monotonic() < start + seconds:
-        count += 1
+    for count in range(moves):
         angle = 0.1 * count
         display.tool(*place, str(round(x + 30 * math.sin(angle))), str(round(y + 20 * math.sin(angle))))
         time.sleep(0.02)
     display.tool(*place, str(x + 25), str(y + 15), "mouseup", "1")
-    return count

@@ -58,7 +58,7 @@ def _run(arguments: Sequence[str]) -> int:
         options = make_parser().parse_args(_joined(arguments))
         return options.run(options)
     finally:
-        signals.heed_signals()  # again, where the command has left Ctrl-C to a script
+        signals.heed_signals()  # again, where the command has left them to a script
         sys.stdout.flush()  # here, where its failure can be told
 
 

@@ -30,7 +30,7 @@ def convert(options: argparse.Namespace) -> int:
     if options.output == TO_STANDARD_OUTPUT:
         if mjcf.assets:
             raise OutputError("the model has meshes, which standard output cannot take; write -o FOLDER")
-        sys.stdout.write(marked(mjcf.text, options.model))
+        sys.stdout.buffer.write(marked(mjcf.text, options.model).encode())  # UTF-8, as in a file, on any terminal
         return 0
     write = write_folder if is_folder(options.output) else write_file
     written = write(options.output, options.model, mjcf, env.files)

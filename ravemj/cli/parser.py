@@ -79,7 +79,7 @@ def _add_view(commands: Commands) -> None:
         "view",
         "show a model in a window, or as a page in a browser, and move it with the mouse",
         "ravemj view models/env.xml",
-        "ravemj view --web models/env.xml      # prints the address of the page",
+        "ravemj view --web models/env.xml      # prints the address of the page; Ctrl-C ends it",
         "ravemj view --web --port 8080 robot.xml",
     )
     _add_model(parser)

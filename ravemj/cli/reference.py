@@ -15,9 +15,13 @@ _HEAD = """\
 
 Made by `scripts/docs` from what `ravemj COMMAND --help` says; a test compares.
 
-Results go to standard output, everything else to standard error. Exit codes: 0 done; 1 the input is bad, or the output
-cannot be written; 2 the command was not understood; 130 interrupted. What is wrong with a model is one line with file
-and line number; `--strict` takes warnings for errors. Files and folders that commands write appear whole or not at all.
+Results go to standard output, everything else to standard error; what their encoding lacks is written in ASCII. Exit
+codes: 0 done; 1 the input is bad, or the output cannot be written; 2 the command was not understood; 128 + n ended by
+signal n, as 130 by Ctrl-C and 143 by SIGTERM. What is wrong with a model is one line with file and line number;
+`--strict` takes warnings for errors.
+
+Files and folders that commands write appear whole or not at all. Until they are whole they are called
+`.ravemj-….tmp`; what a process that was killed leaves of them, the next that writes into the folder removes.
 
 | command | |
 |---|---|

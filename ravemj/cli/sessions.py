@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
     main.__file__ = script
     if options.py2:
         python2.install_finder(folder)
-        np.set_printoptions(legacy="1.25")  # lists of numbers print as [1.0], not as [np.float64(1.0)]
+        np.set_printoptions(legacy="1.21")  # lists of numbers print as [1.0], not as [np.float64(1.0)]
     status = _execute(script, main, options.py2)
     if options.interactive:
         main.__dict__.pop("__builtins__", None)  # the prompt is Python 3
@@ -45,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _execute(script: str, main: ModuleType, py2: bool) -> int:
     """Run a script as the main module; what it raises is shown as Python does, and gives 1."""
-    signals.leave_interrupts_to_python()
+    signals.leave_signals_to_python()
     try:
         with open(script, "rb") as file:
             source = file.read()
@@ -88,7 +88,7 @@ def shell(options: argparse.Namespace) -> int:
 def _start_ipython(arguments: list[str], names: Mapping[str, object] | None = None) -> int:
     from IPython import start_ipython  # noqa: PLC0415 - slow to import  # pyright: ignore[reportUnknownVariableType]
 
-    signals.leave_interrupts_to_python()
+    signals.leave_signals_to_python()
     status: object = start_ipython(argv=arguments, user_ns=dict(names or {}))
     return status if isinstance(status, int) else 0
 

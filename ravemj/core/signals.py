@@ -87,10 +87,11 @@ def heed_signals() -> None:
             signal.signal(number, _end)
 
 
-def leave_interrupts_to_python() -> None:
-    """Let Ctrl-C raise ``KeyboardInterrupt`` anywhere, as scripts and people at a prompt expect."""
-    if signal.getsignal(signal.SIGINT) is _end:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+def leave_signals_to_python() -> None:
+    """Let signals do what they do in any Python program, as scripts and people at a prompt expect."""
+    for number in _signals():
+        if signal.getsignal(number) is _end:
+            signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
 
 
 def message(number: int) -> str:
@@ -122,13 +123,4 @@ def _end(number: int, frame: object) -> None:
         os._exit(128 + number)
 
 
-def _leave_children_to_python() -> None:
-    """Let signals end a forked process, which scripts may start, as in any Python program."""
-    for number in _signals():
-        if signal.getsignal(number) is _end:
-            signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_leave_children_to_python)
 heed_signals()

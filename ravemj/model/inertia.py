@@ -34,6 +34,10 @@ class Inertias:
         )
 
 
+_ROUNDING = 1e-12
+"""What is left of the zeros in a tensor, relative to its moments, when its axes were turned by quarters."""
+
+
 def principal_frame(inertial: Inertial) -> Pose:
     """Return the frame of the principal axes at the centre of mass, in the link."""
     return Pose(inertial.com, _axes(inertial))
@@ -54,11 +58,11 @@ def inertial_about(mass: float, T_link_mass: Pose, moments: Floats) -> Inertial:
 
 
 def _axes(inertial: Inertial) -> Wxyz:
-    (_, xy, xz), (_, _, yz), _ = inertial.inertia
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertial.inertia
     if inertial.axes is not None:
         return inertial.axes
-    if xy == xz == yz == 0.0:
-        return UNIT_WXYZ
+    if max(abs(xy), abs(xz), abs(yz)) <= _ROUNDING * max(abs(xx), abs(yy), abs(zz)):
+        return UNIT_WXYZ  # a cylinder's axes in XML, turned a quarter, are those of its link but for rounding
     _, axes = np.linalg.eigh(np.array(inertial.inertia))
     axes[:, 0] *= np.linalg.det(axes)  # a rotation, not a reflection
     return wxyz_from_rows(axes.tolist())

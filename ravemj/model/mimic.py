@@ -183,11 +183,10 @@ class MimicJoints:
 
 
 def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:
-    mimic, axis = joints[index].mimic, joints[index].axes[0]
-    assert mimic is not None
-    assert mimic.expression is not None
+    equation, axis = joints[index].equation, joints[index].axes[0]
+    assert equation is not None
     lower, upper = (-math.inf, math.inf) if axis.circular else (axis.lower, axis.upper)
-    return MimicJoint(index, mimic.expression, _function(mimic.expression, len(joints)), lower, upper)
+    return MimicJoint(index, equation, _function(equation, len(joints)), lower, upper)
 
 
 def _function(expression: "Expression", count: int) -> Callable[[Sequence[float]], float]:

@@ -105,10 +105,10 @@ def _rates(body: KinBody) -> list[Floats]:
             rates[index][:, dof : dof + len(joint.axes)] = np.eye(len(joint.axes))
             dof += len(joint.axes)
     for index in evaluation_order({index: joint.mimic for index, joint in enumerate(joints) if joint.mimic}):
-        mimic = joints[index].mimic
-        if mimic is None or mimic.expression is None:
+        equation = joints[index].equation
+        if equation is None:
             continue
-        for leader in leaders(mimic.expression):
-            slopes = np.abs(mimic.expression.derivative(f"joint{leader}").evaluate_many(samples))
+        for leader in leaders(equation):
+            slopes = np.abs(equation.derivative(f"joint{leader}").evaluate_many(samples))
             rates[index][0] += np.max(slopes, initial=0.0, where=np.isfinite(slopes)) * rates[leader][0]
     return rates

@@ -158,7 +158,8 @@ class CollisionChecker(Interface):
                 return questions.links(world, _key(link), _key(other))
             case (Link() as link, BodyPart() as body) | (BodyPart() as body, Link() as link):
                 self._check_added(link.GetParent(), body)
-                return questions.link_and_body(world, _key(link), _state(body))
+                pairs = questions.link_and_body(world, _key(link), _state(body))
+                return pairs if link is arguments[0] else world.make_pairs(pairs.second, pairs.first)
             case (thing, list() | tuple(), list() | tuple()):
                 bodies, links = cast("Sequence[Sequence[object]]", arguments[1:])
                 return self._pairs_without(world, thing, frozenset(map(_state, bodies)), frozenset(map(_key, links)))
@@ -205,7 +206,7 @@ class CollisionChecker(Interface):
         report.Reset(self._options)
         found = self._fill(world, pairs, report)
         if self._options & _DISTANCE:
-            report.minDistance = min(report.minDistance, max(world.distance(pairs, report.minDistance), 0.0))
+            self._measure(world, pairs, report)
         if self._options & _USE_TOLERANCE:
             report.numWithinTol += world.count_within(pairs, self._tolerance)
         return found
@@ -230,6 +231,14 @@ class CollisionChecker(Interface):
             elif not every:
                 break
         return bool(infos)
+
+    def _measure(self, world: CollisionWorld, pairs: Pairs, report: CollisionReport) -> None:
+        """Put the least distance into the report and, where nothing collides, the pair that is so near."""
+        distance, nearest = world.nearest(pairs, report.minDistance)
+        report.minDistance = max(distance, 0.0)
+        if nearest is not None and not report.numCols:
+            first, second = (self._part(world, geom) for geom in nearest)
+            report.collisionInfos = [CollisionPairInfo(first, second, collides=False)]
 
     def _is_ignored(self, info: CollisionPairInfo) -> bool:
         """Ask the registered functions whether a collision counts."""

@@ -142,34 +142,44 @@ class Geometry(ApiObject):
     def GetCollisionMesh(self) -> TriMesh:
         """Return the shape as triangles, in the geometry's own frame, seen from outside counter-clockwise; copies.
 
-        Those of a trimesh are as the file has them. Round shapes have their corners on the surface.
+        Those of a trimesh are as the file has them. Round shapes have their corners on the surface. What
+        ``SetCollisionMesh`` set comes first.
         """
-        return trimesh_of(self._scene.shape.triangulated())
+        return trimesh_of(self._scene.triangulated())
 
     def InitCollisionMesh(self, fTessellation: float = 1.0) -> bool:
-        """Return True; the triangles of ``GetCollisionMesh`` are always there, in one fineness.
+        """Make ``GetCollisionMesh`` return the shape's own triangles again, in the one fineness that there is.
 
         Args:
             fTessellation: Not used.
+
+        Returns:
+            True.
         """
         del fTessellation
+        if self._scene.collision_mesh is not None:
+            self._edit(collision_mesh=None)
         return True
 
     def SetCollisionMesh(self, mesh: TriMesh) -> None:
-        """Give a trimesh other triangles: for collisions and for pictures.
+        """Set the triangles of ``GetCollisionMesh``. Those of a trimesh are its shape, which collides and is drawn.
+
+        Another shape collides and is drawn as before, as in OpenRAVE: a box stays a box.
 
         Args:
             mesh: The triangles, in the geometry's frame [m].
 
         Raises:
-            openrave_exception: the geometry is no trimesh, is not modifiable, or a triangle has a corner that is not
-                there. Nothing has changed then.
+            openrave_exception: the geometry is not modifiable, or a triangle has a corner that is not there. Nothing
+                has changed then.
         """
-        if not isinstance(self._scene.shape, scene.TriMesh):
-            raise self._has_none("triangles of its own")
         if not self._scene.modifiable:
             raise RavemjError(f"geometry '{self.GetName()}' is not modifiable")
-        self._edit(shape=scene.TriMesh(checked_mesh(mesh, "SetCollisionMesh: mesh")))
+        triangles = checked_mesh(mesh, "SetCollisionMesh: mesh")
+        if isinstance(self._scene.shape, scene.TriMesh):
+            self._edit(shape=scene.TriMesh(triangles))
+        else:
+            self._edit(collision_mesh=triangles)
 
     def ComputeAABB(self, transform: ArrayLike) -> AABB:
         """Return the smallest box along the axes that holds the geometry, its link standing at a pose.

@@ -46,10 +46,14 @@ class Part:
 
 
 class CollisionPairInfo(ApiObject):
-    """Two links that collide, or a link that a ray hits."""
+    """Two links that collide, or are nearest to each other; or a link that a ray hits.
 
-    def __init__(self, first: Part, second: Part | None) -> None:
-        self.first, self.second = first, second
+    Attributes:
+        collides: False for links that are only nearest to each other.
+    """
+
+    def __init__(self, first: Part, second: Part | None, *, collides: bool = True) -> None:
+        self.first, self.second, self.collides = first, second, collides
         self.contacts: list[Contact] = []
 
     @property
@@ -86,7 +90,8 @@ class CollisionReport(ApiObject):
     belongs to the first argument of the call.
 
     Attributes:
-        collisionInfos: The colliding pairs; only the first one without ``CollisionOptions.AllLinkCollisions``.
+        collisionInfos: The colliding pairs; only the first one without ``CollisionOptions.AllLinkCollisions``. Where
+            nothing collides, with ``CollisionOptions.Distance``, the nearest pair.
         minDistance: Least distance [m], with ``CollisionOptions.Distance``; 0 in collision. For a ray that of its hit.
         numWithinTol: Number of pairs within the tolerance, with ``CollisionOptions.UseTolerance``.
         nKeepPrevious: If 1, what earlier calls found is kept.
@@ -124,7 +129,7 @@ class CollisionReport(ApiObject):
     @property
     def numCols(self) -> int:
         """The number of colliding pairs."""
-        return len(self.collisionInfos)
+        return sum(info.collides for info in self.collisionInfos)
 
     @property
     def plink1(self) -> "Link | None":
@@ -154,7 +159,8 @@ class CollisionReport(ApiObject):
     @property
     def vLinkColliding(self) -> "list[tuple[Link, Link | None]]":
         """The pairs of links that collide."""
-        return [(info.first.link, info.second.link if info.second else None) for info in self.collisionInfos]
+        colliding = [info for info in self.collisionInfos if info.collides]
+        return [(info.first.link, info.second.link if info.second else None) for info in colliding]
 
     def __str__(self) -> str:
         return "\n".join(map(str, self.collisionInfos)) or "no collision"

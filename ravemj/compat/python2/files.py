@@ -1,19 +1,28 @@
-"""Files and pickles of Python 2, which knew no difference between text and bytes."""
+"""Files, pickles and processes of Python 2, which knew no difference between text and bytes."""
 
-# Pickles hold anything.
-# pyright: reportUnknownMemberType=false
+# Pickles hold anything, and streams take it.
+# pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownLambdaType=false
 
+import codecs
+import hashlib
 import os
 import pickle
-from collections.abc import Iterable
+import subprocess
+from collections.abc import Callable, Iterable
 from typing import Any, Self
 
-_ENCODING = ("utf-8", "surrogateescape")  # bytes that are no UTF-8 come out of text as they went in
+_ENCODING, _ERRORS = "utf-8", "surrogateescape"  # bytes that are no UTF-8 come out of text as they went in
 
 
 def as_bytes(text: Any) -> Any:  # noqa: ANN401 - what scripts write
     """Return the bytes of a text; anything else stays."""
-    return text.encode(*_ENCODING) if isinstance(text, str) else text
+    return text.encode(_ENCODING, _ERRORS) if isinstance(text, str) else text
+
+
+def as_text(data: bytes) -> str:
+    """Return the text of bytes."""
+    return data.decode(_ENCODING, _ERRORS)
 
 
 class File:
@@ -42,7 +51,7 @@ class File:
         return getattr(self.buffer, name)
 
     def _text(self, data: bytes) -> str:
-        text = data.decode(*_ENCODING)
+        text = as_text(data)
         return text.replace("\r\n", "\n") if self._is_universal else text
 
     def read(self, size: int = -1) -> str | bytes:
@@ -75,6 +84,11 @@ class File:
         for line in lines:
             self.write(line)
 
+    def __del__(self) -> None:
+        """Close without a warning, as Python 2 did."""
+        if "buffer" in vars(self):
+            self.buffer.close()
+
     def __enter__(self) -> Self:
         return self
 
@@ -97,3 +111,25 @@ def load(file: Any) -> Any:  # noqa: ANN401 - whatever was written
 def loads(data: str | bytes) -> Any:  # noqa: ANN401 - whatever was written
     """Do what ``pickle.loads`` does."""
     return pickle.loads(as_bytes(data), encoding="latin-1")
+
+
+def new_hash(name: str, string: object = b"") -> Any:  # noqa: ANN401 - hashlib does not say what it returns
+    """Do what ``hashlib.new`` does."""
+    return hashlib.new(name, as_bytes(string))
+
+
+def getwriter(encoding: str) -> Callable[..., Any]:
+    """Do what ``codecs.getwriter`` does, which ``sys.stdout`` needs no more."""
+    return lambda stream, *args: stream if hasattr(stream, "encoding") else codecs.getwriter(encoding)(stream, *args)
+
+
+class Popen(subprocess.Popen[str]):
+    """A process whose pipes take and give text."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:  # noqa: ANN401 - as subprocess.Popen takes them
+        super().__init__(*args, **{"encoding": _ENCODING, "errors": _ERRORS, **options})
+
+
+def check_output(*args: Any, **options: Any) -> str:  # noqa: ANN401 - as subprocess.Popen takes them
+    """Do what ``subprocess.check_output`` does."""
+    return subprocess.check_output(*args, **{"encoding": _ENCODING, "errors": _ERRORS, **options})

@@ -5,11 +5,13 @@
 
 import builtins
 import collections.abc
+import functools
 import inspect
 import math
 import os
 import platform
 import re
+import sys
 import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -35,8 +37,9 @@ RENAMED: dict[str, str] = dict(re.findall(r"(\S+)=(\S+)", _RENAMED))
 """Modules that have other names now."""
 
 
-def _same(module: str, names: str) -> dict[str, object]:
-    return {name: f"{module}.{name}" for name in names.split()}
+def _in(module: str, names: str) -> dict[str, object]:
+    """Return where names are now: in a module, by a name of their own after ``=``."""
+    return {name: f"{module}.{now or name}" for name, now in re.findall(r"([^\s=]+)=?(\S*)", names)}
 
 
 class ArgSpec(NamedTuple):
@@ -89,73 +92,62 @@ def _nothing(*_: object) -> None:
 
 
 _PATH: dict[str, object] = {"walk": _walk}
+_HASHES = {name: functools.partial(files.new_hash, name) for name in ("md5", "sha1", "sha256", "sha512")}
 _METHODS = """
 capitalize center count expandtabs find index ljust lower lstrip maketrans replace rfind rindex rjust rsplit rstrip
-split strip swapcase translate upper zfill
+split splitfields=split strip swapcase translate upper zfill
+"""
+_TYPES = """
+BooleanType=bool ClassType=type ComplexType=complex DictionaryType=dict DictType=dict FloatType=float IntType=int
+ListType=list LongType=int ObjectType=object SliceType=slice StringType=str TupleType=tuple TypeType=type
+UnicodeType=str XRangeType=range
 """
 
 NAMES: dict[str, dict[str, object]] = {
-    "collections": _same("collections.abc", " ".join(collections.abc.__all__)),
-    "exceptions": {name: value for name, value in vars(builtins).items() if name.endswith("Error")},
+    "codecs": {"getwriter": files.getwriter},
+    "collections": _in("collections.abc", " ".join(collections.abc.__all__)),
+    "exceptions": {name: value for name, value in vars(builtins).items() if inspect.isclass(value)},
     "fractions": {"gcd": "math.gcd"},
-    "imp": {"load_source": "ravemj.compat.python2.finder.load_source", "new_module": "types.ModuleType"},
+    "hashlib": {**_HASHES, "new": files.new_hash},
+    "imp": {
+        **_in("importlib", "reload"),
+        **_in("ravemj.compat.python2.finder", "load_source"),
+        **_in("types", "new_module=ModuleType"),
+    },
     "inspect": {"getargspec": _getargspec},
     "itertools": {
-        "ifilter": "builtins.filter",
-        "ifilterfalse": "itertools.filterfalse",
-        "imap": "builtins.map",
-        "izip": "builtins.zip",
-        "izip_longest": "itertools.zip_longest",
+        **_in("builtins", "ifilter=filter imap=map izip=zip"),
+        **_in("itertools", "ifilterfalse=filterfalse izip_longest=zip_longest"),
     },
     "math": {
         name: _of_items({"ceil": _ceil, "floor": _floor}.get(name, function))
         for name, function in vars(math).items()
         if callable(function) and not name.startswith("_")
     },
-    "md5": {"md5": "hashlib.md5", "new": "hashlib.md5"},
+    "md5": {"md5": _HASHES["md5"], "new": _HASHES["md5"]},
     "ntpath": _PATH,
-    "operator": {"div": divide, "isCallable": "builtins.callable", "sequenceIncludes": "operator.contains"},
-    "os": {"errno": "errno", "getcwdu": "os.getcwd"},
+    "operator": {"div": divide, "isCallable": callable, "sequenceIncludes": "operator.contains"},
+    "os": {"errno": "errno", "getcwdu": os.getcwd},
     "pickle": {"load": files.load, "loads": files.loads, "Unpickler": files.Unpickler},
     "platform": {"dist": _linux_distribution, "linux_distribution": _linux_distribution},
     "posixpath": _PATH,
     "sets": {"Set": set, "ImmutableSet": frozenset},
     "string": {
-        **_same("builtins.str", _METHODS),
-        **{"atof": float, "atoi": int, "atol": int, "join": _join, "joinfields": _join, "splitfields": str.split},
-        "letters": "string.ascii_letters",
-        "lowercase": "string.ascii_lowercase",
-        "uppercase": "string.ascii_uppercase",
+        **_in("builtins", "atof=float atoi=int atol=int"),
+        **_in("builtins.str", _METHODS),
+        **_in("string", "letters=ascii_letters lowercase=ascii_lowercase uppercase=ascii_uppercase"),
+        **{"join": _join, "joinfields": _join},
     },
+    "subprocess": {"check_output": files.check_output, "Popen": files.Popen},
     "sys": {
-        "exc_clear": _nothing,
-        "maxint": "sys.maxsize",
-        "setcheckinterval": _nothing,
-        "setdefaultencoding": _nothing,
+        "maxint": sys.maxsize,
+        **dict.fromkeys(("exc_clear", "setcheckinterval", "setdefaultencoding"), _nothing),
     },
     "time": {"clock": time.perf_counter if os.name == "nt" else time.process_time},
-    "types": {
-        **{
-            "BooleanType": bool,
-            "ComplexType": complex,
-            "DictionaryType": dict,
-            "DictType": dict,
-            "FileType": files.File,
-        },
-        **{
-            "ClassType": type,
-            "FloatType": float,
-            "IntType": int,
-            "ListType": list,
-            "LongType": int,
-            "SliceType": slice,
-        },
-        **{"ObjectType": object, "StringType": str, "StringTypes": (str,), "TupleType": tuple, "TypeType": type},
-        **{"UnicodeType": str, "XRangeType": range, "UnboundMethodType": "types.FunctionType"},
-    },
+    "types": {**_in("builtins", _TYPES), "FileType": files.File, "StringTypes": (str,)},
     "urllib": {
-        **_same("urllib.parse", "quote quote_plus unquote unquote_plus urlencode"),
-        **_same("urllib.request", "pathname2url url2pathname urlcleanup urlopen urlretrieve"),
+        **_in("urllib.parse", "quote quote_plus unquote unquote_plus urlencode"),
+        **_in("urllib.request", "pathname2url url2pathname urlcleanup urlopen urlretrieve"),
     },
     "xml": {},
     "xml.etree": {"cElementTree": "xml.etree.ElementTree"},

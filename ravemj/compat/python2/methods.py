@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from ravemj.compat.python2.files import as_bytes, as_text
+
 
 def sort(iterable: Iterable[Any], cmp: Any = None, key: Any = None, reverse: bool = False) -> list[Any]:  # noqa: ANN401
     """Do what ``sorted`` did."""
@@ -23,7 +25,7 @@ def _sort(values: list[Any], *args: Any, **options: Any) -> None:  # noqa: ANN40
 
 
 _GONE: dict[str, Callable[..., Any]] = {
-    "decode": lambda text, *_: text,
+    "decode": lambda text, *args: as_bytes(text).decode(*args),
     "getchildren": list,
     "getiterator": lambda element, *args: element.iter(*args),
     "has_key": lambda values, key: key in values,
@@ -42,7 +44,7 @@ _GONE: dict[str, Callable[..., Any]] = {
 }
 """What is done where an object has no such method."""
 _LISTED = {"items", "keys", "values"}
-NAMES = {*_GONE, *_LISTED, "sort"}
+NAMES = {*_GONE, *_LISTED, "encode", "sort"}
 """Those that scripts call by ``call``."""
 
 
@@ -50,7 +52,9 @@ def call(owner: Any, name: str, *args: Any, **options: Any) -> Any:  # noqa: ANN
     """Do what ``owner.name(...)`` did."""
     if name == "sort" and isinstance(owner, list):
         return _sort(owner, *args, **options)
+    if name == "encode" and isinstance(owner, str):
+        return as_text(owner.encode(*args, **options))
     if name in _GONE and not hasattr(owner, name):
-        return _GONE[name](owner, *args, **options)
+        return _GONE[name](*args) if isinstance(owner, type) else _GONE[name](owner, *args)
     result = getattr(owner, name)(*args, **options)
     return list(result) if name in _LISTED and isinstance(result, KeysView | ValuesView | ItemsView) else result

@@ -69,7 +69,7 @@ def import_(
         return view(builtins.__import__(name, globals, locals, fromlist or (), max(level, 1)))
     if name == "__builtin__":
         return importer["__builtins__"]
-    if (name in library.RENAMED or name in _NAMES) and not _exists(name):
+    if (name in library.RENAMED or name in _NAMES) and (name == "imp" or not _exists(name)):  # before 3.12, imp warns
         return _older(name, bool(fromlist))
     return view(builtins.__import__(name, globals, locals, fromlist or ()))
 

@@ -7,6 +7,7 @@ from ravemj.compat.python2 import methods
 METHOD, MESSAGE, CODE, ITEM = "__method__", "__message__", "__code__", "__item__"
 """Names of what calls methods, reads ``error.message``, compiles for ``exec`` and ``eval``, reads numbers."""
 _ERROR = "__error__"
+_EXC_INFO = ["exc_type", "exc_value", "exc_traceback"]
 _ORDER = {"__lt__": "<", "__le__": "<=", "__gt__": ">", "__ge__": ">=", "__eq__": "==", "__ne__": "!="}
 
 
@@ -19,12 +20,40 @@ class Statements(ast.NodeTransformer):
 
     def __init__(self, targets: dict[str, str]) -> None:
         self._targets = targets
+        self._scopes: list[ast.AST] = []  # those that are visited, the innermost last
+        self._globals: list[str] = []  # what the innermost one has declared
+
+    def _visit_scope(self, node: ast.Module | ast.FunctionDef | ast.ClassDef) -> None:
+        """Visit what is inside; declare what is global before it is used, as Python 3 asks."""
+        outer, self._globals = self._globals, []
+        self._scopes.append(node)
+        self.generic_visit(node)
+        self._scopes.pop()
+        if self._globals:
+            node.body.insert(_start(node.body), ast.Global(self._globals))
+        self._globals = outer
+
+    def visit_Module(self, node: ast.Module) -> ast.AST:
+        """Visit it as a scope."""
+        self._visit_scope(node)
+        return node
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
         """Unpack tuples among the parameters first."""
-        self.generic_visit(node)
-        start = 0 if ast.get_docstring(node, clean=False) is None else 1
+        start = _start(node.body)
         node.body[start:start] = [_at(node, f"{self._targets[name]} = {name}") for name in self._names(node.args)]
+        self._visit_scope(node)
+        return node
+
+    def visit_Global(self, node: ast.Global) -> ast.AST:
+        """Take note of it."""
+        self._globals += node.names
+        return ast.copy_location(ast.Pass(), node)
+
+    def visit_ImportFrom(self, node: ast.ImportFrom) -> ast.AST:
+        """Let functions import ``*``, which Python 3 does not: its names are global then."""
+        if node.names[0].name == "*" and isinstance(self._scopes[-1], ast.FunctionDef):
+            return _at(node, f"exec({ast.unparse(node)!r}, globals())")
         return node
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.AST:
@@ -33,12 +62,11 @@ class Statements(ast.NodeTransformer):
         names = self._names(node.args)
         if names:
             targets = "".join(f"{self._targets[name]}, " for name in names)
-            statement = _at(node, f"[None for ({targets}) in [({', '.join(names)},)]][0]")
-            assert isinstance(statement, ast.Expr)
-            assert isinstance(statement.value, ast.Subscript)
-            assert isinstance(statement.value.value, ast.ListComp)
-            statement.value.value.elt = node.body
-            node.body = statement.value
+            first = _expression(node, f"[None for ({targets}) in [({', '.join(names)},)]][0]")
+            assert isinstance(first, ast.Subscript)
+            assert isinstance(first.value, ast.ListComp)
+            first.value.elt = node.body
+            node.body = first
         return node
 
     def _names(self, arguments: ast.arguments) -> list[str]:
@@ -46,7 +74,7 @@ class Statements(ast.NodeTransformer):
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
         """Iterate by ``next``, order by ``__cmp__``, or by identity; what is equal by ``__eq__`` has a hash."""
-        self.generic_visit(node)
+        self._visit_scope(node)
         own = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
         is_plain = all(isinstance(base, ast.Name) and base.id == "object" for base in node.bases)
         added: dict[str, str] = {}
@@ -96,11 +124,29 @@ class Statements(ast.NodeTransformer):
         return node
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        """Read the ``message`` of exceptions."""
+        """Read the ``message`` of exceptions, and ``sys.exc_type`` and its like."""
         self.generic_visit(node)
+        if isinstance(node.value, ast.Name) and node.value.id == "sys" and node.attr in _EXC_INFO:
+            return _expression(node, f"sys.exc_info()[{_EXC_INFO.index(node.attr)}]")
         if node.attr == "message" and isinstance(node.ctx, ast.Load):
             return ast.Call(ast.Name(MESSAGE, ast.Load()), [node.value], [])
         return node
+
+
+def _start(body: list[ast.stmt]) -> int:
+    """Return where statements can be put in first: after the docstring, and after what is imported from the future."""
+    for number, statement in enumerate(body):
+        is_docstring = number == 0 and isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+        if not is_docstring and not (isinstance(statement, ast.ImportFrom) and statement.module == "__future__"):
+            return number
+    return len(body)
+
+
+def _expression(place: ast.expr, text: str) -> ast.expr:
+    """Return the tree of an expression, as if it stood at a place."""
+    statement = _at(place, text)
+    assert isinstance(statement, ast.Expr)
+    return statement.value
 
 
 def _at(place: ast.stmt | ast.expr | ast.excepthandler, text: str) -> ast.stmt:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fissix.refactor import RefactoringTool
 
 _FIXERS = """
-asserts exec execfile exitfunc funcattrs metaclass methodattrs ne nonzero print raise repr sys_exc throw unicode
+asserts exec execfile exitfunc funcattrs metaclass methodattrs ne nonzero print raise repr throw unicode
 """
 """Those of fissix that change syntax; names are given by ``builtin``, ``methods`` and ``modules``."""
 _OCTAL = re.compile(r"^0(?=[0-7]+$)")
@@ -93,7 +93,7 @@ def _tree(text: str, path: str) -> "Node":
         if leaf.type == token.INDENT:
             leaf.value = leaf.value.expandtabs(_TAB)
         elif leaf.type == token.NUMBER:
-            leaf.value = _OCTAL.sub("0o", str(leaf.value).rstrip("lL"))  # some are numbers indeed
+            leaf.value = _OCTAL.sub("0o", leaf.value.rstrip("lL"))
     return tree
 
 

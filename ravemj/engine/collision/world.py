@@ -162,14 +162,17 @@ class CollisionWorld:
         touch = self.shapes.touch
         return ((first, second) for first, second in pairs.near(self._positions) if touch(first, second))
 
-    def distance(self, pairs: Pairs, limit: float) -> float:
-        """Return the least signed distance of the pairs [m], or the limit if none is nearer."""
-        gaps = pairs.gaps(self._positions)
+    def nearest(self, pairs: Pairs, limit: float) -> tuple[float, tuple[int, int] | None]:
+        """Return the least signed distance of the pairs [m] and the pair, or the limit and None if none is nearer."""
+        gaps, found = pairs.gaps(self._positions), None
         for number in np.argsort(gaps, kind="stable"):
             if gaps[number] >= limit:
                 break
-            limit = self.shapes.distance(int(pairs.first[number]), int(pairs.second[number]), limit)
-        return limit
+            pair = int(pairs.first[number]), int(pairs.second[number])
+            distance = self.shapes.distance(*pair, limit)
+            if distance < limit:
+                limit, found = distance, pair
+        return limit, found
 
     def count_within(self, pairs: Pairs, tolerance: float) -> int:
         """Return how many of the pairs are nearer than a tolerance [m]."""

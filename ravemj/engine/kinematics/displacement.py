@@ -25,7 +25,7 @@ def place_links(kinematics: BodyKinematics, T_world_links: Floats, last_values: 
     Args:
         kinematics: The body.
         T_world_links: Shape (links, 4, 4).
-        last_values: Joint values whose full turns are kept [rad or m], shape (dof,).
+        last_values: Joint values to which those of hinges are next, full turns apart [rad or m], shape (dof,).
     """
     for root, link in enumerate(kinematics.roots):
         kinematics.set_root_transform(root, T_world_links[link])
@@ -46,10 +46,10 @@ def _shown_values(kinematics: BodyKinematics, T_world_links: Floats, last_values
 
 
 def _in_turn(joint: Joint, shown: float, last: float) -> float:
-    """Return the value of a hinge in the full turn that its last value was in."""
+    """Return the value of a hinge in the full turn that is nearest to its last value."""
     if joint.kind != "hinge" or joint.static:
         return shown
-    return shown + math.tau * (round(last / math.tau) - round(shown / math.tau))
+    return shown + math.tau * round((last - shown) / math.tau)
 
 
 def _displace(kinematics: BodyKinematics, placed: Floats, wanted: Floats) -> None:

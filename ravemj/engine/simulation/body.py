@@ -214,7 +214,8 @@ class BodyState:
 
         Args:
             T_world_links: Shape (links, 4, 4).
-            last_values: Joint values whose full turns are kept [rad or m], shape (dof,); None: the present ones.
+            last_values: Joint values to which those of hinges are next, full turns apart [rad or m], shape (dof,);
+                the body is in the world. None: the present values; this never compiles.
         """
         kinematics = self.own_kinematics
         place_links(kinematics, T_world_links, kinematics.values() if last_values is None else last_values)
@@ -303,6 +304,8 @@ class BodyState:
         self.scene = replace(self.scene, **changes)
         if self._kinematics is not None:
             self._kinematics.describe(self.scene)
+        if "passive_joints" in changes:
+            self._dynamics = self._batch = None  # which of several values a follower has depends on its limits
 
     def edit_mimic(self, passive_joints: tuple[Joint, ...]) -> None:
         """Let passive joints follow by other equations; the links stay where they are until values are next set."""

@@ -26,6 +26,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeVar
 
+from ravemj.core.signals import signals_delayed
 from ravemj.formats.meshes.entries import Parts, follow_shortcut, pack_entry, pack_shortcut, unpack_entry
 from ravemj.formats.meshes.files import ReferencedFiles, changed_at, digest_of, read_bytes, stamp_of
 from ravemj.model.scene import mesh
@@ -194,10 +195,11 @@ def _store(file: Path, content: bytes) -> None:
     name = None
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=file.parent, suffix=".tmp", delete=False) as opened:
-            name = opened.name
-            opened.write(content)
-        os.replace(name, file)
+        with signals_delayed():  # which would leave the temporary file
+            with tempfile.NamedTemporaryFile(dir=file.parent, suffix=".tmp", delete=False) as opened:
+                name = opened.name
+                opened.write(content)
+            os.replace(name, file)
         _written += 1
         if _written % _PRUNE_EVERY == 1:
             prune(file.parent)

@@ -43,9 +43,10 @@ class EqualityWriter:
             names: Their names in the MJCF; empty for those that move nothing.
         """
         for joint, joint_names in zip(joints, names, strict=True):
-            if joint.mimic is None or joint.mimic.expression is None or not joint_names:
+            equation = joint.equation
+            if equation is None or not joint_names:
                 continue
-            expression = _without_welds(joint.mimic.expression, joints, names)
+            expression = _without_welds(equation, joints, names)
             moving = leaders(expression)
             if any(joints[index].kind == "spherical" for index in moving) or joint.kind == "spherical":
                 self._drop(joint, "has to do with a spherical joint")

@@ -17,13 +17,12 @@ values it can have are bounded, and evaluation takes time in proportion to the l
 
 from ravemj.model.expressions.attributes import joint_variables, linear_mimic, partials, substitute
 from ravemj.model.expressions.errors import ExpressionError
-from ravemj.model.expressions.expression import Expression, first_within, parse
+from ravemj.model.expressions.expression import Expression, parse
 from ravemj.model.expressions.polynomial_fit import fit_polynomial
 
 __all__ = [
     "Expression",
     "ExpressionError",
-    "first_within",
     "fit_polynomial",
     "joint_variables",
     "linear_mimic",

@@ -103,7 +103,7 @@ def _slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
         return algebra.mul(_OUTER[node.function](algebra, node.arguments[0], node), slopes[0])
     if node.function.startswith("polyroots"):
         return _root_slope(algebra, node, slopes)
-    return _RULES[node.function](algebra, node, slopes)
+    return _RULES[node.function.partition("#")[0]](algebra, node, slopes)
 
 
 def _product(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:

@@ -9,6 +9,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.model.expressions.calculus import derivative
 from ravemj.model.expressions.functions import FUNCTIONS, NAN
+from ravemj.model.expressions.limits import first_within
 from ravemj.model.expressions.nodes import Call, Node, Number, Variable, ordered, steps
 from ravemj.model.expressions.parser import parse_nodes
 from ravemj.model.expressions.polynomials import Affine, affine, coefficients
@@ -39,7 +40,8 @@ class Expression:
     """A function of named variables that never raises: where it has no value, it gives nan.
 
     Some functions have several values, as ``polyroots2`` has two. ``candidates`` gives the value of the equation for
-    each choice among them, and everything else takes the first.
+    each choice among them, ``within`` the expression that has the first one within limits, and everything else takes
+    the first.
 
     Attributes:
         root: The last of the nodes.
@@ -142,8 +144,7 @@ class Expression:
     def candidates(self, values: Mapping[str, float]) -> tuple[float, ...]:
         """Return all values of the equation, those for the first of each function's values first.
 
-        OpenRAVE uses the first one that lies within the limits of the joint. Without multi-valued functions there
-        is one candidate, or none where the equation has no value.
+        Without multi-valued functions there is one candidate, or none where the equation has no value.
         """
         found: list[float] = []
         choice: list[int] | None = []
@@ -197,6 +198,15 @@ class Expression:
                     replaced[node] = node
         return Expression(replaced[self.root])
 
+    def within(self, lower: float, upper: float) -> "Expression":
+        """Return the expression that has the first candidate within limits, else the first, for the caller to clamp.
+
+        Args:
+            lower: The least value.
+            upper: The greatest value.
+        """
+        return Expression(first_within(self.nodes, lower, upper)) if self.is_multivalued else self
+
     def polynomial(self, variable: str, max_degree: int = 4) -> tuple[float, ...] | None:
         """Return the coefficients, in ascending order, if this is a polynomial in one variable, else None.
 
@@ -208,12 +218,6 @@ class Expression:
             One coefficient more than the degree; the last is not 0 unless it is the only one.
         """
         return coefficients(self.nodes, variable, max_degree)
-
-
-def first_within(candidates: Sequence[float], lower: float, upper: float) -> float:
-    """Return the first candidate within the limits; else the first, for the caller to clamp; nan if there is none."""
-    within = (value for value in candidates if lower <= value <= upper)
-    return next(within, candidates[0] if candidates else NAN)
 
 
 def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:

@@ -11,7 +11,7 @@ They allow for rounding: ``0.1+0.2 = 0.3`` is true.
 import math
 import operator
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -157,12 +157,22 @@ def _if_arrays(condition: Floats, x: Floats, y: Floats) -> Floats:
 
 def _several(arity: int, roots: Roots, most_roots: int) -> Function:
     """Build a function with several values, of which the scalar and the array form take the first."""
+    return replace(_root(arity, roots, 0), roots=roots, most_roots=most_roots)
 
-    def first(*arguments: float) -> float:
+
+def _root(arity: int, roots: Roots, index: int) -> Function:
+    """Build a function that has one of several values, or nan where there are fewer."""
+
+    def root(*arguments: float) -> float:
         values = roots(*arguments)
-        return values[0] if values else NAN
+        return values[index] if index < len(values) else NAN
 
-    return Function(arity, first, np.vectorize(first, otypes=[np.float64]), roots, most_roots)
+    return Function(arity, root, np.vectorize(root, otypes=[np.float64]))
+
+
+def nth(function: str, index: int) -> str:
+    """Return the name of the function that has one of the values of a function with several; no text can have it."""
+    return f"{function}#{index}"
 
 
 _tan, _sin, _cos, _cosh = (_total(f) for f in (math.tan, math.sin, math.cos, math.cosh))
@@ -224,4 +234,11 @@ NAMED: dict[str, Function] = {
     "SASS": _several(3, third_side, 1),
 } | {f"polyroots{degree}": _several(degree + 1, real_roots, degree) for degree in range(2, 9)}
 
-FUNCTIONS = OPERATORS | NAMED
+_ROOTS: dict[str, Function] = {
+    nth(name, index): _root(function.arity, function.roots, index)
+    for name, function in NAMED.items()
+    if function.roots is not None and function.most_roots > 1
+    for index in range(function.most_roots)
+}
+
+FUNCTIONS = OPERATORS | NAMED | _ROOTS

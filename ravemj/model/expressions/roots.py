@@ -5,6 +5,7 @@ S is a side and A an angle, in the order in which one meets them on a walk aroun
 what the function finds. Only their names are known for certain; arguments and order follow from the geometry.
 """
 
+import functools
 import math
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 IMAGINARY_NOISE = 1e-6  # double roots come back with a small imaginary part
 
 
+@functools.lru_cache(maxsize=4096)  # each root is asked for by itself
 def real_roots(*coefficients: float) -> tuple[float, ...]:
     """Return the real roots of a polynomial in ascending order.
 

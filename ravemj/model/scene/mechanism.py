@@ -164,6 +164,13 @@ class Joint(Record):
     source: Source
 
     @property
+    def equation(self) -> "Expression | None":
+        """What the joint follows, or None; of several values the equation has the first within the joint's limits."""
+        if self.mimic is None or self.mimic.expression is None or self.axes[0].circular:
+            return None if self.mimic is None else self.mimic.expression
+        return self.mimic.expression.within(self.axes[0].lower, self.axes[0].upper)
+
+    @property
     def static(self) -> bool:
         """True for a weld: a joint whose limits leave no room, and that follows nothing that moves."""
         if self.mimic is not None:

@@ -318,6 +318,7 @@ class Geometry(Record):
         display: What is drawn in place of the shape; None: the shape itself.
         render_file: Where this comes from, or None.
         collision_file: Where the triangles of the shape come from, or None.
+        collision_mesh: The triangles that scripts get of a shape that is no mesh; None: its own.
         source: The element that it comes from.
     """
 
@@ -332,4 +333,9 @@ class Geometry(Record):
     display: tuple[Surface, ...] | None = None
     render_file: MeshFile | None = None
     collision_file: MeshFile | None = None
+    collision_mesh: Mesh | None = None
     source: Source
+
+    def triangulated(self) -> Mesh:
+        """Return what scripts get as triangles, in the geometry's frame: those that were set, else of its shape."""
+        return self.shape.triangulated() if self.collision_mesh is None else self.collision_mesh

@@ -95,18 +95,20 @@ class Placement(JointValues):
 
         Args:
             transforms: ``T_world_link`` for each link, in the order of ``GetLinks()``: 4x4, 3x4 or 7 numbers each.
-            doflastsetvalues: Joint values that tell how many full turns each hinge has made, shape (dof,), as
-                ``GetLinkTransformations(True)`` returns them; left out: none.
+            doflastsetvalues: Joint values as ``GetLinkTransformations(True)`` returns them, shape (dof,): poses look
+                alike full turns apart, and each hinge gets the value next to this one; left out: next to its present
+                one.
 
         Raises:
-            openrave_exception: there are more or fewer poses than links, or one is not rigid. Nothing has moved then.
+            openrave_exception: there are more or fewer poses than links, one is not rigid, or joint values are given
+                and the body is not in the environment. Nothing has moved then.
         """
         count = len(self._state.scene.links)
         if len(transforms) != count:
             message = f"SetLinkTransformations: there are {len(transforms)} transforms, and should be {count}"
             raise RavemjError(message)
         checked = np.array([checked_transform(one, "SetLinkTransformations: transforms") for one in transforms])
-        last = np.zeros(self.GetDOF())
+        last = None
         if doflastsetvalues is not None and np.size(doflastsetvalues):
             last = checked_vector(doflastsetvalues, self.GetDOF(), "SetLinkTransformations: doflastsetvalues")
         with self._simulation.lock:

@@ -94,7 +94,7 @@ _CHOICES: dict[TriangulateOptions, Callable[[Description, str], bool]] = {
 def _triangles(state: BodyState) -> Mesh:
     transforms = state.link_transforms()
     return Mesh.merged(
-        geometry.shape.triangulated().moved(transforms[index] @ geometry.T_link_geometry.matrix())
+        geometry.triangulated().moved(transforms[index] @ geometry.T_link_geometry.matrix())
         for index, link in enumerate(state.scene.links)
         for geometry in link.geometries
     )

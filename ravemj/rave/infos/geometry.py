@@ -40,7 +40,7 @@ class GeometryInfo(Info):
         _vGeomData3: Size of the cross on a container's bottom [m].
         _vGeomData4: Size of the plate on a container's bottom [m].
         _vCrossSection: Corners x y of a prism [m], shape (n, 2).
-        _meshcollision: The triangles of a trimesh, a ``TriMesh``.
+        _meshcollision: The triangles of a trimesh, a ``TriMesh``; of another shape those that ``SetCollisionMesh`` set.
         _vDiffuseColor: Red, green, blue from 0 to 1.
         _vAmbientColor: The same in the shade.
         _fTransparency: 0 is opaque, 1 invisible.
@@ -102,6 +102,7 @@ class GeometryInfo(Info):
             _filenamecollision=collision.name if collision else None,
             _vRenderScale=np.array(render.scale if render else (1.0, 1.0, 1.0)),
             _vCollisionScale=np.array(collision.scale if collision else (1.0, 1.0, 1.0)),
+            _meshcollision=None if geometry.collision_mesh is None else trimesh_of(geometry.collision_mesh),
             _drawn=(render.name if render else None, geometry.display),
         )
         info._take(geometry.shape)
@@ -132,8 +133,10 @@ class GeometryInfo(Info):
         Raises:
             RavemjError: a number is wrong, a file cannot be read, or there is no such kind of shape here.
         """
+        shape = self._shape()
+        own_mesh = None if isinstance(shape, scene.TriMesh) else self._meshcollision
         return scene.Geometry(
-            shape=self._shape(),
+            shape=shape,
             T_link_geometry=pose(self._t, "GeometryInfo._t"),
             name=self._name or "",
             diffuse=vector(self._vDiffuseColor, "GeometryInfo._vDiffuseColor"),
@@ -144,6 +147,7 @@ class GeometryInfo(Info):
             display=self._display(),
             render_file=_file(self._filenamerender, self._vRenderScale),
             collision_file=_file(self._filenamecollision, self._vCollisionScale),
+            collision_mesh=None if own_mesh is None else checked_mesh(own_mesh, "GeometryInfo._meshcollision"),
             source=FROM_SCRIPT,
         )
 

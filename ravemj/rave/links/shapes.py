@@ -35,7 +35,7 @@ class LinkShapes(LinkPart):
     def GetCollisionData(self) -> TriMesh:
         """Return all shapes of the link as triangles, in the link's frame; copies."""
         return trimesh_of(
-            Mesh.merged(one.shape.triangulated().moved(one.T_link_geometry.matrix()) for one in self._scene.geometries)
+            Mesh.merged(one.triangulated().moved(one.T_link_geometry.matrix()) for one in self._scene.geometries)
         )
 
     def InitGeometries(self, geometryinfos: Sequence[GeometryInfo]) -> None:

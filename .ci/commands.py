@@ -1,0 +1,115 @@
+"""Does a little of the work of every command with an installed ravemj: ``PYTHON commands.py`` in a folder of models."""
+
+import json
+import re
+import subprocess
+import sys
+import urllib.request
+from pathlib import Path
+
+import av
+import mujoco
+import numpy as np
+from PIL import Image
+
+import ravemj
+from ravemj.cli.parser import make_parser
+
+PROGRAM = Path(sys.executable).with_name("ravemj")
+SCRIPT = "import openravepy\nenv = openravepy.Environment()\nenv.Load('env.xml')\nprint(env.GetRobots()[0].GetDOF())\n"
+
+
+def main() -> None:
+    """Try every command that the parser knows."""
+    assert Path(ravemj.__file__).is_relative_to(sys.prefix), f"{ravemj.__file__} is not in {sys.prefix}"
+    trials = (view, play, render, convert, check, info, run, shell, alias, doctor)
+    commands = make_parser()._actions[-1].choices  # argparse has no public way to them
+    assert {trial.__name__ for trial in trials} == set(commands or ()), "every command has a trial of its own"
+    for trial in trials:
+        trial()
+
+
+def printed(*words: str | Path, typed: str = "") -> str:
+    """Run a program that succeeds, and return what it prints."""
+    done = subprocess.run(words, input=typed, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, f"{words}: {done.stderr}"
+    return done.stdout
+
+
+def do(*words: str, typed: str = "") -> str:
+    """Run a command of ravemj, and return what it prints."""
+    return printed(PROGRAM, *words, typed=typed)
+
+
+def view() -> None:
+    """Serve a page."""
+    with subprocess.Popen([PROGRAM, "view", "--web", "env.xml"], stdout=subprocess.PIPE, text=True) as viewing:
+        assert viewing.stdout
+        try:
+            with urllib.request.urlopen(viewing.stdout.readline().strip(), timeout=60) as page:
+                assert b"<canvas" in page.read()
+        finally:
+            viewing.terminate()
+
+
+def play() -> None:
+    """Play the pendulum, from hanging to upright."""
+    do("play", "env.xml", "-o", "pendulum.mp4", "--camera", "tutorial-camera.json")
+    with av.open("pendulum.mp4") as video:
+        frames = [frame.to_ndarray(format="rgb24") for frame in video.decode(video=0)]
+    assert len(frames) == 31
+    hanging, upright = (frame.min(axis=2) < 128 for frame in (frames[0], frames[-1]))
+    assert np.mean(hanging[:240]) < np.mean(hanging[240:])
+    assert np.mean(upright[:240]) > np.mean(upright[240:])
+
+
+def render() -> None:
+    """Draw a robot on the background that is asked for."""
+    do("render", "panda.xml", "-o", "panda.png", "--size", "320x240", "--background", "0,0,1")
+    picture = np.asarray(Image.open("panda.png"))
+    assert picture.shape == (240, 320, 3)
+    assert 0.1 < np.mean((picture == [0, 0, 255]).all(axis=2)) < 0.99
+
+
+def convert() -> None:
+    """Write what MuJoCo loads."""
+    do("convert", "panda.xml", "-o", "panda/")
+    assert mujoco.MjModel.from_xml_path("panda/panda.xml").njnt > 7
+
+
+def check() -> None:
+    """Find nothing wrong."""
+    assert do("check", "env.xml") == "0 errors, 0 warnings in 1 file\n"
+
+
+def info() -> None:
+    """Tell the numbers of a COLLADA file."""
+    assert [body["dof"] for body in json.loads(do("info", "scara.dae", "--json"))["bodies"]] == [4]
+
+
+def run() -> None:
+    """Run a script that imports openravepy."""
+    Path("script.py").write_text(SCRIPT)
+    assert do("run", "script.py") == "2\n"
+
+
+def shell() -> None:
+    """Answer a question about the robot."""
+    question = "robot.SetDOFValues([np.pi, 0])\nprint('pi is', robot.GetDOFValues()[0])\n"
+    assert "pi is 3.14" in do("shell", "env.xml", typed=question)
+
+
+def alias() -> None:
+    """Let the script run by itself, and no longer."""
+    do("alias", "--install")
+    assert printed(sys.executable, "script.py") == "2\n"
+    assert do("alias", "--remove").startswith("removed ")
+
+
+def doctor() -> None:
+    """Say that rays draw at least."""
+    assert re.search(r"^ *ray +yes", do("doctor"), re.MULTILINE)
+
+
+if __name__ == "__main__":
+    main()
