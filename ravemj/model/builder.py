@@ -12,10 +12,10 @@ from dataclasses import dataclass, field, replace
 from ravemj.core.transforms import UNMOVED, ZERO, Pose, Vec3, Wxyz, rotate, scale
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.model import hierarchy, scene
-from ravemj.model.limits import clamp
-from ravemj.model.mimic import Equations, MimicJoints, NamedJoint, leaders, resolve
 from ravemj.model.joints import measured_values, place_links
+from ravemj.model.limits import clamp
 from ravemj.model.manipulators import ManipulatorBuilder, freeze_manipulator
+from ravemj.model.mimic import Equations, MimicJoints, NamedJoint, leaders, resolve
 
 _ROUNDING = 1e-9  # of values that were degrees
 
@@ -176,7 +176,7 @@ class BodyBuilder:
         mimic_joints = MimicJoints(joints)
         mimic_joints.evaluate(firsts)
         for mimic in mimic_joints.joints:
-            values[mimic.index][0] = firsts[mimic.index]
+            values[mimic.joint][0] = firsts[mimic.joint]
         return [
             replace(
                 joint,

@@ -103,7 +103,9 @@ def leaders(expression: "Expression") -> tuple[int, ...]:
     return tuple(int(name.removeprefix("joint")) for name in expression.variables)
 
 
-def _mimic(index: int, joints: Sequence[NamedJoint], mimics: "dict[int, Expression]", diagnostics: Diagnostics) -> Mimic:
+def _mimic(
+    index: int, joints: Sequence[NamedJoint], mimics: "dict[int, Expression]", diagnostics: Diagnostics
+) -> Mimic:
     joint = joints[index]
     equations = joint.equations or Equations()
     dofs: set[int] = set()
@@ -133,14 +135,14 @@ class MimicJoint(NamedTuple):
     """A joint whose value is a function of the values of others.
 
     Attributes:
-        index: Its index among the active joints followed by the passive ones.
+        joint: Its index among the active joints followed by the passive ones.
         expression: The function, of ``joint0``, ``joint1``, …
         evaluate: The same, of the first values of all joints.
         lower: Its lower limit [rad or m].
         upper: Its upper limit; a circular joint has none.
     """
 
-    index: int
+    joint: int
     expression: "Expression"
     evaluate: Callable[[Sequence[float]], float]
     lower: float
@@ -174,10 +176,10 @@ class MimicJoints:
 
     def evaluate_many(self, values: list[Floats]) -> None:
         """Do the same for many configurations: an array of shape (N,) for each joint."""
-        for joint in self.joints:
-            named = {f"joint{leader}": values[leader] for leader in leaders(joint.expression)}
-            found = np.broadcast_to(joint.expression.evaluate_many(named), np.shape(values[joint.index]))
-            values[joint.index] = np.clip(found, joint.lower, joint.upper)
+        for joint, expression, _, lower, upper in self.joints:
+            named = {f"joint{leader}": values[leader] for leader in leaders(expression)}
+            found = np.broadcast_to(expression.evaluate_many(named), np.shape(values[joint]))
+            values[joint] = np.clip(found, lower, upper)
 
 
 def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:

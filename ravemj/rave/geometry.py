@@ -32,7 +32,7 @@ class Geometry(Shown):
 
     Type = GeometryType
 
-    def __init__(self, parent: object, state: BodyState, link: int, index: int, group: str | None = None) -> None:  # noqa: PLR0913
+    def __init__(self, parent: object, state: BodyState, link: int, index: int, group: str | None = None) -> None:
         self._parent = parent  # the link; only its text is wanted
         self._state = state
         self._link = link

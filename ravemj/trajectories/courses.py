@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError

@@ -89,7 +89,7 @@ class Batch:
             place = state.positions[link] + np.tensordot(point, state.rotations[link], 1)
             out[part] = state.jacobian(link, place).transpose(2, 1, 0)
 
-    def inverse_dynamics(  # noqa: PLR0913 - three arrays that belong together
+    def inverse_dynamics(
         self, values: Floats, rates: Floats, accelerations: Floats, inertias: Inertias, gravity: Floats, out: Floats
     ) -> None:
         """Write the generalised forces that move the body as given, with its base at rest.

@@ -80,7 +80,7 @@ class Chain:
             source: tuple[Literal["dof", "mimic", "qpos"], int] = ("qpos", qpos)
             if index < len(kinematics.body.joints):
                 source = ("dof", kinematics.first_dofs[index] + axis)
-            elif any(mimic.index == index for mimic in kinematics.mimic.joints):
+            elif any(mimic.joint == index for mimic in kinematics.mimic.joints):
                 source = ("mimic", index)
             kind = "hinge" if joint.kind == "hinge2" else joint.kind
             frame, reference = T_step_parent @ T_parent_frame, joint.axes[axis].reference

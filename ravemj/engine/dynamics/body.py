@@ -137,7 +137,7 @@ class BodyDynamics:
             target[first + 3 : first + 6] = values[root][3:] @ rotation
 
     def _arms(self) -> Floats:
-        """Return the links' origins from the points that MuJoCo's spatial velocities are about [m], shape (links, 3)."""
+        """Return where the links' origins are from the centre that MuJoCo's motions are about [m], shape (links, 3)."""
         ids = self._kinematics.body_ids
         return self._data.xpos[ids] - self._data.subtree_com[self._model.body_rootid[ids]]
 

@@ -88,10 +88,9 @@ class CouplingMap:
         self._one_to_one = kinematics.dof, tree.count, dofs, coordinates
         self._spherical = [(one, tree.of_qpos[one.qpos.start]) for one in kinematics.spherical]
         self._mimic = [
-            (joint.index, self._coordinate(tree, joint.index), _Partials(joint.expression))
-            for joint in kinematics.mimic.joints
+            (one.joint, self._coordinate(tree, one.joint), _Partials(one.expression)) for one in kinematics.mimic.joints
         ]
-        is_affine = all(joint.expression.affine is not None for joint in kinematics.mimic.joints)
+        is_affine = all(one.expression.affine is not None for one in kinematics.mimic.joints)
         self.constant: Coupling | None = None
         if is_affine and not self._spherical:
             self.constant = self._at(np.zeros(kinematics.dof), second=False)
@@ -192,9 +191,7 @@ def _value(expression: "Expression", named: dict[str, Floats], values: Floats) -
     return np.asarray(expression.evaluate({name: float(value) for name, value in wanted.items()}))
 
 
-def _add_spherical(
-    coupling: Coupling, joint: SphericalJoint, coordinate: int, vector: Floats, *, second: bool
-) -> None:
+def _add_spherical(coupling: Coupling, joint: SphericalJoint, coordinate: int, vector: Floats, *, second: bool) -> None:
     """Add the entries of a spherical joint, whose coordinates turn about the axes of the child link."""
     rest = np.array(rows_from_wxyz(joint.joint.T_parent_child.wxyz)).T
     rate, changes = rotation_rate(vector)

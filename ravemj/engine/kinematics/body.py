@@ -12,7 +12,7 @@ from ravemj.engine.kinematics.spherical import SphericalJoint
 from ravemj.model.joints import measured_values
 from ravemj.model.limits import Limits
 from ravemj.model.mimic import MimicJoints
-from ravemj.model.scene import Joint, KinBody
+from ravemj.model.scene import KinBody
 
 NO_QPOS = -1
 """In place of an index into ``qpos``, where a joint has none since it moves no link."""
@@ -119,7 +119,7 @@ class BodyKinematics:
         self._moving = self.qpos_indices != NO_QPOS
         self._to_qpos = index_range(self.qpos_indices[self._moving])
         self._is_plain = bool(self._moving.all()) and not self.mimic.joints
-        self._mimic_qpos = [(one.index, self.joint_qpos[one.index][:1]) for one in self.mimic.joints]
+        self._mimic_qpos = [(one.joint, self.joint_qpos[one.joint][:1]) for one in self.mimic.joints]
         self._loops = [
             (first, joint)
             for first, joint, places in zip(self.first_dofs, body.joints, self.joint_qpos, strict=False)

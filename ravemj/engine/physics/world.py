@@ -14,7 +14,6 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, wxyz_from_rows
 from ravemj.engine.collision.resting import tested_pairs
-
 from ravemj.engine.model_part import ModelPart
 from ravemj.engine.physics.body import PhysicalBody
 from ravemj.engine.physics.loads import Loads

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ravemj.core.transforms import Floats, Pose, pose_of
+from ravemj.core.transforms import Floats, Pose
 from ravemj.engine.kinematics import BodyKinematics, Configuration
 from ravemj.engine.kinematics.displacement import place_links
 from ravemj.errors import ErrorCode, RavemjError

@@ -32,8 +32,7 @@ class WorldModel(Compiled):
         super().__init__(scene, diagnostics)
         self.write_true_inertias(scene)
         self._parts = {
-            body: ModelPart(self.model, self.data, names)
-            for body, names in zip(bodies, self.mjcf.names, strict=True)
+            body: ModelPart(self.model, self.data, names) for body, names in zip(bodies, self.mjcf.names, strict=True)
         }
         self._scenes = list(scene.bodies)
         for body, part in self._parts.items():

@@ -30,8 +30,8 @@ from ravemj.formats.openrave_xml.values import (
     scale_attribute,
 )
 from ravemj.model.builder import BodyBuilder
-from ravemj.model.mimic import Equations
 from ravemj.model.manipulators import ManipulatorBuilder
+from ravemj.model.mimic import Equations
 from ravemj.model.scene import KinBody
 
 

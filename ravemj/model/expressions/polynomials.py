@@ -112,13 +112,6 @@ class Affine(NamedTuple):
     offset: float
     slopes: dict[str, float]
 
-    def plus(self, other: "Affine", factor: float = 1.0) -> "Affine":
-        """Return this plus a multiple of another."""
-        slopes = dict(self.slopes)
-        for name, slope in other.slopes.items():
-            slopes[name] = slopes.get(name, 0.0) + factor * slope
-        return Affine(self.offset + factor * other.offset, slopes)
-
 
 def affine(nodes: list[Node]) -> Affine | None:
     """Return the last of ``nodes`` as a constant plus multiples of variables, or None if it is not written as one."""
@@ -138,6 +131,21 @@ def affine(nodes: list[Node]) -> Affine | None:
     return result if is_finite else None
 
 
+def _affine_sum(x: Affine, y: Affine) -> Affine:
+    slopes = dict(x.slopes)
+    for name, slope in y.slopes.items():
+        slopes[name] = slopes.get(name, 0.0) + slope
+    return Affine(x.offset + y.offset, slopes)
+
+
+def _affine_difference(x: Affine, y: Affine) -> Affine:
+    return _affine_sum(x, _affine_negative(y))
+
+
+def _affine_negative(x: Affine) -> Affine:
+    return _scaled(x, -1.0)
+
+
 def _scaled(x: Affine, factor: float) -> Affine:
     return Affine(factor * x.offset, {name: factor * slope for name, slope in x.slopes.items()})
 
@@ -153,9 +161,9 @@ def _affine_quotient(x: Affine, y: Affine) -> Affine | None:
 
 
 _AFFINE_RULES: dict[str, Callable[..., Affine | None]] = {
-    "add": lambda x, y: x.plus(y),
-    "sub": lambda x, y: x.plus(y, -1.0),
-    "neg": lambda x: _scaled(x, -1.0),
+    "add": _affine_sum,
+    "sub": _affine_difference,
+    "neg": _affine_negative,
     "mul": _affine_product,
     "div": _affine_quotient,
 }

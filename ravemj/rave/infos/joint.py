@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike
 from ravemj.core.transforms import Vec3, add, conjugate, dot, rotate, scale
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.model import scene
-from ravemj.model.mimic import Equations
 from ravemj.model.joints import about, directions_at, reported_anchor, wxyz_from_rotation_vector
 from ravemj.model.making import MADE
+from ravemj.model.mimic import Equations
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos.content import Info
 from ravemj.rave.infos.numbers import filled, per_axis, vector

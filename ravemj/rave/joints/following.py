@@ -4,8 +4,8 @@ import numpy as np
 
 from ravemj.core.transforms import Ints
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.model.mimic import Equations, leaders, with_equations
 from ravemj.model.manipulators import joint_dofs
+from ravemj.model.mimic import Equations, leaders, with_equations
 from ravemj.rave.joints.base import JointPart
 
 
