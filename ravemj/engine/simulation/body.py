@@ -16,7 +16,6 @@ from ravemj.model.scene import Axis, Geometry, Inertial, Joint, KinBody, Link
 if TYPE_CHECKING:
     from ravemj.engine.batch import Batch
     from ravemj.engine.dynamics import BodyDynamics
-    from ravemj.engine.model_part import ModelPart
     from ravemj.engine.simulation.world import Simulation
 
 _LOOKS = {"name", "diffuse", "ambient", "transparency"}
@@ -116,6 +115,11 @@ class BodyState:
         self.simulation.collision_stamp += 1
 
     @property
+    def is_compiled(self) -> bool:
+        """Whether the body has a model of its own already; if not, it is where its description has it."""
+        return self._kinematics is not None
+
+    @property
     def own_kinematics(self) -> BodyKinematics:
         """Joint values and link poses, in a model of the body alone.
 
@@ -166,14 +170,6 @@ class BodyState:
             self._inertias = (self.scene.links, Inertias.of(self.scene.links))
         return self._inertias[1]
 
-    def bring_up_to_date(self, part: "ModelPart") -> bool:
-        """Let the body's part of another model follow it; return whether anything was out of date."""
-        kinematics = self._kinematics
-        if kinematics is None or kinematics.stamp == part.stamp:
-            return False
-        part.take(kinematics)
-        return True
-
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
         if self._kinematics is None:
@@ -206,8 +202,9 @@ class BodyState:
 
     def set_pose(self, T_world_link0: Pose) -> None:
         """Move the body rigidly, as ``set_transform``; ``pose()`` gives back this quaternion, not its negative."""
-        self.set_transform(T_world_link0.matrix())
+        self.own_kinematics.set_transform(T_world_link0.matrix())
         self.own_kinematics.set_root_wxyz(T_world_link0.wxyz)
+        self.moved()
 
     def place_links(self, T_world_links: Floats, last_values: Floats | None = None) -> None:
         """Put every link at a pose; joints get the values that the poses show.
@@ -223,6 +220,8 @@ class BodyState:
     def moved(self) -> None:
         """Take note that links were moved: what they hold follows."""
         self.stamp += 1
+        if self.index:
+            self.simulation.changed.add(self)
         for grab in self._grabs:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 
@@ -301,6 +300,8 @@ class BodyState:
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
         """Change the description of the body where links and joints stay the same: names, limits, manipulators."""
         self.scene = replace(self.scene, **changes)
+        if self.index:
+            self.simulation.changed.add(self)
         if self._kinematics is not None:
             self._kinematics.describe(self.scene)
 
