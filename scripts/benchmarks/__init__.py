@@ -5,11 +5,24 @@ A new area is a module with such a function, and a line in ``AREAS``.
 
 from collections.abc import Callable
 
-from benchmarks import collada, collision, imports, kinematics, loading, memory, reading, video, viewer, window
+from benchmarks import (
+    collada,
+    collision,
+    dynamics,
+    imports,
+    kinematics,
+    loading,
+    memory,
+    reading,
+    video,
+    viewer,
+    window,
+)
 from benchmarks.measure import Row
 
 AREAS: dict[str, Callable[[], list[Row]]] = {
     "kinematics": kinematics.rows,
+    "dynamics": dynamics.rows,
     "collision": collision.rows,
     "loading": loading.rows,
     "reading": reading.rows,

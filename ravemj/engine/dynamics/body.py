@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.dynamics.coupling import Coupling, CouplingMap, rotation_rate
 from ravemj.engine.dynamics.tree import Tree
 from ravemj.engine.kinematics import BodyKinematics, index_range
@@ -37,13 +37,24 @@ class BodyDynamics:
         self._moving, self._turning = np.zeros((3, model.nv)), np.zeros((3, model.nv))
         self._forces = np.zeros(model.nv)
         self._of_dofs = _JointAxes(kinematics.body.joints)
-        self._plain_columns: slice | None = None
-        self._coupling_matrix: Floats | None = None
-        if self.couplings.constant is not None:
-            self._coupling_matrix = self._matrix(self.couplings.constant)
-            if self.couplings.is_one_to_one and self.tree.count == kinematics.dof:
-                columns = index_range(self._inner[self.couplings.constant.coordinates])
-                self._plain_columns = columns if isinstance(columns, slice) else None
+        self._columns = self._one_to_one_columns()
+        constant = self.couplings.constant
+        self._coupling_matrix = None if constant is None else self._matrix(constant)
+        self._qvel, self._qacc, self._gravity = self._data.qvel, self._data.qacc, model.opt.gravity
+        self._velocities: Floats | None = None  # of the links: those that the data are set for
+        self._velocities_stamp = -1
+        self._with_joints: bool = False
+        self._rates = np.zeros(kinematics.dof)
+        self._rest_qacc = np.zeros(model.nv)
+
+    def _one_to_one_columns(self) -> tuple[slice | Ints, Ints] | None:
+        """Return the column of MuJoCo's Jacobians for each DOF, and the DOFs that move nothing; None if DOFs couple."""
+        if not self.couplings.is_one_to_one or self.couplings.constant is None:
+            return None
+        columns = np.zeros(self._kinematics.dof, dtype=int)
+        columns[self.couplings.constant.dofs] = self._inner[self.couplings.constant.coordinates]
+        idle = np.setdiff1d(np.arange(self._kinematics.dof), self.couplings.constant.dofs)
+        return index_range(columns), idle
 
     def _matrix(self, coupling: Coupling) -> Floats:
         """Return the coupling matrix with a row for each of MuJoCo's velocities, shape (nv, dof)."""
@@ -57,8 +68,14 @@ class BodyDynamics:
 
     def _of_dof_values(self, jacobian: Floats) -> Floats:
         """Return a derivative by MuJoCo's velocities, shape (..., nv), as one by the DOF values, shape (..., dof)."""
-        if self._plain_columns is not None:
-            return jacobian[..., self._plain_columns].copy()
+        if self._columns is not None:
+            columns, idle = self._columns
+            if isinstance(columns, slice):
+                return jacobian[..., columns].copy()
+            chosen = jacobian.take(columns, axis=-1)
+            if len(idle):
+                chosen[..., idle] = 0.0
+            return chosen
         matrix = self._coupling_matrix
         return jacobian @ (self._matrix(self._coupling()) if matrix is None else matrix)
 
@@ -90,19 +107,22 @@ class BodyDynamics:
         """
         self._kinematics.place_coms()
         mujoco.mj_jac(self._model, self._data, self._moving, self._turning, point, self._body_ids[link])
-        columns = np.stack((self._moving, self._turning))[:, :, self._inner].transpose(2, 0, 1)
-        moved = _cross(columns[:, None, 1, :], columns[None, :, 0, :])  # w_a x v_b as [a, b]
-        turned = _cross(columns[:, None, 1, :], columns[None, :, 1, :])
-        order = np.arange(self.tree.count)
-        before = (order[:, None] <= self.tree.carriers)[..., None]  # the first moves the axis of the second
-        by_coordinates = np.concatenate(
-            (np.where(before, moved, moved.transpose(1, 0, 2)), np.where(before, turned, 0.0)), axis=2
-        )
+        chain = np.flatnonzero(self.tree.moves[link])
+        columns = np.stack((self._moving, self._turning))[:, :, self._inner[chain]].transpose(2, 0, 1)
+        spins = columns[:, None, 1]
+        moved, turned = _cross(spins, columns[None, :, 0]), _cross(spins, columns[None, :, 1])  # w_a x v_b as [a, b]
+        before = (chain[:, None] <= self.tree.carriers[chain])[..., None]  # the first moves the axis of the second
+        count = self.tree.count
+        by_coordinates = np.zeros((count, count, 6))
+        by_coordinates[chain[:, None], chain, :3] = np.where(before, moved, moved.transpose(1, 0, 2))
+        by_coordinates[chain[:, None], chain, 3:] = np.where(before, turned, 0.0)
         coupling = self._coupling(second=True)
         by_columns = coupling.backward(by_coordinates.transpose(1, 0, 2))
         hessian = coupling.backward(by_columns.transpose(1, 0, 2))
+        place_of = {coordinate: place for place, coordinate in enumerate(chain.tolist())}
         for coordinate, along, dof, value in coupling.second:
-            hessian[along, dof] += value * columns[coordinate].ravel()
+            if coordinate in place_of:
+                hessian[along, dof] += value * columns[place_of[coordinate]].ravel()
         return hessian[:, :, :3].transpose(0, 2, 1).copy(), hessian[:, :, 3:].transpose(0, 2, 1).copy()
 
     def com_jacobian(self) -> Floats:
@@ -142,8 +162,7 @@ class BodyDynamics:
         return self._data.xpos[ids] - self._data.subtree_com[self._model.body_rootid[ids]]
 
     def _present_velocities(self) -> Floats:
-        """Return the velocities of the links for the velocities in MuJoCo's data, shape (links, 6)."""
-        mujoco.mj_comVel(self._model, self._data)
+        """Return the velocities of the links for those in MuJoCo's data, shape (links, 6)."""
         motions = self._data.cvel[self._kinematics.body_ids]
         spins = motions[:, :3]
         return np.concatenate((motions[:, 3:] + _cross(spins, self._arms()), spins), axis=1)
@@ -161,7 +180,9 @@ class BodyDynamics:
         velocities = np.zeros((len(self._body_ids), 6))
         velocities[0] = base
         self._kinematics.place_coms()
-        self._data.qvel[:] = self.qvel(velocities, rates)
+        self._velocities = None
+        self._qvel[:] = self.qvel(velocities, rates)
+        mujoco.mj_comVel(self._model, self._data)
         return self._present_velocities()
 
     def joint_velocities(self, velocities: Floats, joints: Sequence[Joint]) -> list[Floats]:
@@ -226,49 +247,64 @@ class BodyDynamics:
             accelerations: Those of the DOFs [rad/s^2 or m/s^2], shape (dof,).
             external: Further accelerations of links that no joint places, shape (6,), linear first.
         """
-        model, data = self._model, self._data
-        self._set_motion(velocities, self.dof_velocities(velocities), accelerations, external)
-        model.opt.gravity[:] = 0.0
+        data = self._data
+        self._set_velocities(velocities)
+        self._set_accelerations(accelerations, external)
+        self._gravity[:] = 0.0
         speeds = self._present_velocities()
-        mujoco.mj_rnePostConstraint(model, data)
+        mujoco.mj_rnePostConstraint(self._model, data)
         motions = data.cacc[self._kinematics.body_ids]
         turning = motions[:, :3]
         linear = motions[:, 3:] + _cross(turning, self._arms()) + _cross(speeds[:, 3:], speeds[:, :3])
         return np.concatenate((linear, turning), axis=1)
 
-    def _set_motion(
-        self,
-        velocities: Floats,
-        rates: Floats,
-        accelerations: Floats | None,
-        external: Mapping[int, Floats] | None = None,
-    ) -> None:
-        """Write velocities and accelerations into MuJoCo's data.
+    def _set_velocities(self, velocities: Floats, *, with_joints: bool = True) -> None:
+        """Write velocities into MuJoCo's data, with what follows from them; nothing where they are there already.
 
         Args:
-            velocities: Those of the links, of which those of the roots count, shape (links, 6).
-            rates: Those of the DOFs, shape (dof,).
+            velocities: Those of the links, shape (links, 6), in an array that is never changed: those of the roots
+                count, and what the others show of the joints.
+            with_joints: Whether the joints move.
+        """
+        kinematics = self._kinematics
+        kinematics.place_coms()
+        are_same = velocities is self._velocities and kinematics.stamp == self._velocities_stamp
+        if are_same and with_joints == self._with_joints:
+            return
+        if not are_same:
+            self._rates = self.dof_velocities(velocities)
+        self._velocities, self._velocities_stamp, self._with_joints = velocities, kinematics.stamp, with_joints
+        self._qvel[:] = self._rest_qacc[:] = 0.0
+        if with_joints and self._rates.any():
+            coupling = self._coupling(second=True)
+            self._qvel[self._inner] = coupling.forward(self._rates)
+            if coupling.second:
+                self._rest_qacc[self._inner] = coupling.bias(self._rates)
+        if velocities[kinematics.roots].any():
+            self._set_roots(self._qvel, velocities)
+            turning = {root: _turning_acceleration(velocities[root]) for root in kinematics.roots}
+            self._set_roots(self._rest_qacc, turning)
+        mujoco.mj_comVel(self._model, self._data)
+
+    def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
+        """Write accelerations into MuJoCo's data, on top of those that velocities make.
+
+        Args:
             accelerations: Those of the DOFs, shape (dof,); None: none.
             external: Further accelerations of roots, by link, shape (6,).
         """
-        kinematics, data = self._kinematics, self._data
-        kinematics.place_coms()
-        data.qvel[:] = data.qacc[:] = 0.0
-        if accelerations is not None and accelerations.any():
-            data.qacc[self._inner] = self._coupling().forward(accelerations)
-        if rates.any():
-            coupling = self._coupling(second=True)
-            data.qvel[self._inner] = coupling.forward(rates)
-            if coupling.second:
-                data.qacc[self._inner] += coupling.bias(rates)
-        if velocities.any() or external:
-            self._set_roots(data.qvel, velocities)
-            added = external or {}
-            at_roots: dict[int, Floats] = {}
-            for root in kinematics.roots:
-                at_roots[root] = np.array(added.get(root, np.zeros(6)), dtype=np.float64)
-                at_roots[root][:3] += np.cross(velocities[root, 3:], velocities[root, :3])
-            self._set_roots(data.qacc, at_roots)
+        qacc = self._qacc
+        qacc[:] = self._rest_qacc
+        if external:
+            added = np.zeros_like(qacc)
+            none = np.zeros(6)
+            self._set_roots(added, {root: external.get(root, none) for root in self._kinematics.roots})
+            qacc += added
+        if accelerations is not None:
+            if self._columns is not None and isinstance(self._columns[0], slice):
+                qacc[self._columns[0]] += accelerations
+            else:
+                qacc[self._inner] += self._coupling().forward(accelerations)
 
     def inverse(
         self,
@@ -288,9 +324,11 @@ class BodyDynamics:
         Returns:
             Torques and forces [N m or N], shape (dof,).
         """
-        self._set_motion(velocities, self.dof_velocities(velocities), accelerations)
+        self._set_velocities(velocities)
+        self._set_accelerations(accelerations)
         forces = self._needed_forces(gravity)
-        self._add_external(forces, external)
+        if external:
+            self._add_external(forces, external)
         return self._of_dof_values(forces)
 
     def inverse_components(
@@ -301,34 +339,41 @@ class BodyDynamics:
         external: Mapping[int, Floats] | None = None,
     ) -> tuple[Floats, Floats, Floats]:
         """Return the parts of ``inverse``: of accelerations, of joint velocities, and of all else."""
-        rates = self.dof_velocities(velocities)
-        none = np.zeros_like(rates)
-        self._set_motion(np.zeros_like(velocities), none, accelerations)
-        by_acceleration = self._needed_forces((0.0, 0.0, 0.0))
-        self._set_motion(velocities, none, None)
-        by_all_else = self._needed_forces(gravity)
-        by_velocity = np.zeros_like(by_all_else)
-        if rates.any():
-            self._set_motion(velocities, rates, None)
-            by_velocity = self._needed_forces(gravity) - by_all_else
-        self._add_external(by_all_else, external)
-        parts = by_acceleration, by_velocity, by_all_else
-        return self._of_dof_values(parts[0]), self._of_dof_values(parts[1]), self._of_dof_values(parts[2])
+        # Gravity and the base are in all three motions, so that differences leave what is asked for.
+        self._set_velocities(velocities)
+        self._set_accelerations(accelerations)
+        whole = self._needed_forces(gravity).copy()
+        self._set_accelerations(None)
+        moving = self._needed_forces(gravity).copy()
+        by_velocity = np.zeros_like(moving)
+        rest = moving.copy()
+        if self._rates.any():
+            self._set_velocities(velocities, with_joints=False)
+            self._set_accelerations(None)
+            rest = self._needed_forces(gravity).copy()
+            by_velocity = moving - rest
+        if external:
+            self._add_external(rest, external)
+        by_acceleration = self._of_dof_values(whole - moving)
+        return by_acceleration, self._of_dof_values(by_velocity), self._of_dof_values(rest)
 
     def _needed_forces(self, gravity: Sequence[float]) -> Floats:
-        """Return the forces on all coordinates for the motion in MuJoCo's data, shape (nv,)."""
-        model, data = self._model, self._data
-        model.opt.gravity[:] = gravity
-        mujoco.mj_comVel(model, data)
-        mujoco.mj_rne(model, data, 1, self._forces)
-        return self._forces.copy()
+        """Return the forces on all coordinates for the motion in MuJoCo's data, shape (nv,); no copy."""
+        self._gravity[:] = gravity
+        mujoco.mj_rne(self._model, self._data, 1, self._forces)
+        return self._forces
 
-    def _add_external(self, forces: Floats, external: Mapping[int, Floats] | None) -> None:
+    def _add_external(self, forces: Floats, external: Mapping[int, Floats]) -> None:
         """Add forces and moments on links at their centres of mass."""
-        for link, wrench in (external or {}).items():
+        for link, wrench in external.items():
             body_id = self._body_ids[link]
             point = self._data.xipos[body_id]
             mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], point, body_id, forces)
+
+
+def _turning_acceleration(velocity: Floats) -> Floats:
+    """Return the acceleration of a link that goes on turning as it does, shape (6,): its origin's is ``w x v``."""
+    return np.concatenate((np.cross(velocity[3:], velocity[:3]), np.zeros(3)))
 
 
 class _JointAxes:

@@ -57,6 +57,7 @@ class BodyState:
 
     Attributes:
         scene: What it consists of; what files say, and what setters of the API changed since.
+        dof: Number of its degrees of freedom.
         simulation: The world that it was made for.
         index: Its index in the world, from 1; 0 while it is not in the world.
         stamp: Grows with every change of pose.
@@ -81,7 +82,7 @@ class BodyState:
         """
         if self.index:
             raise RavemjError(f"'{self.scene.name}' is in an environment; remove it first", ErrorCode.InvalidState)
-        self.scene = scene
+        self.scene, self.dof = scene, len(scene.dof_axes)
         self.link_enabled = [link.enabled for link in scene.links]
         self.rest_poses = None
         self.stamp += 1
@@ -235,9 +236,15 @@ class BodyState:
         """
         return self._velocities.copy()
 
+    @property
+    def present_velocities(self) -> Floats:
+        """``link_velocities`` without a copy; the array is never changed, but replaced."""
+        return self._velocities
+
     def set_link_velocities(self, velocities: Floats) -> None:
         """Set the velocities of the links, shape (links, 6); what they hold moves with them."""
         self._velocities = velocities.copy()
+        self._velocities.flags.writeable = False
         for grab in self.grabs:
             self._carry(grab)
 
