@@ -36,14 +36,14 @@ class BodyDynamics:
         self._inner = np.arange(model.nv)[kinematics.inner_qvel]
         self._moving, self._turning = np.zeros((3, model.nv)), np.zeros((3, model.nv))
         self._forces = np.zeros(model.nv)
-        self._of_dofs = _JointAxes(kinematics.body.joints)
+        self._of_dofs = _JointAxes(kinematics.body.joints, kinematics.body_ids)
         self._columns = self._one_to_one_columns()
         constant = self.couplings.constant
         self._coupling_matrix = None if constant is None else self._matrix(constant)
         self._qvel, self._qacc, self._gravity = self._data.qvel, self._data.qacc, model.opt.gravity
         self._velocities: Floats | None = None  # of the links: those that the data are set for
         self._velocities_stamp = -1
-        self._with_joints: bool = False
+        self._with_joints = self._are_moving = self._roots_move = False
         self._rates = np.zeros(kinematics.dof)
         self._rest_qacc = np.zeros(model.nv)
 
@@ -180,7 +180,7 @@ class BodyDynamics:
         velocities = np.zeros((len(self._body_ids), 6))
         velocities[0] = base
         self._kinematics.place_coms()
-        self._velocities = None
+        self._velocities, self._are_moving = None, True
         self._qvel[:] = self.qvel(velocities, rates)
         mujoco.mj_comVel(self._model, self._data)
         return self._present_velocities()
@@ -195,30 +195,41 @@ class BodyDynamics:
         Returns:
             For each joint those of its axes [rad/s or m/s], shape (axes,).
         """
-        return self._shown(velocities, _JointAxes(joints))
+        return self._shown(velocities, _JointAxes(joints, self._kinematics.body_ids))
 
     def dof_velocities(self, velocities: Floats) -> Floats:
         """Return the velocities of the DOFs that velocities of links show, shape (links, 6) to (dof,)."""
         if not velocities.any():
             return np.zeros(self._kinematics.dof)
-        return np.concatenate([np.zeros(0), *self._shown(velocities, self._of_dofs)])
+        if self._of_dofs.special:
+            return np.concatenate([np.zeros(0), *self._shown(velocities, self._of_dofs)])
+        return self._of_first_axes(velocities, self._of_dofs)
 
     def _shown(self, velocities: Floats, of: "_JointAxes") -> list[Floats]:
         self._kinematics.place()
-        positions = self._data.xpos[self._kinematics.body_ids]
-        rotations = self._data.xmat[self._kinematics.body_ids].reshape(-1, 3, 3)
-        before, after = velocities[of.parents], velocities[of.children]
-        turning = after[:, 3:] - before[:, 3:]
-        moving = after[:, :3] - before[:, :3]
-        moving -= _cross(before[:, 3:], positions[of.children] - positions[of.parents])
-        axes = (rotations[of.parents] @ of.directions[:, :, None])[:, :, 0]
-        shown = list((axes * np.where(of.slides, moving, turning)).sum(axis=1, keepdims=True))
+        shown = list(self._of_first_axes(velocities, of)[:, None])
         for index, joint in of.special:
+            turning = velocities[joint.child, 3:] - velocities[joint.parent, 3:]
             if joint.kind == "spherical":
-                shown[index] = self._spherical_velocity(joint, rotations[joint.parent].T @ turning[index])
+                rotation = self._data.xmat[self._body_ids[joint.parent]].reshape(3, 3)
+                shown[index] = self._spherical_velocity(joint, rotation.T @ turning)
             else:
-                shown[index] = np.linalg.pinv(self._two_axes(joint)) @ turning[index]
+                shown[index] = np.linalg.pinv(self._two_axes(joint)) @ turning
         return shown
+
+    def _of_first_axes(self, velocities: Floats, of: "_JointAxes") -> Floats:
+        """Return the velocities of the first axes of joints, shape (joints,)."""
+        rotations = self._data.xmat[of.parent_ids].reshape(-1, 3, 3)
+        axes = np.matmul(rotations, of.directions)[:, :, 0]
+        apart = velocities[of.children]
+        apart -= velocities[of.parents]
+        rates = np.einsum("ij,ij->i", axes, apart[:, 3:])
+        if len(slides := of.slides):
+            positions = self._data.xpos
+            arms = positions[of.child_ids[slides]] - positions[of.parent_ids[slides]]
+            moving = apart[slides, :3] - _cross(velocities[of.parents[slides], 3:], arms)
+            rates[slides] = np.einsum("ij,ij->i", axes[slides], moving)
+        return rates
 
     def _two_axes(self, joint: Joint) -> Floats:
         """Return the axes of a ``hinge2`` as columns, shape (3, 2)."""
@@ -268,23 +279,35 @@ class BodyDynamics:
         """
         kinematics = self._kinematics
         kinematics.place_coms()
-        are_same = velocities is self._velocities and kinematics.stamp == self._velocities_stamp
-        if are_same and with_joints == self._with_joints:
+        is_other, has_moved = velocities is not self._velocities, kinematics.stamp != self._velocities_stamp
+        if not (is_other or has_moved) and with_joints == self._with_joints:
             return
-        if not are_same:
-            self._rates = self.dof_velocities(velocities)
+        were_moving = self._are_moving
+        if is_other:
+            self._are_moving, self._roots_move = bool(velocities.any()), bool(velocities[kinematics.roots].any())
         self._velocities, self._velocities_stamp, self._with_joints = velocities, kinematics.stamp, with_joints
+        if not (were_moving or self._are_moving):
+            return  # all is 0 in MuJoCo's data
+        if is_other or has_moved:
+            self._rates = self.dof_velocities(velocities)
         self._qvel[:] = self._rest_qacc[:] = 0.0
-        if with_joints and self._rates.any():
-            coupling = self._coupling(second=True)
-            self._qvel[self._inner] = coupling.forward(self._rates)
-            if coupling.second:
-                self._rest_qacc[self._inner] = coupling.bias(self._rates)
-        if velocities[kinematics.roots].any():
+        if with_joints:
+            self._set_joint_velocities()
+        if self._roots_move:
             self._set_roots(self._qvel, velocities)
             turning = {root: _turning_acceleration(velocities[root]) for root in kinematics.roots}
             self._set_roots(self._rest_qacc, turning)
         mujoco.mj_comVel(self._model, self._data)
+
+    def _set_joint_velocities(self) -> None:
+        """Write the velocities of the joints, and the accelerations that coupled ones have at constant velocities."""
+        if self._columns is not None and isinstance(self._columns[0], slice):
+            self._qvel[self._columns[0]] = self._rates
+            return
+        coupling = self._coupling(second=True)
+        self._qvel[self._inner] = coupling.forward(self._rates)
+        if coupling.second:
+            self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
         """Write accelerations into MuJoCo's data, on top of those that velocities make.
@@ -345,17 +368,13 @@ class BodyDynamics:
         whole = self._needed_forces(gravity).copy()
         self._set_accelerations(None)
         moving = self._needed_forces(gravity).copy()
-        by_velocity = np.zeros_like(moving)
-        rest = moving.copy()
-        if self._rates.any():
-            self._set_velocities(velocities, with_joints=False)
-            self._set_accelerations(None)
-            rest = self._needed_forces(gravity).copy()
-            by_velocity = moving - rest
+        self._set_velocities(velocities, with_joints=False)
+        self._set_accelerations(None)
+        rest = self._needed_forces(gravity)
+        by_acceleration, by_velocity = whole - moving, moving - rest
         if external:
             self._add_external(rest, external)
-        by_acceleration = self._of_dof_values(whole - moving)
-        return by_acceleration, self._of_dof_values(by_velocity), self._of_dof_values(rest)
+        return self._of_dof_values(by_acceleration), self._of_dof_values(by_velocity), self._of_dof_values(rest)
 
     def _needed_forces(self, gravity: Sequence[float]) -> Floats:
         """Return the forces on all coordinates for the motion in MuJoCo's data, shape (nv,); no copy."""
@@ -382,16 +401,19 @@ class _JointAxes:
     Attributes:
         parents: Index of the parent link of each joint, shape (joints,).
         children: Index of the child link.
-        directions: First axis, in the parent link, shape (joints, 3).
-        slides: Whether it is a slider, shape (joints, 1).
+        parent_ids: MuJoCo's index of the parent link.
+        child_ids: MuJoCo's index of the child link.
+        directions: First axis, in the parent link, shape (joints, 3, 1).
+        slides: Which of them are sliders.
         special: Those that have more than one axis, with their indices.
     """
 
-    def __init__(self, joints: Sequence[Joint]) -> None:
+    def __init__(self, joints: Sequence[Joint], body_ids: Ints) -> None:
         self.parents = np.array([joint.parent for joint in joints], dtype=int)
         self.children = np.array([joint.child for joint in joints], dtype=int)
-        self.directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3)
-        self.slides = np.array([joint.kind == "slider" for joint in joints], dtype=bool).reshape(-1, 1)
+        self.parent_ids, self.child_ids = body_ids[self.parents], body_ids[self.children]
+        self.directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3, 1)
+        self.slides = np.array([index for index, joint in enumerate(joints) if joint.kind == "slider"], dtype=int)
         self.special = [(index, joint) for index, joint in enumerate(joints) if joint.kind in {"spherical", "hinge2"}]
 
 
