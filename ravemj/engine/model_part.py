@@ -24,12 +24,13 @@ class ModelPart:
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, names: BodyNames) -> None:
-        self._model, self._data = model, data
+        self._model = model
         self.names = names
         found = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in names.links]
         self.body_ids: Ints = np.array(found, dtype=int)
         first = min(found, default=0)
-        self._bodies = slice(first, first + len(found))
+        bodies = slice(first, first + len(found))
+        self._positions, self._quaternions = model.body_pos[bodies], model.body_quat[bodies]  # views of the model
         self._roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
         joints = np.flatnonzero((model.jnt_bodyid >= first) & (model.jnt_bodyid < first + len(found)))
         self.qpos = self.qvel = slice(0, 0)
@@ -40,25 +41,26 @@ class ModelPart:
             self.qpos = slice(int(model.jnt_qposadr[start]), int(model.jnt_qposadr[last]) + width)
             self.qvel = slice(int(model.jnt_dofadr[start]), int(model.jnt_dofadr[last]) + speeds)
             self.is_free = model.jnt_type[start] == mujoco.mjtJoint.mjJNT_FREE
+        self._qpos = data.qpos[self.qpos]
         self.stamp = -1
 
     def take(self, kinematics: BodyKinematics) -> None:
         """Go where the body is."""
-        model, own = self._model, kinematics.model
-        model.body_pos[self._bodies] = own.body_pos[1:]
-        model.body_quat[self._bodies] = own.body_quat[1:]
-        qpos = kinematics.data.qpos
-        if self.is_free:
-            self._data.qpos[self.qpos] = qpos
-        else:
-            self._data.qpos[self.qpos] = qpos[kinematics.inner_qpos]
-            for root, place in zip(self._roots, kinematics.root_qpos, strict=True):
-                body_id = self.body_ids[root]
-                model.body_pos[body_id] = qpos[place : place + 3]
-                model.body_quat[body_id] = qpos[place + 3 : place + 7]
+        qpos = kinematics.qpos
+        self._qpos[:] = qpos if self.is_free else qpos[kinematics.inner_qpos]
+        if kinematics.pose_stamp > self.stamp:
+            self._take_poses(kinematics)
         self.stamp = kinematics.stamp
+
+    def _take_poses(self, kinematics: BodyKinematics) -> None:
+        """Take over where the roots are, and what was displaced."""
+        self._positions[:] = kinematics.model.body_pos[1:]
+        self._quaternions[:] = kinematics.model.body_quat[1:]
+        for root, place in zip(() if self.is_free else self._roots, kinematics.root_qpos, strict=not self.is_free):
+            body_id, pose = self.body_ids[root], kinematics.qpos[place : place + 7]
+            self._model.body_pos[body_id], self._model.body_quat[body_id] = pose[:3], pose[3:]
 
     def give(self, kinematics: BodyKinematics) -> None:
         """Let the body go where it is in this model."""
-        kinematics.set_qpos(self._data.qpos[self.qpos], inner_only=not self.is_free)
+        kinematics.set_qpos(self._qpos, inner_only=not self.is_free)
         self.stamp = kinematics.stamp

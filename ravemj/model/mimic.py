@@ -176,10 +176,10 @@ class MimicJoints:
 
     def evaluate_many(self, values: list[Floats]) -> None:
         """Do the same for many configurations: an array of shape (N,) for each joint."""
-        for joint in self.joints:
-            named = {f"joint{leader}": values[leader] for leader in leaders(joint.expression)}
-            found = np.broadcast_to(joint.expression.evaluate_many(named), np.shape(values[joint.joint]))
-            values[joint.joint] = np.clip(found, joint.lower, joint.upper)
+        for joint, expression, _, lower, upper in self.joints:
+            named = {f"joint{leader}": values[leader] for leader in leaders(expression)}
+            found = np.broadcast_to(expression.evaluate_many(named), np.shape(values[joint]))
+            values[joint] = np.clip(found, lower, upper)
 
 
 def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:

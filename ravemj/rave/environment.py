@@ -110,7 +110,7 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
 
     @property
     def data(self) -> mujoco.MjData:
-        """The state of the MuJoCo model."""
+        """The state of the MuJoCo model, as the bodies are now."""
         return self._simulation.compiled().data
 
     def __repr__(self) -> str:

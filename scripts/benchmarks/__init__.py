@@ -5,11 +5,25 @@ A new area is a module with such a function, and a line in ``AREAS``.
 
 from collections.abc import Callable
 
-from benchmarks import collada, collision, ik, imports, kinematics, loading, memory, reading, video, viewer, window
+from benchmarks import (
+    collada,
+    collision,
+    dynamics,
+    ik,
+    imports,
+    kinematics,
+    loading,
+    memory,
+    reading,
+    video,
+    viewer,
+    window,
+)
 from benchmarks.measure import Row
 
 AREAS: dict[str, Callable[[], list[Row]]] = {
     "kinematics": kinematics.rows,
+    "dynamics": dynamics.rows,
     "collision": collision.rows,
     "ik": ik.rows,
     "loading": loading.rows,

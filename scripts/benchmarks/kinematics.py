@@ -1,16 +1,23 @@
 """Joint values in, link poses out: one configuration after the other, and many at once."""
 
 import tempfile
+import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import mujoco
 import numpy as np
 
 import ravemj
-from benchmarks.measure import MODEL, Row, microseconds, take_turns
+from benchmarks.measure import MODEL, ROOT, Row, microseconds, take_turns
 from ravemj.core.transforms import Floats
 
 AXES = ("1 0 0", "0 1 0", "0 0 1")
+LIMITS = ((3.0, 2.0, 2.0), (2.5, 2.0, 2.0), (1.5, 1.6, 2.0))
+"""Greatest ratios: of values alone, of values and all poses, of one pose."""
+
+PR2 = "rdiankov+openrave/src/robots/pr2-beta-static.zae"
+
 MANY = 600
 """Configurations of a batch."""
 
@@ -18,9 +25,27 @@ MANY = 600
 def rows() -> list[Row]:
     """Compare our calls with the MuJoCo calls that they stand for, for robots of several sizes."""
     with tempfile.TemporaryDirectory() as folder:
-        arm = _write(Path(folder) / "arm.xml", [8])
-        large = _write(Path(folder) / "large.xml", [15] * 6)
-        return [*_of("pendulum", MODEL, 5.0), *_of("arm of 7 joints", arm, 4.5), *_of("90 links", large, 3.0)]
+        limits = dict(zip(("pendulum", "arm of 7 joints", "90 links"), LIMITS, strict=True))
+        return [row for name, robot in robots(Path(folder)) if name in limits for row in _of(name, robot, limits[name])]
+
+
+def robots(folder: Path) -> Iterator[tuple[str, ravemj.Robot]]:
+    """Yield robots of several sizes, with what they are; the PR2 where the corpus is present.
+
+    Args:
+        folder: Takes the files of those that are written.
+    """
+    paths = {
+        "pendulum": MODEL,
+        "arm of 7 joints": _write(folder / "arm.xml", [8]),
+        "90 links": _write(folder / "large.xml", [15] * 6),
+        "PR2": ROOT.parent / "shared" / "corpus" / "models" / PR2,
+        "Panda with gripper": ROOT / "models" / "panda.xml",
+    }
+    for name, path in paths.items():
+        if path.exists():
+            with warnings.catch_warnings(action="ignore"):
+                yield name, ravemj.load(path).GetRobots()[0]
 
 
 def _write(path: Path, branches: list[int]) -> Path:
@@ -45,9 +70,8 @@ def _link(name: str, before: str) -> str:
     return f"<Body name='{name}'>{place}<rotationaxis>0 0 1 10</rotationaxis>{geometry}</Body>"
 
 
-def _of(what: str, path: Path, limit: float) -> list[Row]:
-    robot = ravemj.load(path).GetRobots()[0]
-    return [*_one(what, robot, limit), _many(what, robot)]
+def _of(what: str, robot: ravemj.Robot, limits: tuple[float, float, float]) -> list[Row]:
+    return [*_one(what, robot, limits), _many(what, robot)]
 
 
 class Bare:
@@ -66,7 +90,7 @@ class Bare:
         transforms[:, :3, :3] = self.xmat.reshape(-1, 3, 3)
 
 
-def _one(what: str, robot: ravemj.Robot, limit: float) -> list[Row]:
+def _one(what: str, robot: ravemj.Robot, limits: tuple[float, float, float]) -> list[Row]:
     bare, moving = Bare(robot), robot.qpos_indices >= 0
     values, qpos = np.where(moving, 0.5, 0.0), np.full(moving.sum(), 0.5)
     count = len(bare.xpos)
@@ -88,11 +112,33 @@ def _one(what: str, robot: ravemj.Robot, limit: float) -> list[Row]:
     if not np.allclose(as_list(), floor(), rtol=0, atol=1e-13):
         raise RuntimeError("the poses differ")
     calls = max(1, 100 // count)  # short runs, which other programs seldom interrupt
-    listed, arrayed, bared = take_turns(
-        [microseconds(function, calls) for function in (as_list, as_array, floor)], 1000
+
+    def last_pose() -> Floats:
+        return robot.GetLinks()[-1].GetTransform()
+
+    def last_floor() -> Floats:
+        transform = np.eye(4)
+        transform[:3, 3] = bare.xpos[-1]
+        transform[:3, :3] = bare.xmat[-1].reshape(3, 3)
+        return transform
+
+    def placed() -> None:
+        robot.SetDOFValues(values)
+        robot.GetTransform()  # without it the links would not be placed
+
+    def placed_floor() -> None:
+        bare.qpos[:] = qpos
+        mujoco.mj_kinematics(bare.model, bare.data)
+
+    functions = (as_list, as_array, floor, placed, placed_floor, last_pose, last_floor)
+    listed, arrayed, bared, placed_, placed_bare, last, last_bare = take_turns(
+        [microseconds(function, calls) for function in functions], 1000
     )
+    only, both, pose = limits
     return [
-        Row(f"{what}: SetDOFValues + GetLinkTransformations : mj_kinematics, poses", "µs", listed, bared, limit),
+        Row(f"{what}: SetDOFValues + GetTransform : mj_kinematics", "µs", placed_, placed_bare, only),
+        Row(f"{what}: GetLinks()[-1].GetTransform() : a pose", "µs", last, last_bare, pose),
+        Row(f"{what}: SetDOFValues + GetLinkTransformations : mj_kinematics, poses", "µs", listed, bared, both),
         Row(f"{what}: SetDOFValues + link_transforms : mj_kinematics, poses", "µs", arrayed, bared, 2.5),
     ]
 

@@ -26,7 +26,7 @@ def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> np.n
     try:
         for number, one in enumerate(values):
             body.set_values(one)
-            world.model.synchronise()
+            body.simulation.compiled()  # the world follows
             found[number] = any(world.collide(some) for some in pairs)
     finally:
         body.restore(before)

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.dynamics.coupling import Coupling, CouplingMap, rotation_rate
 from ravemj.engine.dynamics.tree import Tree
 from ravemj.engine.kinematics import BodyKinematics, index_range
@@ -36,14 +36,25 @@ class BodyDynamics:
         self._inner = np.arange(model.nv)[kinematics.inner_qvel]
         self._moving, self._turning = np.zeros((3, model.nv)), np.zeros((3, model.nv))
         self._forces = np.zeros(model.nv)
-        self._of_dofs = _JointAxes(kinematics.body.joints)
-        self._plain_columns: slice | None = None
-        self._coupling_matrix: Floats | None = None
-        if self.couplings.constant is not None:
-            self._coupling_matrix = self._matrix(self.couplings.constant)
-            if self.couplings.is_one_to_one and self.tree.count == kinematics.dof:
-                columns = index_range(self._inner[self.couplings.constant.coordinates])
-                self._plain_columns = columns if isinstance(columns, slice) else None
+        self._of_dofs = _JointAxes(kinematics.body.joints, kinematics.body_ids)
+        self._columns = self._one_to_one_columns()
+        constant = self.couplings.constant
+        self._coupling_matrix = None if constant is None else self._matrix(constant)
+        self._qvel, self._qacc, self._gravity = self._data.qvel, self._data.qacc, model.opt.gravity
+        self._velocities: Floats | None = None  # of the links: those that the data are set for
+        self._velocities_stamp = -1
+        self._with_joints = self._are_moving = self._roots_move = False
+        self._rates = np.zeros(kinematics.dof)
+        self._rest_qacc = np.zeros(model.nv)
+
+    def _one_to_one_columns(self) -> tuple[slice | Ints, Ints] | None:
+        """Return the column of MuJoCo's Jacobians for each DOF, and the DOFs that move nothing; None if DOFs couple."""
+        if not self.couplings.is_one_to_one or self.couplings.constant is None:
+            return None
+        columns = np.zeros(self._kinematics.dof, dtype=int)
+        columns[self.couplings.constant.dofs] = self._inner[self.couplings.constant.coordinates]
+        idle = np.setdiff1d(np.arange(self._kinematics.dof), self.couplings.constant.dofs)
+        return index_range(columns), idle
 
     def _matrix(self, coupling: Coupling) -> Floats:
         """Return the coupling matrix with a row for each of MuJoCo's velocities, shape (nv, dof)."""
@@ -57,8 +68,14 @@ class BodyDynamics:
 
     def _of_dof_values(self, jacobian: Floats) -> Floats:
         """Return a derivative by MuJoCo's velocities, shape (..., nv), as one by the DOF values, shape (..., dof)."""
-        if self._plain_columns is not None:
-            return jacobian[..., self._plain_columns].copy()
+        if self._columns is not None:
+            columns, idle = self._columns
+            if isinstance(columns, slice):
+                return jacobian[..., columns].copy()
+            chosen = jacobian.take(columns, axis=-1)
+            if len(idle):
+                chosen[..., idle] = 0.0
+            return chosen
         matrix = self._coupling_matrix
         return jacobian @ (self._matrix(self._coupling()) if matrix is None else matrix)
 
@@ -90,19 +107,22 @@ class BodyDynamics:
         """
         self._kinematics.place_coms()
         mujoco.mj_jac(self._model, self._data, self._moving, self._turning, point, self._body_ids[link])
-        columns = np.stack((self._moving, self._turning))[:, :, self._inner].transpose(2, 0, 1)
-        moved = _cross(columns[:, None, 1, :], columns[None, :, 0, :])  # w_a x v_b as [a, b]
-        turned = _cross(columns[:, None, 1, :], columns[None, :, 1, :])
-        order = np.arange(self.tree.count)
-        before = (order[:, None] <= self.tree.carriers)[..., None]  # the first moves the axis of the second
-        by_coordinates = np.concatenate(
-            (np.where(before, moved, moved.transpose(1, 0, 2)), np.where(before, turned, 0.0)), axis=2
-        )
+        chain = np.flatnonzero(self.tree.moves[link])
+        columns = np.stack((self._moving, self._turning))[:, :, self._inner[chain]].transpose(2, 0, 1)
+        spins = columns[:, None, 1]
+        moved, turned = _cross(spins, columns[None, :, 0]), _cross(spins, columns[None, :, 1])  # w_a x v_b as [a, b]
+        before = (chain[:, None] <= self.tree.carriers[chain])[..., None]  # the first moves the axis of the second
+        count = self.tree.count
+        by_coordinates = np.zeros((count, count, 6))
+        by_coordinates[chain[:, None], chain, :3] = np.where(before, moved, moved.transpose(1, 0, 2))
+        by_coordinates[chain[:, None], chain, 3:] = np.where(before, turned, 0.0)
         coupling = self._coupling(second=True)
         by_columns = coupling.backward(by_coordinates.transpose(1, 0, 2))
         hessian = coupling.backward(by_columns.transpose(1, 0, 2))
+        place_of = {coordinate: place for place, coordinate in enumerate(chain.tolist())}
         for coordinate, along, dof, value in coupling.second:
-            hessian[along, dof] += value * columns[coordinate].ravel()
+            if coordinate in place_of:
+                hessian[along, dof] += value * columns[place_of[coordinate]].ravel()
         return hessian[:, :, :3].transpose(0, 2, 1).copy(), hessian[:, :, 3:].transpose(0, 2, 1).copy()
 
     def com_jacobian(self) -> Floats:
@@ -137,13 +157,12 @@ class BodyDynamics:
             target[first + 3 : first + 6] = values[root][3:] @ rotation
 
     def _arms(self) -> Floats:
-        """Return the links' origins from the points of MuJoCo's spatial velocities [m], shape (links, 3)."""
+        """Return where the links' origins are from the centre that MuJoCo's motions are about [m], shape (links, 3)."""
         ids = self._kinematics.body_ids
         return self._data.xpos[ids] - self._data.subtree_com[self._model.body_rootid[ids]]
 
     def _present_velocities(self) -> Floats:
-        """Return the velocities of the links for the velocities in MuJoCo's data, shape (links, 6)."""
-        mujoco.mj_comVel(self._model, self._data)
+        """Return the velocities of the links for those in MuJoCo's data, shape (links, 6)."""
         motions = self._data.cvel[self._kinematics.body_ids]
         spins = motions[:, :3]
         return np.concatenate((motions[:, 3:] + _cross(spins, self._arms()), spins), axis=1)
@@ -161,7 +180,9 @@ class BodyDynamics:
         velocities = np.zeros((len(self._body_ids), 6))
         velocities[0] = base
         self._kinematics.place_coms()
-        self._data.qvel[:] = self.qvel(velocities, rates)
+        self._velocities, self._are_moving = None, True
+        self._qvel[:] = self.qvel(velocities, rates)
+        mujoco.mj_comVel(self._model, self._data)
         return self._present_velocities()
 
     def joint_velocities(self, velocities: Floats, joints: Sequence[Joint]) -> list[Floats]:
@@ -174,30 +195,41 @@ class BodyDynamics:
         Returns:
             For each joint those of its axes [rad/s or m/s], shape (axes,).
         """
-        return self._shown(velocities, _JointAxes(joints))
+        return self._shown(velocities, _JointAxes(joints, self._kinematics.body_ids))
 
     def dof_velocities(self, velocities: Floats) -> Floats:
         """Return the velocities of the DOFs that velocities of links show, shape (links, 6) to (dof,)."""
         if not velocities.any():
             return np.zeros(self._kinematics.dof)
-        return np.concatenate([np.zeros(0), *self._shown(velocities, self._of_dofs)])
+        if self._of_dofs.special:
+            return np.concatenate([np.zeros(0), *self._shown(velocities, self._of_dofs)])
+        return self._of_first_axes(velocities, self._of_dofs)
 
     def _shown(self, velocities: Floats, of: "_JointAxes") -> list[Floats]:
         self._kinematics.place()
-        positions = self._data.xpos[self._kinematics.body_ids]
-        rotations = self._data.xmat[self._kinematics.body_ids].reshape(-1, 3, 3)
-        before, after = velocities[of.parents], velocities[of.children]
-        turning = after[:, 3:] - before[:, 3:]
-        moving = after[:, :3] - before[:, :3]
-        moving -= _cross(before[:, 3:], positions[of.children] - positions[of.parents])
-        axes = (rotations[of.parents] @ of.directions[:, :, None])[:, :, 0]
-        shown = list((axes * np.where(of.slides, moving, turning)).sum(axis=1, keepdims=True))
+        shown = list(self._of_first_axes(velocities, of)[:, None])
         for index, joint in of.special:
+            turning = velocities[joint.child, 3:] - velocities[joint.parent, 3:]
             if joint.kind == "spherical":
-                shown[index] = self._spherical_velocity(joint, rotations[joint.parent].T @ turning[index])
+                rotation = self._data.xmat[self._body_ids[joint.parent]].reshape(3, 3)
+                shown[index] = self._spherical_velocity(joint, rotation.T @ turning)
             else:
-                shown[index] = np.linalg.pinv(self._two_axes(joint)) @ turning[index]
+                shown[index] = np.linalg.pinv(self._two_axes(joint)) @ turning
         return shown
+
+    def _of_first_axes(self, velocities: Floats, of: "_JointAxes") -> Floats:
+        """Return the velocities of the first axes of joints, shape (joints,)."""
+        rotations = self._data.xmat[of.parent_ids].reshape(-1, 3, 3)
+        axes = np.matmul(rotations, of.directions)[:, :, 0]
+        apart = velocities[of.children]
+        apart -= velocities[of.parents]
+        rates = np.einsum("ij,ij->i", axes, apart[:, 3:])
+        if len(slides := of.slides):
+            positions = self._data.xpos
+            arms = positions[of.child_ids[slides]] - positions[of.parent_ids[slides]]
+            moving = apart[slides, :3] - _cross(velocities[of.parents[slides], 3:], arms)
+            rates[slides] = np.einsum("ij,ij->i", axes[slides], moving)
+        return rates
 
     def _two_axes(self, joint: Joint) -> Floats:
         """Return the axes of a ``hinge2`` as columns, shape (3, 2)."""
@@ -226,49 +258,76 @@ class BodyDynamics:
             accelerations: Those of the DOFs [rad/s^2 or m/s^2], shape (dof,).
             external: Further accelerations of links that no joint places, shape (6,), linear first.
         """
-        model, data = self._model, self._data
-        self._set_motion(velocities, self.dof_velocities(velocities), accelerations, external)
-        model.opt.gravity[:] = 0.0
+        data = self._data
+        self._set_velocities(velocities)
+        self._set_accelerations(accelerations, external)
+        self._gravity[:] = 0.0
         speeds = self._present_velocities()
-        mujoco.mj_rnePostConstraint(model, data)
+        mujoco.mj_rnePostConstraint(self._model, data)
         motions = data.cacc[self._kinematics.body_ids]
         turning = motions[:, :3]
         linear = motions[:, 3:] + _cross(turning, self._arms()) + _cross(speeds[:, 3:], speeds[:, :3])
         return np.concatenate((linear, turning), axis=1)
 
-    def _set_motion(
-        self,
-        velocities: Floats,
-        rates: Floats,
-        accelerations: Floats | None,
-        external: Mapping[int, Floats] | None = None,
-    ) -> None:
-        """Write velocities and accelerations into MuJoCo's data.
+    def _set_velocities(self, velocities: Floats, *, with_joints: bool = True) -> None:
+        """Write velocities into MuJoCo's data, with what follows from them; nothing where they are there already.
 
         Args:
-            velocities: Those of the links, of which those of the roots count, shape (links, 6).
-            rates: Those of the DOFs, shape (dof,).
+            velocities: Those of the links, shape (links, 6), in an array that is never changed: those of the roots
+                count, and what the others show of the joints.
+            with_joints: Whether the joints move.
+        """
+        kinematics = self._kinematics
+        kinematics.place_coms()
+        is_other, has_moved = velocities is not self._velocities, kinematics.stamp != self._velocities_stamp
+        if not (is_other or has_moved) and with_joints == self._with_joints:
+            return
+        were_moving = self._are_moving
+        if is_other:
+            self._are_moving, self._roots_move = bool(velocities.any()), bool(velocities[kinematics.roots].any())
+        self._velocities, self._velocities_stamp, self._with_joints = velocities, kinematics.stamp, with_joints
+        if not (were_moving or self._are_moving):
+            return  # all is 0 in MuJoCo's data
+        if is_other or has_moved:
+            self._rates = self.dof_velocities(velocities)
+        self._qvel[:] = self._rest_qacc[:] = 0.0
+        if with_joints:
+            self._set_joint_velocities()
+        if self._roots_move:
+            self._set_roots(self._qvel, velocities)
+            turning = {root: _turning_acceleration(velocities[root]) for root in kinematics.roots}
+            self._set_roots(self._rest_qacc, turning)
+        mujoco.mj_comVel(self._model, self._data)
+
+    def _set_joint_velocities(self) -> None:
+        """Write the velocities of the joints, and the accelerations that coupled ones have at constant velocities."""
+        if self._columns is not None and isinstance(self._columns[0], slice):
+            self._qvel[self._columns[0]] = self._rates
+            return
+        coupling = self._coupling(second=True)
+        self._qvel[self._inner] = coupling.forward(self._rates)
+        if coupling.second:
+            self._rest_qacc[self._inner] = coupling.bias(self._rates)
+
+    def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
+        """Write accelerations into MuJoCo's data, on top of those that velocities make.
+
+        Args:
             accelerations: Those of the DOFs, shape (dof,); None: none.
             external: Further accelerations of roots, by link, shape (6,).
         """
-        kinematics, data = self._kinematics, self._data
-        kinematics.place_coms()
-        data.qvel[:] = data.qacc[:] = 0.0
-        if accelerations is not None and accelerations.any():
-            data.qacc[self._inner] = self._coupling().forward(accelerations)
-        if rates.any():
-            coupling = self._coupling(second=True)
-            data.qvel[self._inner] = coupling.forward(rates)
-            if coupling.second:
-                data.qacc[self._inner] += coupling.bias(rates)
-        if velocities.any() or external:
-            self._set_roots(data.qvel, velocities)
-            added = external or {}
-            at_roots: dict[int, Floats] = {}
-            for root in kinematics.roots:
-                at_roots[root] = np.array(added.get(root, np.zeros(6)), dtype=np.float64)
-                at_roots[root][:3] += np.cross(velocities[root, 3:], velocities[root, :3])
-            self._set_roots(data.qacc, at_roots)
+        qacc = self._qacc
+        qacc[:] = self._rest_qacc
+        if external:
+            added = np.zeros_like(qacc)
+            none = np.zeros(6)
+            self._set_roots(added, {root: external.get(root, none) for root in self._kinematics.roots})
+            qacc += added
+        if accelerations is not None:
+            if self._columns is not None and isinstance(self._columns[0], slice):
+                qacc[self._columns[0]] += accelerations
+            else:
+                qacc[self._inner] += self._coupling().forward(accelerations)
 
     def inverse(
         self,
@@ -288,9 +347,11 @@ class BodyDynamics:
         Returns:
             Torques and forces [N m or N], shape (dof,).
         """
-        self._set_motion(velocities, self.dof_velocities(velocities), accelerations)
+        self._set_velocities(velocities)
+        self._set_accelerations(accelerations)
         forces = self._needed_forces(gravity)
-        self._add_external(forces, external)
+        if external:
+            self._add_external(forces, external)
         return self._of_dof_values(forces)
 
     def inverse_components(
@@ -301,34 +362,37 @@ class BodyDynamics:
         external: Mapping[int, Floats] | None = None,
     ) -> tuple[Floats, Floats, Floats]:
         """Return the parts of ``inverse``: of accelerations, of joint velocities, and of all else."""
-        rates = self.dof_velocities(velocities)
-        none = np.zeros_like(rates)
-        self._set_motion(np.zeros_like(velocities), none, accelerations)
-        by_acceleration = self._needed_forces((0.0, 0.0, 0.0))
-        self._set_motion(velocities, none, None)
-        by_all_else = self._needed_forces(gravity)
-        by_velocity = np.zeros_like(by_all_else)
-        if rates.any():
-            self._set_motion(velocities, rates, None)
-            by_velocity = self._needed_forces(gravity) - by_all_else
-        self._add_external(by_all_else, external)
-        parts = by_acceleration, by_velocity, by_all_else
-        return self._of_dof_values(parts[0]), self._of_dof_values(parts[1]), self._of_dof_values(parts[2])
+        # Gravity and the base are in all three motions, so that differences leave what is asked for.
+        self._set_velocities(velocities)
+        self._set_accelerations(accelerations)
+        whole = self._needed_forces(gravity).copy()
+        self._set_accelerations(None)
+        moving = self._needed_forces(gravity).copy()
+        self._set_velocities(velocities, with_joints=False)
+        self._set_accelerations(None)
+        rest = self._needed_forces(gravity)
+        by_acceleration, by_velocity = whole - moving, moving - rest
+        if external:
+            self._add_external(rest, external)
+        return self._of_dof_values(by_acceleration), self._of_dof_values(by_velocity), self._of_dof_values(rest)
 
     def _needed_forces(self, gravity: Sequence[float]) -> Floats:
-        """Return the forces on all coordinates for the motion in MuJoCo's data, shape (nv,)."""
-        model, data = self._model, self._data
-        model.opt.gravity[:] = gravity
-        mujoco.mj_comVel(model, data)
-        mujoco.mj_rne(model, data, 1, self._forces)
-        return self._forces.copy()
+        """Return the forces on all coordinates for the motion in MuJoCo's data, shape (nv,); no copy."""
+        self._gravity[:] = gravity
+        mujoco.mj_rne(self._model, self._data, 1, self._forces)
+        return self._forces
 
-    def _add_external(self, forces: Floats, external: Mapping[int, Floats] | None) -> None:
+    def _add_external(self, forces: Floats, external: Mapping[int, Floats]) -> None:
         """Add forces and moments on links at their centres of mass."""
-        for link, wrench in (external or {}).items():
+        for link, wrench in external.items():
             body_id = self._body_ids[link]
             point = self._data.xipos[body_id]
             mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], point, body_id, forces)
+
+
+def _turning_acceleration(velocity: Floats) -> Floats:
+    """Return the acceleration of a link that goes on turning as it does, shape (6,): its origin's is ``w x v``."""
+    return np.concatenate((np.cross(velocity[3:], velocity[:3]), np.zeros(3)))
 
 
 class _JointAxes:
@@ -337,16 +401,19 @@ class _JointAxes:
     Attributes:
         parents: Index of the parent link of each joint, shape (joints,).
         children: Index of the child link.
-        directions: First axis, in the parent link, shape (joints, 3).
-        slides: Whether it is a slider, shape (joints, 1).
+        parent_ids: MuJoCo's index of the parent link.
+        child_ids: MuJoCo's index of the child link.
+        directions: First axis, in the parent link, shape (joints, 3, 1).
+        slides: Which of them are sliders.
         special: Those that have more than one axis, with their indices.
     """
 
-    def __init__(self, joints: Sequence[Joint]) -> None:
+    def __init__(self, joints: Sequence[Joint], body_ids: Ints) -> None:
         self.parents = np.array([joint.parent for joint in joints], dtype=int)
         self.children = np.array([joint.child for joint in joints], dtype=int)
-        self.directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3)
-        self.slides = np.array([joint.kind == "slider" for joint in joints], dtype=bool).reshape(-1, 1)
+        self.parent_ids, self.child_ids = body_ids[self.parents], body_ids[self.children]
+        self.directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3, 1)
+        self.slides = np.array([index for index, joint in enumerate(joints) if joint.kind == "slider"], dtype=int)
         self.special = [(index, joint) for index, joint in enumerate(joints) if joint.kind in {"spherical", "hinge2"}]
 
 

@@ -88,10 +88,9 @@ class CouplingMap:
         self._one_to_one = kinematics.dof, tree.count, dofs, coordinates
         self._spherical = [(one, tree.of_qpos[one.qpos.start]) for one in kinematics.spherical]
         self._mimic = [
-            (joint.joint, self._coordinate(tree, joint.joint), _Partials(joint.expression))
-            for joint in kinematics.mimic.joints
+            (one.joint, self._coordinate(tree, one.joint), _Partials(one.expression)) for one in kinematics.mimic.joints
         ]
-        is_affine = all(joint.expression.affine is not None for joint in kinematics.mimic.joints)
+        is_affine = all(one.expression.affine is not None for one in kinematics.mimic.joints)
         self.constant: Coupling | None = None
         if is_affine and not self._spherical:
             self.constant = self._at(np.zeros(kinematics.dof), second=False)

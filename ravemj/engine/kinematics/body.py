@@ -49,7 +49,9 @@ class BodyKinematics:
         body: The description of the body.
         model: The model.
         data: Its state.
+        qpos: The joint positions in it.
         stamp: Grows with every write.
+        pose_stamp: ``stamp`` of the last write of more than joint values.
         dof: Number of degrees of freedom.
         limits: Limits of the joint values.
         displaced: Whether links are where their joints do not place them; ``set_values`` ends that.
@@ -77,8 +79,8 @@ class BodyKinematics:
         self.body = body
         compiled = Compiled.mechanism(body)
         self.model, self.data = model, data = compiled.model, compiled.data
-        self._qpos, self._xpos, self._xmat = data.qpos, data.xpos, data.xmat
-        self.stamp = 0
+        self.qpos, self._xpos, self._xmat = data.qpos, data.xpos, data.xmat
+        self.stamp = self.pose_stamp = 0
         self._is_placed = self._has_coms = False
         (names,) = compiled.mjcf.names
         self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
@@ -141,9 +143,10 @@ class BodyKinematics:
                 self._touch()
 
     def _touch(self) -> None:
-        """Take note that something was written."""
+        """Take note that more than joint values was written."""
         self._is_placed = self._has_coms = False
         self.stamp += 1
+        self.pose_stamp = self.stamp
 
     def place(self) -> None:
         """Bring the poses of the links up to date."""
@@ -164,11 +167,11 @@ class BodyKinematics:
         A weld's is 0; a joint that closes a loop has the value that the poses of its links show.
         """
         if self._is_plain:
-            return self._qpos[self._to_qpos].copy()
+            return self.qpos[self._to_qpos].copy()
         values = np.zeros(self.dof)
-        values[self._moving] = self._qpos[self._to_qpos]
+        values[self._moving] = self.qpos[self._to_qpos]
         for ball in self.spherical:
-            values[ball.dofs] = ball.to_values(self._qpos[ball.qpos].tolist())
+            values[ball.dofs] = ball.to_values(self.qpos[ball.qpos].tolist())
         for dof, joint in self._loops:
             T_parent_child = self.link_pose(joint.parent).inverse() @ self.link_pose(joint.child)
             values[dof : dof + len(joint.axes)] = measured_values(joint, T_parent_child)
@@ -184,11 +187,11 @@ class BodyKinematics:
         if self.displaced:
             self._undo_displacement()
         if self._is_plain:
-            self._qpos[self._to_qpos] = values
+            self.qpos[self._to_qpos] = values
         else:
-            self._qpos[self._to_qpos] = values[self._moving]
+            self.qpos[self._to_qpos] = values[self._moving]
             for ball in self.spherical:
-                self._qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
+                self.qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
             if self._mimic_qpos:
                 self._set_mimic(values, clamp=clamp_mimic)
         self._is_placed = self._has_coms = False
@@ -202,7 +205,7 @@ class BodyKinematics:
         for index, places in self._mimic_qpos:
             self._passive_values[index - first_passive][0] = known[index]
             for place in places:
-                self._qpos[place] = known[index]
+                self.qpos[place] = known[index]
 
     def first_values(self, values: Floats) -> list[float]:
         """Return the first value of each joint, active ones and then passive ones, for given DOF values."""
@@ -220,16 +223,17 @@ class BodyKinematics:
             qpos: Positions of all joints, the free joints of the roots included, or of those between links.
             inner_only: Which of the two it is.
         """
-        self._qpos[self.inner_qpos if inner_only else slice(None)] = qpos
+        self.qpos[self.inner_qpos if inner_only else slice(None)] = qpos
         self._touch()
         for index, places in self._mimic_qpos:
             for place in places:
-                self._passive_values[index - len(self.first_dofs)][0] = float(self._qpos[place])
+                self._passive_values[index - len(self.first_dofs)][0] = float(self.qpos[place])
 
     def _undo_displacement(self) -> None:
         """Let the joints place the links again that ``place_links`` put elsewhere; the roots stay."""
         self.model.body_pos[:], self.model.body_quat[:] = self._rest
         self.displaced = False
+        self._touch()
 
     def inner_index(self, qpos: int) -> int:
         """Return the place of an index into ``qpos`` among ``inner_qpos``."""
@@ -251,8 +255,8 @@ class BodyKinematics:
     def set_root_transform(self, root: int, T_world_link: Floats) -> None:
         """Move a root, of which ``root`` is the place in ``roots``, and what hangs on it."""
         first = self.root_qpos[root]
-        self._qpos[first : first + 3] = T_world_link[:3, 3]
-        self._qpos[first + 3 : first + 7] = wxyz_from_rows(T_world_link[:3, :3].tolist())
+        self.qpos[first : first + 3] = T_world_link[:3, 3]
+        self.qpos[first + 3 : first + 7] = wxyz_from_rows(T_world_link[:3, :3].tolist())
         self._touch()
 
     def set_transform(self, T_world_link0: Floats) -> None:
@@ -272,14 +276,14 @@ class BodyKinematics:
         """Write the orientation of the first link as this quaternion rather than its negative."""
         if 0 in self.roots:
             first = self.root_qpos[self.roots.index(0)]
-            self._qpos[first + 3 : first + 7] = wxyz
+            self.qpos[first + 3 : first + 7] = wxyz
             self._touch()
 
     def configuration(self) -> Configuration:
         """Return all that ``restore`` needs, also of another object for the same body."""
         passive = [list(values) for values in self._passive_values]
         model = self.model
-        return Configuration(self._qpos.copy(), model.body_pos.copy(), model.body_quat.copy(), passive, self.displaced)
+        return Configuration(self.qpos.copy(), model.body_pos.copy(), model.body_quat.copy(), passive, self.displaced)
 
     def restore(self, configuration: Configuration) -> bool:
         """Go back to a configuration.
@@ -288,9 +292,9 @@ class BodyKinematics:
             False, and nothing changes, if it is that of another set of links and joints.
         """
         qpos, positions, quaternions, passive, displaced = configuration
-        if qpos.shape != self._qpos.shape or positions.shape != self.model.body_pos.shape:
+        if qpos.shape != self.qpos.shape or positions.shape != self.model.body_pos.shape:
             return False
-        self._qpos[:] = qpos
+        self.qpos[:] = qpos
         self.model.body_pos[:], self.model.body_quat[:] = positions, quaternions
         self._passive_values = [list(values) for values in passive]
         self.displaced = displaced

@@ -16,7 +16,6 @@ from ravemj.model.scene import Axis, Geometry, Inertial, Joint, KinBody, Link
 if TYPE_CHECKING:
     from ravemj.engine.batch import Batch
     from ravemj.engine.dynamics import BodyDynamics
-    from ravemj.engine.model_part import ModelPart
     from ravemj.engine.simulation.world import Simulation
 
 _LOOKS = {"name", "diffuse", "ambient", "transparency"}
@@ -58,6 +57,7 @@ class BodyState:
 
     Attributes:
         scene: What it consists of; what files say, and what setters of the API changed since.
+        dof: Number of its degrees of freedom.
         simulation: The world that it was made for.
         index: Its index in the world, from 1; 0 while it is not in the world.
         stamp: Grows with every change of pose.
@@ -82,7 +82,7 @@ class BodyState:
         """
         if self.index:
             raise RavemjError(f"'{self.scene.name}' is in an environment; remove it first", ErrorCode.InvalidState)
-        self.scene = scene
+        self.scene, self.dof = scene, len(scene.dof_axes)
         self.link_enabled = [link.enabled for link in scene.links]
         self.rest_poses = None
         self.stamp += 1
@@ -114,6 +114,11 @@ class BodyState:
     def grabs(self, grabs: Iterable[GrabbedBody]) -> None:
         self._grabs = tuple(grabs)
         self.simulation.collision_stamp += 1
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether the body has a model of its own already; if not, it is where its description has it."""
+        return self._kinematics is not None
 
     @property
     def own_kinematics(self) -> BodyKinematics:
@@ -166,14 +171,6 @@ class BodyState:
             self._inertias = (self.scene.links, Inertias.of(self.scene.links))
         return self._inertias[1]
 
-    def bring_up_to_date(self, part: "ModelPart") -> bool:
-        """Let the body's part of another model follow it; return whether anything was out of date."""
-        kinematics = self._kinematics
-        if kinematics is None or kinematics.stamp == part.stamp:
-            return False
-        part.take(kinematics)
-        return True
-
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
         if self._kinematics is None:
@@ -206,8 +203,9 @@ class BodyState:
 
     def set_pose(self, T_world_link0: Pose) -> None:
         """Move the body rigidly, as ``set_transform``; ``pose()`` gives back this quaternion, not its negative."""
-        self.set_transform(T_world_link0.matrix())
+        self.own_kinematics.set_transform(T_world_link0.matrix())
         self.own_kinematics.set_root_wxyz(T_world_link0.wxyz)
+        self.moved()
 
     def place_links(self, T_world_links: Floats, last_values: Floats | None = None) -> None:
         """Put every link at a pose; joints get the values that the poses show.
@@ -224,6 +222,8 @@ class BodyState:
     def moved(self) -> None:
         """Take note that links were moved: what they hold follows."""
         self.stamp += 1
+        if self.index:
+            self.simulation.changed.add(self)
         for grab in self._grabs:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 
@@ -237,9 +237,15 @@ class BodyState:
         """
         return self._velocities.copy()
 
+    @property
+    def present_velocities(self) -> Floats:
+        """``link_velocities`` without a copy; the array is never changed, but replaced."""
+        return self._velocities
+
     def set_link_velocities(self, velocities: Floats) -> None:
         """Set the velocities of the links, shape (links, 6); what they hold moves with them."""
         self._velocities = velocities.copy()
+        self._velocities.flags.writeable = False
         for grab in self.grabs:
             self._carry(grab)
 
@@ -302,6 +308,8 @@ class BodyState:
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
         """Change the description of the body where links and joints stay the same: names, limits, manipulators."""
         self.scene = replace(self.scene, **changes)
+        if self.index:
+            self.simulation.changed.add(self)
         if self._kinematics is not None:
             self._kinematics.describe(self.scene)
         if "passive_joints" in changes:

@@ -29,6 +29,7 @@ class Simulation:
         diagnostics: What the last translation to MJCF found.
         version: Grows by one with each compiled model.
         gravity: Acceleration of free fall in the world [m/s^2].
+        changed: Bodies that moved or were described anew since the model was last brought up to date.
         collision_stamp: Grows when what may collide with what changes: links are enabled, bodies are held.
         drawings: What scripts draw beside the bodies; needs no lock.
     """
@@ -40,6 +41,7 @@ class Simulation:
         self.diagnostics = Diagnostics()
         self.version = 0
         self.gravity = DEFAULT_GRAVITY
+        self.changed: set[BodyState] = set()
         self.collision_stamp = 0
         self._places: list[BodyState | None] = []
         self._by_name: dict[str, BodyState] = {}
@@ -97,6 +99,7 @@ class Simulation:
             if not self.holds(body):
                 return False
             self.forget_model()
+            self.changed.discard(body)
             body.grabs = []
             for holder in self.bodies:
                 holder.release(body)
@@ -172,7 +175,10 @@ class Simulation:
             world = self._world
             if world is None:
                 self._world = world = self._compile()
-            world.synchronise()
+                self.changed.clear()
+            elif self.changed:
+                world.take(self.changed)
+                self.changed.clear()
             return world
 
     def collisions(self) -> "CollisionWorld":

@@ -17,8 +17,7 @@ from ravemj.model.scene import KinBody, Link, Scene, View
 class WorldModel(Compiled):
     """All bodies with their shapes in one model: for collisions, pictures and export.
 
-    Each body is at home in its own model (``BodyState.kinematics``). Here is a copy, which ``synchronise`` brings up to
-    date.
+    Each body is at home in its own model (``BodyState.own_kinematics``). Here is a copy; ``take`` brings it up to date.
     """
 
     def __init__(self, bodies: Iterable[BodyState], view: View, diagnostics: Diagnostics) -> None:
@@ -34,9 +33,9 @@ class WorldModel(Compiled):
         self._parts = {
             body: ModelPart(self.model, self.data, names) for body, names in zip(bodies, self.mjcf.names, strict=True)
         }
-        self._scenes = list(scene.bodies)
+        self._described = dict(zip(bodies, scene.bodies, strict=True))
         for body, part in self._parts.items():
-            if not _is_at_reference(body.scene):
+            if body.is_compiled or not _is_at_reference(body.scene):
                 part.take(body.own_kinematics)
         mujoco.mj_kinematics(self.model, self.data)
 
@@ -44,17 +43,17 @@ class WorldModel(Compiled):
         """Return where a body is in this model."""
         return self._parts[body]
 
-    def synchronise(self) -> None:
-        """Take over what changed since: joint values, poses, masses, colours."""
-        has_changed = False
-        for number, (body, part) in enumerate(self._parts.items()):
-            if body.scene is not self._scenes[number]:
-                self._describe(part, self._scenes[number].links, body.scene.links)
-                self._scenes[number] = body.scene
-                has_changed = True
-            has_changed |= body.bring_up_to_date(part)
-        if has_changed:
-            mujoco.mj_kinematics(self.model, self.data)
+    def take(self, bodies: Iterable[BodyState]) -> None:
+        """Take over what changed of some bodies: joint values, poses, masses, colours."""
+        for body in bodies:
+            part = self._parts.get(body)
+            if part is not None:
+                if body.scene is not self._described[body]:
+                    self._describe(part, self._described[body].links, body.scene.links)
+                    self._described[body] = body.scene
+                if body.is_compiled:
+                    part.take(body.own_kinematics)
+        mujoco.mj_kinematics(self.model, self.data)
 
     def _describe(self, part: ModelPart, before: Iterable[Link], links: Iterable[Link]) -> None:
         """Give links other masses, and geometries other colours; what is drawn in place of one keeps its own."""

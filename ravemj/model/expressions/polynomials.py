@@ -106,13 +106,6 @@ class Affine(NamedTuple):
     offset: float
     slopes: dict[str, float]
 
-    def plus(self, other: "Affine", factor: float = 1.0) -> "Affine":
-        """Return this plus a multiple of another."""
-        slopes = dict(self.slopes)
-        for name, slope in other.slopes.items():
-            slopes[name] = slopes.get(name, 0.0) + factor * slope
-        return Affine(self.offset + factor * other.offset, slopes)
-
 
 def affine(nodes: list[Node]) -> Affine | None:
     """Return the last of ``nodes`` as a constant plus multiples of variables, or None if it is not written as one."""
@@ -132,6 +125,21 @@ def affine(nodes: list[Node]) -> Affine | None:
     return result if is_finite else None
 
 
+def _affine_sum(x: Affine, y: Affine) -> Affine:
+    slopes = dict(x.slopes)
+    for name, slope in y.slopes.items():
+        slopes[name] = slopes.get(name, 0.0) + slope
+    return Affine(x.offset + y.offset, slopes)
+
+
+def _affine_difference(x: Affine, y: Affine) -> Affine:
+    return _affine_sum(x, _affine_negative(y))
+
+
+def _affine_negative(x: Affine) -> Affine:
+    return _scaled(x, -1.0)
+
+
 def _scaled(x: Affine, factor: float) -> Affine:
     return Affine(factor * x.offset, {name: factor * slope for name, slope in x.slopes.items()})
 
@@ -144,18 +152,6 @@ def _affine_product(x: Affine, y: Affine) -> Affine | None:
 
 def _affine_quotient(x: Affine, y: Affine) -> Affine | None:
     return None if y.slopes or y.offset == 0 else _scaled(x, 1 / y.offset)
-
-
-def _affine_sum(x: Affine, y: Affine) -> Affine:
-    return x.plus(y)
-
-
-def _affine_difference(x: Affine, y: Affine) -> Affine:
-    return x.plus(y, -1.0)
-
-
-def _affine_negative(x: Affine) -> Affine:
-    return _scaled(x, -1.0)
 
 
 _AFFINE_RULES: dict[str, Callable[..., Affine | None]] = {

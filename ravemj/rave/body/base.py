@@ -48,7 +48,7 @@ class BodyPart(Interface):
             >>> robot.GetDOF()
             2
         """
-        return len(self._state.scene.dof_axes)
+        return self._state.dof
 
     @property
     def simulation_state(self) -> BodyState:

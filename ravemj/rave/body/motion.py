@@ -166,7 +166,7 @@ class Motion(Velocities, Many):
         accelerations = self._checked_accelerations(dofaccelerations, "GetLinkAccelerations")
         pushes = self._checked_pushes(externalaccelerations, "externalaccelerations")
         with self._simulation.lock:
-            return self._state.dynamics.link_accelerations(self._state.link_velocities(), accelerations, pushes)
+            return self._state.dynamics.link_accelerations(self._state.present_velocities, accelerations, pushes)
 
     @overload
     def ComputeInverseDynamics(
@@ -222,7 +222,7 @@ class Motion(Velocities, Many):
         pushes = self._checked_pushes(externalforcetorque, "externalforcetorque")
         with self._simulation.lock:
             dynamics = self._state.dynamics
-            given = self._state.link_velocities(), accelerations, self._simulation.gravity, pushes
+            given = self._state.present_velocities, accelerations, self._simulation.gravity, pushes
             return dynamics.inverse_components(*given) if returncomponents else dynamics.inverse(*given)
 
     def _checked_accelerations(self, accelerations: "ArrayLike | None", name: str) -> Floats:
