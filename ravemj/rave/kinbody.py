@@ -6,10 +6,10 @@ from ravemj.engine.simulation import BodyState
 from ravemj.rave.body.base import both_locks
 from ravemj.rave.body.building import Building
 from ravemj.rave.body.collision import BodyCollision
+from ravemj.rave.body.dynamics import Motion
 from ravemj.rave.body.grabbing import Grabbing
 from ravemj.rave.body.graph import Graph
 from ravemj.rave.body.limits import Limits
-from ravemj.rave.body.motion import Motion
 from ravemj.rave.body.saving import Saving, StateSaver
 from ravemj.rave.body.substance import Substance
 from ravemj.rave.body.torques import Torques

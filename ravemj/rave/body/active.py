@@ -10,8 +10,8 @@ from ravemj.core.transforms import Floats, Ints, Vec3
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
 from ravemj.rave.body.affine import AffineSettings
+from ravemj.rave.body.dynamics import Motion
 from ravemj.rave.body.limits import Limits, wrapped_angle
-from ravemj.rave.body.motion import Motion
 from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.specification import ConfigurationSpecification

@@ -7,7 +7,7 @@ from ravemj.core.arrays import checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.geometry_functions.affine import DOFAffine, affine_values
 from ravemj.rave.body.active import ActiveDofs
-from ravemj.rave.body.motion import Motion, quaternion_rates
+from ravemj.rave.body.dynamics import Motion, quaternion_rates
 from ravemj.rave.enums import CheckLimitsAction
 
 _AXES = (DOFAffine.X, DOFAffine.Y, DOFAffine.Z)

@@ -4,7 +4,7 @@ from typing import Literal, overload
 
 from ravemj.errors import ArgumentError
 from ravemj.model import chains, hashes
-from ravemj.rave.body.mechanism import Mechanism
+from ravemj.rave.body.structure import Mechanism
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.errors import RavemjError
-from ravemj.rave.body.values import JointValues
+from ravemj.rave.body.configuration import JointValues
 from ravemj.rave.enums import CheckLimitsAction
 
 

@@ -1,6 +1,6 @@
 """What a body weighs, and whether it is drawn."""
 
-from ravemj.rave.body.mechanism import Mechanism
+from ravemj.rave.body.structure import Mechanism
 
 
 class Substance(Mechanism):
