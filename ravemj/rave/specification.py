@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Any, Self
 
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions.ik_parameterization import goal_size
 from ravemj.rave.configuration_data import ConfigurationData, checked_order
 from ravemj.rave.ikparameterization import IkParameterizationData
-from ravemj.rave.interface import checked_kind
 from ravemj.trajectories import extraction, layout
 from ravemj.trajectories.bodies import body_groups
 from ravemj.trajectories.groups import DELTATIME, Group, ik_type

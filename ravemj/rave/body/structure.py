@@ -1,9 +1,11 @@
-"""Links and joints of a body."""
+"""The structure of a body: links, joints, how they are connected, mass."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Literal, cast, overload
 
+from ravemj.core.arguments import checked_index
 from ravemj.core.arrays import checked_indices
+from ravemj.model import chains, hashes
 from ravemj.model.adjacency import adjacent_pairs
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.joint import Joint
@@ -13,8 +15,8 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Mechanism(BodyPart):
-    """Links, joints and how they hang together."""
+class Structure(BodyPart):
+    """Links and joints: which there are, what moves what, the path between links, mass, hashes of the structure."""
 
     @property
     def _body(self) -> "KinBody":
@@ -85,3 +87,141 @@ class Mechanism(BodyPart):
     def GetAdjacentLinks(self) -> set[tuple[int, int]]:
         """Return the pairs of links, by index, that self-collision leaves out."""
         return adjacent_pairs(self._state.scene)
+
+    def GetJointIndex(self, name: str) -> int:
+        """Return the place in ``GetJoints()`` of the joint of that name, or -1."""
+        return next((joint.GetJointIndex() for joint in self.GetJoints() if joint.GetName() == name), -1)
+
+    def IsDOFRevolute(self, dofindex: int) -> bool:
+        """Return whether a DOF turns.
+
+        Args:
+            dofindex: Index of the DOF.
+        """
+        return self.GetJointFromDOFIndex(dofindex).IsRevolute()
+
+    def IsDOFPrismatic(self, dofindex: int) -> bool:
+        """Return whether a DOF slides.
+
+        Args:
+            dofindex: Index of the DOF.
+        """
+        return self.GetJointFromDOFIndex(dofindex).IsPrismatic()
+
+    def IsDOFInChain(self, linkindex1: int, linkindex2: int, dofindex: int) -> bool:
+        """Return whether a DOF moves two links against each other.
+
+        Args:
+            linkindex1: Index of a link.
+            linkindex2: Index of the other link.
+            dofindex: Index of the DOF.
+        """
+        first, second = self.DoesDOFAffectLink(dofindex, linkindex1), self.DoesDOFAffectLink(dofindex, linkindex2)
+        return first != second
+
+    def DoesAffect(self, jointindex: int, linkindex: int) -> int:
+        """Return 1 if a joint moves a link, directly or through joints that follow it, else 0.
+
+        Args:
+            jointindex: Index of the joint, not of a DOF.
+            linkindex: Index of the link.
+
+        Raises:
+            ArgumentError: there is no such joint or link.
+        """
+        joints = self.GetJoints()
+        checked_index(jointindex, len(joints), "jointindex")
+        return self.DoesDOFAffectLink(joints[jointindex].GetDOFIndex(), linkindex)
+
+    def DoesDOFAffectLink(self, dofindex: int, linkindex: int) -> int:
+        """Return 1 if a DOF moves a link, directly or through joints that follow it, else 0.
+
+        Args:
+            dofindex: Index of the DOF.
+            linkindex: Index of the link.
+
+        Raises:
+            ArgumentError: there is no such DOF or link.
+        """
+        checked_index(dofindex, self.GetDOF(), "dofindex")
+        self._checked_link(linkindex)
+        return int(dofindex in chains.dofs_moving(self._state.scene, linkindex))
+
+    @overload
+    def GetChain(self, linkindex1: int, linkindex2: int, returnjoints: Literal[True] = True) -> list[Joint]: ...
+    @overload
+    def GetChain(self, linkindex1: int, linkindex2: int, returnjoints: Literal[False]) -> list[Link]: ...
+    def GetChain(self, linkindex1: int, linkindex2: int, returnjoints: bool = True) -> list[Joint] | list[Link]:
+        """Return the shortest way from one link to another.
+
+        Args:
+            linkindex1: Index of the link to start from.
+            linkindex2: Index of the link to reach.
+            returnjoints: Whether to return the joints on the way, passive ones too; else the links, both ends
+                included.
+
+        Returns:
+            Joints or links in order; none where no joints lead there, or the links are the same.
+
+        Raises:
+            ArgumentError: there is no such link.
+
+        Example:
+            >>> [joint.GetName() for joint in robot.GetChain(0, 2)]
+        """
+        self._checked_link(linkindex1)
+        self._checked_link(linkindex2)
+        links, joints = chains.chain(self._state.scene, linkindex1, linkindex2)
+        if not returnjoints:
+            return self.GetLinks(links)
+        return [Joint(self._body, self._state, index) for index in joints]
+
+    def GetDependencyOrderedJoints(self) -> list[Joint]:
+        """Return the joints that have DOFs, each behind those that move it."""
+        return self.GetJoints(chains.dependency_order(self._state.scene))
+
+    def GetClosedLoops(self) -> list[list[tuple[Link, Joint]]]:
+        """Return the closed loops of links: each is a list of links, each with the joint that leads to the next."""
+        links = self.GetLinks()
+        return [
+            [(links[link], Joint(self._body, self._state, joint)) for link, joint in loop]
+            for loop in chains.closed_loops(self._state.scene)
+        ]
+
+    def GetRigidlyAttachedLinks(self, linkindex: int) -> list[Link]:
+        """Return a link and those that never move against it; the link is the first.
+
+        Args:
+            linkindex: Index of the link.
+        """
+        self._checked_link(linkindex)
+        return self.GetLinks(chains.rigidly_attached(self._state.scene, linkindex))
+
+    def GetKinematicsGeometryHash(self) -> str:
+        """Return a text that is the same for bodies of the same links, shapes and joints: 32 hexadecimal digits.
+
+        Pose, joint values, limits and names do not matter.
+        """
+        return hashes.of_body(self._state.scene)
+
+    GetStructureHash = GetKinematicsGeometryHash
+
+    def GetMass(self) -> float:
+        """Return the mass of all links [kg]."""
+        return sum(link.inertial.mass for link in self._state.scene.links)
+
+    def IsVisible(self) -> bool:
+        """Return whether any shape of the body is drawn."""
+        return any(link.IsVisible() for link in self.GetLinks())
+
+    def SetVisible(self, visible: bool) -> bool:
+        """Draw all shapes of the body, or none; they collide all the same.
+
+        Args:
+            visible: Whether to draw them.
+
+        Returns:
+            Whether that changed something.
+        """
+        with self._simulation.lock:
+            return any([link.SetVisible(visible) for link in self.GetLinks()])
