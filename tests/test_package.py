@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -64,6 +65,81 @@ def test_imports_go_down(path):
         there = parts[1] if len(parts) > 1 and parts[1] in ROOMS else "__init__"
         if (here, there) != ("compat", "__init__"):  # openravepy gives what ravemj does
             assert ROOMS.index(there) <= ROOMS.index(here), f"{here} imports {there}"
+
+
+def module_name(path: Path) -> str:
+    """Name of a module behind the package's: ``rave.kinbody`` for ``ravemj/rave/kinbody.py``."""
+    return ".".join(path.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__")
+
+
+MODULES = {module_name(path): path for path in modules()}
+
+
+def modules_imported(node: ast.AST, typing: bool) -> set[str]:
+    """Names of the package's modules that the code under a node imports, in functions too.
+
+    Args:
+        node: What to look through.
+        typing: Whether imports for type checkers count.
+    """
+    if isinstance(node, ast.Import):
+        names = {name.name for name in node.names}
+    elif isinstance(node, ast.ImportFrom):
+        members = {f"{node.module}.{name.name}" for name in node.names}
+        names = {name if name.removeprefix("ravemj.") in MODULES else node.module for name in members}
+    else:
+        below = list(ast.iter_child_nodes(node))
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING" and not typing:
+            below = node.orelse
+        return set().union(*(modules_imported(child, typing) for child in below))
+    return {name.removeprefix("ravemj.") for name in names} & MODULES.keys()
+
+
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def circles(typing: bool) -> list[set[str]]:
+    """Sets of more than one module that all lead to each other by imports: strongly connected components."""
+    imported = {name: modules_imported(tree(path), typing) for name, path in MODULES.items()}
+
+    def reached(start: str) -> set[str]:
+        found, pending = set(), [start]
+        while pending:
+            new = imported[pending.pop()] - found
+            found |= new
+            pending += new
+        return found
+
+    reach = {name: reached(name) for name in imported}
+    found = {frozenset(other for other in reach[name] if name in reach[other]) for name in reach}
+    return [set(circle) for circle in found if len(circle) > 1]
+
+
+NAME_EACH_OTHER = """
+    rave.environment rave.env.base rave.env.cloning rave.env.collision rave.env.contents rave.env.drawing
+    rave.env.loading rave.env.locking rave.env.meshing rave.env.modules rave.env.running rave.env.viewing
+    rave.kinbody rave.body.building rave.body.collision rave.body.configuration rave.body.grabbing rave.body.saving
+    rave.body.structure rave.body.velocities
+    rave.robot rave.body.active rave.body.manipulators rave.manipulator rave.arm_collision rave.sensors
+    rave.link rave.links.base rave.links.collision rave.links.loads rave.links.mass rave.links.parameters
+    rave.links.shapes rave.joint rave.joints.base rave.joints.following rave.joints.limits
+    rave.interface rave.collision rave.report rave.physics rave.specification rave.configuration_data rave.trajectory
+    rave.controllers rave.controllers.base rave.controllers.ideal rave.controllers.multi rave.controllers.velocity
+    rave.tables
+"""
+"""Classes of the API whose methods take and return one another, and the topics that make them up."""
+
+
+def test_no_imports_go_round_in_the_api():
+    assert not [circle for circle in circles(typing=False) if any(name.startswith("rave.") for name in circle)]
+
+
+def test_only_classes_of_the_api_name_each_other():
+    found = [circle for circle in circles(typing=True) if any(name.startswith("rave.") for name in circle)]
+    assert set().union(*found) == set(NAME_EACH_OTHER.split()), "what is no longer in a circle leaves the list"
 
 
 @pytest.mark.parametrize("path", modules(), ids=lambda path: str(path.relative_to(PACKAGE)))

@@ -177,3 +177,9 @@ def rows_from_wxyz(wxyz: Wxyz) -> Rows:
         (2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx)),
         (2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy)),
     )
+
+
+def wxyz_jacobian(wxyz: Sequence[float]) -> Floats:
+    """Return the derivative of a quaternion by the angular velocity in the outer axes, shape (4, 3)."""
+    w, x, y, z = wxyz
+    return np.array([[-x, -y, -z], [w, z, -y], [-z, w, x], [y, -x, w]]) / 2

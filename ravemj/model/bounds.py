@@ -5,6 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.geometry_functions import AABB
 from ravemj.model.scene import Bounds, Geometry, Link
 
 
@@ -29,3 +30,9 @@ def _enclosing(parts: Iterable[Bounds]) -> Bounds | None:
     if not extended:
         return None
     return Bounds(np.min([part.low for part in extended], axis=0), np.max([part.high for part in extended], axis=0))
+
+
+def enclosing_box(bounds: Bounds | None, T_a_origin: Floats) -> AABB:
+    """Return bounds as OpenRAVE's box; None is a point at the origin of a frame."""
+    low, high = bounds or (T_a_origin[:3, 3], T_a_origin[:3, 3])
+    return AABB((low + high) / 2, (high - low) / 2)

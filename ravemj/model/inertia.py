@@ -33,6 +33,18 @@ class Inertias:
             np.array([link.inertial.inertia for link in links], dtype=np.float64).reshape(count, 3, 3),
         )
 
+    def center_of_mass(self, T_a_links: Floats) -> Floats:
+        """Return the common centre of mass of links, in frame a.
+
+        Args:
+            T_a_links: Poses of the links, shape (links, 4, 4).
+
+        Returns:
+            The point [m], shape (3,).
+        """
+        coms = np.einsum("nij,nj->ni", T_a_links[:, :3, :3], self.coms) + T_a_links[:, :3, 3]
+        return self.masses @ coms / self.masses.sum()
+
 
 _ROUNDING = 1e-12
 """What is left of the zeros in a tensor, relative to its moments, when its axes were turned by quarters."""

@@ -1,9 +1,24 @@
-"""Joint kinematics: the relative pose of two links from joint values, and joint values from poses."""
+"""Joint kinematics: poses from joint values, joint values from poses, and differences of joint values."""
 
 import math
 from collections.abc import Sequence
 
-from ravemj.core.transforms import Pose, Vec3, Wxyz, add, conjugate, dot, multiply, rotate, scale, wxyz_from_axis_angle
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.transforms import (
+    Floats,
+    Pose,
+    Vec3,
+    Wxyz,
+    add,
+    conjugate,
+    dot,
+    multiply,
+    rotate,
+    scale,
+    wxyz_from_axis_angle,
+)
 from ravemj.model.scene import Axis, Joint
 
 ROUNDING = 1e-12
@@ -112,3 +127,15 @@ def rotation_vector(wxyz: Wxyz) -> Vec3:
     sine = math.sqrt(x * x + y * y + z * z)
     factor = 2.0 if sine < 1e-12 else 2 * math.atan2(sine, w) / sine
     return (factor * x, factor * y, factor * z)
+
+
+def value_differences(axes: Sequence[Axis], values: Floats, others: Floats) -> Floats:
+    """Return ``values - others`` [rad or m], one for each axis, shape (axes,); circular axes go the shorter way."""
+    circular = np.array([axis.circular for axis in axes], dtype=bool)
+    differences = values - others
+    return np.where(circular, wrapped_angle(differences), differences)
+
+
+def wrapped_angle(angle: ArrayLike) -> Floats:
+    """Return angles with full turns added so that they lie in (-pi, pi], shape as given."""
+    return np.pi - (np.pi - np.asarray(angle, dtype=np.float64)) % (2 * np.pi)

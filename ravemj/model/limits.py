@@ -1,6 +1,8 @@
 """Limits of joint values: the one place where values are compared with them and moved into them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -43,3 +45,18 @@ class Limits:
 def clamp(axis: Axis, value: float) -> float:
     """Return a value [rad or m] moved into the limits of an axis, which a circular one does not have; NaN stays."""
     return value if axis.circular else min(max(value, axis.lower), axis.upper)
+
+
+def with_fields(axes: Sequence[Axis], indices: Sequence[int], fields: Mapping[str, Sequence[float]]) -> list[Axis]:
+    """Return axes with other limits, weights or resolutions.
+
+    Args:
+        axes: The axes.
+        indices: Which of them change.
+        fields: By the name of the field of ``Axis``: a value for each index.
+    """
+    changed = list(axes)
+    for place, index in enumerate(indices):
+        changes: dict[str, Any] = {name: values[place] for name, values in fields.items()}
+        changed[index] = replace(changed[index], **changes)
+    return changed

@@ -5,6 +5,7 @@ objects is ravemj's own.
 """
 
 from ravemj.errors import ErrorCode, RavemjError
+from ravemj.geometry_functions.ik_parameterization import IkParameterizationType
 from ravemj.rave.body.grabbing import GrabbedInfo
 from ravemj.rave.body.saving import StateSaver
 from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
@@ -26,7 +27,6 @@ from ravemj.rave.enums import (
     DebugLevel,
     GeometryType,
     IkFilterOptions,
-    IkParameterizationType,
     IkReturnAction,
     InterfaceAddMode,
     InterfaceType,
@@ -50,7 +50,6 @@ from ravemj.rave.environment import (
 )
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.graph_handle import GraphHandle
-from ravemj.rave.ikparameterization import IkParameterization
 from ravemj.rave.infos import ElectricMotorActuatorInfo, ExtractInfoOptions
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
@@ -91,7 +90,11 @@ from ravemj.rave.plugins import (
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, CameraSensorData, Sensor
-from ravemj.rave.specification import ConfigurationSpecification, RaveGetAffineConfigurationSpecification
+from ravemj.rave.specification import (
+    ConfigurationSpecification,
+    IkParameterization,
+    RaveGetAffineConfigurationSpecification,
+)
 from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 from ravemj.rave.trimesh import TriMesh
 

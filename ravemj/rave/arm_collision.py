@@ -1,7 +1,9 @@
 """Collision of the end of an arm."""
 
 from abc import abstractmethod
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,12 +11,12 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, inverse
-from ravemj.engine.collision.questions import body_and_others, held_with, itself
-from ravemj.engine.collision.world import CollisionWorld
+from ravemj.engine.collision import arms
+from ravemj.engine.collision.world import CollisionWorld, Pairs
 from ravemj.engine.simulation import BodyState
-from ravemj.model import chains, scene
-from ravemj.rave.ikparameterization import IkParameterization
+from ravemj.model import scene
 from ravemj.rave.report import CollisionReport
+from ravemj.rave.specification import IkParameterization
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -59,12 +61,7 @@ class ArmCollision:
         """
         del numredundantsamples
         target, report = _sorted_out(transform, report)
-        beyond = self._links_beyond()
-        with self._state.simulation.lock:
-            world = self._state.simulation.collisions()
-            with self._moved(world, target):
-                checker = self._robot.GetEnv().GetCollisionChecker()
-                return checker.answer(world, body_and_others(world, self._state, beyond), report)
+        return self._answer(arms.end_and_others, report, target)
 
     def CheckEndEffectorSelfCollision(
         self,
@@ -83,15 +80,8 @@ class ArmCollision:
         """
         del numredundantsamples
         target, report = _sorted_out(transform, report)
-        beyond, others = self._links_beyond(), set(range(len(self._state.scene.links)))
-        if ignoreManipulatorLinks:
-            others = set(chains.independent_links(self._state.scene, self._scene))
-        asked = frozenset((min(a, b), max(a, b)) for a in beyond for b in others - beyond)
-        with self._state.simulation.lock:
-            world = self._state.simulation.collisions()
-            with self._moved(world, target):
-                checker = self._robot.GetEnv().GetCollisionChecker()
-                return checker.answer(world, itself(world, self._state, asked), report)
+        find = partial(arms.end_and_rest, without_arm=ignoreManipulatorLinks)
+        return self._answer(find, report, target)
 
     def CheckIndependentCollision(self, report: CollisionReport | None = None) -> bool:
         """Return whether the links that neither arm nor gripper move, and what they hold, collide with other bodies.
@@ -99,26 +89,26 @@ class ArmCollision:
         Args:
             report: Filled with what is found.
         """
-        links = frozenset(chains.independent_links(self._state.scene, self._scene))
+        return self._answer(arms.independent_and_others, report, None)
+
+    def _answer(
+        self,
+        find: Callable[[CollisionWorld, BodyState, scene.Manipulator], Pairs],
+        report: CollisionReport | None,
+        T_world_tool: Floats | None,
+    ) -> bool:
+        """Test pairs with the tool where it is wanted, or where it is."""
         with self._state.simulation.lock:
             world = self._state.simulation.collisions()
-            checker = self._robot.GetEnv().GetCollisionChecker()
-            return checker.answer(world, body_and_others(world, self._state, links), report)
-
-    def _links_beyond(self) -> frozenset[int]:
-        return frozenset(chains.links_beyond(self._state.scene, self._scene))
+            with self._moved(world, T_world_tool):
+                checker = self._robot.GetEnv().GetCollisionChecker()
+                return checker.answer(world, find(world, self._state, self._scene), report)
 
     def _moved(self, world: CollisionWorld, T_world_tool: Floats | None) -> AbstractContextManager[None]:
         """Put the links beyond the arm, and what they hold, where the tool is wanted."""
         if T_world_tool is None:
             return nullcontext()
-        motion, beyond = T_world_tool @ inverse(self.GetTransform()), self._links_beyond()
-        moved = {(self._state, link): motion for link in beyond}
-        for grab in self._state.grabs:
-            if grab.link in beyond:
-                for body in held_with(grab.body):
-                    moved.update({(body, link): motion for link in range(len(body.scene.links))})
-        return world.moved(moved)
+        return world.moved(arms.motions_of_end(self._state, self._scene, T_world_tool @ inverse(self.GetTransform())))
 
 
 def _sorted_out(transform: Target, report: CollisionReport | None) -> tuple[Floats | None, CollisionReport | None]:

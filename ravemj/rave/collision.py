@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Self, cast
 import numpy as np
 
 from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_kind
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision import questions
 from ravemj.engine.collision.questions import LinkOf, Links, MovedBy
@@ -17,7 +18,7 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import Ray
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
-from ravemj.rave.interface import Annotations, Interface, checked_environment, checked_kind
+from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact, Part
 

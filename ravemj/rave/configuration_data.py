@@ -13,11 +13,10 @@ from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import arguments
 from ravemj.trajectories import extraction, layout
 from ravemj.trajectories.conversion import FindBody, convert_group, converted, nobody
-from ravemj.trajectories.groups import Group, ik_type
+from ravemj.trajectories.groups import Group
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
-    from ravemj.rave.ikparameterization import IkParameterization
     from ravemj.rave.kinbody import KinBody
     from ravemj.rave.specification import ConfigurationSpecification
 
@@ -112,30 +111,6 @@ class ConfigurationData(ApiObject):
         start = Pose() if transform is None else arguments.pose(transform, "transform")
         pose = extraction.pose(self._groups, self._checked(data), _name(body), start)
         return None if pose is None else pose.matrix()
-
-    def ExtractIkParameterization(
-        self, data: ArrayLike, timederivative: int = 0, robotname: str = "", manipulatorname: str = ""
-    ) -> "IkParameterization | None":
-        """Return a goal of inverse kinematics in a configuration.
-
-        Args:
-            data: The configuration.
-            timederivative: 1 for velocities, 2 for accelerations and so on.
-            robotname: Whose goal; empty: that of any robot.
-            manipulatorname: The goal of which of its manipulators; empty: that of any.
-
-        Returns:
-            The first one that there is, or None.
-        """
-        from ravemj.rave.ikparameterization import IkParameterization  # noqa: PLC0415 - which needs this module
-
-        values, order = self._checked(data), checked_order(timederivative)
-        group = extraction.ik_group(self._groups, robotname, manipulatorname, order)
-        if group is None:
-            return None
-        goal = IkParameterization()
-        goal.SetValues(values[group.columns], ik_type(group))
-        return goal
 
     def ExtractDeltaTime(self, data: ArrayLike) -> float | None:
         """Return the time since the last waypoint [s], or None where the configuration has none.

@@ -136,28 +136,6 @@ class DebugLevel(IntEnum):
     """A bit beside the level."""
 
 
-class IkParameterizationType(IntEnum):
-    """What of a pose the end of an arm shall reach: the numbers hold DOF, count of values, and a unique number."""
-
-    None_ = 0
-    Transform6D = 0x67000001
-    Rotation3D = 0x34000002
-    Translation3D = 0x33000003
-    Direction3D = 0x23000004
-    Ray4D = 0x46000005
-    Lookat3D = 0x23000006
-    TranslationDirection5D = 0x56000007
-    TranslationXY2D = 0x22000008
-    TranslationXYOrientation3D = 0x33000009
-    TranslationLocalGlobal6D = 0x3600000A
-    TranslationXAxisAngle4D = 0x4400000B
-    TranslationYAxisAngle4D = 0x4400000C
-    TranslationZAxisAngle4D = 0x4400000D
-    TranslationXAxisAngleZNorm4D = 0x4400000E
-    TranslationYAxisAngleXNorm4D = 0x4400000F
-    TranslationZAxisAngleYNorm4D = 0x44000010
-
-
 class IkFilterOptions(IntFlag):
     """Which solutions of inverse kinematics are left out."""
 

@@ -1,61 +1,43 @@
 """What the tool of an arm shall reach."""
 
-import math
-from collections.abc import Callable
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
-from ravemj.core.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
-from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
-from ravemj.geometry_functions import Ray, quatRotateDirection, rotationMatrixFromQuat
-from ravemj.rave.enums import IkParameterizationType
-from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.core.transforms import Floats, pose_of
+from ravemj.errors import ArgumentError
+from ravemj.geometry_functions import Ray
+from ravemj.geometry_functions.ik_parameterization import (
+    IkParameterizationType,
+    checked_goal,
+    goal_distance_squared,
+    goal_dof,
+    goal_moved_in_its_frame,
+    goal_pose,
+    goal_ray,
+    goal_size,
+    moved_goal,
+)
 
 _Type = IkParameterizationType
-_RAYS = {_Type.Ray4D, _Type.TranslationDirection5D}
-_POINTS = {_Type.Translation3D, _Type.Lookat3D}
-_WITH_DIRECTION = {_Type.Direction3D, *_RAYS}
-"""Types whose first three numbers are a direction."""
-_WITH_POINT = {*_POINTS, *_RAYS, _Type.TranslationLocalGlobal6D}
-"""Types whose last three numbers are a point that moves."""
-_PLANAR = {_Type.TranslationXY2D, _Type.TranslationXYOrientation3D}
-_ANGLES = {kind for kind in _Type if "AxisAngle" in kind.name}
 _CUSTOM_DATA = 0x10000
-_ANGLE_WEIGHT = 0.4
+"""Bit of the type's number in the text of a goal that has data of users."""
 
 
-class IkParameterization(ApiObject):
-    """A pose, a direction, a point or a ray that the tool of an arm shall reach.
-
-    The numbers are, by type: ``Transform6D`` the pose [w, x, y, z, tx, ty, tz]; ``Rotation3D`` the quaternion;
-    ``Translation3D`` and ``Lookat3D`` the point; ``Direction3D`` the direction; ``Ray4D`` and
-    ``TranslationDirection5D`` direction and point; ``TranslationXY2D`` x and y, ``TranslationXYOrientation3D`` the
-    angle behind them; ``TranslationLocalGlobal6D`` a point of the tool and where it shall be; the types with
-    ``AxisAngle`` angle and point.
-
-    Args:
-        value: What to reach: a 4x4 matrix or a pose, a quaternion, a vector, a ``Ray``, a pair of points, or a point
-            and an angle, as the type asks for; or another ``IkParameterization``, or the text of one.
-        type: The type, with a value.
-
-    Example:
-        >>> goal = IkParameterization(T_world_tool, IkParameterization.Type.Transform6D)
-        >>> moved_in_the_world = matrixFromPose([1, 0, 0, 0, 0, 0, 0.1]) * goal
-        >>> moved_in_the_tool = goal * matrixFromPose([1, 0, 0, 0, 0, 0, 0.1])
-    """
+class IkParameterizationData(ApiObject):
+    """The part of ``IkParameterization`` that works on its numbers and the data of users."""
 
     Type = IkParameterizationType
     __array_ufunc__ = None  # so that ``matrix * goal`` is ours
 
-    def __init__(self, value: Any = None, type: "IkParameterizationType | int | None" = None) -> None:  # noqa: ANN401 - as the type asks for
+    def __init__(self, value: Any = None, type: IkParameterizationType | int | None = None) -> None:  # noqa: ANN401 - as the type asks for
         self._type = _Type.None_
         self._values = np.zeros(0)
         self._custom: dict[str, Floats] = {}
-        if isinstance(value, IkParameterization):
+        if isinstance(value, IkParameterizationData):
             self._type, self._values = value._type, value._values.copy()
             self._custom = {name: numbers.copy() for name, numbers in value._custom.items()}
         elif isinstance(value, str):
@@ -64,7 +46,7 @@ class IkParameterization(ApiObject):
             self._set(_Type(type), value)
 
     def _set(self, kind: IkParameterizationType, value: Any) -> None:  # noqa: ANN401 - as the type asks for
-        self._values = _numbers(kind, value)
+        self._values = checked_goal(kind, value)
         self._type = kind
 
     def GetType(self) -> IkParameterizationType:
@@ -82,12 +64,12 @@ class IkParameterization(ApiObject):
     @staticmethod
     def GetDOFFromType(type: int) -> int:
         """Return how many degrees of freedom a goal of a type takes away."""
-        return int(type) >> 28 & 0xF
+        return goal_dof(type)
 
     @staticmethod
     def GetNumberOfValuesFromType(type: int) -> int:
         """Return how many numbers a goal of a type has."""
-        return int(type) >> 24 & 0xF
+        return goal_size(type)
 
     def GetValues(self) -> Floats:
         """Return the numbers of the goal, shape (n,)."""
@@ -104,35 +86,6 @@ class IkParameterization(ApiObject):
         self._values = checked_vector(values, self.GetNumberOfValuesFromType(kind), "values")
         self._type = kind
 
-    def GetConfigurationSpecification(
-        self, interpolation: str = "", robotname: str = "", manipname: str = ""
-    ) -> ConfigurationSpecification:
-        """Return the layout of a goal of this type in a trajectory.
-
-        Args:
-            interpolation: How the values change between waypoints.
-            robotname: Name of the robot; empty: any.
-            manipname: Name of the arm; empty: any.
-        """
-        return self.GetConfigurationSpecificationFromType(self._type, interpolation, robotname, manipname)
-
-    @staticmethod
-    def GetConfigurationSpecificationFromType(
-        type: int, interpolation: str = "", robotname: str = "", manipname: str = ""
-    ) -> ConfigurationSpecification:
-        """Return the layout of a goal of a type in a trajectory.
-
-        Args:
-            type: A type of goal.
-            interpolation: How the values change between waypoints.
-            robotname: Name of the robot; empty: any.
-            manipname: Name of the arm; empty: any.
-        """
-        spec = ConfigurationSpecification()
-        name = " ".join(filter(None, ["ikparam_values", str(int(type)), robotname, manipname]))
-        spec.AddGroup(name, IkParameterization.GetNumberOfValuesFromType(type), interpolation)
-        return spec
-
     # One pair of methods for each type
 
     def SetTransform6D(self, transform: ArrayLike) -> None:
@@ -145,7 +98,7 @@ class IkParameterization(ApiObject):
 
     def GetTransform6D(self) -> Floats:
         """Return the pose, shape (4, 4)."""
-        return self._pose(_Type.Transform6D).matrix()
+        return goal_pose(self._of(_Type.Transform6D)).matrix()
 
     def GetTransform6DPose(self) -> Floats:
         """Return the pose [w, x, y, z, tx, ty, tz], shape (7,)."""
@@ -193,7 +146,7 @@ class IkParameterization(ApiObject):
 
     def GetRay4D(self) -> Ray:
         """Return the ray."""
-        return _ray(self._of(_Type.Ray4D))
+        return goal_ray(self._of(_Type.Ray4D))
 
     def SetTranslationDirection5D(self, ray: Ray) -> None:
         """Set the goal to a point and a direction.
@@ -205,15 +158,12 @@ class IkParameterization(ApiObject):
 
     def GetTranslationDirection5D(self) -> Ray:
         """Return point and direction."""
-        return _ray(self._of(_Type.TranslationDirection5D))
+        return goal_ray(self._of(_Type.TranslationDirection5D))
 
     def _of(self, kind: IkParameterizationType) -> Floats:
         if self._type != kind:
             raise ArgumentError(f"the goal is of type {self._type.name}, and not {kind.name}")
         return self._values.copy()
-
-    def _pose(self, kind: IkParameterizationType) -> Pose:
-        return _pose(self._of(kind))
 
     # Transforms and distances
 
@@ -224,15 +174,15 @@ class IkParameterization(ApiObject):
             transform: 4x4, or [w, x, y, z, tx, ty, tz].
         """
         pose = pose_of(checked_transform(transform, "transform"))
-        self._values = _moved(self._type, self._values, pose)
+        self._values = moved_goal(self._type, self._values, pose)
 
-    def Transform(self, transform: ArrayLike) -> "IkParameterization":
+    def Transform(self, transform: ArrayLike) -> Self:
         """Return ``transform * goal``."""
-        moved = IkParameterization(self)
+        moved = type(self)(self)
         moved.MultiplyTransform(transform)
         return moved
 
-    def __rmul__(self, transform: ArrayLike) -> "IkParameterization":
+    def __rmul__(self, transform: ArrayLike) -> Self:
         return self.Transform(transform)
 
     def MultiplyTransformRight(self, transform: ArrayLike) -> None:
@@ -248,32 +198,20 @@ class IkParameterization(ApiObject):
             openrave_exception: OpenRAVE moves no goal of type ``Ray4D`` so.
         """
         pose = pose_of(checked_transform(transform, "transform"))
-        self._values = _moved_inside(self._type, self._values, pose)
+        self._values = goal_moved_in_its_frame(self._type, self._values, pose)
 
-    def __mul__(self, transform: ArrayLike) -> "IkParameterization":
-        moved = IkParameterization(self)
+    def __mul__(self, transform: ArrayLike) -> Self:
+        moved = type(self)(self)
         moved.MultiplyTransformRight(transform)
         return moved
 
-    def ComputeDistanceSqr(self, other: "IkParameterization") -> float:
+    def ComputeDistanceSqr(self, other: "IkParameterizationData") -> float:
         """Return the squared distance to another goal of the same type; angles count in radians, and less for poses.
 
         Args:
             other: Another goal of the same type.
         """
-        a, b = self._values, other._of(self._type)
-        if self._type == _Type.Transform6D:
-            return _length2(a[4:] - b[4:]) + _ANGLE_WEIGHT * _turn(a[:4], b[:4]) ** 2
-        if self._type == _Type.Rotation3D:
-            return _turn(a, b) ** 2
-        if self._type == _Type.Direction3D:
-            return _angle(a, b) ** 2
-        if self._type in _POINTS:
-            return _length2(a - b)
-        if self._type in _RAYS:
-            across: Callable[[Floats], Floats] = _across if self._type == _Type.Ray4D else lambda ray: ray[3:]
-            return _length2(across(a) - across(b)) + _angle(a[:3], b[:3]) ** 2
-        raise UnsupportedError(f"ComputeDistanceSqr of {self._type.name}", "inverse kinematics of that type")
+        return goal_distance_squared(self._type, self._values, other._of(self._type))
 
     # Data of users
 
@@ -326,100 +264,3 @@ class IkParameterization(ApiObject):
 
     def __repr__(self) -> str:
         return f"IkParameterization('{self}')"
-
-
-def _numbers(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: ANN401 - as the type asks for
-    """Return the numbers of a goal that a user gave as a matrix, a ray or a vector."""
-    if kind == _Type.Transform6D:
-        return pose_of(checked_transform(value, "value")).numbers()
-    if kind in _RAYS:
-        if not isinstance(value, Ray):
-            raise ArgumentError(f"value: is a {type(value).__name__}, and should be a Ray")
-        direction = value.dir()
-        return np.concatenate([direction / (np.linalg.norm(direction) or 1.0), value.pos()])
-    if kind == _Type.TranslationLocalGlobal6D:
-        value = np.ravel(checked_numbers(value, "value"))
-    count = IkParameterization.GetNumberOfValuesFromType(kind)
-    match value:
-        case [point, angle] if kind in _ANGLES:
-            return checked_vector([angle, *checked_vector(point, 3, "value: point")], count, "value")
-        case _:
-            return checked_vector(value, count, "value")
-
-
-def _moved(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
-    """Return the numbers of a goal that is moved by a pose."""
-    rotation, translation = pose.matrix()[:3, :3], np.array(pose.position)
-    if kind == _Type.Transform6D:
-        return (pose @ _pose(values)).numbers()
-    if kind == _Type.Rotation3D:
-        return np.array(multiply(pose.wxyz, _wxyz(values)))
-    if kind in _PLANAR:
-        return np.append(rotation[:2, :2] @ values[:2] + translation[:2], values[2:] + _turn_about_z(pose))
-    if kind not in _WITH_DIRECTION | _WITH_POINT:
-        raise UnsupportedError(f"moving a goal of type {kind.name}", "inverse kinematics of that type")
-    moved = values.copy()
-    if kind in _WITH_DIRECTION:
-        moved[:3] = rotation @ values[:3]
-    if kind in _WITH_POINT:
-        moved[-3:] = rotation @ values[-3:] + translation
-    return moved
-
-
-def _moved_inside(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
-    """Return the numbers of a goal that is moved by a pose in its own frame."""
-    rotation, translation = pose.matrix()[:3, :3], np.array(pose.position)
-    if kind == _Type.Transform6D:
-        return (_pose(values) @ pose).numbers()
-    if kind == _Type.Rotation3D:
-        return np.array(multiply(_wxyz(values), pose.wxyz))
-    if kind in _PLANAR:
-        return np.append(values[:2] + translation[:2], values[2:] + _turn_about_z(pose))
-    if kind not in (_WITH_DIRECTION | _WITH_POINT) - {_Type.Ray4D}:
-        raise RavemjError(f"a goal of type {kind.name} cannot be moved in its own frame")
-    moved, frame = values.copy(), np.eye(3)
-    if kind in _WITH_DIRECTION:
-        frame = rotationMatrixFromQuat(quatRotateDirection([0, 0, 1], values[:3]))
-        moved[:3] = frame @ rotation[:, 2]
-    if kind in _WITH_POINT:
-        moved[-3:] += frame @ translation
-    return moved
-
-
-def _turn_about_z(pose: Pose) -> float:
-    """Return the part of a rotation that turns about z [rad]."""
-    return 2 * math.atan2(pose.wxyz[3], pose.wxyz[0])
-
-
-def _wxyz(values: Floats) -> Wxyz:
-    w, x, y, z = values[:4].tolist()
-    return normalize((w, x, y, z))
-
-
-def _pose(values: Floats) -> Pose:
-    x, y, z = values[4:].tolist()
-    return Pose((x, y, z), _wxyz(values))
-
-
-def _ray(values: Floats) -> Ray:
-    return Ray(values[3:], values[:3])
-
-
-def _across(values: Floats) -> Floats:
-    """Return the point of a ray that is nearest to the origin."""
-    direction, point = values[:3], values[3:]
-    return point - direction * (direction @ point)
-
-
-def _length2(vector: Floats) -> float:
-    return float(vector @ vector)
-
-
-def _angle(a: Floats, b: Floats) -> float:
-    """Return the angle between two unit vectors [rad]."""
-    return math.acos(min(1.0, max(-1.0, float(a @ b))))
-
-
-def _turn(a: Floats, b: Floats) -> float:
-    """Return the angle between two unit quaternions, of which each stands for the same as its negative [rad]."""
-    return min(_angle(a, b), _angle(a, -b))

@@ -1,37 +1,15 @@
 """What all objects of an environment have in common."""
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
-
-
-Kind = TypeVar("Kind")
-
-
-def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name: str, wanted: str = "") -> Kind:
-    """Return an argument that a user gave.
-
-    Args:
-        thing: The argument.
-        kind: The class that it should have, or several, of which it should have one.
-        name: What to call it in errors.
-        wanted: What to call what it should be; empty: by the class.
-
-    Raises:
-        ArgumentError: it is something else.
-    """
-    if not isinstance(thing, kind):
-        given = "None" if thing is None else f"a {type(thing).__name__}"
-        if isinstance(kind, type):
-            wanted = wanted or f"a {kind.__name__}"
-        raise ArgumentError(f"{name}: is {given}, and should be {wanted}")
-    return thing
 
 
 class Annotations:
@@ -150,17 +128,6 @@ class Interface(UserData):
         known = ", ".join(["help", *self._commands])
         message = f"{type(self).__name__} knows no command '{name}', only {known}"
         raise RavemjError(message, ErrorCode.CommandNotSupported)
-
-
-def checked_flag(text: str, command: str) -> bool:
-    """Return the argument of a command that turns something on or off.
-
-    Raises:
-        ArgumentError: it is neither 0 nor 1.
-    """
-    if text.strip() not in {"0", "1"}:
-        raise ArgumentError(f"{command}: is followed by '{text}', and should be by 0 or 1")
-    return text.strip() == "1"
 
 
 def checked_environment(env: "Environment", caller: str) -> "Environment":

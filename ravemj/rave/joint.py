@@ -8,8 +8,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_indices, checked_vector
 from ravemj.core.transforms import Floats, Pose, pose_of
-from ravemj.model.joints import directions_at, measured_values, relative_pose, reported_anchor
-from ravemj.rave.body.limits import wrapped_angle
+from ravemj.model.joints import directions_at, measured_values, relative_pose, reported_anchor, wrapped_angle
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
 from ravemj.rave.joints.following import JointFollowing

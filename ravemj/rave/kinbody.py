@@ -1,23 +1,23 @@
 """Bodies."""
 
-from typing import TYPE_CHECKING
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
 
+from ravemj.core.arguments import checked_kind
 from ravemj.engine.simulation import BodyState
 from ravemj.rave.body.base import both_locks
 from ravemj.rave.body.building import Building
 from ravemj.rave.body.collision import BodyCollision
+from ravemj.rave.body.configuration import Configuration
+from ravemj.rave.body.dynamics import Dynamics
 from ravemj.rave.body.grabbing import Grabbing
-from ravemj.rave.body.graph import Graph
 from ravemj.rave.body.limits import Limits
-from ravemj.rave.body.motion import Motion
-from ravemj.rave.body.saving import Saving, StateSaver
-from ravemj.rave.body.substance import Substance
-from ravemj.rave.body.torques import Torques
-from ravemj.rave.configured import Configured
+from ravemj.rave.body.saving import Restorer, StateSaver, body_restorers
+from ravemj.rave.body.velocities import Velocities
 from ravemj.rave.enums import CheckLimitsAction, InterfaceType, JointType, SaveParameters
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, JointInfo, KinBodyInfo, LinkInfo
-from ravemj.rave.interface import checked_kind
+from ravemj.rave.interface import Annotations
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substance, Motion, Torques, Building):
+class KinBody(Building, Grabbing, BodyCollision, Velocities, Dynamics, Limits, Configuration):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:
@@ -48,10 +48,15 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
     SaveParameters = SaveParameters
 
     _interface_type = InterfaceType.kinbody
+    _internal = ("default_saved", "restorers")
+    default_saved = SaveParameters.LinkTransformation | SaveParameters.LinkEnable
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
-        super().__init__(env, state)
-        self._open_savers = []
+        self._env = env
+        self._state = state
+        self._simulation = state.simulation
+        self._annotations = Annotations()
+        self._open_savers: list[StateSaver] = []
 
     def SetName(self, name: str) -> None:
         """Give the body another name.
@@ -90,6 +95,49 @@ class KinBody(Saving, Configured, Grabbing, BodyCollision, Limits, Graph, Substa
             self._state.copy(original)
 
     GetEnvironmentId = GetEnvironmentBodyIndex
+
+    def CreateKinBodyStateSaver(self, options: int | None = None) -> StateSaver:
+        """Save the body's state.
+
+        Args:
+            options: What to save, ``SaveParameters`` combined with ``|``; None: poses, joint values and enabled links.
+
+        Returns:
+            A saver: ``with`` it, the state comes back at the end of the block, also after an exception. Otherwise
+            ``Restore()`` brings it back; dropping it does nothing.
+
+        Example:
+            >>> with body.CreateKinBodyStateSaver():
+            ...     body.SetDOFValues([0.5, 0.5])
+        """
+        return StateSaver(self, options)
+
+    def restorers(self, options: SaveParameters) -> list[Restorer]:
+        """Return what gives this body, or one like it, its present state back."""
+        return body_restorers(self._state, options)
+
+    def __enter__(self) -> Self:
+        """Lock the environment and save the body: poses, joint values and enabled links come back at the end.
+
+        A robot's active DOFs and active manipulator come back as well. Limits, velocities and what it holds do not.
+
+        Example:
+            >>> with robot:
+            ...     robot.SetDOFValues([0.5, 0.5])
+            ...     hits = env.CheckCollision(robot)
+        """
+        self._simulation.lock.acquire()
+        self._open_savers.append(StateSaver(self, None))
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        """Restore the body, and let go of the lock."""
+        try:
+            self._open_savers.pop().Restore()
+        finally:
+            self._simulation.lock.release()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, KinBody) and self._state is other._state

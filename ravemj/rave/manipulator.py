@@ -6,24 +6,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_transform, checked_vector
-from ravemj.core.transforms import Floats, Ints, pose_of, wxyz_from_rows
+from ravemj.core.transforms import Floats, Ints, inverse, pose_of, wxyz_from_rows
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.geometry_functions.ik_parameterization import INVERSE_KINEMATICS, IkParameterizationType, goal_of_tool
 from ravemj.model import chains, hashes, scene
 from ravemj.model.manipulators import joint_dofs
 from ravemj.rave.arm_collision import ArmCollision
-from ravemj.rave.arm_goals import ArmGoals
 from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
-from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 
-class Manipulator(ArmGoals, ArmCollision):
+class Manipulator(ArmCollision, ApiObject):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
     def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
@@ -238,6 +239,55 @@ class Manipulator(ArmGoals, ArmCollision):
             interpolation: How they change between waypoints, for instance ``linear``.
         """
         return self._robot.GetConfigurationSpecificationIndices(self.GetArmIndices(), interpolation)
+
+    def GetIkParameterization(
+        self, iktype: IkParameterizationType | IkParameterization | int, inworld: bool = True
+    ) -> IkParameterization:
+        """Return where the tool is now, as a goal.
+
+        Args:
+            iktype: The type of goal, or a goal of that type.
+            inworld: True: in the world. False: in the base link of the arm.
+        """
+        kind = IkParameterizationType(iktype.GetType() if isinstance(iktype, IkParameterization) else iktype)
+        base = self.GetBase()
+        T_world_tool = self.GetTransform()
+        T_base_world = np.eye(4) if inworld or base is None else inverse(base.GetTransform())
+        return IkParameterization(goal_of_tool(kind, T_base_world @ T_world_tool, self.GetLocalToolDirection()), kind)
+
+    def GetIkSolver(self) -> None:
+        """Return the solver of inverse kinematics: None, there is none."""
+
+    def SetIkSolver(self, solver: object) -> bool:
+        """Refuse a solver of inverse kinematics; return whether it was taken."""
+        del solver
+        return False
+
+    def FindIKSolution(self, param: ArrayLike | IkParameterization, *arguments: Any, **options: Any) -> Floats | None:  # noqa: ANN401 - OpenRAVE's overloads
+        """Return joint values that take the tool to a goal, in the order of ``GetArmIndices()``, shape (n,).
+
+        Args:
+            param: ``T_world_tool``, or an ``IkParameterization``.
+            arguments: ``IkFilterOptions``, and what OpenRAVE's other overloads take.
+            options: The same by name.
+
+        Raises:
+            UnsupportedError: always; there is no solver.
+        """
+        raise UnsupportedError("FindIKSolution", INVERSE_KINEMATICS, ErrorCode.Failed)
+
+    def FindIKSolutions(self, param: ArrayLike | IkParameterization, *arguments: Any, **options: Any) -> Floats:  # noqa: ANN401 - OpenRAVE's overloads
+        """Return joint values that take the tool to a goal, each way in a row, shape (k, n).
+
+        Args:
+            param: ``T_world_tool``, or an ``IkParameterization``.
+            arguments: ``IkFilterOptions``, and what OpenRAVE's other overloads take.
+            options: The same by name.
+
+        Raises:
+            UnsupportedError: always; there is no solver.
+        """
+        raise UnsupportedError("FindIKSolutions", INVERSE_KINEMATICS, ErrorCode.Failed)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Manipulator) and self._state is other._state and self._index == other._index

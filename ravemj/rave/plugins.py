@@ -5,11 +5,12 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from ravemj.core.arguments import checked_kind
 from ravemj.errors import UnsupportedError
-from ravemj.rave.arm_goals import INVERSE_KINEMATICS
+from ravemj.geometry_functions.ik_parameterization import INVERSE_KINEMATICS
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
-from ravemj.rave.interface import checked_environment, checked_kind
+from ravemj.rave.interface import checked_environment
 from ravemj.rave.planning import PLANNING, Planner
 from ravemj.rave.sensors import SENSING, Sensor
 

@@ -1,33 +1,50 @@
 """Robots: bodies with manipulators and sensors."""
 
-from collections.abc import Iterable
+import logging
+import time
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from threading import Condition, RLock
+from types import EllipsisType
 from typing import TYPE_CHECKING
 
+from numpy.typing import ArrayLike
+
+from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_indices
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import DOFAffine
-from ravemj.rave.body.active import ActiveChoice
-from ravemj.rave.body.active_motion import ActiveMotion
+from ravemj.rave.body.active import ActiveChoice, ActiveDofs
 from ravemj.rave.body.affine import default_kinds
 from ravemj.rave.body.manipulators import Manipulators
-from ravemj.rave.body.robot_building import RobotBuilding
 from ravemj.rave.body.saving import Restorer, StateSaver
+from ravemj.rave.controllers import Controller, IdealController
 from ravemj.rave.enums import InterfaceType, SaveParameters
-from ravemj.rave.infos import AttachedSensorInfo, ManipulatorInfo, RobotBaseInfo
+from ravemj.rave.infos import (
+    AttachedSensorInfo,
+    ExtractInfoOptions,
+    JointInfo,
+    LinkInfo,
+    ManipulatorInfo,
+    RobotBaseInfo,
+)
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.robot_control import RobotControl
 from ravemj.rave.sensors import AttachedSensor
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
+_LOG = logging.getLogger("ravemj")
 
-class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
-    ActiveMotion, Manipulators, RobotBuilding, RobotControl, KinBody
-):
+POLL = 1e-3
+"""How often [s] ``WaitForController`` looks."""
+
+
+class Robot(ActiveDofs, Manipulators, KinBody):
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine
@@ -38,7 +55,8 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
     RobotStateSaver = StateSaver
 
     _interface_type = InterfaceType.robot
-    _internal = ("active_choice", "affine_kinds", "powered_sensors", "take_choices")
+    _controller: "Controller | EllipsisType | None" = ...
+    _internal = ("active_choice", "affine_kinds", "powered_sensors", "step_controller", "take_choices")
     default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
@@ -92,6 +110,161 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
         """
         return StateSaver(self, options)
 
+    def GetAttachedSensors(self) -> list[AttachedSensor]:
+        """Return the sensors on the robot's links, in the order of the file."""
+        return [AttachedSensor(self, self._state, index) for index in range(len(self._state.scene.sensors))]
+
+    def GetAttachedSensor(self, name: str) -> AttachedSensor | None:
+        """Return the attached sensor of that name, or None."""
+        return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == name), None)
+
+    def GetController(self) -> Controller | None:
+        """Return the robot's controller: an ``IdealController`` from the start; None after ``SetController(None)``.
+
+        Example:
+            >>> robot.GetController().SetDesired([0.5, -0.5])
+            True
+        """
+        if self._controller is ...:
+            self.SetController(IdealController(self._env, "IdealController"))
+        assert self._controller is not ...
+        return self._controller
+
+    def SetController(
+        self,
+        controller: Controller | None,
+        dofindices: "ArrayLike | str | EllipsisType" = ...,
+        controltransform: int = 1,
+    ) -> bool:
+        """Give the robot a controller in place of the one before.
+
+        Args:
+            controller: What ``RaveCreateController`` made; None: none.
+            dofindices: Which DOFs it moves; left out: all. A text is OpenRAVE's old form with arguments, for all.
+            controltransform: Whether it moves the robot's base, too.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: None was given together with DOFs.
+            IndexError: there is no such DOF.
+        """
+        dofs = None if dofindices is ... or isinstance(dofindices, str) else dofindices
+        if controller is None and dofs is not None:
+            raise RavemjError("SetController: controller is None, and can have no DOFs")
+        if controller and checked_kind(controller, Controller, "SetController: controller").GetEnv() is not self._env:
+            raise ArgumentError("SetController: controller was made for another environment")
+        indices = None if dofs is None else checked_indices(dofs, self.GetDOF())
+        with self._simulation.lock:
+            if isinstance(self._controller, Controller):
+                self._controller.Reset()
+            if controller is not None:
+                controller.Init(self, indices, controltransform)
+            self._controller = controller
+        return True
+
+    def WaitForController(self, timeout: float = 0.0) -> bool:
+        """Wait until the controller has done what it was told.
+
+        Args:
+            timeout: How long to wait [s] of real time; 0: as long as it takes.
+
+        Returns:
+            Whether it is done; False for a robot without a controller.
+
+        Raises:
+            openrave_exception: it would take forever: this thread holds the environment (``with env:``), so that
+                time stands still. With a timeout, the answer is False at once then.
+
+        Example:
+            >>> robot.GetController().SetPath(trajectory)
+            True
+            >>> robot.WaitForController(0)
+            True
+        """
+        controller = self.GetController()
+        if controller is None:
+            return False
+        if controller.IsDone():
+            return True
+        if _is_held(self._simulation.lock):
+            message = "WaitForController: time stands still inside 'with env:'; wait outside of it"
+            if timeout <= 0:
+                raise RavemjError(message, ErrorCode.InvalidState)
+            _LOG.warning("%s", message)
+            return False
+        if not self._env.IsSimulationRunning():
+            _LOG.warning("WaitForController: time was stopped by StopSimulation; waiting for others to step it")
+        deadline = time.monotonic() + timeout
+        while not controller.IsDone():
+            if timeout > 0 and deadline < time.monotonic():
+                return False
+            time.sleep(POLL)
+        return True
+
+    def step_controller(self, timestep: float) -> None:
+        """Let the controller act for a step of time [s]; it is not made only for that."""
+        if isinstance(self._controller, Controller):
+            self._controller.SimulationStep(timestep)
+
+    def Init(  # pyright: ignore[reportIncompatibleMethodOverride] - OpenRAVE's arguments
+        self,
+        linkinfos: Sequence[LinkInfo],
+        jointinfos: Sequence[JointInfo],
+        manipinfos: Sequence[ManipulatorInfo] = (),
+        attachedsensorinfos: Sequence[AttachedSensorInfo] = (),
+        uri: str = "",
+    ) -> bool:
+        """Make the robot of links, joints, arms and sensors.
+
+        Args:
+            linkinfos: The descriptions of the links; the first one is the root.
+            jointinfos: The descriptions of the joints; those with DOFs in DOF order.
+            manipinfos: The descriptions of the arms; the first one is active.
+            attachedsensorinfos: The descriptions of the sensors on its links.
+            uri: Not used.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: the robot is in an environment, or an info describes nothing that can be. Nothing has
+                changed then.
+        """
+        del uri
+        info = RobotBaseInfo(
+            _vLinkInfos=linkinfos,
+            _vJointInfos=jointinfos,
+            _vManipInfos=manipinfos,
+            _vAttachedSensorInfos=attachedsensorinfos,
+        )
+        return self.InitFromKinBodyInfo(info)
+
+    def InitFromRobotInfo(self, info: RobotBaseInfo) -> bool:
+        """Make the robot, its name included, of a description; see ``InitFromKinBodyInfo``.
+
+        Args:
+            info: The description, for instance of ``ExtractInfo``.
+
+        Returns:
+            True.
+        """
+        return self.InitFromKinBodyInfo(info)
+
+    def ExtractInfo(self, options: int = ExtractInfoOptions.Everything) -> RobotBaseInfo:
+        """Return the description of the robot as it stands, a copy.
+
+        Args:
+            options: What to take, ``ExtractInfoOptions``.
+        """
+        body = self._state.scene
+        return RobotBaseInfo(
+            **self.extracted(options),
+            _vManipInfos=[ManipulatorInfo.of(body, arm) for arm in body.manipulators],
+            _vAttachedSensorInfos=[AttachedSensorInfo.of(body, sensor) for sensor in body.sensors],
+        )
+
     def take_choices(self, other: "Robot") -> None:
         """Take over the active DOFs and the active manipulator of another robot like this."""
         self.active_choice = other.active_choice
@@ -115,24 +288,17 @@ class Robot(  # pyright: ignore[reportIncompatibleMethodOverride]
             found.append(lambda body, tool=tool, transform=transform: _set_tool(body, tool, transform))
         return found
 
-    def active_dofs(self) -> tuple[int, ...]:
-        """Return the active joints' DOFs."""
-        return tuple(self.GetActiveDOFIndices().tolist())
-
-    def moves_as_a_whole(self) -> bool:
-        """Return whether active DOFs move the robot's base."""
-        return bool(self.active_choice.affine)
-
-    def GetAttachedSensors(self) -> list[AttachedSensor]:
-        """Return the sensors on the robot's links, in the order of the file."""
-        return [AttachedSensor(self, self._state, index) for index in range(len(self._state.scene.sensors))]
-
-    def GetAttachedSensor(self, name: str) -> AttachedSensor | None:
-        """Return the attached sensor of that name, or None."""
-        return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == name), None)
-
 
 def _set_tool(body: KinBody, name: str, transform: Floats) -> None:
     manipulator = body.GetManipulator(name) if isinstance(body, Robot) else None
     if manipulator is not None:
         manipulator.SetLocalToolTransform(transform)
+
+
+def _is_held(lock: RLock) -> bool:
+    """Return whether this thread holds a lock: only its holder may notify others of something."""
+    try:
+        Condition(lock).notify(0)
+    except RuntimeError:
+        return False
+    return True

@@ -1,14 +1,18 @@
-"""What the numbers of a configuration are."""
+"""What the numbers of a configuration are, and goals of inverse kinematics, which are laid out by them."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Self
 
+from numpy.typing import ArrayLike
+
+from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.geometry_functions.ik_parameterization import goal_size
 from ravemj.rave.configuration_data import ConfigurationData, checked_order
-from ravemj.rave.interface import checked_kind
-from ravemj.trajectories import layout
+from ravemj.rave.ikparameterization import IkParameterizationData
+from ravemj.trajectories import extraction, layout
 from ravemj.trajectories.bodies import body_groups
-from ravemj.trajectories.groups import DELTATIME, Group
+from ravemj.trajectories.groups import DELTATIME, Group, ik_type
 from ravemj.trajectories.text import layout_text, read_layout
 
 if TYPE_CHECKING:
@@ -194,6 +198,28 @@ class ConfigurationSpecification(ConfigurationData):
         """
         return self.of(layout.of_order(self._groups, checked_order(timederivative)))
 
+    def ExtractIkParameterization(
+        self, data: ArrayLike, timederivative: int = 0, robotname: str = "", manipulatorname: str = ""
+    ) -> "IkParameterization | None":
+        """Return a goal of inverse kinematics in a configuration.
+
+        Args:
+            data: The configuration.
+            timederivative: 1 for velocities, 2 for accelerations and so on.
+            robotname: Whose goal; empty: that of any robot.
+            manipulatorname: The goal of which of its manipulators; empty: that of any.
+
+        Returns:
+            The first one that there is, or None.
+        """
+        values, order = self._checked(data), checked_order(timederivative)
+        group = extraction.ik_group(self._groups, robotname, manipulatorname, order)
+        if group is None:
+            return None
+        goal = IkParameterization()
+        goal.SetValues(values[group.columns], ik_type(group))
+        return goal
+
     def SerializeJSON(self) -> dict[str, list[dict[str, Any]]]:
         """Return the groups as dictionaries and lists."""
         return {"groups": [dict(vars(group)) for group in sorted(self._groups, key=lambda group: group.offset)]}
@@ -227,6 +253,56 @@ class ConfigurationSpecification(ConfigurationData):
 
     def __str__(self) -> str:
         return f'<configuration dof="{self.GetDOF()}">'
+
+
+class IkParameterization(IkParameterizationData):
+    """A pose, a direction, a point or a ray that the tool of an arm shall reach.
+
+    The numbers are, by type: ``Transform6D`` the pose [w, x, y, z, tx, ty, tz]; ``Rotation3D`` the quaternion;
+    ``Translation3D`` and ``Lookat3D`` the point; ``Direction3D`` the direction; ``Ray4D`` and
+    ``TranslationDirection5D`` direction and point; ``TranslationXY2D`` x and y, ``TranslationXYOrientation3D`` the
+    angle behind them; ``TranslationLocalGlobal6D`` a point of the tool and where it shall be; the types with
+    ``AxisAngle`` angle and point.
+
+    Args:
+        value: What to reach: a 4x4 matrix or a pose, a quaternion, a vector, a ``Ray``, a pair of points, or a point
+            and an angle, as the type asks for; or another ``IkParameterization``, or the text of one.
+        type: The type, with a value.
+
+    Example:
+        >>> goal = IkParameterization(T_world_tool, IkParameterization.Type.Transform6D)
+        >>> moved_in_the_world = matrixFromPose([1, 0, 0, 0, 0, 0, 0.1]) * goal
+        >>> moved_in_the_tool = goal * matrixFromPose([1, 0, 0, 0, 0, 0, 0.1])
+    """
+
+    def GetConfigurationSpecification(
+        self, interpolation: str = "", robotname: str = "", manipname: str = ""
+    ) -> ConfigurationSpecification:
+        """Return the layout of a goal of this type in a trajectory.
+
+        Args:
+            interpolation: How the values change between waypoints.
+            robotname: Name of the robot; empty: any.
+            manipname: Name of the arm; empty: any.
+        """
+        return self.GetConfigurationSpecificationFromType(self._type, interpolation, robotname, manipname)
+
+    @staticmethod
+    def GetConfigurationSpecificationFromType(
+        type: int, interpolation: str = "", robotname: str = "", manipname: str = ""
+    ) -> ConfigurationSpecification:
+        """Return the layout of a goal of a type in a trajectory.
+
+        Args:
+            type: A type of goal.
+            interpolation: How the values change between waypoints.
+            robotname: Name of the robot; empty: any.
+            manipname: Name of the arm; empty: any.
+        """
+        spec = ConfigurationSpecification()
+        name = " ".join(filter(None, ["ikparam_values", str(int(type)), robotname, manipname]))
+        spec.AddGroup(name, goal_size(type), interpolation)
+        return spec
 
 
 def RaveGetAffineConfigurationSpecification(

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 
 from ravemj.compat.databases.model import DatabaseGenerator
-from ravemj.rave.arm_goals import INVERSE_KINEMATICS
-from ravemj.rave.enums import IkParameterizationType
+from ravemj.geometry_functions.ik_parameterization import INVERSE_KINEMATICS, IkParameterizationType
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.robot import Robot
 

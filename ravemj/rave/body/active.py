@@ -6,18 +6,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector
-from ravemj.core.transforms import Floats, Ints, Vec3
+from ravemj.core.transforms import Floats, Ints, Vec3, wxyz_jacobian
+from ravemj.engine.affine import AffineMotion, translation_columns
 from ravemj.errors import ArgumentError
-from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
+from ravemj.geometry_functions.affine import Z_AXIS, DOFAffine, affine_values, pose_with_values
+from ravemj.model.joints import wrapped_angle
 from ravemj.rave.body.affine import AffineSettings
-from ravemj.rave.body.limits import Limits, wrapped_angle
-from ravemj.rave.body.motion import Motion
-from ravemj.rave.body.placement import Placement
+from ravemj.rave.body.collision import BodyCollision
+from ravemj.rave.body.configuration import Configuration
+from ravemj.rave.body.dynamics import Dynamics
+from ravemj.rave.body.limits import Limits
+from ravemj.rave.body.velocities import Velocities
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.bodies import body_groups
-
-Z_AXIS: Vec3 = (0.0, 0.0, 1.0)
 
 
 class ActiveChoice(NamedTuple):
@@ -34,8 +36,8 @@ class ActiveChoice(NamedTuple):
     axis: Vec3 = Z_AXIS
 
 
-class ActiveDofs(Placement, Limits, Motion, AffineSettings):
-    """The active DOFs of a robot: some of its joints, and parts of its base's pose."""
+class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Configuration):
+    """The active DOFs of a robot: some of its joints, then parts of its base's pose, which move all of it."""
 
     active_choice: ActiveChoice
     """What ``SetActiveDOFs`` chose."""
@@ -149,45 +151,28 @@ class ActiveDofs(Placement, Limits, Motion, AffineSettings):
                 self._state.set_pose(pose_with_values(self._state.pose(), base, choice.affine, choice.axis))
 
     def GetActiveDOFVelocities(self) -> Floats:
-        """Return the velocities of the active values [rad/s or m/s]; for a rotation of the base its angular one."""
+        """Return the velocities of the active values: of joints [rad/s or m/s], then of the base; shape (n,)."""
         with self._simulation.lock:
-            joints = self.GetDOFVelocities()[self.GetActiveDOFIndices()]
-            linear, angular = np.split(self._state.link_velocities()[0], 2)
-            affine = self.active_choice.affine
-            parts = [joints, linear[[i for i in range(3) if affine & 1 << i]]]
-            if affine & DOFAffine.RotationAxis:
-                parts.append(np.array([angular @ self.active_choice.axis]))
-            elif affine & DOFAffine.Rotation3D:
-                parts.append(angular)
-            elif affine & DOFAffine.RotationQuat:
-                parts.append(np.zeros(4))
-            return np.concatenate(parts)
+            joints = self.GetDOFVelocities(self._active_dofs())
+            return np.concatenate([joints, self._affine_motion().rates(self._state.link_velocities()[0])])
 
     def SetActiveDOFVelocities(self, velocities: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits) -> None:
-        """Set the velocities of the active values; the other joints keep theirs.
+        """Set the velocities of the active values; what is not active keeps its own.
 
         Args:
-            velocities: As many as there are active values [rad/s or m/s]; those of a rotation of the base are its
-                angular velocity, of which a quaternion has none.
-            checklimits: What to do with joint velocities outside the limits, a ``CheckLimitsAction``.
+            velocities: Those of the joints [rad/s or m/s], then those of the base's active parts.
+            checklimits: What to do with joint velocities outside the limits, as in ``SetDOFVelocities``.
 
         Raises:
-            ArgumentError: there are too few or too many velocities, or one is infinite.
+            ArgumentError: they are not as many as there are active values. Nothing has changed then.
         """
-        count, joints = self.GetActiveDOF(), self._active_dofs()
-        given = checked_vector(velocities, count, "SetActiveDOFVelocities: velocities")
+        given = checked_vector(velocities, self.GetActiveDOF(), "SetActiveDOFVelocities")
+        joints = self._active_dofs()
         with self._simulation.lock:
-            full = self.GetDOFVelocities()
-            full[joints] = given[: len(joints)]
-            linear, angular = np.split(self._state.link_velocities()[0], 2)
-            affine, rest = self.active_choice.affine, given[len(joints) :]
-            moved = [i for i in range(3) if affine & 1 << i]
-            linear[moved] = rest[: len(moved)]
-            if affine & DOFAffine.RotationAxis:
-                angular = rest[-1] * np.array(self.active_choice.axis)
-            elif affine & DOFAffine.Rotation3D:
-                angular = rest[-3:]
-            self.SetDOFVelocities(full, linear, angular, checklimits)
+            base = self._affine_motion().velocity(given[len(joints) :], self._state.link_velocities()[0])
+            rates = self.GetDOFVelocities()
+            rates[joints] = given[: len(joints)]
+            self.SetDOFVelocities(rates, base[:3], base[3:], checklimits)
 
     def GetActiveDOFLimits(self) -> tuple[Floats, Floats]:
         """Return the lower and upper limits of the active values, shape (n,) each; the base has ±100 m, ±10000 rad."""
@@ -221,7 +206,7 @@ class ActiveDofs(Placement, Limits, Motion, AffineSettings):
     def _affine_numbers(self, name: str) -> Floats:
         """Return a setting of all active parts of the base's pose."""
         affine, kinds = self.active_choice.affine, self.affine_kinds
-        parts = [getattr(kinds["Translation"], name)[[i for i in range(3) if affine & 1 << i]]]
+        parts = [getattr(kinds["Translation"], name)[translation_columns(affine)]]
         if affine & DOFAffine.RotationAxis:
             parts.append(getattr(kinds["RotationAxis"], name)[self._axis_number() : self._axis_number() + 1])
         elif affine & DOFAffine.Rotation3D:
@@ -269,3 +254,56 @@ class ActiveDofs(Placement, Limits, Motion, AffineSettings):
         if self.active_choice.affine & DOFAffine.RotationAxis:
             difference[-1:] = wrapped_angle(difference[-1:])
         return difference
+
+    def CalculateActiveJacobian(self, linkindex: int, offset: ArrayLike) -> Floats:
+        """Return how a point of a link moves with the active values.
+
+        Args:
+            linkindex: Index of the link.
+            offset: The point, in world coordinates [m], shape (3,).
+
+        Returns:
+            Derivative of the point's position in the world, shape (3, active dof).
+        """
+        point = checked_vector(offset, 3, "offset")
+        with self._simulation.lock:
+            joints = self.ComputeJacobianTranslation(linkindex, point)[:, self.GetActiveDOFIndices()]
+            return np.hstack([joints, self._affine_motion().translation_jacobian(point)])
+
+    def CalculateActiveAngularVelocityJacobian(self, linkindex: int) -> Floats:
+        """Return the angular velocity of a link, in world axes, per unit of the active values' velocity.
+
+        Args:
+            linkindex: Index of the link.
+
+        Returns:
+            Shape (3, active dof).
+        """
+        with self._simulation.lock:
+            joints = self.ComputeJacobianAxisAngle(linkindex)[:, self.GetActiveDOFIndices()]
+            return np.hstack([joints, self._affine_motion().rotation_jacobian()])
+
+    def CalculateActiveRotationJacobian(self, linkindex: int, quat: ArrayLike) -> Floats:
+        """Return how a quaternion turns with a link.
+
+        Args:
+            linkindex: Index of the link.
+            quat: The quaternion [w, x, y, z]: the link's orientation, or that of anything fixed to it.
+
+        Returns:
+            Its derivative by the active values, shape (4, active dof).
+        """
+        rates = wxyz_jacobian(checked_vector(quat, 4, "quat").tolist())
+        return rates @ self.CalculateActiveAngularVelocityJacobian(linkindex)
+
+    def _affine_motion(self) -> AffineMotion:
+        choice = self.active_choice
+        return AffineMotion(self._state.pose(), choice.affine, choice.axis)
+
+    def active_dofs(self) -> tuple[int, ...]:
+        """Return the active joints' DOFs."""
+        return tuple(self._active_dofs())
+
+    def moves_as_a_whole(self) -> bool:
+        """Return whether active DOFs move the robot's base."""
+        return bool(self.active_choice.affine)

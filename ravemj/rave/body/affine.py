@@ -1,6 +1,12 @@
-"""Limits and the like of the affine DOFs."""
+"""Limits, resolutions and weights of the affine DOFs: the parts of the base's pose that can be active."""
 
+# ruff: noqa: D102 - the docstrings of the methods come from the table
+
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import wraps
+from inspect import Signature, signature
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,15 +15,12 @@ from ravemj.core.arrays import checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.rave.body.base import BodyPart
 
-
-def _single(value: float) -> float:
-    """Round to single precision, in which OpenRAVE writes its defaults."""
-    return float(np.float32(value))
+Topic = TypeVar("Topic", bound=BodyPart)
 
 
 @dataclass
 class AffineKind:
-    """Settings of one kind of affine DOFs, a value for each."""
+    """Settings of one kind of affine DOFs, a value for each, shape (n,)."""
 
     lower: Floats
     upper: Floats
@@ -26,192 +29,119 @@ class AffineKind:
     weight: Floats
 
 
-def _kind(size: int, limit: float, velocity: float, resolution: float, weight: float) -> AffineKind:
-    values = (-limit, limit, velocity, resolution, weight)
-    return AffineKind(*(np.full(size, _single(value)) for value in values))
+class _Kind(NamedTuple):
+    """OpenRAVE's defaults of one kind of affine DOFs, and its words."""
+
+    size: int
+    limit: float
+    velocity: float
+    resolution: float
+    weight: float
+    values: str
+    unit: str
+
+
+_KINDS = {
+    "Translation": _Kind(3, 100, 1.0, 0.001, 2.0, "X, Y and Z", "m"),
+    "RotationAxis": _Kind(4, 10000, 0.4, 0.01, 2.0, "angle, for x, y, z and other axes", "rad"),
+    "Rotation3D": _Kind(3, 10000, 0.07, 0.01, 1.0, "rotation vector", "rad"),
+    "RotationQuat": _Kind(4, 1.0, 1.0, 0.01, 0.4, "quaternion", "1"),
+}
+
+_SETTINGS = {
+    "Limits": (("lower", "upper"), "lower and upper limits of the base's {values} [{unit}], each of shape ({size},)."),
+    "MaxVels": (("max_velocity",), "the velocity limits of the base's {values} [{unit}/s], shape ({size},)."),
+    "Resolution": (("resolution",), "the planners' steps of the base's {values} [{unit}], shape ({size},)."),
+    "Weights": (("weight",), "the weights of the base's {values} in distances, shape ({size},)."),
+}
+"""By the end of a method's name: the fields of ``AffineKind``, and what they are."""
+
+_ARGUMENTS = {
+    "MaxVels": "\n\nArgs:\n    velocities: Largest velocities.",
+    "Resolution": "\n\nArgs:\n    resolution: Step for each value.",
+}
 
 
 def default_kinds() -> dict[str, AffineKind]:
-    """Return OpenRAVE's defaults."""
+    """Return OpenRAVE's defaults, which it writes in single precision."""
+    defaults = {name: (-one.limit, one.limit, *one[2:5]) for name, one in _KINDS.items()}
     return {
-        "Translation": _kind(3, 100, 1.0, 0.001, 2.0),
-        "RotationAxis": _kind(4, 10000, 0.4, 0.01, 2.0),
-        "Rotation3D": _kind(3, 10000, 0.07, 0.01, 1.0),
-        "RotationQuat": _kind(4, 1.0, 1.0, 0.01, 0.4),
+        name: AffineKind(*(np.full(_KINDS[name].size, float(np.float32(value))) for value in values))
+        for name, values in defaults.items()
     }
 
 
+def _from_table(topic: type[Topic]) -> type[Topic]:
+    """Give the methods of a class, of which only the signatures are written, bodies and docstrings."""
+    for kind, about in _KINDS.items():
+        for setting, (fields, what) in _SETTINGS.items():
+            words = what.format(**about._asdict())
+            get, set_ = (getattr(topic, f"{verb}Affine{kind}{setting}") for verb in ("Get", "Set"))
+            get.__doc__, set_.__doc__ = f"Return {words}", f"Set {words}{_ARGUMENTS.get(setting, '')}"
+            for method, body in ((get, _getter(kind, fields)), (set_, _setter(kind, fields, signature(set_)))):
+                setattr(topic, method.__name__, wraps(method)(body))
+    return topic
+
+
+def _getter(kind: str, fields: tuple[str, ...]) -> Callable[["AffineSettings"], Floats | tuple[Floats, ...]]:
+    def get(self: "AffineSettings") -> Floats | tuple[Floats, ...]:
+        first, *more = (getattr(self.affine_kinds[kind], field).copy() for field in fields)
+        return (first, *more) if more else first
+
+    return get
+
+
+def _setter(kind: str, fields: tuple[str, ...], arguments: Signature) -> Callable[..., None]:
+    def set_(self: "AffineSettings", *values: ArrayLike, **named: ArrayLike) -> None:
+        _, *given = arguments.bind(self, *values, **named).arguments.values()
+        settings = self.affine_kinds[kind]
+        count = len(settings.lower)
+        pairs = list(zip(fields, given, strict=True))
+        checked = {field: checked_vector(one, count, f"SetAffine{kind}: {field}") for field, one in pairs}
+        for field, numbers in checked.items():
+            setattr(settings, field, numbers)
+
+    return set_
+
+
+@_from_table
 class AffineSettings(BodyPart):
     """Limits, resolutions and weights of the parts of the base's pose that can be active."""
 
     affine_kinds: dict[str, AffineKind]
 
-    def _get_affine(self, kind: str, name: str) -> Floats:
-        return getattr(self.affine_kinds[kind], name).copy()
+    def GetAffineTranslationLimits(self) -> tuple[Floats, Floats]: ...
+    def SetAffineTranslationLimits(self, lower: ArrayLike, upper: ArrayLike) -> None: ...
+    def GetAffineTranslationMaxVels(self) -> Floats: ...
+    def SetAffineTranslationMaxVels(self, velocities: ArrayLike) -> None: ...
+    def GetAffineTranslationResolution(self) -> Floats: ...
+    def SetAffineTranslationResolution(self, resolution: ArrayLike) -> None: ...
+    def GetAffineTranslationWeights(self) -> Floats: ...
+    def SetAffineTranslationWeights(self, weights: ArrayLike) -> None: ...
 
-    def _set_affine(self, kind: str, **values: ArrayLike) -> None:
-        settings = self.affine_kinds[kind]
-        count = len(settings.lower)
-        checked = {name: checked_vector(one, count, f"SetAffine{kind}: {name}") for name, one in values.items()}
-        for name, numbers in checked.items():
-            setattr(settings, name, numbers)
+    def GetAffineRotationAxisLimits(self) -> tuple[Floats, Floats]: ...
+    def SetAffineRotationAxisLimits(self, lower: ArrayLike, upper: ArrayLike) -> None: ...
+    def GetAffineRotationAxisMaxVels(self) -> Floats: ...
+    def SetAffineRotationAxisMaxVels(self, velocities: ArrayLike) -> None: ...
+    def GetAffineRotationAxisResolution(self) -> Floats: ...
+    def SetAffineRotationAxisResolution(self, resolution: ArrayLike) -> None: ...
+    def GetAffineRotationAxisWeights(self) -> Floats: ...
+    def SetAffineRotationAxisWeights(self, weights: ArrayLike) -> None: ...
 
-    def GetAffineTranslationLimits(self) -> tuple[Floats, Floats]:
-        """Return lower and upper limits of the base's X, Y and Z [m], each of shape (3,)."""
-        return self._get_affine("Translation", "lower"), self._get_affine("Translation", "upper")
+    def GetAffineRotation3DLimits(self) -> tuple[Floats, Floats]: ...
+    def SetAffineRotation3DLimits(self, lower: ArrayLike, upper: ArrayLike) -> None: ...
+    def GetAffineRotation3DMaxVels(self) -> Floats: ...
+    def SetAffineRotation3DMaxVels(self, velocities: ArrayLike) -> None: ...
+    def GetAffineRotation3DResolution(self) -> Floats: ...
+    def SetAffineRotation3DResolution(self, resolution: ArrayLike) -> None: ...
+    def GetAffineRotation3DWeights(self) -> Floats: ...
+    def SetAffineRotation3DWeights(self, weights: ArrayLike) -> None: ...
 
-    def SetAffineTranslationLimits(self, lower: ArrayLike, upper: ArrayLike) -> None:
-        """Set lower and upper limits of the base's X, Y and Z [m], each of shape (3,)."""
-        self._set_affine("Translation", lower=lower, upper=upper)
-
-    def GetAffineTranslationMaxVels(self) -> Floats:
-        """Return the velocity limits of the base's X, Y and Z [m/s], shape (3,)."""
-        return self._get_affine("Translation", "max_velocity")
-
-    def SetAffineTranslationMaxVels(self, velocities: ArrayLike) -> None:
-        """Set the velocity limits of the base's X, Y and Z [m/s], shape (3,).
-
-        Args:
-            velocities: Largest velocities [m/s or rad/s].
-        """
-        self._set_affine("Translation", max_velocity=velocities)
-
-    def GetAffineTranslationResolution(self) -> Floats:
-        """Return the planners' steps of the base's X, Y and Z [m], shape (3,)."""
-        return self._get_affine("Translation", "resolution")
-
-    def SetAffineTranslationResolution(self, resolution: ArrayLike) -> None:
-        """Set the planners' steps of the base's X, Y and Z [m], shape (3,).
-
-        Args:
-            resolution: The step [m or rad].
-        """
-        self._set_affine("Translation", resolution=resolution)
-
-    def GetAffineTranslationWeights(self) -> Floats:
-        """Return the weights of the base's X, Y and Z in distances, shape (3,)."""
-        return self._get_affine("Translation", "weight")
-
-    def SetAffineTranslationWeights(self, weights: ArrayLike) -> None:
-        """Set the weights of the base's X, Y and Z in distances, shape (3,)."""
-        self._set_affine("Translation", weight=weights)
-
-    def GetAffineRotationAxisLimits(self) -> tuple[Floats, Floats]:
-        """Return lower and upper limits of the base's angle, for x, y, z and other axes [rad], each of shape (4,)."""
-        return self._get_affine("RotationAxis", "lower"), self._get_affine("RotationAxis", "upper")
-
-    def SetAffineRotationAxisLimits(self, lower: ArrayLike, upper: ArrayLike) -> None:
-        """Set lower and upper limits of the base's angle, for x, y, z and other axes [rad], each of shape (4,)."""
-        self._set_affine("RotationAxis", lower=lower, upper=upper)
-
-    def GetAffineRotationAxisMaxVels(self) -> Floats:
-        """Return the velocity limits of the base's angle, for x, y, z and other axes [rad/s], shape (4,)."""
-        return self._get_affine("RotationAxis", "max_velocity")
-
-    def SetAffineRotationAxisMaxVels(self, velocities: ArrayLike) -> None:
-        """Set the velocity limits of the base's angle, for x, y, z and other axes [rad/s], shape (4,).
-
-        Args:
-            velocities: Largest velocities [m/s or rad/s].
-        """
-        self._set_affine("RotationAxis", max_velocity=velocities)
-
-    def GetAffineRotationAxisResolution(self) -> Floats:
-        """Return the planners' steps of the base's angle, for x, y, z and other axes [rad], shape (4,)."""
-        return self._get_affine("RotationAxis", "resolution")
-
-    def SetAffineRotationAxisResolution(self, resolution: ArrayLike) -> None:
-        """Set the planners' steps of the base's angle, for x, y, z and other axes [rad], shape (4,).
-
-        Args:
-            resolution: The step [m or rad].
-        """
-        self._set_affine("RotationAxis", resolution=resolution)
-
-    def GetAffineRotationAxisWeights(self) -> Floats:
-        """Return the weights of the base's angle, for x, y, z and other axes in distances, shape (4,)."""
-        return self._get_affine("RotationAxis", "weight")
-
-    def SetAffineRotationAxisWeights(self, weights: ArrayLike) -> None:
-        """Set the weights of the base's angle, for x, y, z and other axes in distances, shape (4,)."""
-        self._set_affine("RotationAxis", weight=weights)
-
-    def GetAffineRotation3DLimits(self) -> tuple[Floats, Floats]:
-        """Return lower and upper limits of the base's rotation vector [rad], each of shape (3,)."""
-        return self._get_affine("Rotation3D", "lower"), self._get_affine("Rotation3D", "upper")
-
-    def SetAffineRotation3DLimits(self, lower: ArrayLike, upper: ArrayLike) -> None:
-        """Set lower and upper limits of the base's rotation vector [rad], each of shape (3,)."""
-        self._set_affine("Rotation3D", lower=lower, upper=upper)
-
-    def GetAffineRotation3DMaxVels(self) -> Floats:
-        """Return the velocity limits of the base's rotation vector [rad/s], shape (3,)."""
-        return self._get_affine("Rotation3D", "max_velocity")
-
-    def SetAffineRotation3DMaxVels(self, velocities: ArrayLike) -> None:
-        """Set the velocity limits of the base's rotation vector [rad/s], shape (3,).
-
-        Args:
-            velocities: Largest velocities [m/s or rad/s].
-        """
-        self._set_affine("Rotation3D", max_velocity=velocities)
-
-    def GetAffineRotation3DResolution(self) -> Floats:
-        """Return the planners' steps of the base's rotation vector [rad], shape (3,)."""
-        return self._get_affine("Rotation3D", "resolution")
-
-    def SetAffineRotation3DResolution(self, resolution: ArrayLike) -> None:
-        """Set the planners' steps of the base's rotation vector [rad], shape (3,).
-
-        Args:
-            resolution: Step for each component, shape (3,).
-        """
-        self._set_affine("Rotation3D", resolution=resolution)
-
-    def GetAffineRotation3DWeights(self) -> Floats:
-        """Return the weights of the base's rotation vector in distances, shape (3,)."""
-        return self._get_affine("Rotation3D", "weight")
-
-    def SetAffineRotation3DWeights(self, weights: ArrayLike) -> None:
-        """Set the weights of the base's rotation vector in distances, shape (3,)."""
-        self._set_affine("Rotation3D", weight=weights)
-
-    def GetAffineRotationQuatLimits(self) -> tuple[Floats, Floats]:
-        """Return lower and upper limits of the base's quaternion [1], each of shape (4,)."""
-        return self._get_affine("RotationQuat", "lower"), self._get_affine("RotationQuat", "upper")
-
-    def SetAffineRotationQuatLimits(self, lower: ArrayLike, upper: ArrayLike) -> None:
-        """Set lower and upper limits of the base's quaternion [1], each of shape (4,)."""
-        self._set_affine("RotationQuat", lower=lower, upper=upper)
-
-    def GetAffineRotationQuatMaxVels(self) -> Floats:
-        """Return the velocity limits of the base's quaternion [1/s], shape (4,)."""
-        return self._get_affine("RotationQuat", "max_velocity")
-
-    def SetAffineRotationQuatMaxVels(self, velocities: ArrayLike) -> None:
-        """Set the velocity limits of the base's quaternion [1/s], shape (4,).
-
-        Args:
-            velocities: Largest velocities [m/s or rad/s].
-        """
-        self._set_affine("RotationQuat", max_velocity=velocities)
-
-    def GetAffineRotationQuatResolution(self) -> Floats:
-        """Return the planners' steps of the base's quaternion [1], shape (4,)."""
-        return self._get_affine("RotationQuat", "resolution")
-
-    def SetAffineRotationQuatResolution(self, resolution: ArrayLike) -> None:
-        """Set the planners' steps of the base's quaternion [1], shape (4,).
-
-        Args:
-            resolution: The step [m or rad].
-        """
-        self._set_affine("RotationQuat", resolution=resolution)
-
-    def GetAffineRotationQuatWeights(self) -> Floats:
-        """Return the weights of the base's quaternion in distances, shape (4,)."""
-        return self._get_affine("RotationQuat", "weight")
-
-    def SetAffineRotationQuatWeights(self, weights: ArrayLike) -> None:
-        """Set the weights of the base's quaternion in distances, shape (4,)."""
-        self._set_affine("RotationQuat", weight=weights)
+    def GetAffineRotationQuatLimits(self) -> tuple[Floats, Floats]: ...
+    def SetAffineRotationQuatLimits(self, lower: ArrayLike, upper: ArrayLike) -> None: ...
+    def GetAffineRotationQuatMaxVels(self) -> Floats: ...
+    def SetAffineRotationQuatMaxVels(self, velocities: ArrayLike) -> None: ...
+    def GetAffineRotationQuatResolution(self) -> Floats: ...
+    def SetAffineRotationQuatResolution(self, resolution: ArrayLike) -> None: ...
+    def GetAffineRotationQuatWeights(self) -> Floats: ...
+    def SetAffineRotationQuatWeights(self, weights: ArrayLike) -> None: ...

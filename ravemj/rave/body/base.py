@@ -1,14 +1,11 @@
-"""What the parts of a body's API share."""
+"""What the topics of a body's API share."""
 
 from collections.abc import Generator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
+from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_index
 from ravemj.engine.simulation import BodyState, Simulation
-from ravemj.rave.interface import Annotations, Interface
-
-if TYPE_CHECKING:
-    from ravemj.rave.environment import Environment
 
 
 @contextmanager
@@ -19,16 +16,13 @@ def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
         yield
 
 
-class BodyPart(Interface):
-    """Part of the API of a body; ``KinBody`` joins the parts."""
+class BodyPart(ApiObject):
+    """Part of the API of a body, about one topic; ``KinBody`` joins the parts."""
 
     _internal = ("simulation_state",)
 
-    def __init__(self, env: "Environment", state: BodyState) -> None:
-        self._env = env
-        self._state = state
-        self._simulation: Simulation = state.simulation
-        self._annotations = Annotations()
+    _state: BodyState
+    _simulation: Simulation
 
     def GetName(self) -> str:
         """Return the body's name, unique in its environment.
@@ -54,3 +48,6 @@ class BodyPart(Interface):
     def simulation_state(self) -> BodyState:
         """The body below the OpenRAVE API: its scene and its kinematics."""
         return self._state
+
+    def _checked_link(self, index: int) -> int:
+        return checked_index(index, len(self._state.scene.links), "linkindex")

@@ -12,13 +12,13 @@ from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.scene import Geometry, KinBody
 from ravemj.model.scene import TriMesh as Triangles
 from ravemj.model.shape_bodies import body_of_geometries, box_geometries, shape_geometry, sphere_geometries
-from ravemj.rave.body.mechanism import Mechanism
+from ravemj.rave.body.structure import Structure
 from ravemj.rave.infos import ExtractInfoOptions, GeometryInfo, JointInfo, KinBodyInfo, LinkInfo, body_of
 from ravemj.rave.infos.link import geometries_of
 from ravemj.rave.trimesh import TriMesh, checked_mesh
 
 
-class Building(Mechanism):
+class Building(Structure):
     """Makes the body anew; it must not be in an environment meanwhile."""
 
     _internal = ("extracted",)

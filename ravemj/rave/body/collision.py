@@ -13,17 +13,17 @@ from ravemj.engine.collision.questions import moved_apart
 from ravemj.engine.collision.resting import tested_pairs
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import AABB
-from ravemj.model.bounds import links_bounds
-from ravemj.model.scene import Bounds
+from ravemj.model.bounds import enclosing_box, links_bounds
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import AdjacentOptions
+from ravemj.rave.interface import Interface
 
 if TYPE_CHECKING:
     from ravemj.rave.collision import CollisionChecker
     from ravemj.rave.report import CollisionReport
 
 
-class BodyCollision(BodyPart):
+class BodyCollision(BodyPart, Interface):
     """Collision of the body with itself, what takes part in it, and how much room the body needs."""
 
     AdjacentOptions = AdjacentOptions
@@ -242,10 +242,4 @@ class BodyCollision(BodyPart):
         enabled = self._state.link_enabled
         chosen = [link for link in range(len(poses)) if enabled[link] or not enabled_only]
         bounds = links_bounds([self._state.scene.links[link] for link in chosen], poses[chosen])
-        return aabb_of(bounds, poses[0] if len(poses) else np.eye(4))
-
-
-def aabb_of(bounds: Bounds | None, T_a_origin: Floats) -> AABB:
-    """Return bounds as OpenRAVE's box; None is a point at the origin of a frame."""
-    low, high = bounds or (T_a_origin[:3, 3], T_a_origin[:3, 3])
-    return AABB((low + high) / 2, (high - low) / 2)
+        return enclosing_box(bounds, poses[0] if len(poses) else np.eye(4))

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravemj.core.transforms import Floats, inverse
-from ravemj.engine.collision.questions import touching_links
+from ravemj.core.arguments import checked_kind
+from ravemj.core.transforms import Floats
+from ravemj.engine.grabbing import attached_bodies, grab_as_it_stands
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.infos.content import Info
-from ravemj.rave.interface import checked_kind
+from ravemj.rave.interface import Interface
 from ravemj.rave.link import Link
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class GrabbedInfo(Info):
     _setIgnoreRobotLinkNames: list[str] = field(default_factory=list[str])
 
 
-class Grabbing(BodyPart):
+class Grabbing(BodyPart, Interface):
     """Holds other bodies: they move along, and count as part of this one for collision."""
 
     def Grab(
@@ -74,10 +75,8 @@ class Grabbing(BodyPart):
                 raise ArgumentError(f"Grab: grablink is {grablink!r}, and should be a link of '{self.GetName()}'")
             held = body.simulation_state
             link = grablink.GetIndex()
-            touched = touching_links(self._simulation.collisions(), self._state, held)
-            ignored = {link, *(self._link_index(one) for one in linkstoignore), *touched}
-            T_link_body = inverse(self._state.link_transform(link)) @ held.link_transform(0)
-            self._state.grab(GrabbedBody(held, link, T_link_body, frozenset(ignored)))
+            ignored = [self._link_index(one) for one in linkstoignore]
+            self._state.grab(grab_as_it_stands(self._state, held, link, ignored))
             return True
 
     def _check_holdable(self, body: "KinBody") -> None:
@@ -174,22 +173,9 @@ class Grabbing(BodyPart):
 
     def GetAttached(self) -> "list[KinBody]":
         """Return this body, those that it holds, those that hold it, and so on."""
-        return [self._env.wrap(state) for state in _attached(self._state)]
+        return [self._env.wrap(state) for state in attached_bodies(self._state)]
 
     def IsAttached(self, body: "KinBody") -> bool:
         """Return whether a body is among ``GetAttached()``."""
-        return checked_kind(body, BodyPart, "IsAttached: body", "a KinBody").simulation_state in _attached(self._state)
-
-
-def _attached(start: BodyState) -> list[BodyState]:
-    """Return a body and all that are connected to it by grabbing."""
-    found, pending = [start], [start]
-    while pending:
-        body = pending.pop()
-        near = [grab.body for grab in body.grabs]
-        near += [one for one in body.simulation.bodies if any(grab.body is body for grab in one.grabs)]
-        for one in near:
-            if one not in found:
-                found.append(one)
-                pending.append(one)
-    return found
+        other = checked_kind(body, BodyPart, "IsAttached: body", "a KinBody").simulation_state
+        return other in attached_bodies(self._state)

@@ -1,8 +1,6 @@
 """Limits, weights and resolutions of the DOFs."""
 
-from dataclasses import replace
 from types import EllipsisType
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,6 +8,8 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_indices, checked_numbers
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.model.joints import value_differences
+from ravemj.model.limits import with_fields
 from ravemj.rave.body.base import BodyPart
 
 
@@ -142,7 +142,6 @@ class Limits(BodyPart):
         """Set one or more fields of axes, all or nothing."""
         dof = self.GetDOF()
         chosen = checked_indices(... if indices is None else indices, dof)
-        axes = list(self._state.scene.dof_axes)
         given: dict[str, list[float]] = {}
         for name, values in fields.items():
             numbers = checked_numbers(values, f"{caller}: values")
@@ -153,11 +152,8 @@ class Limits(BodyPart):
             if np.isnan(numbers).any():
                 raise ArgumentError(f"{caller}: values are {numbers.tolist()}, and should be numbers")
             given[name] = numbers.tolist()
-        for position, dof_index in enumerate(map(int, chosen)):
-            changes: dict[str, Any] = {name: values[position] for name, values in given.items()}
-            axes[dof_index] = replace(axes[dof_index], **changes)
         with self._simulation.lock:
-            self._state.edit_axes(axes)
+            self._state.edit_axes(with_fields(self._state.scene.dof_axes, chosen.tolist(), given))
 
     def SubtractDOFValues(
         self, values0: ArrayLike, values1: ArrayLike, indices: "ArrayLike | EllipsisType | None" = ...
@@ -180,11 +176,4 @@ class Limits(BodyPart):
             )
             raise ArgumentError(message, ErrorCode.Assert)
         axes = self._state.scene.dof_axes
-        circular = np.array([axes[dof].circular for dof in map(int, chosen)], dtype=bool)
-        difference = minuend - subtrahend
-        return np.where(circular, wrapped_angle(difference), difference)
-
-
-def wrapped_angle(angle: ArrayLike) -> Floats:
-    """Return angles with full turns added so that they lie in (-pi, pi]."""
-    return np.pi - (np.pi - np.asarray(angle, dtype=np.float64)) % (2 * np.pi)
+        return value_differences([axes[dof] for dof in map(int, chosen)], minuend, subtrahend)

@@ -2,12 +2,12 @@
 
 from typing import TYPE_CHECKING, cast
 
+from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.model import hashes
 from ravemj.model.manipulators import freeze_manipulator
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.infos import ManipulatorInfo
-from ravemj.rave.interface import checked_kind
 from ravemj.rave.manipulator import Manipulator
 
 if TYPE_CHECKING:

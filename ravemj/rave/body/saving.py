@@ -1,18 +1,18 @@
 """State savers: change a body, and have it back as it was."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
-from typing import TYPE_CHECKING, Self, cast
+from typing import TYPE_CHECKING, Self
 
 from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_kind
+from ravemj.engine.grabbing import still_possible
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import ArgumentError
+from ravemj.model.limits import with_fields
 from ravemj.rave.body.base import BodyPart
-from ravemj.rave.body.placement import Placement
 from ravemj.rave.enums import SaveParameters
-from ravemj.rave.interface import checked_kind
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -28,75 +28,27 @@ _AXIS_FIELDS = {
 }
 
 
-class Saving(Placement):
-    """State savers: ``with body:`` and ``body.CreateKinBodyStateSaver``."""
-
-    _internal = ("default_saved", "restorers")
-
-    default_saved = SaveParameters.LinkTransformation | SaveParameters.LinkEnable
-    _open_savers: "list[StateSaver]"
-
-    def CreateKinBodyStateSaver(self, options: int | None = None) -> "StateSaver":
-        """Save the body's state.
-
-        Args:
-            options: What to save, ``SaveParameters`` combined with ``|``; None: poses, joint values and enabled links.
-
-        Returns:
-            A saver: ``with`` it, the state comes back at the end of the block, also after an exception. Otherwise
-            ``Restore()`` brings it back; dropping it does nothing.
-
-        Example:
-            >>> with body.CreateKinBodyStateSaver():
-            ...     body.SetDOFValues([0.5, 0.5])
-        """
-        return StateSaver(cast("KinBody", self), options)
-
-    def restorers(self, options: SaveParameters) -> list[Restorer]:
-        """Return what gives this body, or one like it, its present state back."""
-        state = self._state
-        found: list[Restorer] = []
-        if options & SaveParameters.GrabbedBodies:
-            grabs = state.grabs
-            found.append(lambda body: _hold(body.simulation_state, grabs))
-        if options & SaveParameters.LinkTransformation:
-            saved = state.configuration()
-            found.append(lambda body: body.simulation_state.restore(saved))
-        if options & SaveParameters.LinkVelocities:
-            velocities = state.link_velocities()
-            found.append(lambda body: body.simulation_state.set_link_velocities(velocities))
-        if options & SaveParameters.LinkEnable:
-            enabled = list(state.link_enabled)
-            found.append(lambda body: setattr(body.simulation_state, "link_enabled", list(enabled)))
-        fields = [name for option, names in _AXIS_FIELDS.items() if options & option for name in names]
-        if fields:
-            axes = state.scene.dof_axes
-            kept = [{name: getattr(axis, name) for name in fields} for axis in axes]
-            found.append(lambda body: _set_axes(body, kept))
-        return found
-
-    def __enter__(self) -> Self:
-        """Lock the environment and save the body: poses, joint values and enabled links come back at the end.
-
-        A robot's active DOFs and active manipulator come back as well. Limits, velocities and what it holds do not.
-
-        Example:
-            >>> with robot:
-            ...     robot.SetDOFValues([0.5, 0.5])
-            ...     hits = env.CheckCollision(robot)
-        """
-        self._simulation.lock.acquire()
-        self._open_savers.append(StateSaver(cast("KinBody", self), None))
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        """Restore the body, and let go of the lock."""
-        try:
-            self._open_savers.pop().Restore()
-        finally:
-            self._simulation.lock.release()
+def body_restorers(state: BodyState, options: SaveParameters) -> list[Restorer]:
+    """Return what gives a body, or one like it, the present state of this one back."""
+    found: list[Restorer] = []
+    if options & SaveParameters.GrabbedBodies:
+        grabs = state.grabs
+        found.append(lambda body: _hold(body.simulation_state, grabs))
+    if options & SaveParameters.LinkTransformation:
+        saved = state.configuration()
+        found.append(lambda body: body.simulation_state.restore(saved))
+    if options & SaveParameters.LinkVelocities:
+        velocities = state.link_velocities()
+        found.append(lambda body: body.simulation_state.set_link_velocities(velocities))
+    if options & SaveParameters.LinkEnable:
+        enabled = list(state.link_enabled)
+        found.append(lambda body: setattr(body.simulation_state, "link_enabled", list(enabled)))
+    fields = [name for option, names in _AXIS_FIELDS.items() if options & option for name in names]
+    if fields:
+        axes = state.scene.dof_axes
+        kept = {name: [getattr(axis, name) for axis in axes] for name in fields}
+        found.append(lambda body: _set_axes(body, kept))
+    return found
 
 
 class StateSaver(ApiObject):
@@ -145,21 +97,13 @@ class StateSaver(ApiObject):
 
 
 def _hold(state: BodyState, grabs: Sequence[GrabbedBody]) -> None:
-    """Let a body hold what is still there; in another environment, the bodies of the same names."""
-    world = state.simulation
-    bodies = [one.body if one.body.simulation is world else world.body(one.body.scene.name) for one in grabs]
-    state.grabs = [
-        grab._replace(body=body)
-        for grab, body in zip(grabs, bodies, strict=True)
-        if body is not None and world.holds(state) and world.holds(body) and not body.carries(state)
-    ]
+    state.grabs = still_possible(state, grabs)
 
 
 def _structure(body: "KinBody") -> tuple[int, int]:
     return len(body.GetLinks()), body.GetDOF()
 
 
-def _set_axes(body: "KinBody", kept: list[dict[str, float]]) -> None:
+def _set_axes(body: BodyPart, kept: Mapping[str, Sequence[float]]) -> None:
     state = body.simulation_state
-    axes = [replace(axis, **fields) for axis, fields in zip(state.scene.dof_axes, kept, strict=True)]
-    state.edit_axes(axes)
+    state.edit_axes(with_fields(state.scene.dof_axes, range(len(state.scene.dof_axes)), kept))

@@ -1,4 +1,4 @@
-"""Velocities of a body."""
+"""Velocities of a body, and torques that act on its joints."""
 
 from types import EllipsisType
 
@@ -7,16 +7,17 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
-from ravemj.errors import ArgumentError, Diagnostic, send_warning
+from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, send_warning
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import CheckLimitsAction
+from ravemj.rave.interface import Interface
 
 ROUNDING = 1e-10
 """How far beyond its limit [rad/s or m/s] a velocity counts as within."""
 
 
-class Velocities(BodyPart):
-    """Velocities. Nothing moves by them; accelerations and inverse dynamics depend on them.
+class Velocities(BodyPart, Interface):
+    """Velocities, by which nothing moves, but on which accelerations and inverse dynamics depend; joint torques.
 
     What is kept are the velocities of the links; those of the DOFs are read off them, as in OpenRAVE. So set joint
     values first, then velocities.
@@ -150,3 +151,30 @@ class Velocities(BodyPart):
         with self._simulation.lock:
             self._state.set_velocity(moved, turned)
         return True
+
+    def SetDOFTorques(self, torques: ArrayLike, add: bool = False) -> None:
+        """Let torques act on the joints during the next step of simulation time, and not longer.
+
+        They need a physics engine: ``env.SetPhysicsEngine("mujoco")``. Without one they do nothing.
+
+        Args:
+            torques: Torques [N m, for sliders N], shape (dof,).
+            add: Whether torques that were set for that step stay.
+
+        Raises:
+            ArgumentError: the number of torques is wrong.
+
+        Example:
+            >>> robot.SetDOFTorques(robot.ComputeInverseDynamics([0, 0]))  # hold against gravity
+            >>> env.StepSimulation(0.01)
+        """
+        checked, dof = checked_numbers(torques, "SetDOFTorques: torques"), self.GetDOF()
+        if checked.shape != (dof,) or not np.isfinite(checked).all():
+            message = f"SetDOFTorques: torques has shape {checked.shape}, and should be finite, of shape ({dof},)"
+            raise ArgumentError(message, ErrorCode.Assert)
+        with self._simulation.lock:
+            loads = self._env.GetPhysicsEngine().loads(self._state)
+            if loads is not None:
+                loads.torques = checked + add * loads.torques
+
+    SetJointTorques = SetDOFTorques

@@ -5,11 +5,11 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from ravemj.core.arguments import checked_flag, checked_kind
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.controllers.base import Controller
 from ravemj.rave.enums import CheckLimitsAction
-from ravemj.rave.interface import checked_flag, checked_kind
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.groups import joint_indices

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
 from ravemj.rave.env.base import EnvironmentPart
-from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.report import CollisionReport
 

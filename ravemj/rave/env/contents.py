@@ -2,10 +2,11 @@
 
 from typing import Any
 
+from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import InterfaceAddMode
 from ravemj.rave.env.base import EnvironmentPart
-from ravemj.rave.interface import Interface, checked_kind
+from ravemj.rave.interface import Interface
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, send_warnings
 from ravemj.rave.env.base import EnvironmentPart
-from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 

@@ -4,12 +4,12 @@ import logging
 from collections.abc import Callable
 from enum import IntEnum
 
+from ravemj.core.arguments import checked_kind
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import Source, SourceError
 from ravemj.model.scene import KinBody as Description
 from ravemj.model.scene import Mesh
 from ravemj.rave.env.base import EnvironmentPart
-from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.trimesh import TriMesh, trimesh_of
 

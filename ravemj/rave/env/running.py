@@ -2,11 +2,11 @@
 
 import math
 
+from ravemj.core.arguments import checked_kind
 from ravemj.engine.clock import Clock
 from ravemj.engine.simulation import DEFAULT_GRAVITY
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.rave.env.base import EnvironmentPart
-from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.robot import Robot

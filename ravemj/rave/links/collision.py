@@ -5,8 +5,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_transform
 from ravemj.geometry_functions import AABB
-from ravemj.model.bounds import link_bounds
-from ravemj.rave.body.collision import aabb_of
+from ravemj.model.bounds import enclosing_box, link_bounds
 from ravemj.rave.links.base import LinkPart
 
 
@@ -58,7 +57,7 @@ class LinkCollision(LinkPart):
             transform: ``T_world_link``: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
         """
         T_a_link = checked_transform(transform, "ComputeAABBFromTransform: transform")
-        return aabb_of(link_bounds(self._scene, T_a_link), T_a_link)
+        return enclosing_box(link_bounds(self._scene, T_a_link), T_a_link)
 
     def ComputeLocalAABB(self) -> AABB:
         """Return the smallest box along the link's axes that holds its geometries, in the link's frame."""

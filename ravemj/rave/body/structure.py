@@ -1,16 +1,92 @@
-"""How the links and joints of a body hang together."""
+"""The structure of a body: links, joints, how they are connected, mass."""
 
-from typing import Literal, overload
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal, cast, overload
 
-from ravemj.errors import ArgumentError
+from ravemj.core.arguments import checked_index
+from ravemj.core.arrays import checked_indices
 from ravemj.model import chains, hashes
-from ravemj.rave.body.mechanism import Mechanism
+from ravemj.model.adjacency import adjacent_pairs
+from ravemj.rave.body.base import BodyPart
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 
+if TYPE_CHECKING:
+    from ravemj.rave.kinbody import KinBody
 
-class Graph(Mechanism):
-    """What moves what, the way between links, and hashes of the structure."""
+
+class Structure(BodyPart):
+    """Links and joints: which there are, what moves what, the path between links, mass, hashes of the structure."""
+
+    @property
+    def _body(self) -> "KinBody":
+        return cast("KinBody", self)
+
+    def GetLinks(self, indices: Sequence[int] | None = None) -> list[Link]:
+        """Return the links in the order of the file; the first one is the root.
+
+        Args:
+            indices: Which links; None: all.
+
+        Example:
+            >>> [link.GetName() for link in robot.GetLinks()]
+            ['Base', 'Arm0', 'Arm1']
+        """
+        links = [Link(self._body, self._state, index) for index in range(len(self._state.scene.links))]
+        return [links[index] for index in checked_indices(... if indices is None else indices, len(links), "indices")]
+
+    def GetLink(self, name: str) -> Link | None:
+        """Return the link of that name, or None.
+
+        Example:
+            >>> T_world_link = robot.GetLink("Arm1").GetTransform()
+            >>> robot.GetLink("no such link") is None
+            True
+        """
+        return next((link for link in self.GetLinks() if link.GetName() == name), None)
+
+    def GetJoints(self, indices: Sequence[int] | None = None) -> list[Joint]:
+        """Return the joints that have DOFs, in DOF order.
+
+        Args:
+            indices: Which joints; None: all.
+        """
+        joints = [Joint(self._body, self._state, index) for index in range(len(self._state.scene.joints))]
+        return [joints[index] for index in checked_indices(... if indices is None else indices, len(joints), "indices")]
+
+    def GetPassiveJoints(self) -> list[Joint]:
+        """Return the joints that have no DOF."""
+        body = self._state.scene
+        first = len(body.joints)
+        return [Joint(self._body, self._state, index) for index in range(first, first + len(body.passive_joints))]
+
+    def GetJoint(self, name: str) -> Joint | None:
+        """Return the joint of that name, passive or not, or None.
+
+        Example:
+            >>> robot.GetJoint("Joint1").GetDOFIndex()
+            1
+            >>> robot.GetJoint("no such joint") is None
+            True
+        """
+        joints = (*self.GetJoints(), *self.GetPassiveJoints())
+        return next((joint for joint in joints if joint.GetName() == name), None)
+
+    def GetJointFromDOFIndex(self, dofindex: int) -> Joint:
+        """Return the joint that a DOF belongs to.
+
+        Args:
+            dofindex: Position in the vectors of DOF values.
+
+        Raises:
+            IndexError: there is no such DOF.
+        """
+        checked_indices(dofindex, self.GetDOF())
+        return next(joint for joint in reversed(self.GetJoints()) if joint.GetDOFIndex() <= dofindex)
+
+    def GetAdjacentLinks(self) -> set[tuple[int, int]]:
+        """Return the pairs of links, by index, that self-collision leaves out."""
+        return adjacent_pairs(self._state.scene)
 
     def GetJointIndex(self, name: str) -> int:
         """Return the place in ``GetJoints()`` of the joint of that name, or -1."""
@@ -54,7 +130,7 @@ class Graph(Mechanism):
             ArgumentError: there is no such joint or link.
         """
         joints = self.GetJoints()
-        _check(jointindex, len(joints), "jointindex")
+        checked_index(jointindex, len(joints), "jointindex")
         return self.DoesDOFAffectLink(joints[jointindex].GetDOFIndex(), linkindex)
 
     def DoesDOFAffectLink(self, dofindex: int, linkindex: int) -> int:
@@ -67,8 +143,8 @@ class Graph(Mechanism):
         Raises:
             ArgumentError: there is no such DOF or link.
         """
-        _check(dofindex, self.GetDOF(), "dofindex")
-        self._check_link(linkindex)
+        checked_index(dofindex, self.GetDOF(), "dofindex")
+        self._checked_link(linkindex)
         return int(dofindex in chains.dofs_moving(self._state.scene, linkindex))
 
     @overload
@@ -93,8 +169,8 @@ class Graph(Mechanism):
         Example:
             >>> [joint.GetName() for joint in robot.GetChain(0, 2)]
         """
-        self._check_link(linkindex1)
-        self._check_link(linkindex2)
+        self._checked_link(linkindex1)
+        self._checked_link(linkindex2)
         links, joints = chains.chain(self._state.scene, linkindex1, linkindex2)
         if not returnjoints:
             return self.GetLinks(links)
@@ -118,7 +194,7 @@ class Graph(Mechanism):
         Args:
             linkindex: Index of the link.
         """
-        self._check_link(linkindex)
+        self._checked_link(linkindex)
         return self.GetLinks(chains.rigidly_attached(self._state.scene, linkindex))
 
     def GetKinematicsGeometryHash(self) -> str:
@@ -130,10 +206,22 @@ class Graph(Mechanism):
 
     GetStructureHash = GetKinematicsGeometryHash
 
-    def _check_link(self, index: int) -> None:
-        _check(index, len(self._state.scene.links), "linkindex")
+    def GetMass(self) -> float:
+        """Return the mass of all links [kg]."""
+        return sum(link.inertial.mass for link in self._state.scene.links)
 
+    def IsVisible(self) -> bool:
+        """Return whether any shape of the body is drawn."""
+        return any(link.IsVisible() for link in self.GetLinks())
 
-def _check(index: int, count: int, name: str) -> None:
-    if not 0 <= index < count:
-        raise ArgumentError(f"{name} is {index}, and should be from 0 to {count - 1}")
+    def SetVisible(self, visible: bool) -> bool:
+        """Draw all shapes of the body, or none; they collide all the same.
+
+        Args:
+            visible: Whether to draw them.
+
+        Returns:
+            Whether that changed something.
+        """
+        with self._simulation.lock:
+            return any([link.SetVisible(visible) for link in self.GetLinks()])

@@ -1,4 +1,4 @@
-"""Derivatives and dynamics of a body."""
+"""Jacobians and dynamics of a body, in its configuration and for many configurations at once."""
 
 from collections.abc import Mapping
 from typing import Literal, overload
@@ -6,24 +6,25 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_vector
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, wxyz_jacobian
 from ravemj.errors import ArgumentError
-from ravemj.rave.body.many import Many
-from ravemj.rave.body.velocities import Velocities
-from ravemj.rave.interface import checked_kind
+from ravemj.rave.body.base import BodyPart
 
 
-class Motion(Velocities, Many):
-    """Jacobians, Hessians and inverse dynamics."""
+class Dynamics(BodyPart):
+    """Jacobians, Hessians, accelerations and inverse dynamics.
+
+    What starts with ``batch_`` takes arrays of joint values and leaves the body's own state as it is. Memory beside the
+    result stays small however many configurations there are. Where the result itself is too large, hand in parts of the
+    joint values, or an ``out`` that lies on disk (``numpy.memmap``).
+    """
 
     def GetCenterOfMass(self) -> Floats:
         """Return the body's centre of mass in the world [m], shape (3,)."""
-        inertias = self._state.inertias
         with self._simulation.lock:
-            transforms = self._state.link_transforms()
-        coms = np.einsum("nij,nj->ni", transforms[:, :3, :3], inertias.coms) + transforms[:, :3, 3]
-        return inertias.masses @ coms / inertias.masses.sum()
+            return self._state.inertias.center_of_mass(self._state.link_transforms())
 
     def com_jacobian(self) -> Floats:
         """Return how the body's centre of mass moves with the joint values.
@@ -101,7 +102,7 @@ class Motion(Velocities, Many):
         Returns:
             Its derivative by the DOF values, shape (4, dof).
         """
-        return quaternion_rates(quat) @ self.ComputeJacobianAxisAngle(linkindex)
+        return wxyz_jacobian(checked_vector(quat, 4, "quat").tolist()) @ self.ComputeJacobianAxisAngle(linkindex)
 
     def ComputeHessianTranslation(
         self, linkindex: int, position: ArrayLike, dofindices: "ArrayLike | None" = None
@@ -138,13 +139,6 @@ class Motion(Velocities, Many):
         checked = self._checked_link(link), checked_vector(point, 3, "position")
         with self._simulation.lock:
             return self._state.dynamics.hessian(*checked)
-
-    def _checked_link(self, link: int) -> int:
-        count = len(self._state.scene.links)
-        checked_kind(link, (int, np.integer), "linkindex", "a number")
-        if not 0 <= link < count:
-            raise ArgumentError(f"linkindex is {link}, and should be from 0 to {count - 1}")
-        return link
 
     def GetLinkAccelerations(
         self, dofaccelerations: "ArrayLike | None", externalaccelerations: "Mapping[int, ArrayLike] | None" = None
@@ -233,11 +227,99 @@ class Motion(Velocities, Many):
         checked_kind(pushes or {}, Mapping, name, "a dictionary")
         return {self._checked_link(link): checked_vector(push, 6, name) for link, push in (pushes or {}).items()}
 
+    def batch_link_transforms(self, values: ArrayLike, out: Floats | None = None) -> Floats:
+        """Return the poses of all links for many joint values, several times faster than a loop.
 
-def quaternion_rates(quat: ArrayLike) -> Floats:
-    """Return the derivative of a quaternion [w, x, y, z] by the angular velocity in world axes, shape (4, 3)."""
-    w, x, y, z = checked_vector(quat, 4, "quat").tolist()
-    return np.array([[-x, -y, -z], [w, z, -y], [-z, w, x], [y, -x, w]]) / 2
+        Joint limits are not looked at, except that joints that follow others stop at theirs.
+
+        Args:
+            values: Joint values [rad, for sliders m], shape (N, dof).
+            out: Takes the result: float64, shape (N, links, 4, 4); None: a new array.
+
+        Returns:
+            ``T_world_link`` in the order of ``GetLinks()``, shape (N, links, 4, 4).
+
+        Raises:
+            ArgumentError: a shape is wrong, or a value is infinite or no number.
+
+        Example:
+            >>> lower, upper = robot.GetDOFLimits()
+            >>> Q = numpy.random.uniform(lower, upper, (100_000, robot.GetDOF()))
+            >>> tips = robot.batch_link_transforms(Q)[:, -1, :3, 3]
+        """
+        checked = self._checked_many(values, "values")
+        result = _checked_out(out, (len(checked), len(self._state.scene.links), 4, 4))
+        with self._simulation.lock:
+            self._state.batch.link_transforms(checked, result)
+        return result
+
+    def batch_jacobians(
+        self, values: ArrayLike, linkindex: int, position_in_link: ArrayLike, out: Floats | None = None
+    ) -> Floats:
+        """Return the Jacobians of a link for many joint values.
+
+        Args:
+            values: Joint values [rad, for sliders m], shape (N, dof).
+            linkindex: Index of the link.
+            position_in_link: The point whose motion is asked for, in the link's frame [m], shape (3,).
+            out: Takes the result: float64, shape (N, 6, dof); None: a new array.
+
+        Returns:
+            Shape (N, 6, dof): the first three rows are ``ComputeJacobianTranslation``, the others
+            ``ComputeJacobianAxisAngle``.
+
+        Raises:
+            ArgumentError: a shape is wrong, there is no such link, or a value is infinite or no number.
+        """
+        checked = self._checked_many(values, "values")
+        link = self._checked_link(linkindex)
+        point = checked_vector(position_in_link, 3, "position_in_link")
+        result = _checked_out(out, (len(checked), 6, self.GetDOF()))
+        with self._simulation.lock:
+            self._state.batch.jacobians(checked, link, point, result)
+        return result
+
+    def batch_inverse_dynamics(
+        self, values: ArrayLike, velocities: ArrayLike, accelerations: ArrayLike, out: Floats | None = None
+    ) -> Floats:
+        """Return ``ComputeInverseDynamics`` for many joint values, velocities and accelerations, with the base at rest.
+
+        Args:
+            values: Joint values [rad, for sliders m], shape (N, dof).
+            velocities: Joint velocities [rad/s or m/s], shape (N, dof).
+            accelerations: Joint accelerations [rad/s^2 or m/s^2], shape (N, dof).
+            out: Takes the result: float64, shape (N, dof); None: a new array.
+
+        Returns:
+            Torques [N m, for sliders N], shape (N, dof).
+
+        Raises:
+            ArgumentError: a shape is wrong, or a value is infinite or no number.
+        """
+        given = {"values": values, "velocities": velocities, "accelerations": accelerations}
+        checked = [self._checked_many(numbers, name) for name, numbers in given.items()]
+        if len({len(numbers) for numbers in checked}) > 1:
+            raise ArgumentError(
+                f"there are {[len(numbers) for numbers in checked]} configurations; give as many of all"
+            )
+        result = _checked_out(out, checked[0].shape)
+        with self._simulation.lock:
+            state, gravity = self._state, np.array(self._simulation.gravity)
+            state.batch.inverse_dynamics(checked[0], checked[1], checked[2], state.inertias, gravity, result)
+        return result
+
+    def _checked_many(self, numbers: ArrayLike, name: str) -> Floats:
+        """Return an array of shape (N, dof), which is the given one where that has numbers of the right kind."""
+        dof = self.GetDOF()
+        try:
+            checked = np.asarray(numbers, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ArgumentError(f"{name}: should be numbers of shape (N, {dof})") from None
+        if checked.ndim != 2 or checked.shape[1] != dof:
+            raise ArgumentError(f"{name}: has shape {checked.shape}, and should have (N, {dof})")
+        if not np.isfinite(checked.sum()) and not all(np.isfinite(row).all() for row in checked):
+            raise ArgumentError(f"{name}: should be finite")
+        return checked
 
 
 def _columns(jacobian: Floats, dofindices: "ArrayLike | None") -> Floats:
@@ -254,3 +336,11 @@ def _columns(jacobian: Floats, dofindices: "ArrayLike | None") -> Floats:
 
 def _both_columns(hessian: Floats, dofindices: "ArrayLike | None") -> Floats:
     return _columns(_columns(hessian, dofindices).T, dofindices).T
+
+
+def _checked_out(out: Floats | None, shape: tuple[int, ...]) -> Floats:
+    if out is None:
+        return np.empty(shape)
+    if out.shape != shape or out.dtype != np.float64:
+        raise ArgumentError(f"out: has shape {out.shape} and numbers {out.dtype}, and should be float64 of {shape}")
+    return out

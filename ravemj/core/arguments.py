@@ -1,0 +1,57 @@
+"""Arguments that users hand in and that are no arrays, checked once."""
+
+from typing import TypeVar
+
+import numpy as np
+
+from ravemj.errors import ArgumentError
+
+Kind = TypeVar("Kind")
+
+
+def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name: str, wanted: str = "") -> Kind:
+    """Return an argument that a user gave.
+
+    Args:
+        thing: The argument.
+        kind: The class that it should have, or several, of which it should have one.
+        name: What to call it in errors.
+        wanted: What to call what it should be; empty: by the class.
+
+    Raises:
+        ArgumentError: it is something else.
+    """
+    if not isinstance(thing, kind):
+        given = "None" if thing is None else f"a {type(thing).__name__}"
+        if isinstance(kind, type):
+            wanted = wanted or f"a {kind.__name__}"
+        raise ArgumentError(f"{name}: is {given}, and should be {wanted}")
+    return thing
+
+
+def checked_index(index: int, count: int, name: str) -> int:
+    """Return an index that a user gave.
+
+    Args:
+        index: The argument.
+        count: How many things there are.
+        name: What to call it in errors.
+
+    Raises:
+        ArgumentError: it is no number, or not from 0 to ``count - 1``.
+    """
+    checked_kind(index, (int, np.integer), name, "a number")
+    if not 0 <= index < count:
+        raise ArgumentError(f"{name} is {index}, and should be from 0 to {count - 1}")
+    return index
+
+
+def checked_flag(text: str, command: str) -> bool:
+    """Return the argument of a command that turns something on or off.
+
+    Raises:
+        ArgumentError: it is neither 0 nor 1.
+    """
+    if text.strip() not in {"0", "1"}:
+        raise ArgumentError(f"{command}: is followed by '{text}', and should be by 0 or 1")
+    return text.strip() == "1"

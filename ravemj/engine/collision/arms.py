@@ -1,0 +1,43 @@
+"""Pairs to test for the end of an arm and for what the arm does not move, also with the tool elsewhere."""
+
+from collections.abc import Iterable
+
+from ravemj.core.graphs import ordered_pair
+from ravemj.core.transforms import Floats
+from ravemj.engine.collision.questions import LinkOf, body_and_others, held_with, itself
+from ravemj.engine.collision.world import CollisionWorld, Pairs
+from ravemj.engine.simulation import BodyState
+from ravemj.model.chains import independent_links, links_beyond
+from ravemj.model.scene import Manipulator
+
+
+def end_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator) -> Pairs:
+    """Return the pairs of the links beyond an arm, with what they hold, and all other bodies."""
+    return body_and_others(world, body, frozenset(links_beyond(body.scene, arm)))
+
+
+def independent_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator) -> Pairs:
+    """Return the pairs of the links that neither arm nor gripper move, with what they hold, and all other bodies."""
+    return body_and_others(world, body, frozenset(independent_links(body.scene, arm)))
+
+
+def end_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_arm: bool) -> Pairs:
+    """Return the pairs of the links beyond an arm, with what they hold, and the other links of its robot.
+
+    Args:
+        world: Where the robot is.
+        body: The robot.
+        arm: One of its manipulators.
+        without_arm: Whether the links of the arm itself, which joints of the arm move, are left out.
+    """
+    end = set(links_beyond(body.scene, arm))
+    others = independent_links(body.scene, arm) if without_arm else range(len(body.scene.links))
+    return itself(world, body, frozenset(ordered_pair(a, b) for a in end for b in others if b not in end))
+
+
+def motions_of_end(body: BodyState, arm: Manipulator, motion: Floats) -> dict[LinkOf, Floats]:
+    """Return one motion, shape (4, 4), for the links beyond an arm and all that they hold, for ``world.moved``."""
+    end = set(links_beyond(body.scene, arm))
+    held = [one for grab in body.grabs if grab.link in end for one in held_with(grab.body)]
+    links: Iterable[LinkOf] = [(one, link) for one in held for link in range(len(one.scene.links))]
+    return dict.fromkeys([*((body, link) for link in end), *links], motion)

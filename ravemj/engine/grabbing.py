@@ -1,0 +1,47 @@
+"""Rules of bodies that hold others."""
+
+from collections.abc import Iterable, Sequence
+
+from ravemj.core.transforms import inverse
+from ravemj.engine.collision.questions import touching_links
+from ravemj.engine.simulation.body import BodyState, GrabbedBody
+
+
+def grab_as_it_stands(holder: BodyState, body: BodyState, link: int, ignored: Iterable[int]) -> GrabbedBody:
+    """Return how a link holds a body in the pose that both have now.
+
+    Args:
+        holder: What holds.
+        body: What is held.
+        link: Index of the holder's link.
+        ignored: Indices of further links of the holder that the body does not collide with, besides ``link`` and those
+            that it touches now.
+    """
+    touched = touching_links(holder.simulation.collisions(), holder, body)
+    T_link_body = inverse(holder.link_transform(link)) @ body.link_transform(0)
+    return GrabbedBody(body, link, T_link_body, frozenset({link, *ignored, *touched}))
+
+
+def still_possible(holder: BodyState, grabs: Sequence[GrabbedBody]) -> list[GrabbedBody]:
+    """Return those of a body's former grabs that can be; in another world, of the bodies of the same names."""
+    world = holder.simulation
+    bodies = [one.body if one.body.simulation is world else world.body(one.body.scene.name) for one in grabs]
+    return [
+        grab._replace(body=body)
+        for grab, body in zip(grabs, bodies, strict=True)
+        if body is not None and world.holds(holder) and world.holds(body) and not body.carries(holder)
+    ]
+
+
+def attached_bodies(start: BodyState) -> list[BodyState]:
+    """Return a body and all that are connected to it by grabbing, in whichever direction."""
+    found, pending = [start], [start]
+    while pending:
+        body = pending.pop()
+        near = [grab.body for grab in body.grabs]
+        near += [one for one in body.simulation.bodies if any(grab.body is body for grab in one.grabs)]
+        for one in near:
+            if one not in found:
+                found.append(one)
+                pending.append(one)
+    return found

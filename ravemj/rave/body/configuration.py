@@ -1,0 +1,284 @@
+"""The configuration of a body: joint values and poses."""
+
+from collections.abc import Sequence
+from types import EllipsisType
+from typing import Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.arrays import checked_indices, checked_numbers, checked_transform, checked_vector
+from ravemj.core.transforms import Floats, Ints, pose_of
+from ravemj.errors import ArgumentError, Diagnostic, RavemjError, send_warning
+from ravemj.geometry_functions import DOFAffine
+from ravemj.rave.body.base import BodyPart
+from ravemj.rave.enums import CheckLimitsAction
+from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.trajectories.bodies import body_groups, configuration_values, split_configuration
+
+ROUNDING = 2e-10
+"""How far outside its limits [rad or m] OpenRAVE moves a value without a warning."""
+
+
+class Configuration(BodyPart):
+    """Joint values, the poses of the body and its links, and both as one vector with its specification."""
+
+    def GetDOFValues(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the joint values.
+
+        Args:
+            indices: Which DOFs, in which order; left out: all. None and [] are no DOFs, as in OpenRAVE.
+
+        Returns:
+            Values [rad, for sliders m] in DOF order: that of the joints in the file, shape (dof,); a copy.
+
+        Raises:
+            IndexError: there is no such DOF.
+
+        Example:
+            >>> robot.SetDOFValues([0.5, -0.5])
+            >>> robot.GetDOFValues()
+            array([ 0.5, -0.5])
+            >>> robot.GetDOFValues([1])  # the second joint only
+            array([-0.5])
+        """
+        with self._simulation.lock:
+            values = self._state.kinematics.values()
+        return values if indices is ... else values[checked_indices(indices, len(values))]
+
+    def SetDOFValues(
+        self,
+        values: ArrayLike,
+        dofindices: "ArrayLike | None" = None,
+        checklimits: int = CheckLimitsAction.CheckLimits,
+    ) -> None:
+        """Set joint values and place all links by them: forward kinematics.
+
+        It happens at once, without dynamics; viewers show it.
+
+        Args:
+            values: Joint values [rad, for sliders m], as many as there are DOFs, or as there are indices. NaN leaves
+                a joint as it is.
+            dofindices: Which DOFs to set, in which order; None: all.
+            checklimits: What to do with values outside the limits, a ``CheckLimitsAction``: by default they are
+                moved to the limit with a warning. Circular joints have no limits.
+
+        Raises:
+            ArgumentError: the number of values is wrong or one is infinite; with ``CheckLimitsThrow``, one is outside
+                its limits. Nothing has changed then.
+            IndexError: there is no such DOF.
+
+        Example:
+            >>> robot.SetDOFValues([3.14 / 4, 3.14 / 4])
+            >>> robot.SetDOFValues([1.57], [1])  # the second joint only
+        """
+        with self._simulation.lock:
+            kinematics = self._state.kinematics
+            target = self._full_values(values, dofindices)
+            if not kinematics.limits.contain(target):
+                target = self._settled(target, checklimits)
+            self._state.set_values(target, clamp_mimic=checklimits != CheckLimitsAction.Nothing)
+
+    def _full_values(self, values: ArrayLike, dofindices: "ArrayLike | None") -> Floats:
+        """Return one value for each DOF, in DOF order."""
+        given = checked_numbers(values, "SetDOFValues")
+        dof = self._state.kinematics.dof
+        if dofindices is None:
+            if given.shape == (dof,):
+                return given
+            if dof:
+                raise ArgumentError(
+                    f"SetDOFValues: values has shape {given.shape}, and '{self.GetName()}' has {dof} DOFs: give {dof} "
+                    f"numbers, or dofindices"
+                )
+            return np.zeros(0)
+        indices = checked_indices(dofindices, dof)
+        if given.ndim != 1 or len(given) < len(indices):
+            raise ArgumentError(f"SetDOFValues: values has shape {given.shape} for {len(indices)} dofindices")
+        full = self._state.kinematics.values()
+        full[indices] = given[: len(indices)]
+        return full
+
+    def _settled(self, target: Floats, checklimits: int) -> Floats:
+        """Replace NaN by the present values and, as ``checklimits`` says, values outside the limits."""
+        kinematics = self._state.kinematics
+        if np.isinf(target).any():
+            raise ArgumentError(f"SetDOFValues: values are {target}, and should be finite")
+        target = np.where(np.isnan(target), kinematics.values(), target)
+        if checklimits == CheckLimitsAction.Nothing:
+            return target
+        limited = kinematics.limits.clamp(target)
+        outside = np.flatnonzero(np.abs(target - limited) > ROUNDING)
+        if len(outside) and checklimits != CheckLimitsAction.CheckLimitsSilent:
+            self._report_limits(target, outside[0], checklimits)
+        return limited
+
+    def _report_limits(self, target: Floats, dof: np.intp, checklimits: int) -> None:
+        joint, axis = self._state.scene.joint_of_dof(int(dof)), self._state.scene.dof_axes[dof]
+        limits = f"[{axis.lower:.6g}, {axis.upper:.6g}]"
+        message = f"joint '{joint.name}' is set to {target[dof]:.6g}, outside its limits {limits}"
+        if checklimits == CheckLimitsAction.CheckLimitsThrow:
+            raise ArgumentError(message)
+        diagnostic = Diagnostic("warning", "value-outside-limits", f"{message}; it stops at the limit", joint.source)
+        send_warning(diagnostic, 4)
+
+    @property
+    def qpos_indices(self) -> Ints:
+        """Where each DOF is in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld."""
+        with self._simulation.lock:
+            return self._simulation.compiled().qpos_indices(self._state)
+
+    def GetTransform(self) -> Floats:
+        """Return the body's pose: that of its first link, not of the file's origin.
+
+        Returns:
+            ``T_world_link0``, shape (4, 4); a copy. The identity for a body without links.
+
+        Example:
+            >>> position = robot.GetTransform()[:3, 3]
+            >>> x_axis = robot.GetTransform()[:3, 0]
+        """
+        with self._simulation.lock:
+            return self._state.link_transform(0) if self._state.scene.links else np.eye(4)
+
+    def GetTransformPose(self) -> Floats:
+        """Return the body's pose as [w, x, y, z, tx, ty, tz]: unit quaternion and position [m], shape (7,)."""
+        return pose_of(self.GetTransform()).numbers()
+
+    def SetTransform(self, transform: ArrayLike) -> None:
+        """Move the whole body rigidly; joint values stay as they are.
+
+        What the body holds moves along. A body that is not in the environment can be moved as well.
+
+        Args:
+            transform: ``T_world_link0``, the new pose of the first link: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
+
+        Raises:
+            ArgumentError: this is no rigid transform. Nothing has moved then.
+
+        Example:
+            >>> T = body.GetTransform()
+            >>> T[0:3, 3] = [1, 0, 0.5]
+            >>> body.SetTransform(T)
+        """
+        checked = checked_transform(transform, "SetTransform: transform")
+        with self._simulation.lock:
+            self._state.set_transform(checked)
+
+    def SetTransformWithDOFValues(
+        self, transform: ArrayLike, values: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits
+    ) -> None:
+        """Set the pose of the first link and the joint values in one go.
+
+        Args:
+            transform: ``T_world_link0``, as ``SetTransform`` takes it.
+            values: Joint values [rad or m], shape (dof,).
+            checklimits: As in ``SetDOFValues``.
+        """
+        checked = checked_transform(transform, "SetTransformWithDOFValues: transform")
+        with self._simulation.lock:
+            self.SetDOFValues(values, None, checklimits)
+            self._state.set_transform(checked)
+
+    SetTransformWithJointValues = SetTransformWithDOFValues
+
+    @overload
+    def GetLinkTransformations(self, returndoflastvlaues: Literal[False] = False) -> list[Floats]: ...
+    @overload
+    def GetLinkTransformations(self, returndoflastvlaues: Literal[True]) -> tuple[list[Floats], Floats]: ...
+    def GetLinkTransformations(self, returndoflastvlaues: bool = False) -> list[Floats] | tuple[list[Floats], Floats]:
+        """Return the poses of all links in the world.
+
+        Args:
+            returndoflastvlaues: Whether to return the joint values, too, as ``SetLinkTransformations`` takes them
+                (the spelling is OpenRAVE's).
+
+        Returns:
+            ``T_world_link`` of shape (4, 4) for each link, in the order of ``GetLinks()``; copies.
+        """
+        with self._simulation.lock:
+            transforms = list(self._state.link_transforms())
+            return (transforms, self._state.kinematics.values()) if returndoflastvlaues else transforms
+
+    def SetLinkTransformations(
+        self, transforms: Sequence[ArrayLike], doflastsetvalues: ArrayLike | None = None
+    ) -> None:
+        """Put every link at a pose; joints get the values that the poses show.
+
+        Args:
+            transforms: ``T_world_link`` for each link, in the order of ``GetLinks()``: 4x4, 3x4 or 7 numbers each.
+            doflastsetvalues: Joint values as ``GetLinkTransformations(True)`` returns them, shape (dof,): poses look
+                alike full turns apart, and each hinge gets the value next to this one; left out: next to its present
+                one.
+
+        Raises:
+            openrave_exception: there are more or fewer poses than links, one is not rigid, or joint values are given
+                and the body is not in the environment. Nothing has moved then.
+        """
+        count = len(self._state.scene.links)
+        if len(transforms) != count:
+            message = f"SetLinkTransformations: there are {len(transforms)} transforms, and should be {count}"
+            raise RavemjError(message)
+        checked = np.array([checked_transform(one, "SetLinkTransformations: transforms") for one in transforms])
+        last = None
+        if doflastsetvalues is not None and np.size(doflastsetvalues):
+            last = checked_vector(doflastsetvalues, self.GetDOF(), "SetLinkTransformations: doflastsetvalues")
+        with self._simulation.lock:
+            self._state.place_links(checked.reshape(-1, 4, 4), last)
+
+    def link_transforms(self) -> Floats:
+        """Return the poses of all links in one array: the fast form of ``GetLinkTransformations``.
+
+        Returns:
+            ``T_world_link`` in the order of ``GetLinks()``, shape (links, 4, 4); a copy.
+        """
+        with self._simulation.lock:
+            return self._state.link_transforms()
+
+    def GetUpdateStamp(self) -> int:
+        """Return a number that grows with every change of pose."""
+        return self._state.stamp
+
+    def GetConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
+        """Return what the numbers of the body's configuration are: its joint values, then its pose.
+
+        Args:
+            interpolation: How they change between waypoints, for instance ``linear``.
+        """
+        groups = body_groups(self.GetName(), range(self.GetDOF()), DOFAffine.Transform, interpolation)
+        return ConfigurationSpecification.of(groups)
+
+    def GetConfigurationSpecificationIndices(
+        self, indices: ArrayLike, interpolation: str = ""
+    ) -> ConfigurationSpecification:
+        """Return the specification of the values of some joints.
+
+        Args:
+            indices: Which DOFs, in which order.
+            interpolation: How they change between waypoints, for instance ``linear``.
+
+        Raises:
+            ArgumentError: there is no such DOF.
+        """
+        chosen = checked_numbers(indices, "indices").astype(np.int_).tolist()
+        if any(not 0 <= index < self.GetDOF() for index in chosen):
+            raise ArgumentError(f"indices: are {chosen}, and should be from 0 to {self.GetDOF() - 1}")
+        return ConfigurationSpecification.of(body_groups(self.GetName(), chosen, 0, interpolation))
+
+    def GetConfigurationValues(self) -> Floats:
+        """Return the joint values, then the pose (x, y, z, qw, qx, qy, qz), shape (dof + 7,)."""
+        with self._simulation.lock:
+            return configuration_values(self)
+
+    def SetConfigurationValues(self, values: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits) -> None:
+        """Set the joint values and the pose.
+
+        Args:
+            values: As ``GetConfigurationValues`` returns them, shape (dof + 7,).
+            checklimits: As for ``SetDOFValues``.
+
+        Raises:
+            ArgumentError: there are more or fewer values.
+        """
+        joint_values, pose = split_configuration(checked_numbers(values, "values"), self.GetDOF())
+        self.SetTransformWithDOFValues(pose.matrix(), joint_values, checklimits)
