@@ -15,7 +15,7 @@ from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.locking import Locking
 from ravemj.rave.env.meshing import Meshing
 from ravemj.rave.env.modules import Modules
-from ravemj.rave.env.running import Running
+from ravemj.rave.env.simulation import Running
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel

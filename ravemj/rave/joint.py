@@ -13,7 +13,7 @@ from ravemj.rave.body.limits import wrapped_angle
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
 from ravemj.rave.joints.following import JointFollowing
-from ravemj.rave.joints.limits import JointLimits
+from ravemj.rave.joint_limits import JointLimits
 from ravemj.rave.link import Link
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from ravemj.rave.links.collision import LinkCollision
 from ravemj.rave.links.loads import LinkLoads
 from ravemj.rave.links.mass import LinkMass
 from ravemj.rave.links.parameters import LinkParameters
-from ravemj.rave.links.shapes import LinkShapes
+from ravemj.rave.link_geometries import LinkShapes
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody

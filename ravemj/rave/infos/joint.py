@@ -18,7 +18,7 @@ from ravemj.model.joints import about, directions_at, reported_anchor, wxyz_from
 from ravemj.model.mimic import Equations
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import JointType
-from ravemj.rave.infos.content import Info
+from ravemj.rave.infos.base import Info
 from ravemj.rave.infos.numbers import filled, per_axis, vector
 from ravemj.rave.infos.parameters import ParameterFields
 

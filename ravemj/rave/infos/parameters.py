@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_numbers
 from ravemj.model.scene import Parameters
-from ravemj.rave.infos.content import Info
+from ravemj.rave.infos.base import Info
 
 
 @dataclass(eq=False, repr=False)

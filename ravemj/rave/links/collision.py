@@ -7,7 +7,7 @@ from ravemj.core.arrays import checked_transform
 from ravemj.geometry_functions import AABB
 from ravemj.model.bounds import link_bounds
 from ravemj.rave.body.collision import aabb_of
-from ravemj.rave.links.base import LinkPart
+from ravemj.rave.member import LinkPart
 
 
 class LinkCollision(LinkPart):

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
-from ravemj.rave.links.base import LinkPart
+from ravemj.rave.member import LinkPart
 
 if TYPE_CHECKING:
     from ravemj.rave.physics import PhysicsEngine

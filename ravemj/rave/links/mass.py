@@ -9,7 +9,7 @@ from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
 from ravemj.model.scene import Inertial
-from ravemj.rave.links.base import LinkPart
+from ravemj.rave.member import LinkPart
 
 
 class LinkMass(LinkPart):

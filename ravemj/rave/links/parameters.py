@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats, Ints
-from ravemj.rave.links.base import LinkPart
+from ravemj.rave.member import LinkPart
 
 
 class LinkParameters(LinkPart):

@@ -8,7 +8,7 @@ from ravemj.model.scene import Mesh
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo
 from ravemj.rave.infos.link import geometries_of
-from ravemj.rave.links.base import LinkPart
+from ravemj.rave.member import LinkPart
 from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 
