@@ -10,7 +10,7 @@ from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import AABB
 from ravemj.model import scene
 from ravemj.model.bounds import link_bounds
-from ravemj.model.scene import Mesh
+from ravemj.model.triangles import links_triangles
 from ravemj.rave.body.collision import aabb_of
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo
@@ -45,9 +45,7 @@ class LinkGeometries(Member):
 
     def GetCollisionData(self) -> TriMesh:
         """Return all shapes of the link as triangles, in the link's frame; copies."""
-        return trimesh_of(
-            Mesh.merged(one.shape.triangulated().moved(one.T_link_geometry.matrix()) for one in self._scene.geometries)
-        )
+        return trimesh_of(links_triangles([self._scene], [np.eye(4)]))
 
     def InitGeometries(self, geometryinfos: Sequence[GeometryInfo]) -> None:
         """Give the link other shapes in place of its own.

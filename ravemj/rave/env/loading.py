@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
-from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, send_warnings
+from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, Source, SourceError, send_warnings
+from ravemj.model.scene import Mesh
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
+from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml import Reading
@@ -166,6 +168,31 @@ class Loading(EnvironmentPart):
         with self._simulation.lock:
             into.simulation_state.rebuild(replace(scene, is_robot=into.IsRobot()))
         return into
+
+    def ReadTrimeshURI(self, filename: str) -> TriMesh | None:
+        """Read a mesh file: all its triangles, in metres and in the frame of the file.
+
+        Args:
+            filename: The file. It is looked for in the working folder, then in the folders of the environment variable
+                ``OPENRAVE_DATA``.
+
+        Returns:
+            The triangles, or None, with the reason in the log, where there is no such file or it is broken.
+        """
+        from ravemj.formats.meshes import read_mesh  # noqa: PLC0415 - slow to import
+        from ravemj.formats.readers import find  # noqa: PLC0415
+
+        path = find(filename)
+        try:
+            if path is None:
+                raise SourceError("there is no such file", Source(filename), "check the path, or set OPENRAVE_DATA")
+            parts = read_mesh(path)
+        except SourceError as error:
+            _LOG.error("%s", error)
+            return None
+        return trimesh_of(Mesh.merged(part.mesh for part in parts))
+
+    ReadTrimeshFile = ReadTrimeshURI
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

@@ -7,13 +7,11 @@ from ravemj.engine.simulation import DEFAULT_GRAVITY
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import checked_kind
-from ravemj.rave.kinbody import KinBody
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.robot import Robot
-from ravemj.rave.sensors import Sensor
 
 
-class Running(EnvironmentPart):
+class Simulating(EnvironmentPart):
     """Lets time pass: physics, then controllers, then sensors.
 
     Time passes by itself from the first command to a controller, or the first question for the time, until
@@ -109,18 +107,6 @@ class Running(EnvironmentPart):
         """Return what holds gravity and moves bodies in time; never None."""
         return self._engine
 
-    def GetSensors(self) -> list[Sensor]:
-        """Return the devices of all attached sensors of all robots."""
-        attached = [one for body in self._bodies() if isinstance(body, Robot) for one in body.GetAttachedSensors()]
-        return [sensor for one in attached if (sensor := one.GetSensor()) is not None]
-
-    def GetSensor(self, name: str) -> Sensor | None:
-        """Return the device of that name, as ``sensor.GetName()`` says it (robot, colon, attached sensor), or None."""
-        return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
-
-    def _bodies(self) -> list[KinBody]:
-        return [self.wrap(state) for state in self._simulation.bodies]
-
     @property
     def clock(self) -> Clock:
         """What counts simulation time and lets it pass; below the OpenRAVE API."""
@@ -129,7 +115,7 @@ class Running(EnvironmentPart):
     def _advance(self, timestep: float) -> None:
         """Let time pass by one step, under the lock."""
         self._engine.SimulateStep(timestep)
-        for body in self._bodies():
+        for body in map(self.wrap, self._simulation.bodies):
             if isinstance(body, Robot):
                 body.step_controller(timestep)
 
