@@ -1,7 +1,8 @@
 """What collision checking found."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -31,47 +32,44 @@ class Contact:
     depth: float = 0.0
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(NamedTuple):
     """One of two shapes that collide, as objects of the API."""
 
     link: "Link"
-    geometry: "Geometry | None"
+    geometry: "Geometry"
 
-    @property
     def names(self) -> tuple[str, str, str]:
-        """Names of body, link and geometry."""
-        geometry = "" if self.geometry is None else self.geometry.GetName()
-        return self.link.GetParent().GetName(), self.link.GetName(), geometry
+        """Return the names of body, link and geometry."""
+        return self.link.GetParent().GetName(), self.link.GetName(), self.geometry.GetName()
 
 
 class CollisionPairInfo(ApiObject):
     """Two links that collide, or a link that a ray hits."""
 
-    def __init__(self, first: Part, second: Part | None) -> None:
+    def __init__(self, first: Part, second: Part | None, contacts: Iterable[tuple[Floats, Floats, float]] = ()) -> None:
         self.first, self.second = first, second
-        self.contacts: list[Contact] = []
+        self.contacts = [Contact(*contact) for contact in contacts]
 
     @property
     def bodyLinkGeom1Name(self) -> str:
         """Names of body, link and geometry of the first, joined by spaces."""
-        return " ".join(self.first.names)
+        return " ".join(self.ExtractFirstBodyLinkGeomNames())
 
     @property
     def bodyLinkGeom2Name(self) -> str:
         """Names of body, link and geometry of the second; empty for a ray."""
-        return " ".join(self.second.names) if self.second else ""
+        return " ".join(self.ExtractSecondBodyLinkGeomNames()) if self.second else ""
 
     def ExtractFirstBodyLinkGeomNames(self) -> tuple[str, str, str]:
         """Return the names of body, link and geometry of the first."""
-        return self.first.names
+        return self.first.names()
 
     def ExtractSecondBodyLinkGeomNames(self) -> tuple[str, str, str]:
         """Return the names of body, link and geometry of the second."""
-        return self.second.names if self.second else ("", "", "")
+        return self.second.names() if self.second else ("", "", "")
 
     def __str__(self) -> str:
-        names = (":".join(filter(None, part.names)) for part in (self.first, self.second) if part)
+        names = (":".join(filter(None, part.names())) for part in (self.first, self.second) if part)
         return f"({')x('.join(names)}) contacts={len(self.contacts)}"
 
     def __repr__(self) -> str:
@@ -129,27 +127,29 @@ class CollisionReport(ApiObject):
     @property
     def plink1(self) -> "Link | None":
         """The first link of the first pair, or None."""
-        return self.collisionInfos[0].first.link if self.collisionInfos else None
+        first = self._first_pair()[0]
+        return first and first.link
 
     @property
     def plink2(self) -> "Link | None":
         """The second link of the first pair, or None."""
-        second = self._second()
-        return second.link if second else None
+        second = self._first_pair()[1]
+        return second and second.link
 
     @property
     def pgeom1(self) -> "Geometry | None":
         """The first geometry of the first pair, or None."""
-        return self.collisionInfos[0].first.geometry if self.collisionInfos else None
+        first = self._first_pair()[0]
+        return first and first.geometry
 
     @property
     def pgeom2(self) -> "Geometry | None":
         """The second geometry of the first pair, or None."""
-        second = self._second()
-        return second.geometry if second else None
+        second = self._first_pair()[1]
+        return second and second.geometry
 
-    def _second(self) -> Part | None:
-        return self.collisionInfos[0].second if self.collisionInfos else None
+    def _first_pair(self) -> tuple[Part | None, Part | None]:
+        return next(((info.first, info.second) for info in self.collisionInfos), (None, None))
 
     @property
     def vLinkColliding(self) -> "list[tuple[Link, Link | None]]":
