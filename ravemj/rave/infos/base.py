@@ -1,15 +1,20 @@
-"""What all infos have in common: they are what their fields say."""
+"""What all infos have in common: they are what their fields say, and their numbers are checked when they are used."""
 
-# Users put anything into fields.
-# pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false
+# Users put anything into fields, which have the names that OpenRAVE gives them.
+# pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportPrivateUsage=false
 
-from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, Field, dataclass, fields
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import MISSING, Field, dataclass, field, fields
 from enum import Enum
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar, Self, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ravemj.core.arrays import checked_numbers, checked_transform
+from ravemj.core.transforms import Floats, Pose, Vec3, pose_of
+from ravemj.errors import ArgumentError
+from ravemj.model.scene import Parameters
 from ravemj.rave.trimesh import TriMesh
 
 
@@ -36,6 +41,64 @@ class Info:
     def __dir__(self) -> list[str]:
         shown = {one.name for one in fields(self) if one.repr}
         return [name for name in super().__dir__() if name.startswith("__") or name in shown]
+
+
+@dataclass(eq=False, repr=False)
+class ParameterFields(Info):
+    """The fields of links and joints that hold parameters."""
+
+    _mapFloatParameters: Mapping[str, ArrayLike] = field(default_factory=dict[str, ArrayLike])
+    _mapIntParameters: Mapping[str, ArrayLike] = field(default_factory=dict[str, ArrayLike])
+    _mapStringParameters: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    def with_parameters(self, parameters: Parameters) -> Self:
+        """Take over parameters; return this object."""
+        self._mapFloatParameters = {name: np.array(values) for name, values in parameters.floats}
+        self._mapIntParameters = {name: np.array(values, dtype=np.int_) for name, values in parameters.integers}
+        self._mapStringParameters = dict(parameters.texts)
+        return self
+
+    def parameters(self) -> Parameters:
+        """Return the parameters that the fields hold."""
+        floats = {name: checked_numbers(values, name).ravel() for name, values in self._mapFloatParameters.items()}
+        integers = {name: checked_numbers(values, name).ravel() for name, values in self._mapIntParameters.items()}
+        return Parameters(
+            tuple((name, tuple(values.tolist())) for name, values in floats.items()),
+            tuple((name, tuple(values.astype(np.int_).tolist())) for name, values in integers.items()),
+            tuple((name, str(text)) for name, text in self._mapStringParameters.items()),
+        )
+
+
+def identity() -> Floats:
+    """Return a new 4x4 identity."""
+    return np.eye(4)
+
+
+def filled(value: float, count: int = 3) -> Callable[[], Floats]:
+    """Return what makes a new array of equal numbers."""
+    return lambda: np.full(count, float(value))
+
+
+def vector(values: ArrayLike, name: str) -> Vec3:
+    """Return the first three numbers of a field."""
+    numbers = checked_numbers(values, name).ravel()
+    if len(numbers) < 3 or not np.isfinite(numbers[:3]).all():
+        raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be three finite numbers")
+    x, y, z = numbers[:3].tolist()
+    return (x, y, z)
+
+
+def pose(values: ArrayLike, name: str) -> Pose:
+    """Return the pose of a field: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]."""
+    return pose_of(checked_transform(values, name))
+
+
+def per_axis(values: ArrayLike | None, count: int, default: float, name: str) -> list[float]:
+    """Return a number for each axis of a joint; where the field has too few, the default."""
+    numbers = np.zeros(0) if values is None else checked_numbers(values, name).ravel()
+    if np.isnan(numbers).any():
+        raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be numbers")
+    return [*numbers[:count].tolist(), *[default] * (count - len(numbers))]
 
 
 def _default(one: Field[Any]) -> object:

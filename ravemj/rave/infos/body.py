@@ -16,10 +16,9 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.base import Info
+from ravemj.rave.infos.base import Info, identity
 from ravemj.rave.infos.joint import JointInfo
 from ravemj.rave.infos.link import LinkInfo
-from ravemj.rave.infos.numbers import identity
 from ravemj.rave.infos.robot import AttachedSensorInfo, ManipulatorInfo
 
 if TYPE_CHECKING:

@@ -14,8 +14,7 @@ from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.base import Info
-from ravemj.rave.infos.numbers import identity, pose, vector
+from ravemj.rave.infos.base import Info, identity, pose, vector
 
 if TYPE_CHECKING:
     from ravemj.model.manipulators import ManipulatorBuilder
