@@ -1,4 +1,4 @@
-"""Collision checkers: what answers whether things touch."""
+"""Collision checkers."""
 
 import logging
 from collections.abc import Iterable, Sequence
@@ -72,7 +72,7 @@ class CollisionChecker(Interface):
         """Do nothing; OpenRAVE's checkers free memory here."""
 
     def SetCollisionOptions(self, collisionoptions: int) -> bool:
-        """Choose what is looked for and reported, in place of what was chosen before.
+        """Set the options: what is tested and reported.
 
         Args:
             collisionoptions: ``CollisionOptions`` combined with ``|``.

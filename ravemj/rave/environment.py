@@ -1,4 +1,4 @@
-"""The environment: what scripts load models into and get robots from."""
+"""The environment: it holds robots and other bodies, loads models, and has the lock."""
 
 import itertools
 import os
@@ -69,7 +69,7 @@ class Environment(Contents, Loading, Collision, Simulating, Drawing, Viewing):
         return RaveGetDebugLevel()
 
     def Lock(self, timeout: float | None = None) -> bool | None:
-        """Take the lock; the same thread can take it several times, and has to give it back as often.
+        """Acquire the lock; a thread can acquire it several times, and has to release it as often.
 
         Args:
             timeout: How long to wait [s]; left out: as long as it takes.

@@ -83,11 +83,11 @@ class Link(LinkGeometries):
             self._state.place_links(transforms)
 
     def IsStatic(self) -> bool:
-        """Return whether the link is called static, by its file or by ``SetStatic``."""
+        """Return whether the link is declared static, by its file or by ``SetStatic``."""
         return self._scene.static
 
     def SetStatic(self, bStatic: bool) -> None:
-        """Call the link static or not. What moves it stays as it is.
+        """Declare the link static or not; its joints move it all the same.
 
         Args:
             bStatic: Whether it is static.

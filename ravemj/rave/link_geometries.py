@@ -1,4 +1,4 @@
-"""Geometries of a link: their shapes, sets of them, bounds, and what of it collides."""
+"""Geometries of a link: shapes, groups of them, collision checking and bounding boxes."""
 
 from collections.abc import Sequence
 
@@ -20,7 +20,7 @@ from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 
 class LinkGeometries(Member):
-    """The geometries of a link, other sets of them that can be swapped in, and their collisions."""
+    """The geometries of a link, groups that can replace them, collision checking and bounding boxes."""
 
     @property
     def _scene(self) -> scene.Link:

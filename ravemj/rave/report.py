@@ -1,4 +1,4 @@
-"""What collision checking found."""
+"""Reports of collision checking."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from ravemj.rave.link import Link
 
 FAR = 1e20
-"""OpenRAVE's distance where none was found [m]."""
+"""Distance of a report that no distance was found for [m], as in OpenRAVE."""
 
 
 @dataclass
 class Contact:
-    """A point where two shapes are in each other, or where a ray meets a shape.
+    """A point where two shapes overlap, or where a ray meets a shape.
 
     Attributes:
         pos: The point in the world [m], shape (3,).
         norm: Unit vector out of the second shape towards the first; that of a ray's hit points outwards. Shape (3,).
-        depth: How far the shapes are in each other [m]; for a ray, how far away the hit is.
+        depth: Penetration depth [m]; for a ray, the distance of the hit.
     """
 
     pos: Floats = field(default_factory=lambda: np.zeros(3))
@@ -77,7 +77,7 @@ class CollisionPairInfo(ApiObject):
 
 
 class CollisionReport(ApiObject):
-    """What a call of collision checking found; hand one in to get it filled.
+    """The result of a call of collision checking, which fills the report that it is given.
 
     OpenRAVE renamed the content over time; both sets of names are here: ``collisionInfos`` of newer versions, and
     ``plink1``, ``plink2``, ``contacts``, ``vLinkColliding``, ``numCols`` of older ones. The first of two links
@@ -103,7 +103,7 @@ class CollisionReport(ApiObject):
         self.Reset()
 
     def Reset(self, coloptions: int = 0) -> None:
-        """Forget everything, unless ``nKeepPrevious`` is set.
+        """Clear the report, unless ``nKeepPrevious`` is set.
 
         Args:
             coloptions: The options of the call that fills the report next.

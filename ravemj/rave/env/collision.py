@@ -16,7 +16,7 @@ from ravemj.rave.kinbody import KinBody
 from ravemj.rave.report import CollisionReport
 
 CollisionCallback = Callable[[CollisionReport, bool], int]
-"""Takes a report of one collision and whether time runs, and returns a ``CollisionAction``."""
+"""A function of a report of one collision and of whether physics asks; it returns a ``CollisionAction``."""
 
 
 class CollisionCallbackHandle(Handle):
@@ -24,7 +24,7 @@ class CollisionCallbackHandle(Handle):
 
 
 class Collision(EnvironmentPart):
-    """Tests whether things touch."""
+    """Collision checking: what touches what, and what rays hit."""
 
     _internal = ("collision_callbacks",)
 
@@ -34,13 +34,13 @@ class Collision(EnvironmentPart):
         self._checker: CollisionChecker | None = None
 
     def GetCollisionChecker(self) -> CollisionChecker:
-        """Return what answers ``CheckCollision``; never None."""
+        """Return the collision checker, which answers ``CheckCollision``; never None."""
         if self._checker is None:
             self._checker = CollisionChecker(self._environment)
         return self._checker
 
     def SetCollisionChecker(self, collisionchecker: CollisionChecker | None) -> bool:
-        """Choose what answers ``CheckCollision``.
+        """Choose the collision checker, which answers ``CheckCollision``.
 
         Args:
             collisionchecker: A checker of this environment; None: one for which nothing collides.
@@ -96,7 +96,7 @@ class Collision(EnvironmentPart):
     def CheckCollisionRays(
         self, rays: ArrayLike, body: KinBody | None = None, front_facing_only: bool = False
     ) -> tuple[NDArray[np.bool_], Floats]:
-        """Shoot many rays.
+        """Return where many rays first hit something.
 
         Args:
             rays: A row for each: start, and direction with the range as its length [m], shape (n, 6).

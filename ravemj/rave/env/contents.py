@@ -1,4 +1,4 @@
-"""What is in an environment."""
+"""Bodies, sensors and modules of an environment."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -48,7 +48,7 @@ class Contents(EnvironmentPart):
             self.AddKinBody(interface, addMode)
 
     def _add_other(self, interface: object) -> None:
-        """Take what is no body: a viewer of ours, which is here already."""
+        """Accept a viewer of this environment, which is attached already; refuse anything else that is no body."""
         if any(interface is viewer for viewer in self._viewers):
             return
         kind = "None" if interface is None else type(interface).__name__
@@ -102,7 +102,7 @@ class Contents(EnvironmentPart):
     RemoveKinBody = Remove
 
     def _remove_other(self, interface: object) -> bool:
-        """Take out what is no body: a viewer, which closes."""
+        """Close and remove a viewer; return whether it was there."""
         if interface is None:
             raise ArgumentError("Remove: takes a body or robot, not None")
         for viewer in self._viewers:
@@ -210,7 +210,7 @@ class Contents(EnvironmentPart):
             return _triangles(state for state in self._simulation.bodies if takes(state.scene, name))
 
     def AddModule(self, module: object, args: str = "") -> int:
-        """Refuse a module: there is none, since ``RaveCreateModule`` makes none; it never returns.
+        """Refuse a module: this always raises, since ``RaveCreateModule`` makes none.
 
         Args:
             module: What ``RaveCreateModule`` returned.

@@ -1,4 +1,4 @@
-"""Model files, and models as text."""
+"""Loading of models, from files and from text."""
 
 import logging
 import os
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ravemj.formats.openrave_xml import Reading
 
 Attributes = Mapping[str, str]
-"""What acts on the bodies of a file, by name: see ``Load``."""
+"""Attributes for the bodies of a file, by name; see ``Load``."""
 
 Text = str | bytes | os.PathLike[str]
 Argument = KinBody | Text | Attributes | None
@@ -27,7 +27,7 @@ _LOG = logging.getLogger("ravemj")
 
 
 class Loading(EnvironmentPart):
-    """Reads models."""
+    """Loads models."""
 
     def Load(self, filename: Text, atts: Attributes | None = None) -> bool:
         """Add the content of a model file to the environment.

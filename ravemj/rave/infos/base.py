@@ -1,4 +1,4 @@
-"""What all infos have in common: they are what their fields say, and their numbers are checked when they are used."""
+"""Base classes of infos, and checks of the numbers in their fields."""
 
 # Users put anything into fields, which have the names that OpenRAVE gives them.
 # pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportPrivateUsage=false
@@ -20,10 +20,10 @@ from ravemj.rave.trimesh import TriMesh
 
 @dataclass(eq=False, repr=False)
 class Info:
-    """Compares by content, and prints as the expression that makes it: the fields that differ from a new one's."""
+    """An info: it compares by its fields, and prints as the expression that makes it, without default values."""
 
     _called: ClassVar[str]
-    """How users get at the class."""
+    """The class as users write it."""
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):

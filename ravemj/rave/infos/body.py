@@ -1,4 +1,4 @@
-"""The description of a body."""
+"""Descriptions of bodies and robots."""
 
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -28,7 +28,7 @@ T = TypeVar("T")
 
 
 class ExtractInfoOptions(IntFlag):
-    """What ``body.ExtractInfo`` takes."""
+    """Options of ``body.ExtractInfo``."""
 
     Everything = 0
     SkipDOFValues = 1
@@ -37,7 +37,7 @@ class ExtractInfoOptions(IntFlag):
 
 @dataclass(eq=False, repr=False)
 class KinBodyInfo(Info):
-    """What a body is made of.
+    """The description of a body.
 
     Attributes:
         _name: Its name.
@@ -73,7 +73,7 @@ class KinBodyInfo(Info):
 
 @dataclass(eq=False, repr=False)
 class RobotBaseInfo(KinBodyInfo):
-    """What a robot is made of.
+    """The description of a robot.
 
     Attributes:
         _vManipInfos: Its arms, a list of ``ManipulatorInfo``.

@@ -1,4 +1,4 @@
-"""The descriptions of what robots have besides."""
+"""Descriptions of manipulators and attached sensors."""
 
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
