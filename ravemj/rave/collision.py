@@ -58,6 +58,7 @@ class CollisionChecker(Interface):
         self._name = name
         self._simulation = env.simulation
         self._options = 0
+        self._listed: Listed = "first pair"
         self._tolerance = 0.0
 
     def GetXMLId(self) -> str:
@@ -83,6 +84,10 @@ class CollisionChecker(Interface):
         if not 0 <= int(collisionoptions) < 2 * CollisionOptions.IgnoreCallbacks:
             return False
         self._options = int(collisionoptions)
+        if self._options & _ALL_GEOMETRIES:
+            self._listed = "geometries"
+        else:
+            self._listed = "links" if self._options & _ALL_LINKS else "first pair"
         return True
 
     def GetCollisionOptions(self) -> int:
@@ -188,37 +193,28 @@ class CollisionChecker(Interface):
 
         The caller holds the lock.
         """
-        callbacks = [] if self._options & _IGNORE_CALLBACKS else self._env.collision_callbacks
-        if report is None and not callbacks:
+        has_callbacks = bool(self._env.collision_callbacks) and not self._options & _IGNORE_CALLBACKS
+        if report is None and not has_callbacks:
             return world.collide(pairs)
-
-        def counts(first: GeometryOf, second: GeometryOf) -> bool:
-            single = CollisionReport()
-            self._begin(single, CollisionPairInfo(self._part(first), self._part(second)))
-            return not any(callback(single, False) == CollisionAction.Ignore for callback in callbacks)
-
         report = report or CollisionReport()
-        listed = find_collisions(
-            world, pairs, self._listed(), contacts=bool(self._options & _CONTACTS), counts=counts if callbacks else None
-        )
-        parts = [(self._part(one.first), self._part(one.second), one.contacts) for one in listed]
-        self._begin(report, *(CollisionPairInfo(*part) for part in parts))
+        report.Reset(self._options)
+        contacts = bool(self._options & _CONTACTS)
+        found = find_collisions(world, pairs, self._listed, contacts, self._counts if has_callbacks else None)
+        for one in found:
+            info = CollisionPairInfo(self._part(one.first), self._part(one.second), one.contacts)
+            report.collisionInfos.append(info)
         if self._options & _DISTANCE:
             report.minDistance = min(report.minDistance, max(world.distance(pairs, report.minDistance), 0.0))
         if self._options & _USE_TOLERANCE:
             report.numWithinTol += world.count_within(pairs, self._tolerance)
-        return bool(listed)
+        return bool(found)
 
-    def _listed(self) -> Listed:
-        """Return what the options ask to report of the collisions."""
-        if self._options & _ALL_GEOMETRIES:
-            return "geometries"
-        return "links" if self._options & _ALL_LINKS else "first pair"
-
-    def _begin(self, report: CollisionReport, *infos: CollisionPairInfo) -> None:
-        """Start a report with some collisions."""
+    def _counts(self, first: GeometryOf, second: GeometryOf) -> bool:
+        """Ask the registered functions whether a collision counts."""
+        report = CollisionReport()
         report.Reset(self._options)
-        report.collisionInfos += infos
+        report.collisionInfos.append(CollisionPairInfo(self._part(first), self._part(second)))
+        return all(callback(report, False) != CollisionAction.Ignore for callback in self._env.collision_callbacks)
 
     def _part(self, geometry: GeometryOf) -> Part:
         link = Link(self._env.wrap(geometry.body), geometry.body, geometry.link)
@@ -231,7 +227,7 @@ class CollisionChecker(Interface):
             raise _not_understood((ray, *targets))
         hit = world.ray(ray.pos(), ray.dir(), self.ray_targets(world, *targets))
         if report is not None:
-            self._begin(report)
+            report.Reset(self._options)
         if hit is not None and report is not None:
             distance = hit.fraction * float(np.linalg.norm(ray.dir()))
             contact = hit.position, hit.normal, distance

@@ -48,8 +48,7 @@ def find_collisions(
     world: CollisionWorld,
     pairs: Pairs,
     listed: Listed,
-    *,
-    contacts: bool,
+    contacts: bool = False,
     counts: Callable[[GeometryOf, GeometryOf], bool] | None = None,
 ) -> list[Collision]:
     """Return the collisions of pairs of geoms.
