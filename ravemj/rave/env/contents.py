@@ -210,7 +210,7 @@ class Contents(EnvironmentPart):
             return _triangles(state for state in self._simulation.bodies if takes(state.scene, name))
 
     def AddModule(self, module: object, args: str = "") -> int:
-        """Refuse a module: this always raises, since ``RaveCreateModule`` makes none.
+        """Refuse any module, since ``RaveCreateModule`` makes none; it never returns.
 
         Args:
             module: What ``RaveCreateModule`` returned.

@@ -156,6 +156,9 @@ class JointInfo(ParameterFields):
         """
         joint = body.all_joints[index]
         mimic = joint.mimic
+        of_axes: dict[str, Any] = {
+            field: np.array([getattr(axis, name) for axis in joint.axes]) for field, name, _ in _AXIS_FIELDS
+        }
         return cls(
             _type=JointType[joint.kind.capitalize()],
             _name=joint.name,
@@ -166,7 +169,7 @@ class JointInfo(ParameterFields):
             _vcurrentvalues=np.array(values),
             _bIsActive=index < len(body.joints) or mimic is not None,
             _vmimic=[] if mimic is None else [[mimic.position, mimic.velocity, mimic.acceleration]],
-            **{field: np.array([getattr(axis, name) for axis in joint.axes]) for field, name, _ in _AXIS_FIELDS},
+            **of_axes,
         ).with_parameters(joint.parameters)
 
     def named_values(self) -> list[tuple[tuple[str, int], float]]:
