@@ -178,43 +178,39 @@ def test_texts_that_are_no_specification(text, message):
 # ---------------------------------------------------------------------------------------------------- data
 
 
-class Body:
-    def __init__(self, values, transform):
-        self.values, self.transform = np.array(values, float), np.array(transform, float)
-
-    def GetDOFValues(self):
-        return self.values
-
-    def GetDOFVelocities(self):
-        return -self.values
-
-    def GetTransform(self):
-        return self.transform
-
-
-BODY = Body(np.arange(10) / 8, ravemj.matrixFromPose([0.6, 0, 0.8, 0, 5, 6, 7]))
+def world_with_arm():
+    """Return an environment with a body "arm" of ten joints that stands somewhere, and moves."""
+    joint = (
+        """<Joint name="j{0}" type="hinge"><Body>l{0}</Body><Body>l{1}</Body><limitsdeg>-90 90</limitsdeg></Joint>"""
+    )
+    parts = [f'<Body name="l{number}"/>' for number in range(11)] + [joint.format(n, n + 1) for n in range(10)]
+    env = ravemj.Environment()
+    assert env.LoadData(f'<Robot name="arm"><KinBody>{"".join(parts)}</KinBody></Robot>')
+    arm = env.GetRobot("arm")
+    arm.SetDOFValues(VALUES)
+    arm.SetTransform([0.6, 0, 0.8, 0, 5, 6, 7])
+    arm.SetDOFVelocities(-VALUES)
+    return env
 
 
-class World:
-    @staticmethod
-    def GetKinBody(name):
-        return {"arm": BODY}.get(name)
+VALUES = np.arange(10) / 8
+WORLD = world_with_arm()
 
 
 @given(indices, indices, st.integers(0, 3))
 def test_joint_values_come_from_the_data_or_the_body(present, wanted, rows):
     source, target = spec_of(joints("arm", present)), spec_of(joints("arm", wanted), ("deltatime", 1))
     data = np.arange(rows * len(present)).reshape(rows, len(present)) + 100.0
-    got = source.ConvertData(target, data, rows, World).reshape(rows, target.GetDOF())
+    got = source.ConvertData(target, data, rows, WORLD).reshape(rows, target.GetDOF())
     for column, index in enumerate(wanted):
-        expected = data[:, present.index(index)] if index in present else np.full(rows, BODY.values[index])
+        expected = data[:, present.index(index)] if index in present else np.full(rows, VALUES[index])
         np.testing.assert_array_equal(got[:, column], expected)
     assert (got[:, -1] == 0).all()
     previous = np.full(rows * target.GetDOF(), -1.0)
-    kept = source.ConvertDataFromPrevious(previous, target, data, rows, World).reshape(rows, target.GetDOF())
+    kept = source.ConvertDataFromPrevious(previous, target, data, rows, WORLD).reshape(rows, target.GetDOF())
     missing = [index not in present for index in wanted]
     assert (kept[:, [*missing, True]] == -1).all()
-    unfilled = source.ConvertData(target, data, rows, World, False).reshape(rows, target.GetDOF())
+    unfilled = source.ConvertData(target, data, rows, WORLD, False).reshape(rows, target.GetDOF())
     assert (unfilled[:, [*missing, True]] == 0).all()
 
 
@@ -245,25 +241,25 @@ def test_rotations_convert_to_the_same_rotation(turn, kinds):
 def test_turns_about_an_axis_convert(kind):
     source = spec_of(("affine_transform arm 8 0 0.6 0.8", 1))
     target = spec_of((f"affine_transform arm {kind}", {16: 3, 32: 4}[kind]))
-    there = source.ConvertData(target, [1.5], 1, World)
+    there = source.ConvertData(target, [1.5], 1, WORLD)
     turned = target.ExtractTransform(None, there, None)
     np.testing.assert_allclose(turned, ravemj.matrixFromAxisAngle([0, 0.6, 0.8], 1.5), atol=1e-12)
-    np.testing.assert_allclose(target.ConvertData(source, there, 1, World), [1.5])
+    np.testing.assert_allclose(target.ConvertData(source, there, 1, WORLD), [1.5])
 
 
 def test_velocities_of_different_rotations_do_not_convert():
     source, target = spec_of(("affine_velocities arm 16", 3)), spec_of(("affine_velocities arm 32", 4))
     with pytest.raises(ArgumentError, match="cannot be converted"):
-        source.ConvertData(target, [0, 0, 0], 1, World)
+        source.ConvertData(target, [0, 0, 0], 1, WORLD)
 
 
 def test_what_is_missing_is_the_present_pose():
     source, target = spec_of(("affine_transform arm 2", 1)), spec_of(("affine_transform arm 39", 7))
-    np.testing.assert_allclose(source.ConvertData(target, [1], 1, World), [5, 1, 7, 0.6, 0, 0.8, 0])
-    np.testing.assert_allclose(Spec().ConvertData(target, [], 1, World), [5, 6, 7, 0.6, 0, 0.8, 0])
+    np.testing.assert_allclose(source.ConvertData(target, [1], 1, WORLD), [5, 1, 7, 0.6, 0, 0.8, 0])
+    np.testing.assert_allclose(Spec().ConvertData(target, [], 1, WORLD), [5, 6, 7, 0.6, 0, 0.8, 0])
     np.testing.assert_allclose(Spec().ConvertData(target, [], 1, None), [0, 0, 0, 1, 0, 0, 0])
     velocities = spec_of(("joint_velocities arm 2 1", 2), ("outputSignals lamp", 1), ("joint_values other 0", 1))
-    np.testing.assert_allclose(Spec().ConvertData(velocities, [], 1, World), [-0.25, -0.125, -1, 0])
+    np.testing.assert_allclose(Spec().ConvertData(velocities, [], 1, WORLD), [-0.25, -0.125, -1, 0], atol=1e-12)
 
 
 def test_group_data():

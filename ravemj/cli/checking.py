@@ -1,4 +1,4 @@
-"""What is wrong, odd or left to chance in a model file: all that the reader and the translation find, and more."""
+"""Findings about a model file: those of the reader and of the translation, and more."""
 
 import os
 import warnings

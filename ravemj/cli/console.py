@@ -28,7 +28,7 @@ def print_error(error: RavemjError) -> None:
 
 
 def print_findings(findings: Iterable[Diagnostic | Finding], file: TextIO | None = None) -> None:
-    """Print findings, one line for those that say the same of several places or names.
+    """Print findings; those that differ only in places or names share a line.
 
     Args:
         findings: What to print.
@@ -45,7 +45,7 @@ def print_findings(findings: Iterable[Diagnostic | Finding], file: TextIO | None
 
 
 def _more(count: int, places: Sequence[str]) -> str:
-    """Say how many findings there are besides, and where the first of them are."""
+    """Return the words for further findings: how many there are, and the places of the first ones."""
     if not count:
         return ""
     rest = ["…"] if len(places) > _PLACES else []
@@ -58,7 +58,7 @@ def _place(source: Source, first: Source) -> str:
 
 @contextlib.contextmanager
 def show_warnings_in_one_line() -> Generator[None]:
-    """Print ravemj's warnings as compilers do, each text once."""
+    """Print each warning of ravemj once, in one line with file and line number, as compilers do."""
     with warnings.catch_warnings():
         warnings.simplefilter("default", RavemjWarning)
         before = warnings.showwarning
@@ -85,7 +85,7 @@ def table(title: str, *columns: str) -> "Table":
 
 
 def console() -> "Console":
-    """Return what prints tables to standard output, wide enough when it is a file or a pipe."""
+    """Return rich's console for standard output; it is wide enough for tables where that is a file or a pipe."""
     from rich.console import Console  # noqa: PLC0415 - slow to import
 
     made = Console(highlight=False, markup=False)  # names may have brackets

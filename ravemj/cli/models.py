@@ -1,4 +1,4 @@
-"""How commands load a model."""
+"""Loading the model of a command."""
 
 import argparse
 import warnings
@@ -30,7 +30,7 @@ def load_model(options: argparse.Namespace) -> Environment:
 
 
 def failure_of(findings: Sequence[Diagnostic]) -> SourceError:
-    """Return the error of one line that ends a command for some findings."""
+    """Return the one-line error with which findings end a command."""
     first = findings[0]
     more = f" (and {len(findings) - 1} more: see ravemj check)" if len(findings) > 1 else ""
     return SourceError(f"{first.message} [{first.code}]{more}", first.source, first.hint)

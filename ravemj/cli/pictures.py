@@ -100,13 +100,13 @@ def render(options: argparse.Namespace) -> int:
 
 
 def _explain_rays(backend: str) -> None:
-    """Say how to get OpenGL where rays drew for want of it."""
+    """Say how to get OpenGL if a picture was ray-cast for lack of it."""
     if backend == RAY and requested_backend() is None:
         print(f"ravemj: no OpenGL here, so rays drew the picture; faster: {INSTALL['egl']}", file=sys.stderr)
 
 
 def doctor(options: argparse.Namespace) -> int:
-    """Say what can draw pictures here, and how to install what cannot."""
+    """List the renderers that work here, and how to install those that do not."""
     del options
     print(f"Python {platform.python_version()}, MuJoCo {mujoco.mj_versionString()}, {platform.platform()}")
     print(f"display: {'yes' if has_display() else 'none, so viewers have no window'}\n")

@@ -1,4 +1,4 @@
-"""Commands that give ravemj to scripts and to people at a prompt: ``run``, ``shell`` and ``alias``."""
+"""Commands that run scripts and start prompts: ``run``, ``shell`` and ``alias``."""
 
 import argparse
 import itertools
@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _execute(script: str, main: ModuleType, py2: bool) -> int:
-    """Run a script as the main module; what it raises is shown as Python does, and gives 1."""
+    """Run a script as the main module; return 1, after its traceback, if it raises."""
     signals.leave_signals_to_python()
     try:
         with open(script, "rb") as file:
@@ -62,7 +62,7 @@ def _execute(script: str, main: ModuleType, py2: bool) -> int:
 
 
 def _print_traceback(error: Exception, script: str) -> None:
-    """Print what Python prints, without our own frames."""
+    """Print the traceback as Python does, without the frames of ravemj."""
     shown = traceback.TracebackException.from_exception(error)
     shown.stack[:] = itertools.dropwhile(lambda frame: frame.filename != script, shown.stack)
     link = shown

@@ -38,7 +38,7 @@ def _in_ascii(error: UnicodeError) -> tuple[str, int]:
 
 
 class _Messages(io.TextIOWrapper):
-    """A stream that never fails: what cannot be told is lost, and the command goes on."""
+    """A stream that never fails: text that cannot be written is lost, and the command goes on."""
 
     def write(self, text: str) -> int:
         with suppress(OSError):

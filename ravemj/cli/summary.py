@@ -1,4 +1,4 @@
-"""What a body has, as plain numbers and lists that JSON can hold."""
+"""Summary of a body, as numbers and lists that JSON can hold."""
 
 import math
 from collections.abc import Sequence

@@ -8,7 +8,7 @@ from ravemj.rave.planning import PLANNING
 
 
 class BaseManipulation:
-    """Moves an arm, planning the way."""
+    """Plans and executes motions of an arm."""
 
     def __init__(self, robot: object, plannername: str | None = None, maxvelmult: float | None = None) -> None:
         raise UnsupportedError("interfaces.BaseManipulation", PLANNING)
@@ -35,14 +35,14 @@ class TaskCaging:
 
 
 class VisualFeedback:
-    """Moves a camera to where it sees."""
+    """Moves a camera to where it sees an object."""
 
     def __init__(self, robot: object, maxvelmult: float | None = None) -> None:
         raise UnsupportedError("interfaces.VisualFeedback", "visual feedback")
 
 
 class Grasper:
-    """Closes a hand around a body, in thought."""
+    """Simulates how a hand closes around a body, and rates the grasp."""
 
     def __init__(
         self, robot: object, friction: float = 0.3, avoidlinks: object = None, plannername: str | None = None

@@ -1,4 +1,4 @@
-"""Names of openravepy's that ravemj itself does not have, since others stand for the same."""
+"""Names of openravepy that ravemj itself leaves out, since it has the same under other names."""
 
 from collections.abc import Callable
 from functools import wraps

@@ -7,8 +7,8 @@
 
 
 class InstanceTracker:
-    """A class that is derived from in old scripts; instances are not tracked."""
+    """A base class of old scripts; instances are not tracked."""
 
 
 class AutoReloader(InstanceTracker):
-    """A class that is derived from in old scripts; ``%autoreload`` of IPython does what its name says."""
+    """A base class of old scripts; ``%autoreload`` of IPython reloads modules instead."""

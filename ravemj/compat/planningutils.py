@@ -1,6 +1,6 @@
 """``openravepy.planningutils``: reverses, merges and converts trajectories.
 
-What times or smooths them in OpenRAVE raises ``UnsupportedError``, which is a ``NotImplementedError``.
+OpenRAVE's functions that retime or smooth them raise ``UnsupportedError``, which is a ``NotImplementedError``.
 """
 
 import operator

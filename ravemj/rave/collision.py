@@ -1,4 +1,4 @@
-"""Collision checkers: what answers whether things touch."""
+"""Collision checkers."""
 
 import logging
 from collections.abc import Iterable, Sequence
@@ -8,10 +8,10 @@ import numpy as np
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Ints
 from ravemj.engine.collision import questions
+from ravemj.engine.collision.findings import GeometryOf, Listed, find_collisions
 from ravemj.engine.collision.questions import LinkOf, Links, MovedBy
-from ravemj.engine.collision.rays import RayHit
 from ravemj.engine.collision.world import CollisionWorld, Pairs
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -20,10 +20,9 @@ from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
 from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.rave.link import Link
-from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact, Part
+from ravemj.rave.report import CollisionPairInfo, CollisionReport, Part
 
 if TYPE_CHECKING:
-    from ravemj.rave.env.collision import CollisionCallback
     from ravemj.rave.environment import Environment
 
 # Plain numbers: operators of flags take longer than tests of collision.
@@ -52,7 +51,7 @@ class CollisionChecker(Interface):
     """
 
     _interface_type = InterfaceType.collisionchecker
-    _internal = ("answer", "cast")
+    _internal = ("answer", "ray_targets")
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
         self._env = env
@@ -60,6 +59,7 @@ class CollisionChecker(Interface):
         self._name = name
         self._simulation = env.simulation
         self._options = 0
+        self._listed: Listed = "first pair"
         self._tolerance = 0.0
 
     def GetXMLId(self) -> str:
@@ -74,7 +74,7 @@ class CollisionChecker(Interface):
         """Do nothing; OpenRAVE's checkers free memory here."""
 
     def SetCollisionOptions(self, collisionoptions: int) -> bool:
-        """Choose what is looked for and reported, in place of what was chosen before.
+        """Set the options: what is tested and reported.
 
         Args:
             collisionoptions: ``CollisionOptions`` combined with ``|``.
@@ -85,6 +85,10 @@ class CollisionChecker(Interface):
         if not 0 <= int(collisionoptions) < 2 * CollisionOptions.IgnoreCallbacks:
             return False
         self._options = int(collisionoptions)
+        if self._options & _ALL_GEOMETRIES:
+            self._listed = "geometries"
+        else:
+            self._listed = "links" if self._options & _ALL_LINKS else "first pair"
         return True
 
     def GetCollisionOptions(self) -> int:
@@ -110,20 +114,14 @@ class CollisionChecker(Interface):
         if named:
             raise TypeError(f"CheckCollision: has no argument {', '.join(named)}")
         if len(arguments) > 1 and (arguments[-1] is None or isinstance(arguments[-1], CollisionReport)):
-            report = report or arguments[-1]
-            arguments = arguments[:-1]
+            report, arguments = report or arguments[-1], arguments[:-1]
         if report is not None:
             checked_kind(report, CollisionReport, "CheckCollision: report")
-        simulation = self._simulation
-        with simulation.lock:
-            world = simulation.collisions()
-            if len(arguments) == 1 and isinstance(arguments[0], BodyPart):  # planners ask this most
-                pairs = self._pairs_without(world, arguments[0], _NO_BODIES, _NO_LINKS)
-            elif arguments and isinstance(arguments[0], Ray):
-                return self._check_ray(world, arguments[0], arguments[1:], report)
-            else:
-                pairs = self._pairs(world, arguments)
-            return self.answer(world, pairs, report)
+        with self._simulation.lock:
+            world = self._simulation.collisions()
+            if arguments and isinstance(ray := arguments[0], Ray):
+                return self._check_ray(world, ray, arguments[1:], report)
+            return self.answer(world, self._pairs(world, arguments), report)
 
     def CheckSelfCollision(self, linkbody: "BodyPart | Link", report: CollisionReport | None = None) -> bool:
         """Return whether a body collides with itself; see ``body.CheckSelfCollision``.
@@ -137,56 +135,52 @@ class CollisionChecker(Interface):
         with self._simulation.lock:
             world = self._simulation.collisions()
             if isinstance(linkbody, Link):
-                state, link = _key(linkbody)
-                others = range(len(state.scene.links))
-                pairs = questions.itself(world, state, frozenset((min(link, a), max(link, a)) for a in others))
+                pairs = questions.link_and_own_body(world, _link(linkbody))
             else:
-                state = _state(linkbody)
                 active = self._options & _ACTIVE_DOFS
+                state = _state(linkbody)
                 pairs = questions.itself(world, state, MovedBy(self._env.wrap(state).active_dofs()) if active else None)
             return self.answer(world, pairs, report)
 
     def _pairs(self, world: CollisionWorld, arguments: Sequence[object]) -> Pairs:
         """Return the pairs of geoms that the arguments of ``CheckCollision`` are about."""
-        if len(arguments) == 1:
-            return self._pairs_without(world, arguments[0], _NO_BODIES, _NO_LINKS)
         match arguments:
-            case (BodyPart() as body, BodyPart() as other):
-                self._check_added(body, other)
-                return questions.bodies(world, _state(body), _state(other), self._active_links(_state(body)))
-            case (Link() as link, Link() as other):
-                self._check_added(link.GetParent(), other.GetParent())
-                return questions.links(world, _key(link), _key(other))
-            case (Link() as link, BodyPart() as body) | (BodyPart() as body, Link() as link):
-                self._check_added(link.GetParent(), body)
-                pairs = questions.link_and_body(world, _key(link), _state(body))
-                return pairs if link is arguments[0] else world.make_pairs(pairs.second, pairs.first)
+            case (thing,):
+                return self._pairs_with_others(world, thing)
             case (thing, list() | tuple(), list() | tuple()):
                 bodies, links = cast("Sequence[Sequence[object]]", arguments[1:])
-                return self._pairs_without(world, thing, frozenset(map(_state, bodies)), frozenset(map(_key, links)))
+                return self._pairs_with_others(
+                    world, thing, frozenset(map(_state, bodies)), frozenset(map(_link, links))
+                )
+            case (BodyPart() | Link(), BodyPart() | Link()):
+                first, second = map(_thing, arguments)
+                self._check_added(first, second)
+                if isinstance(first, BodyState) and not isinstance(second, BodyState):
+                    pairs = questions.each_other(world, second, first, None)
+                    return world.make_pairs(pairs.second, pairs.first)  # reports name the first argument first
+                links = self._active_links(first) if isinstance(first, BodyState) else None
+                return questions.each_other(world, first, second, links)
             case _:
                 raise _not_understood(arguments)
 
-    def _pairs_without(
-        self, world: CollisionWorld, thing: object, bodies: frozenset[BodyState], links: frozenset[LinkOf]
+    def _pairs_with_others(
+        self,
+        world: CollisionWorld,
+        argument: object,
+        without_bodies: frozenset[BodyState] = _NO_BODIES,
+        without_links: frozenset[LinkOf] = _NO_LINKS,
     ) -> Pairs:
-        if isinstance(thing, BodyPart):
-            state = thing.simulation_state
-            self._check_ours(state)
-            moved = self._active_links(state) if self._options else None
-            return questions.body_and_others(world, state, moved, bodies, links)
-        link = _key(thing)
-        self._check_ours(link[0])
-        return questions.link_and_others(world, link, bodies, links)
-
-    def _check_ours(self, state: BodyState) -> None:
+        thing = _thing(argument)
+        state = questions.body_of(thing)
         if state.simulation is not self._simulation:
             raise ArgumentError(f"CheckCollision: '{state.scene.name}' was made for another environment")
+        links = self._active_links(thing) if isinstance(thing, BodyState) and self._options else None
+        return questions.body_and_others(world, thing, links, without_bodies, without_links)
 
-    def _check_added(self, *bodies: BodyPart) -> None:
-        for body in bodies:
-            if not self._simulation.holds(body.simulation_state):
-                message = f"CheckCollision: '{body.GetName()}' is not in this environment; add it first"
+    def _check_added(self, *things: BodyState | LinkOf) -> None:
+        for state in map(questions.body_of, things):
+            if not self._simulation.holds(state):
+                message = f"CheckCollision: '{state.scene.name}' is not in this environment; add it first"
                 raise RavemjError(message, ErrorCode.Assert)
 
     def _active_links(self, state: BodyState) -> Links:
@@ -201,94 +195,68 @@ class CollisionChecker(Interface):
 
         The caller holds the lock.
         """
-        if report is None and not self._callbacks():
+        has_callbacks = bool(self._env.collision_callbacks) and not self._options & _IGNORE_CALLBACKS
+        if report is None and not has_callbacks:
             return world.collide(pairs)
         report = report or CollisionReport()
         report.Reset(self._options)
-        found = self._fill(world, pairs, report)
+        contacts = bool(self._options & _CONTACTS)
+        found = find_collisions(world, pairs, self._listed, contacts, self._counts if has_callbacks else None)
+        for one in found:
+            info = CollisionPairInfo(self._part(one.first), self._part(one.second), one.contacts)
+            report.collisionInfos.append(info)
         if self._options & _DISTANCE:
             self._measure(world, pairs, report)
         if self._options & _USE_TOLERANCE:
             report.numWithinTol += world.count_within(pairs, self._tolerance)
-        return found
-
-    def _fill(self, world: CollisionWorld, pairs: Pairs, report: CollisionReport) -> bool:
-        """Put the colliding pairs into the report that the options ask for; return whether there are any."""
-        each_geometry = bool(self._options & _ALL_GEOMETRIES)
-        every = each_geometry or bool(self._options & _ALL_LINKS)
-        infos: dict[object, CollisionPairInfo] = {}
-        for pair in world.hits(pairs):
-            key = tuple(self._geometry_key(world, geom)[: 3 if each_geometry else 2] for geom in pair)
-            if key not in infos:
-                if infos and not every:
-                    break
-                info = CollisionPairInfo(*(self._part(world, geom) for geom in pair))
-                if self._is_ignored(info):
-                    continue
-                infos[key] = info
-                report.collisionInfos.append(info)
-            if self._options & _CONTACTS:
-                infos[key].contacts.append(Contact(*world.shapes.contact(*pair)))
-            elif not every:
-                break
-        return bool(infos)
+        return bool(found)
 
     def _measure(self, world: CollisionWorld, pairs: Pairs, report: CollisionReport) -> None:
         """Put the least distance into the report and, where nothing collides, the pair that is so near."""
         distance, nearest = world.nearest(pairs, report.minDistance)
         report.minDistance = max(distance, 0.0)
         if nearest is not None and not report.numCols:
-            first, second = (self._part(world, geom) for geom in nearest)
+            first, second = (self._part(GeometryOf.of(world, geom)) for geom in nearest)
             report.collisionInfos = [CollisionPairInfo(first, second, collides=False)]
 
-    def _is_ignored(self, info: CollisionPairInfo) -> bool:
+    def _counts(self, first: GeometryOf, second: GeometryOf) -> bool:
         """Ask the registered functions whether a collision counts."""
         report = CollisionReport()
         report.Reset(self._options)
-        report.collisionInfos.append(info)
-        return any(callback(report, False) == CollisionAction.Ignore for callback in self._callbacks())
+        report.collisionInfos.append(CollisionPairInfo(self._part(first), self._part(second)))
+        return all(callback(report, False) != CollisionAction.Ignore for callback in self._env.collision_callbacks)
 
-    def _callbacks(self) -> "list[CollisionCallback]":
-        return [] if self._options & _IGNORE_CALLBACKS else self._env.collision_callbacks
-
-    def _part(self, world: CollisionWorld, geom: int) -> Part:
-        state, link, geometry = self._geometry_key(world, geom)
-        owner = Link(self._env.wrap(state), state, link)
-        return Part(owner, owner.GetGeometries()[geometry])
-
-    def _geometry_key(self, world: CollisionWorld, geom: int) -> tuple[BodyState, int, int]:
-        return (*world.owner(geom), world.geometry(geom))
+    def _part(self, geometry: GeometryOf) -> Part:
+        link = Link(self._env.wrap(geometry.body), geometry.body, geometry.link)
+        return Part(link, link.GetGeometries()[geometry.geometry])
 
     def _check_ray(
         self, world: CollisionWorld, ray: Ray, targets: Sequence[object], report: CollisionReport | None
     ) -> bool:
         if len(targets) > 1:
             raise _not_understood((ray, *targets))
-        hit = self.cast(world, ray.pos(), ray.dir(), *targets)
+        hit = world.ray(ray.pos(), ray.dir(), self.ray_targets(world, *targets))
         if report is not None:
             report.Reset(self._options)
         if hit is not None and report is not None:
             distance = hit.fraction * float(np.linalg.norm(ray.dir()))
-            info = CollisionPairInfo(self._part(world, hit.geom), None)
-            info.contacts.append(Contact(hit.position, hit.normal, distance))
-            report.collisionInfos.append(info)
+            contact = hit.position, hit.normal, distance
+            report.collisionInfos.append(CollisionPairInfo(self._part(GeometryOf.of(world, hit.geom)), None, [contact]))
             report.minDistance = distance
         return hit is not None
 
-    def cast(self, world: CollisionWorld, start: Floats, direction: Floats, target: object = ...) -> RayHit | None:
-        """Return where a ray first meets a body or link, or with ``...`` anything. The caller holds the lock."""
-        match target:
-            case BodyPart():
-                self._check_added(target)
-                geoms = world.geoms_of_group(_state(target))
-            case Link():
-                self._check_added(target.GetParent())
-                geoms = world.geoms_of_link(*_key(target))
-            case _ if target is ...:
-                geoms = None
-            case _:
-                raise _not_understood((Ray(start, direction), target))
-        return world.ray(start, direction, geoms)
+    def ray_targets(self, world: CollisionWorld, target: object = ...) -> Ints | None:
+        """Return the geoms of a body or link, which a ray can hit, or with ``...`` None, which stands for all.
+
+        The caller holds the lock.
+        """
+        if target is ...:
+            return None
+        if not isinstance(target, BodyPart | Link):
+            raise _not_understood((Ray(np.zeros(3), np.zeros(3)), target))
+        thing = _thing(target)
+        self._check_added(thing)
+        return world.geoms_of_group(thing) if isinstance(thing, BodyState) else world.geoms_of_link(*thing)
 
     def __repr__(self) -> str:
         if self._env.GetCollisionChecker() is self:
@@ -309,9 +277,10 @@ class NoCollisionChecker(CollisionChecker):
             report.Reset(self._options)
         return False
 
-    def cast(self, world: CollisionWorld, start: Floats, direction: Floats, target: object = ...) -> RayHit | None:
-        """Return None."""
-        del world, start, direction, target
+    def ray_targets(self, world: CollisionWorld, target: object = ...) -> Ints | None:
+        """Return no geoms."""
+        del world, target
+        return np.zeros(0, dtype=np.int_)
 
 
 class CollisionOptionsStateSaver(ApiObject):
@@ -374,10 +343,14 @@ def _state(body: object) -> BodyState:
     return body.simulation_state
 
 
-def _key(link: object) -> LinkOf:
+def _link(link: object) -> LinkOf:
     if not isinstance(link, Link):
         raise _not_understood((link,))
     return link.GetParent().simulation_state, link.GetIndex()
+
+
+def _thing(argument: object) -> BodyState | LinkOf:
+    return argument.simulation_state if isinstance(argument, BodyPart) else _link(argument)
 
 
 def _not_understood(arguments: Iterable[object]) -> RavemjError:

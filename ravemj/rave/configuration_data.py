@@ -256,4 +256,4 @@ def _rows(data: ArrayLike, count: int, dof: int, name: str) -> Floats:
 
 
 def _finder(env: "Environment | None") -> FindBody:
-    return nobody if env is None else env.GetKinBody
+    return nobody if env is None else env.simulation.body

@@ -1,30 +1,32 @@
-"""The environment: what scripts load models into and get robots from."""
+"""The environment: it holds robots and other bodies, loads models, and has the lock."""
 
 import itertools
 import os
 import weakref
+from types import TracebackType
+from typing import Self
 
 import mujoco
 
 from ravemj.engine.simulation import Simulation
-from ravemj.errors import SourceError
-from ravemj.rave.env.cloning import Cloning
+from ravemj.errors import ErrorCode, RavemjError, SourceError
+from ravemj.rave.body.base import both_locks
+from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.collision import Collision
+from ravemj.rave.env.contents import Contents
 from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
-from ravemj.rave.env.locking import Locking
-from ravemj.rave.env.meshing import Meshing
-from ravemj.rave.env.modules import Modules
-from ravemj.rave.env.running import Running
+from ravemj.rave.env.simulation import Simulating
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
+from ravemj.rave.robot import Robot
 
 _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Modules, Running, Viewing):
+class Environment(Contents, Loading, Collision, Simulating, Drawing, Viewing):
     """A world with robots and other bodies.
 
     Example:
@@ -65,6 +67,85 @@ class Environment(Cloning, Collision, Drawing, Loading, Locking, Meshing, Module
     def GetDebugLevel(self) -> int:
         """Return how much is logged, a ``DebugLevel``."""
         return RaveGetDebugLevel()
+
+    def Lock(self, timeout: float | None = None) -> bool | None:
+        """Acquire the lock; a thread can acquire it several times, and has to release it as often.
+
+        Args:
+            timeout: How long to wait [s]; left out: as long as it takes.
+
+        Returns:
+            With a timeout, whether the lock was taken; else None.
+        """
+        if timeout is None:
+            self._simulation.lock.acquire()
+            return None
+        return self._simulation.lock.acquire(timeout=max(0.0, timeout))
+
+    def TryLock(self) -> bool:
+        """Take the lock if it is free, without waiting; return whether it was taken."""
+        return self._simulation.lock.acquire(blocking=False)
+
+    def Unlock(self) -> None:
+        """Give the lock back.
+
+        Raises:
+            openrave_exception: this thread does not hold it (``EnvironmentNotLocked``).
+        """
+        try:
+            self._simulation.lock.release()
+        except RuntimeError:
+            raise RavemjError("Unlock: this thread does not hold the lock", ErrorCode.EnvironmentNotLocked) from None
+
+    def __enter__(self) -> Self:
+        """Hold the environment's lock: no other thread reads or changes it meanwhile."""
+        self._simulation.lock.acquire()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        """Let go of the lock."""
+        self._simulation.lock.release()
+
+    def CloneSelf(self, options: int = CloningOptions.Bodies, name: str | None = None) -> "Environment":
+        """Return a new environment with copies of the bodies, in the same state.
+
+        Robots keep their active DOFs and manipulators, and hold what they held.
+
+        Args:
+            options: What to copy, a ``CloningOptions``; bodies, gravity and the view are, whatever it says.
+            name: OpenRAVE's; ignored.
+
+        Example:
+            >>> copy = env.CloneSelf(CloningOptions.Bodies)
+            >>> copy.GetRobots()[0].SetDOFValues([1, 1])  # env's robot stays
+        """
+        del name
+        clone = type(self)()
+        clone.Clone(self, options)
+        return clone
+
+    def Clone(self, reference: "Environment", options: int = CloningOptions.Bodies, name: str | None = None) -> None:
+        """Replace the bodies of this environment by copies of those of another.
+
+        Args:
+            reference: The environment to copy; nothing happens where it is this one.
+            options: As in ``CloneSelf``.
+            name: OpenRAVE's; ignored.
+        """
+        del options, name
+        for env in (self, checked_environment(reference, "Clone: reference")):
+            env._check_alive()
+        source = reference.simulation
+        if source is self._simulation:
+            return
+        with both_locks(source, self._simulation):
+            self._kept_objects.clear()
+            for original, copy in self._simulation.copy(source).items():
+                body, other = self.wrap(copy), reference.wrap(original)
+                if isinstance(body, Robot) and isinstance(other, Robot):
+                    body.take_choices(other)
 
     def Reset(self) -> None:
         """Remove all bodies."""

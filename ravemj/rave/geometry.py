@@ -20,7 +20,7 @@ from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 
 
 class Geometry(ApiObject):
-    """A shape of a link; ``link.GetGeometries()`` makes it. What it does not have, its getters raise for.
+    """A shape of a link; ``link.GetGeometries()`` makes it. Getters of what its type does not have raise.
 
     Setters act at once, also in viewers and in pictures.
 
@@ -244,7 +244,7 @@ class Geometry(ApiObject):
         return changed
 
     def SetDraw(self, draw: bool) -> None:
-        """Draw the geometry or not: an old name of ``SetVisible``.
+        """Draw the geometry or not; the older name of ``SetVisible``.
 
         Args:
             draw: False hides it.

@@ -1,4 +1,4 @@
-"""What draw calls return."""
+"""Handles of drawings."""
 
 from numpy.typing import ArrayLike
 

@@ -1,41 +1,26 @@
 """Joints of a body."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_indices, checked_vector
-from ravemj.core.transforms import Floats, Pose, pose_of
+from ravemj.core.transforms import Floats, Ints, Pose, pose_of
+from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.joints import directions_at, measured_values, relative_pose, reported_anchor, wrapped_angle
+from ravemj.model.manipulators import joint_dofs
+from ravemj.model.mimic import Equations, leaders, with_equations
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
-from ravemj.rave.joints.following import JointFollowing
-from ravemj.rave.joints.limits import JointLimits
+from ravemj.rave.joint_limits import JointLimits
 from ravemj.rave.link import Link
 
-if TYPE_CHECKING:
-    from ravemj.rave.kinbody import KinBody
 
-
-class Joint(JointLimits, JointFollowing):
+class Joint(JointLimits):
     """A joint between two links; ``body.GetJoints()`` makes it."""
 
     Type = JointType
-
-    def GetName(self) -> str:
-        """Return the joint's name."""
-        return self._scene.name
-
-    def GetParent(self, returnexist: bool = False) -> "KinBody":
-        """Return the body that the joint belongs to.
-
-        Args:
-            returnexist: Not used: the body always exists.
-        """
-        del returnexist
-        return self._parent
 
     def GetType(self) -> JointType:
         """Return the kind of joint."""
@@ -43,7 +28,7 @@ class Joint(JointLimits, JointFollowing):
 
     def GetJointIndex(self) -> int:
         """Return the joint's position in ``body.GetJoints()``; -1 for a passive joint."""
-        return self._index if self._is_active else -1
+        return self._index if self.IsActive() else -1
 
     def GetDOFIndex(self) -> int:
         """Return the joint's first position in the vectors of DOF values; -1 for a passive joint.
@@ -52,7 +37,7 @@ class Joint(JointLimits, JointFollowing):
             >>> index = robot.GetJoint("Joint1").GetDOFIndex()
             >>> robot.SetDOFValues([0.5], [index])
         """
-        if not self._is_active:
+        if not self.IsActive():
             return -1
         return sum(len(joint.axes) for joint in self._state.scene.joints[: self._index])
 
@@ -63,7 +48,7 @@ class Joint(JointLimits, JointFollowing):
     def GetValues(self) -> Floats:
         """Return the joint's values [rad or m], shape (axes,)."""
         with self._state.simulation.lock:
-            if not self._is_active:
+            if not self.IsActive():
                 return self._state.kinematics.passive_values(self._index - len(self._state.scene.joints))
             first = self.GetDOFIndex()
             return self._state.kinematics.values()[first : first + self.GetDOF()]
@@ -148,7 +133,7 @@ class Joint(JointLimits, JointFollowing):
             axes = list(self._scene.axes)
             axes[axis] = replace(axes[axis], wrap_offset=chosen)
             self._state.edit_joint(self._index, axes=tuple(axes))
-            if self._is_active and self.IsRevolute(axis):
+            if self.IsActive() and self.IsRevolute(axis):
                 values = self._state.kinematics.values()
                 dof = self.GetDOFIndex() + axis
                 values[dof] -= 2 * np.pi * np.round((values[dof] - chosen) / (2 * np.pi))
@@ -156,7 +141,7 @@ class Joint(JointLimits, JointFollowing):
 
     def IsActive(self) -> bool:
         """Return whether the joint has DOFs of its own: it is enabled and follows no other."""
-        return self._is_active
+        return self._index < len(self._state.scene.joints)
 
     def IsRevolute(self, axis: int = 0) -> bool:
         """Return whether an axis turns; as in OpenRAVE, a spherical joint has none that does."""
@@ -177,6 +162,62 @@ class Joint(JointLimits, JointFollowing):
     def IsStatic(self) -> bool:
         """Return whether the joint is a weld: its limits leave no room."""
         return self._scene.static
+
+    def IsMimic(self, axis: int = -1) -> bool:
+        """Return whether an axis follows other joints; -1 means any."""
+        return self._scene.mimic is not None and axis <= 0
+
+    def GetMimicEquation(self, axis: int = 0, itype: int = 0, format: str = "") -> str:  # OpenRAVE's names
+        """Return how the joint follows others, as the file has it.
+
+        Args:
+            axis: Which axis; only the first one can follow.
+            itype: 0 the position, 1 the partial derivatives for velocities, 2 those for accelerations.
+            format: OpenRAVE's choice of notation; only the plain one is known here.
+
+        Returns:
+            The equation, with the names of joints; empty for a joint that follows none.
+        """
+        del format
+        mimic = self._scene.mimic
+        if mimic is None or axis != 0:
+            return ""
+        return (mimic.position, mimic.velocity, mimic.acceleration)[itype]
+
+    def GetMimicDOFIndices(self, axis: int = 0) -> Ints:
+        """Return the DOFs in the joint's own equation; as in OpenRAVE, not those of other followers in it.
+
+        Args:
+            axis: Which axis of the joint.
+        """
+        mimic = self._scene.mimic
+        if mimic is None or axis or mimic.expression is None:
+            return np.array([], dtype=np.int_)
+        active = [leader for leader in leaders(mimic.expression) if leader < len(self._state.scene.joints)]
+        dofs = {dof for leader in active for dof in joint_dofs(self._state.scene, leader)}
+        return np.array(sorted(dofs), dtype=np.int_)
+
+    def SetMimicEquations(self, axis: int, poseq: str, veleq: str = "", acceleq: str = "") -> None:
+        """Change how a passive joint follows others. It stays where it is until joint values are next set.
+
+        Args:
+            axis: Which axis; only the first one can follow.
+            poseq: The equation, with the names of joints, for instance ``2*lead + 0.1``.
+            veleq: The partial derivatives for velocities, kept for ``GetMimicEquation``; velocities are computed.
+            acceleq: Those for accelerations, kept too.
+
+        Raises:
+            openrave_exception: the equation cannot be used, or the joint has a DOF. Nothing has changed then.
+
+        Example:
+            >>> body.GetJoint("finger2").SetMimicEquations(0, "-finger1")
+        """
+        if self.IsActive() or axis or not poseq:
+            message = f"SetMimicEquations: '{self._scene.name}' cannot follow '{poseq}': only joints without DOFs can"
+            raise RavemjError(message, ErrorCode.NotImplemented)
+        with self._state.simulation.lock:
+            passive = with_equations(self._state.scene, self._index, Equations(poseq, veleq, acceleq))
+            self._state.edit_mimic(passive)
 
     def GetAnchor(self) -> Floats:
         """Return a point on the axis in the world, as the links stand now [m], shape (3,)."""
@@ -240,24 +281,12 @@ class Joint(JointLimits, JointFollowing):
 
     UpdateAndGetInfo = GetInfo
 
-    def UpdateInfo(self) -> None:
-        """Do nothing: ``GetInfo`` always gives the present state."""
-
     def _shown_values(self) -> list[float]:
         """Return the values, also of a body that is in no world: what its links show."""
         if self._state.index:
             return self.GetValues().tolist()
         parent, child = (pose_of(self._state.link_transform(i)) for i in (self._scene.parent, self._scene.child))
         return list(measured_values(self._scene, parent.inverse() @ child))
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Joint) and self._state is other._state and self._index == other._index
-
-    def __hash__(self) -> int:
-        return hash((id(self._state), self._index))
-
-    def __repr__(self) -> str:
-        return f"{self._parent.GetEnv()!r}.GetKinBody({self._parent.GetName()!r}).GetJoint({self.GetName()!r})"
 
     def _repr_html_(self) -> str:
         """Return the table that notebooks show for a joint."""

@@ -1,26 +1,23 @@
 """Links of a body."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Hashable
+from dataclasses import replace
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_transform, checked_vector
-from ravemj.core.transforms import Floats, pose_of
+from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
+from ravemj.core.transforms import Floats, Ints, pose_of
 from ravemj.model import chains
+from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
+from ravemj.model.scene import Inertial
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, LinkInfo
-from ravemj.rave.links.collision import LinkCollision
-from ravemj.rave.links.loads import LinkLoads
-from ravemj.rave.links.mass import LinkMass
-from ravemj.rave.links.parameters import LinkParameters
-from ravemj.rave.links.shapes import LinkShapes
-
-if TYPE_CHECKING:
-    from ravemj.rave.kinbody import KinBody
+from ravemj.rave.link_geometries import LinkGeometries
 
 
-class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters, LinkLoads):
+class Link(LinkGeometries):
     """A rigid part of a body; ``body.GetLinks()`` makes it."""
 
     Geometry = Geometry
@@ -29,22 +26,9 @@ class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters, LinkLoads):
     GeomProperties = Geometry
     LinkInfo = LinkInfo
 
-    def GetName(self) -> str:
-        """Return the link's name."""
-        return self._scene.name
-
     def GetIndex(self) -> int:
         """Return the link's position in ``body.GetLinks()``."""
         return self._index
-
-    def GetParent(self, returnexist: bool = False) -> "KinBody":
-        """Return the body that the link belongs to.
-
-        Args:
-            returnexist: Not used: the body always exists.
-        """
-        del returnexist
-        return self._parent
 
     def GetTransform(self) -> Floats:
         """Return the link's pose in the world.
@@ -99,11 +83,11 @@ class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters, LinkLoads):
             self._state.place_links(transforms)
 
     def IsStatic(self) -> bool:
-        """Return whether the link is called static, by its file or by ``SetStatic``."""
+        """Return whether the link is declared static, by its file or by ``SetStatic``."""
         return self._scene.static
 
     def SetStatic(self, bStatic: bool) -> None:
-        """Call the link static or not. What moves it stays as it is.
+        """Declare the link static or not; its joints move it all the same.
 
         Args:
             bStatic: Whether it is static.
@@ -138,6 +122,183 @@ class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters, LinkLoads):
     def _other(self, index: int) -> "Link":
         return Link(self._parent, self._state, index)
 
+    @property
+    def _inertial(self) -> Inertial:
+        return self._scene.inertial
+
+    def GetMass(self) -> float:
+        """Return the link's mass [kg]."""
+        return self._inertial.mass
+
+    def GetLocalCOM(self) -> Floats:
+        """Return the centre of mass in the link frame [m], shape (3,)."""
+        return np.array(self._inertial.com)
+
+    GetCOMOffset = GetLocalCOM
+
+    def GetGlobalCOM(self) -> Floats:
+        """Return the centre of mass in the world [m], shape (3,)."""
+        return self.GetTransform()[:3] @ (*self._inertial.com, 1.0)
+
+    def GetLocalInertia(self) -> Floats:
+        """Return the inertia about the centre of mass, in axes parallel to the link's [kg m^2], shape (3, 3)."""
+        return np.array(self._inertial.inertia)
+
+    def GetGlobalInertia(self) -> Floats:
+        """Return the inertia about the centre of mass, in axes parallel to the world's [kg m^2], shape (3, 3)."""
+        rotation = self.GetTransform()[:3, :3]
+        return rotation @ self._inertial.inertia @ rotation.T
+
+    def GetLocalMassFrame(self) -> Floats:
+        """Return the frame of the principal axes of inertia, at the centre of mass.
+
+        Returns:
+            ``T_link_mass``, shape (4, 4).
+        """
+        return principal_frame(self._inertial).matrix()
+
+    def GetGlobalMassFrame(self) -> Floats:
+        """Return the frame of the principal axes of inertia in the world.
+
+        Returns:
+            ``T_world_mass``, shape (4, 4).
+        """
+        return self.GetTransform() @ self.GetLocalMassFrame()
+
+    def GetPrincipalMomentsOfInertia(self) -> Floats:
+        """Return the moments of inertia about the axes of the mass frame [kg m^2], shape (3,)."""
+        return principal_moments(self._inertial)
+
+    def SetMass(self, mass: float) -> None:
+        """Set the mass; the moments of inertia stay as they are.
+
+        Args:
+            mass: Mass [kg].
+        """
+        (value,) = checked_vector([mass], 1, "SetMass: mass").tolist()
+        self._set_inertial(replace(self._inertial, mass=value))
+
+    def SetLocalMassFrame(self, massframe: ArrayLike) -> None:
+        """Set where the centre of mass is, and how the principal axes lie; the moments about these stay.
+
+        Args:
+            massframe: ``T_link_mass``: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
+        """
+        T_link_mass = pose_of(checked_transform(massframe, "SetLocalMassFrame: massframe"))
+        self._set_inertial(inertial_about(self._inertial.mass, T_link_mass, principal_moments(self._inertial)))
+
+    def SetPrincipalMomentsOfInertia(self, inertiamoments: ArrayLike) -> None:
+        """Set the moments of inertia about the axes of the mass frame.
+
+        Args:
+            inertiamoments: Moments [kg m^2], shape (3,).
+        """
+        moments = checked_vector(inertiamoments, 3, "SetPrincipalMomentsOfInertia: inertiamoments")
+        self._set_inertial(inertial_about(self._inertial.mass, principal_frame(self._inertial), moments))
+
+    def _set_inertial(self, inertial: Inertial) -> None:
+        with self._state.simulation.lock:
+            self._state.set_inertial(self._index, inertial)
+
+    def SetForce(self, force: ArrayLike, pos: ArrayLike, add: bool) -> bool:
+        """Let a force act on the link during the next step of simulation time, and not longer.
+
+        Args:
+            force: In the world [N], shape (3,).
+            pos: Where it acts, in the world [m], shape (3,).
+            add: Whether forces that were set for that step stay.
+
+        Returns:
+            Whether the environment has a physics engine that moves bodies.
+
+        Example:
+            >>> env.SetPhysicsEngine("mujoco")
+            True
+            >>> link.SetForce([0, 0, 20], link.GetTransform()[0:3, 3], False)
+            True
+            >>> env.StepSimulation(0.01)
+        """
+        return self._parent.GetEnv().GetPhysicsEngine().SetBodyForce(self, force, pos, add)
+
+    def SetTorque(self, torque: ArrayLike, add: bool) -> bool:
+        """Let a torque act on the link during the next step of simulation time, and not longer.
+
+        Args:
+            torque: In world axes [N m], shape (3,).
+            add: Whether torques that were set for that step stay.
+
+        Returns:
+            Whether the environment has a physics engine that moves bodies.
+        """
+        return self._parent.GetEnv().GetPhysicsEngine().SetBodyTorque(self, torque, add)
+
+    def GetFloatParameters(self, name: str | None = None, index: int = -1) -> dict[str, Floats] | Floats | float | None:
+        """Return numbers that ``SetFloatParameters`` attached.
+
+        Args:
+            name: Which; None: all of them.
+            index: Which number of them; below 0: all.
+
+        Returns:
+            An array of shape (n,), a number where an index was given, None for an unknown name, or all arrays by name.
+        """
+        found = {key: np.array(values) for key, values in self._scene.parameters.floats}
+        if name is None or name not in found:
+            return found if name is None else None
+        return found[name] if index < 0 else float(found[name][index])
+
+    def SetFloatParameters(self, key: str, parameters: ArrayLike) -> None:
+        """Attach numbers under a name.
+
+        Args:
+            key: The name.
+            parameters: The numbers; [] removes them.
+        """
+        self._set_parameter("floats", key, tuple(checked_numbers(parameters, "SetFloatParameters").ravel().tolist()))
+
+    def GetIntParameters(self, name: str | None = None, index: int = -1) -> dict[str, Ints] | Ints | int | None:
+        """Return integers that ``SetIntParameters`` attached, as ``GetFloatParameters`` does.
+
+        Args:
+            name: Which; None: all of them.
+            index: Which number of them; below 0: all.
+        """
+        found = {key: np.array(values, dtype=np.int_) for key, values in self._scene.parameters.integers}
+        if name is None or name not in found:
+            return found if name is None else None
+        return found[name] if index < 0 else int(found[name][index])
+
+    def SetIntParameters(self, key: str, parameters: ArrayLike) -> None:
+        """Attach integers under a name.
+
+        Args:
+            key: The name.
+            parameters: The integers; [] removes them.
+        """
+        numbers = checked_numbers(parameters, "SetIntParameters").ravel().astype(np.int_)
+        self._set_parameter("integers", key, tuple(numbers.tolist()))
+
+    def GetStringParameters(self, name: str | None = None) -> dict[str, str] | str | None:
+        """Return the text that ``SetStringParameters`` attached under a name, or None; without a name, all of them."""
+        found = dict(self._scene.parameters.texts)
+        return found if name is None else found.get(name)
+
+    def SetStringParameters(self, key: str, value: str) -> None:
+        """Attach a text under a name.
+
+        Args:
+            key: The name.
+            value: The text; an empty one removes it.
+        """
+        self._set_parameter("texts", key, str(value))
+
+    def _set_parameter(self, field: str, key: str, value: Hashable) -> None:
+        with self._state.simulation.lock:
+            items: tuple[tuple[str, Hashable], ...] = getattr(self._scene.parameters, field)
+            kept = tuple(item for item in items if item[0] != key)
+            changed = replace(self._scene.parameters, **{field: (*kept, (key, value)) if value else kept})
+            self._state.edit_link(self._index, parameters=changed)
+
     def GetInfo(self) -> LinkInfo:
         """Return the description of the link as it stands, a copy."""
         with self._state.simulation.lock:
@@ -145,18 +306,6 @@ class Link(LinkCollision, LinkMass, LinkShapes, LinkParameters, LinkLoads):
             return LinkInfo.of(self._state.scene, self._index, self.GetTransform(), enabled=enabled)
 
     UpdateAndGetInfo = GetInfo
-
-    def UpdateInfo(self) -> None:
-        """Do nothing: ``GetInfo`` always gives the present state."""
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Link) and self._state is other._state and self._index == other._index
-
-    def __hash__(self) -> int:
-        return hash((id(self._state), self._index))
-
-    def __repr__(self) -> str:
-        return f"{self._parent.GetEnv()!r}.GetKinBody({self._parent.GetName()!r}).GetLink({self.GetName()!r})"
 
     def __str__(self) -> str:
         return f"<link:{self.GetName()} ({self._index}), parent={self._parent.GetName()}>"

@@ -1,6 +1,7 @@
 """OpenRAVE's log functions, on Python's logger ``openravepy``."""
 
 import logging
+from collections.abc import Callable
 
 from ravemj.rave.enums import DebugLevel
 
@@ -50,58 +51,23 @@ def RaveLog(log: str, level: int = DebugLevel.Info) -> None:  # OpenRAVE's name 
     logging.getLogger("openravepy").log(_python_level(int(level)), "%s", str(log).rstrip("\n"))
 
 
-def RaveLogFatal(log: str) -> None:
-    """Log that nothing can go on.
+def _log_function(name: str, level: DebugLevel, summary: str) -> Callable[[str], None]:
+    """Return a function of a text that logs it with one level."""
 
-    Args:
-        log: The text.
-    """
-    RaveLog(log, DebugLevel.Fatal)
+    def function(log: str) -> None:
+        RaveLog(log, level)
 
-
-def RaveLogError(log: str) -> None:
-    """Log an error.
-
-    Args:
-        log: The text.
-    """
-    RaveLog(log, DebugLevel.Error)
+    function.__name__ = function.__qualname__ = name
+    function.__doc__ = f"{summary}\n\nArgs:\n    log: The text.\n"
+    return function
 
 
-def RaveLogWarn(log: str) -> None:
-    """Log a warning.
-
-    Args:
-        log: The text.
-    """
-    RaveLog(log, DebugLevel.Warn)
-
-
-def RaveLogInfo(log: str) -> None:
-    """Log something of interest.
-
-    Args:
-        log: The text.
-    """
-    RaveLog(log, DebugLevel.Info)
-
-
-def RaveLogDebug(log: str) -> None:
-    """Log something for those who look for a mistake.
-
-    Args:
-        log: The text.
-    """
-    RaveLog(log, DebugLevel.Debug)
-
-
-def RaveLogVerbose(log: str) -> None:
-    """Log something for those who want all.
-
-    Args:
-        log: The text.
-    """
-    RaveLog(log, DebugLevel.Verbose)
+RaveLogFatal = _log_function("RaveLogFatal", DebugLevel.Fatal, "Log that nothing can go on.")
+RaveLogError = _log_function("RaveLogError", DebugLevel.Error, "Log an error.")
+RaveLogWarn = _log_function("RaveLogWarn", DebugLevel.Warn, "Log a warning.")
+RaveLogInfo = _log_function("RaveLogInfo", DebugLevel.Info, "Log something of interest.")
+RaveLogDebug = _log_function("RaveLogDebug", DebugLevel.Debug, "Log something for those who look for a mistake.")
+RaveLogVerbose = _log_function("RaveLogVerbose", DebugLevel.Verbose, "Log something for those who want all.")
 
 
 def _python_level(level: int) -> int:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class PhysicsEngine(Interface):
-    """Holds gravity, and says what time does to bodies; ``env.GetPhysicsEngine()`` returns it.
+    """A physics engine: it holds gravity and advances bodies in time; ``env.GetPhysicsEngine()`` returns it.
 
     This is OpenRAVE's ``GenericPhysicsEngine``, which every environment has from the start: bodies stay where they are
     put, and forces do nothing. ``RaveCreatePhysicsEngine`` makes others.
@@ -89,7 +89,7 @@ class PhysicsEngine(Interface):
         """
 
     def GetJointForceTorque(self, joint: "Joint") -> tuple[Floats, Floats]:
-        """Return what a joint transmits to its child: what holds it, moves it and stops it.
+        """Return the force and torque that a joint transmits to its child link.
 
         Returns:
             The force on the child link [N], and the torque about the joint's anchor [N m], each of shape (3,), in
@@ -99,7 +99,7 @@ class PhysicsEngine(Interface):
         return np.zeros(3), np.zeros(3)
 
     def GetLinkForceTorque(self, link: "Link") -> tuple[Floats, Floats]:
-        """Return what joints and contacts do to a link; gravity and forces of users do not count.
+        """Return the force and torque of joints and contacts on a link, without gravity and forces of users.
 
         Returns:
             The force [N], and the torque about the link's centre of mass [N m], each of shape (3,), in world axes;
@@ -169,17 +169,17 @@ class PhysicsEngine(Interface):
         return loads is not None
 
     def attach(self) -> None:
-        """Become the environment's engine."""
+        """Start to be the environment's engine."""
         self._is_attached = True
         self._env.simulation.set_gravity(self._gravity)
 
     def detach(self) -> None:
-        """Make way for another engine."""
+        """Stop being the environment's engine."""
         self._gravity = self._env.simulation.gravity
         self._is_attached = False
 
     def loads(self, state: BodyState) -> "Loads | None":
-        """Return what pushes a body during the next step, to be changed; None where nothing moves bodies."""
+        """Return the loads on a body in the next step, to be changed; None without simulated dynamics."""
         del state
         return None
 
@@ -190,7 +190,7 @@ class PhysicsEngine(Interface):
 
 
 class SimulatedEngine(PhysicsEngine):
-    """Moves bodies as their masses, joints, contacts and forces say, with MuJoCo.
+    """Simulates the dynamics of bodies with MuJoCo: masses, joints, contacts and forces.
 
     Bodies without a static link fall; those with one stay, and their joints swing. Poses and velocities can be set at
     any time. Robots with an ``IdealController`` go where it puts them.
@@ -233,7 +233,7 @@ class SimulatedEngine(PhysicsEngine):
             self._physics.step(timestep)
 
     def GetJointForceTorque(self, joint: "Joint") -> tuple[Floats, Floats]:
-        """Return what a joint transmits to its child: what holds it, moves it and stops it.
+        """Return the force and torque that a joint transmits to its child link.
 
         Returns:
             The force on the child link [N], and the torque about the joint's anchor [N m], each of shape (3,), in
@@ -244,7 +244,7 @@ class SimulatedEngine(PhysicsEngine):
             return self._physics.joint_wrench(state, child.GetIndex(), joint.GetAnchor())
 
     def GetLinkForceTorque(self, link: "Link") -> tuple[Floats, Floats]:
-        """Return what joints and contacts do to a link; gravity and forces of users do not count.
+        """Return the force and torque of joints and contacts on a link, without gravity and forces of users.
 
         Returns:
             The force [N], and the torque about the link's centre of mass [N m], each of shape (3,), in world axes;
@@ -254,7 +254,7 @@ class SimulatedEngine(PhysicsEngine):
             return self._physics.link_wrench(link.GetParent().simulation_state, link.GetIndex())
 
     def loads(self, state: BodyState) -> "Loads":
-        """Return what pushes a body during the next step, to be changed."""
+        """Return the loads on a body in the next step, to be changed."""
         return self._physics.loads(state)
 
 

@@ -1,4 +1,4 @@
-"""What scripts name when they plan motions; ravemj does not plan yet."""
+"""Classes of motion planning, for scripts that name them; ravemj does not plan yet."""
 
 from ravemj.errors import UnsupportedError
 from ravemj.rave.enums import PlannerStatus, PlannerStatusCode
@@ -21,7 +21,7 @@ class PlanningError(Exception):
 
 
 class PlannerParameters:
-    """What a planner is asked for."""
+    """The problem of a planner."""
 
     def __init__(self) -> None:
         raise UnsupportedError("Planner.PlannerParameters", PLANNING)

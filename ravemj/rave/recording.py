@@ -18,7 +18,7 @@ _POSES_FOR_THE_VIEW = 17
 
 
 class Shot(NamedTuple):
-    """How a video is taken.
+    """The settings of a video.
 
     Attributes:
         camera: Where from.

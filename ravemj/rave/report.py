@@ -1,7 +1,8 @@
-"""What collision checking found."""
+"""Reports of collision checking."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -13,17 +14,17 @@ if TYPE_CHECKING:
     from ravemj.rave.link import Link
 
 FAR = 1e20
-"""OpenRAVE's distance where none was found [m]."""
+"""Distance of a report that no distance was found for [m], as in OpenRAVE."""
 
 
 @dataclass
 class Contact:
-    """A point where two shapes are in each other, or where a ray meets a shape.
+    """A point where two shapes overlap, or where a ray meets a shape.
 
     Attributes:
         pos: The point in the world [m], shape (3,).
         norm: Unit vector out of the second shape towards the first; that of a ray's hit points outwards. Shape (3,).
-        depth: How far the shapes are in each other [m]; for a ray, how far away the hit is.
+        depth: Penetration depth [m]; for a ray, the distance of the hit.
     """
 
     pos: Floats = field(default_factory=lambda: np.zeros(3))
@@ -31,18 +32,15 @@ class Contact:
     depth: float = 0.0
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(NamedTuple):
     """One of two shapes that collide, as objects of the API."""
 
     link: "Link"
-    geometry: "Geometry | None"
+    geometry: "Geometry"
 
-    @property
     def names(self) -> tuple[str, str, str]:
-        """Names of body, link and geometry."""
-        geometry = "" if self.geometry is None else self.geometry.GetName()
-        return self.link.GetParent().GetName(), self.link.GetName(), geometry
+        """Return the names of body, link and geometry."""
+        return self.link.GetParent().GetName(), self.link.GetName(), self.geometry.GetName()
 
 
 class CollisionPairInfo(ApiObject):
@@ -52,30 +50,37 @@ class CollisionPairInfo(ApiObject):
         collides: False for links that are only nearest to each other.
     """
 
-    def __init__(self, first: Part, second: Part | None, *, collides: bool = True) -> None:
+    def __init__(
+        self,
+        first: Part,
+        second: Part | None,
+        contacts: Iterable[tuple[Floats, Floats, float]] = (),
+        *,
+        collides: bool = True,
+    ) -> None:
         self.first, self.second, self.collides = first, second, collides
-        self.contacts: list[Contact] = []
+        self.contacts = [Contact(*contact) for contact in contacts]
 
     @property
     def bodyLinkGeom1Name(self) -> str:
         """Names of body, link and geometry of the first, joined by spaces."""
-        return " ".join(self.first.names)
+        return " ".join(self.ExtractFirstBodyLinkGeomNames())
 
     @property
     def bodyLinkGeom2Name(self) -> str:
         """Names of body, link and geometry of the second; empty for a ray."""
-        return " ".join(self.second.names) if self.second else ""
+        return " ".join(self.ExtractSecondBodyLinkGeomNames()) if self.second else ""
 
     def ExtractFirstBodyLinkGeomNames(self) -> tuple[str, str, str]:
         """Return the names of body, link and geometry of the first."""
-        return self.first.names
+        return self.first.names()
 
     def ExtractSecondBodyLinkGeomNames(self) -> tuple[str, str, str]:
         """Return the names of body, link and geometry of the second."""
-        return self.second.names if self.second else ("", "", "")
+        return self.second.names() if self.second else ("", "", "")
 
     def __str__(self) -> str:
-        names = (":".join(filter(None, part.names)) for part in (self.first, self.second) if part)
+        names = (":".join(filter(None, part.names())) for part in (self.first, self.second) if part)
         return f"({')x('.join(names)}) contacts={len(self.contacts)}"
 
     def __repr__(self) -> str:
@@ -83,7 +88,7 @@ class CollisionPairInfo(ApiObject):
 
 
 class CollisionReport(ApiObject):
-    """What a call of collision checking found; hand one in to get it filled.
+    """The result of a call of collision checking, which fills the report that it is given.
 
     OpenRAVE renamed the content over time; both sets of names are here: ``collisionInfos`` of newer versions, and
     ``plink1``, ``plink2``, ``contacts``, ``vLinkColliding``, ``numCols`` of older ones. The first of two links
@@ -110,7 +115,7 @@ class CollisionReport(ApiObject):
         self.Reset()
 
     def Reset(self, coloptions: int = 0) -> None:
-        """Forget everything, unless ``nKeepPrevious`` is set.
+        """Clear the report, unless ``nKeepPrevious`` is set.
 
         Args:
             coloptions: The options of the call that fills the report next.
@@ -134,27 +139,29 @@ class CollisionReport(ApiObject):
     @property
     def plink1(self) -> "Link | None":
         """The first link of the first pair, or None."""
-        return self.collisionInfos[0].first.link if self.collisionInfos else None
+        first = self._first_pair()[0]
+        return first and first.link
 
     @property
     def plink2(self) -> "Link | None":
         """The second link of the first pair, or None."""
-        second = self._second()
-        return second.link if second else None
+        second = self._first_pair()[1]
+        return second and second.link
 
     @property
     def pgeom1(self) -> "Geometry | None":
         """The first geometry of the first pair, or None."""
-        return self.collisionInfos[0].first.geometry if self.collisionInfos else None
+        first = self._first_pair()[0]
+        return first and first.geometry
 
     @property
     def pgeom2(self) -> "Geometry | None":
         """The second geometry of the first pair, or None."""
-        second = self._second()
-        return second.geometry if second else None
+        second = self._first_pair()[1]
+        return second and second.geometry
 
-    def _second(self) -> Part | None:
-        return self.collisionInfos[0].second if self.collisionInfos else None
+    def _first_pair(self) -> tuple[Part | None, Part | None]:
+        return next(((info.first, info.second) for info in self.collisionInfos), (None, None))
 
     @property
     def vLinkColliding(self) -> "list[tuple[Link, Link | None]]":

@@ -25,7 +25,7 @@ SENSING = "simulation of sensors"
 
 @dataclass(eq=False)
 class CameraGeomData:
-    """What is fixed about a camera.
+    """Image size and intrinsics of a camera.
 
     Attributes:
         intrinsics: The camera matrix, wrapped.

@@ -1,4 +1,4 @@
-"""Motions: configurations over time."""
+"""Trajectories: configurations over time."""
 
 import math
 import os
@@ -54,7 +54,7 @@ class Trajectory(Interface):
         return self._xmlid
 
     def Init(self, spec: Spec) -> None:
-        """Remove all waypoints, and say what the numbers of new ones are.
+        """Remove all waypoints, and set the specification of new ones.
 
         Args:
             spec: A specification, or a group; it is copied.
@@ -73,7 +73,7 @@ class Trajectory(Interface):
         return self._waypoints
 
     def GetConfigurationSpecification(self) -> ConfigurationSpecification:
-        """Return what the numbers of a waypoint are; a copy."""
+        """Return the specification of the waypoints; a copy."""
         return ConfigurationSpecification.of([] if self._waypoints is None else self._waypoints.groups)
 
     def Insert(
@@ -108,7 +108,7 @@ class Trajectory(Interface):
         given = spec if group is None else group
         waypoints, numbers = self._known(), checked_numbers(data, "data").ravel()
         groups = waypoints.groups if given is None else _groups(given)
-        waypoints.insert(index, numbers, groups, overwrite=overwrite, find_body=self._env.GetKinBody)
+        waypoints.insert(index, numbers, groups, overwrite=overwrite, find_body=self._env.simulation.body)
 
     def Remove(self, startindex: int, endindex: int) -> None:
         """Remove the waypoints from ``startindex`` to before ``endindex``."""
@@ -172,7 +172,7 @@ class Trajectory(Interface):
         return self.GetWaypoints2D(0, len(self._known()), spec)
 
     def _as(self, rows: Floats, spec: Spec | None) -> Floats:
-        return rows if spec is None else self._known().as_layout(rows, _groups(spec), self._env.GetKinBody)
+        return rows if spec is None else self._known().as_layout(rows, _groups(spec), self._env.simulation.body)
 
     def GetDuration(self) -> float:
         """Return when the last waypoint is [s]; 0 without a group ``deltatime``."""

@@ -1,4 +1,4 @@
-"""Triangles as users hand them in and get them."""
+"""Triangle meshes of users."""
 
 import numpy as np
 from numpy.typing import ArrayLike

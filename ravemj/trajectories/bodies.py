@@ -1,7 +1,6 @@
 """The layouts of bodies: their joints, then their pose."""
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 
@@ -11,22 +10,6 @@ from ravemj.geometry_functions import arguments
 from ravemj.geometry_functions.affine import DOFAffine, RaveGetAffineDOF, affine_values, pose_with_values
 from ravemj.trajectories.groups import AFFINE, JOINTS, Group
 from ravemj.trajectories.layout import packed
-
-
-class Configurable(Protocol):
-    """What has joints and a pose."""
-
-    def GetDOF(self) -> int:  # noqa: N802 - OpenRAVE's name
-        """Return the number of joint values."""
-        ...
-
-    def GetDOFValues(self) -> Floats:  # noqa: N802 - OpenRAVE's name
-        """Return the joint values."""
-        ...
-
-    def GetTransform(self) -> Floats:  # noqa: N802 - OpenRAVE's name
-        """Return the pose, 4x4."""
-        ...
 
 
 def body_groups(name: str, indices: Sequence[int], affinedofs: int, interpolation: str) -> list[Group]:
@@ -43,10 +26,11 @@ def body_groups(name: str, indices: Sequence[int], affinedofs: int, interpolatio
     return packed([group for group in (joints, affine) if group.dof])
 
 
-def configuration_values(body: Configurable) -> Floats:
-    """Return the joint values and the pose (x, y, z, qw, qx, qy, qz) of a body."""
-    pose = arguments.pose(body.GetTransform(), "transform")
-    return np.concatenate([body.GetDOFValues(), affine_values(pose, DOFAffine.Transform)])
+def configuration_values(joint_values: Floats, T_world_link0: Floats) -> Floats:
+    """Return the joint values and the pose (x, y, z, qw, qx, qy, qz) of a body in one vector."""
+    return np.concatenate(
+        [joint_values, affine_values(arguments.pose(T_world_link0, "transform"), DOFAffine.Transform)]
+    )
 
 
 def split_configuration(values: Floats, dof: int) -> tuple[Floats, Pose]:

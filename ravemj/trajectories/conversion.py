@@ -1,11 +1,11 @@
 """Data of one layout in another."""
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
 
 import numpy as np
 
 from ravemj.core.transforms import Floats, Pose
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import arguments
 from ravemj.geometry_functions.affine import (
@@ -18,24 +18,8 @@ from ravemj.trajectories.extraction import rotation_columns
 from ravemj.trajectories.groups import AFFINE, JOINTS, Group, affine_parts, joint_indices
 from ravemj.trajectories.layout import find_compatible
 
-
-class Body(Protocol):
-    """What conversions ask of bodies: their present state."""
-
-    def GetDOFValues(self) -> Floats:  # noqa: N802 - OpenRAVE's name
-        """Return the joint values."""
-        ...
-
-    def GetDOFVelocities(self) -> Floats:  # noqa: N802 - OpenRAVE's name
-        """Return the joint velocities."""
-        ...
-
-    def GetTransform(self) -> Floats:  # noqa: N802 - OpenRAVE's name
-        """Return the pose, 4x4."""
-        ...
-
-
-FindBody = Callable[[str], Body | None]
+FindBody = Callable[[str], BodyState | None]
+"""Finds a body by its name; ``Simulation.body`` is one."""
 
 
 def nobody(name: str) -> None:
@@ -141,11 +125,22 @@ def _present(group: Group, find_body: FindBody) -> Floats:
     body = None if group.body is None else find_body(group.body)
     if group.kind == AFFINE[0]:
         parts, axis = affine_parts(group)
-        pose = Pose() if body is None else arguments.pose(body.GetTransform(), "transform")
-        return affine_values(pose, parts, axis)
+        return affine_values(Pose() if body is None else _pose(body), parts, axis)
     if group.kind == "outputSignals":
         return np.full(group.dof, -1.0)
     if body is None or group.kind not in JOINTS[:2]:
         return np.zeros(group.dof)
-    values = body.GetDOFValues() if group.kind == JOINTS[0] else body.GetDOFVelocities()
+    with body.simulation.lock:
+        if group.kind == JOINTS[0]:
+            values = body.kinematics.values()
+        else:
+            values = body.dynamics.dof_velocities(body.link_velocities())
     return np.array([values[index] if 0 <= index < len(values) else 0.0 for index in joint_indices(group)])
+
+
+def _pose(body: BodyState) -> Pose:
+    """Return the pose of the first link, as OpenRAVE's bodies have it."""
+    if not body.scene.links:
+        return Pose()
+    with body.simulation.lock:
+        return arguments.pose(body.link_transform(0), "transform")

@@ -8,7 +8,7 @@ from ravemj.rave.robot import Robot
 
 
 class DatabaseGenerator:
-    """Something that is computed once for a robot.
+    """A model that is computed once for a robot.
 
     Args:
         robot: The robot; its active manipulator is the model's.

@@ -1,4 +1,4 @@
-"""What OpenRAVE's own example programs start with: options, logging, a viewer."""
+"""Options, logging and viewer of OpenRAVE's own example programs."""
 
 import itertools
 import logging

@@ -1,4 +1,4 @@
-"""The built-in names of Python 2, as far as they are gone or mean something else."""
+"""The built-in names of Python 2 that Python 3 lacks or gives another meaning."""
 
 # What old scripts pass has no types.
 # pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
@@ -41,7 +41,7 @@ def _filter(function: Callable[[Any], Any] | None, sequence: Any) -> Any:  # noq
 
 
 def _map(function: Callable[..., Any] | None, *sequences: Iterable[Any]) -> list[Any]:
-    """Go on to the end of the longest, with None."""
+    """Return the list that ``map`` returned; sequences that are too short are filled up with None."""
     rows = list(sequences[0]) if len(sequences) == 1 else list(itertools.zip_longest(*sequences))
     if function is None:
         return rows
@@ -65,7 +65,7 @@ def _round(number: Any, ndigits: int = 0) -> float:  # noqa: ANN401 - whatever i
 
 
 def _message(error: Any) -> Any:  # noqa: ANN401 - whatever has a message
-    """Do what ``error.message`` did."""
+    """Return ``error.message``, which exceptions had in Python 2."""
     if hasattr(error, "message") or not isinstance(error, BaseException):
         return error.message
     return error.args[0] if len(error.args) == 1 else ""

@@ -1,4 +1,4 @@
-"""Division as Python 2 has it: of integers, it rounds down."""
+"""Division of Python 2, which rounds down for integers."""
 
 # What old scripts divide has no types.
 # pyright: reportUnknownArgumentType=false, reportUnknownMemberType=false
@@ -15,7 +15,7 @@ DIVIDE, DIVISOR = "__divide__", "__divisor__"
 
 
 class Division(ast.NodeTransformer):
-    """Puts helpers in the place of ``a / b`` and ``a /= b``."""
+    """Replaces ``a / b`` and ``a /= b`` by calls of ``divide`` and ``Divisor``."""
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
         """Change ``a / b``."""
@@ -44,7 +44,7 @@ def divide(left: Any, right: Any) -> Any:  # noqa: ANN401 - whatever scripts div
 
 
 class Divisor:
-    """The right side of ``a /= b``, which no left side knows, so that it is asked what to do."""
+    """The right side of ``a /= b``: no left side knows the type, so Python calls the methods of this class."""
 
     def __init__(self, value: Any) -> None:  # noqa: ANN401 - whatever scripts divide by
         self._value = value

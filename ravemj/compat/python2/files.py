@@ -16,7 +16,7 @@ _ENCODING, _ERRORS = "utf-8", "surrogateescape"  # bytes that are no UTF-8 come 
 
 
 def as_bytes(text: Any) -> Any:  # noqa: ANN401 - what scripts write
-    """Return the bytes of a text; anything else stays."""
+    """Return the bytes of a text; return anything else unchanged."""
     return text.encode(_ENCODING, _ERRORS) if isinstance(text, str) else text
 
 
@@ -47,7 +47,7 @@ class File:
         self._is_universal = "U" in mode or (os.linesep != "\n" and not self._is_binary)
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - close, flush, seek, fileno and so on
-        """Do what has nothing to do with text as Python 3 does it."""
+        """Return what the file of Python 3 has, for all that does not concern text."""
         return getattr(self.buffer, name)
 
     def _text(self, data: bytes) -> str:
@@ -55,7 +55,7 @@ class File:
         return text.replace("\r\n", "\n") if self._is_universal else text
 
     def read(self, size: int = -1) -> str | bytes:
-        """Return what follows, at most a number of bytes."""
+        """Return the rest, or at most a number of bytes of it."""
         data = self.buffer.read(size)
         return data if self._is_binary else self._text(data)
 
@@ -64,7 +64,7 @@ class File:
         return self._text(self.buffer.readline(size))
 
     def readlines(self, size: int = -1) -> list[str]:
-        """Return the lines that follow, at least a number of bytes."""
+        """Return the remaining lines, or the first of them with at least a number of bytes."""
         return [self._text(line) for line in self.buffer.readlines(size)]
 
     def __iter__(self) -> Self:
@@ -80,7 +80,7 @@ class File:
         self.buffer.write(as_bytes(text))
 
     def writelines(self, lines: Iterable[object]) -> None:
-        """Write one after the other."""
+        """Write several lines."""
         for line in lines:
             self.write(line)
 
@@ -97,19 +97,19 @@ class File:
 
 
 class Unpickler(pickle.Unpickler):
-    """Reads from all files, and what Python 2 wrote."""
+    """Unpickles from files of text and of bytes, and what Python 2 pickled."""
 
     def __init__(self, file: Any) -> None:  # noqa: ANN401 - whatever can be read
         super().__init__(getattr(file, "buffer", file), encoding="latin-1")  # as numpy's arrays ask for
 
 
 def load(file: Any) -> Any:  # noqa: ANN401 - whatever was written
-    """Do what ``pickle.load`` does."""
+    """Load like ``pickle.load``, also what Python 2 wrote."""
     return Unpickler(file).load()
 
 
 def loads(data: str | bytes) -> Any:  # noqa: ANN401 - whatever was written
-    """Do what ``pickle.loads`` does."""
+    """Load like ``pickle.loads``, also what Python 2 wrote."""
     return pickle.loads(as_bytes(data), encoding="latin-1")
 
 

@@ -23,7 +23,7 @@ _ENVIRONMENT = [
         os.path.dirname(os.path.dirname(__file__)),
     )
 ]
-"""Folders of packages that are installed, which are never translated, and of ravemj."""
+"""Folders that are never translated: those of installed packages, and that of ravemj."""
 
 
 def execute(source: bytes, path: str, names: dict[str, Any]) -> None:
@@ -70,7 +70,7 @@ def _compile(source: bytes, path: str) -> CodeType | None:
 
 
 def load_source(name: str, path: str) -> ModuleType:
-    """Do what ``imp.load_source`` did: import a file under a name."""
+    """Import a file under a name, as ``imp.load_source`` did."""
     spec = importlib.util.spec_from_file_location(name, path, loader=_Loader(name, path))
     assert spec is not None
     module = sys.modules[name] = importlib.util.module_from_spec(spec)
@@ -85,7 +85,7 @@ def install_finder(folder: str) -> None:
 
 
 class _Finder:
-    """Finds what Python's own finder does, and has it translated."""
+    """Finds the modules that Python's own finder finds, and translates those of Python 2."""
 
     def __init__(self, folder: str) -> None:
         self._folder = os.path.realpath(folder)

@@ -1,4 +1,4 @@
-"""What the standard library had in Python 2, and Python 3 has under other names, or not at all."""
+"""Names of Python 2's standard library that Python 3 has renamed or removed."""
 
 # What old scripts pass has no types.
 # pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false
@@ -34,7 +34,7 @@ ttk=tkinter.ttk urllib2=urllib.request urlparse=urllib.parse UserDict=collection
 UserString=collections xml.etree.cElementTree=xml.etree.ElementTree xmlrpclib=xmlrpc.client
 """
 RENAMED: dict[str, str] = dict(re.findall(r"(\S+)=(\S+)", _RENAMED))
-"""Modules that have other names now."""
+"""Modules that Python 3 has renamed."""
 
 
 def _in(module: str, names: str) -> dict[str, object]:
@@ -60,7 +60,7 @@ def _floor(x: float) -> float:
 
 
 def _of_items(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that takes arrays of one for numbers."""
+    """Return a function that accepts arrays of one element as numbers."""
     return lambda *args: function(*map(item, args))
 
 

@@ -1,4 +1,4 @@
-"""Methods of Python 2 and NumPy 1 that are gone, or that take or return something else."""
+"""Methods of Python 2 and NumPy 1 that are gone, or whose arguments or results have changed."""
 
 # What old scripts call has no types.
 # pyright: reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
@@ -14,7 +14,7 @@ from ravemj.compat.python2.files import as_bytes, as_text
 
 
 def sort(iterable: Iterable[Any], cmp: Any = None, key: Any = None, reverse: bool = False) -> list[Any]:  # noqa: ANN401
-    """Do what ``sorted`` did."""
+    """Return a sorted list, as ``sorted`` of Python 2, which takes a comparison."""
     order = cmp and functools.cmp_to_key(cmp)
     both = (lambda item: order(key(item))) if order and key else order or key
     return sorted(iterable, key=both, reverse=reverse)
@@ -42,14 +42,14 @@ _GONE: dict[str, Callable[..., Any]] = {
     "viewkeys": lambda values: values.keys(),
     "viewvalues": lambda values: values.values(),
 }
-"""What is done where an object has no such method."""
+"""Replacements of methods, for objects that do not have them."""
 _LISTED = {"items", "keys", "values"}
 NAMES = {*_GONE, *_LISTED, "encode", "sort"}
-"""Those that scripts call by ``call``."""
+"""Names of the methods that translated scripts call by ``call``."""
 
 
 def call(owner: Any, name: str, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever methods take
-    """Do what ``owner.name(...)`` did."""
+    """Return what ``owner.name(...)`` returned in Python 2."""
     if name == "sort" and isinstance(owner, list):
         return _sort(owner, *args, **options)
     if name == "encode" and isinstance(owner, str):

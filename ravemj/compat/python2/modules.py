@@ -21,7 +21,7 @@ _NAMES = {**library.NAMES, "numpy": numpy1.NAMES, "ravemj.compat.openravepy": {}
 
 
 class View(ModuleType):
-    """A module, with names that it has no more; modules in it are views, too.
+    """A module with the names that it had in Python 2; modules in it are views, too.
 
     Args:
         module: The module; what is set here is set there.
@@ -51,7 +51,7 @@ class View(ModuleType):
 
 @functools.cache
 def view(module: ModuleType) -> ModuleType:
-    """Return what scripts get for a module."""
+    """Return a module, or its view if it lacks names of Python 2."""
     names = _NAMES.get(module.__name__)
     return module if names is None else View(module, names)
 
@@ -63,7 +63,7 @@ def import_(
     fromlist: Sequence[str] | None = None,
     level: int = -1,
 ) -> ModuleType:
-    """Import a module for a script: of its own package first, and by names that modules had."""
+    """Import a module for a script: from its own package first, and by its name in Python 2."""
     importer = globals or {}
     if level > 0 or _is_beside(name, importer):
         return view(builtins.__import__(name, globals, locals, fromlist or (), max(level, 1)))
@@ -75,7 +75,7 @@ def import_(
 
 
 def _is_beside(name: str, importer: Mapping[str, Any]) -> bool:
-    """Return whether a plain import means a module in the package of the one that imports."""
+    """Return whether an import without dots finds a module in the importer's own package."""
     package = importer.get("__package__")
     if not package or importer.get("absolute_import") is __future__.absolute_import:
         return False

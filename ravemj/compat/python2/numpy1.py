@@ -33,13 +33,13 @@ bitwise_right_shift bool concat core cumulative_prod cumulative_sum divmod dtype
 matrix_transpose matvec max min permute_dims polynomial pow round strings test testing trapezoid typing ulong
 unique_all unique_counts unique_inverse unique_values unstack vecdot vecmat
 """
-"""What the star of later versions gives as well; it would hide what scripts have from Python and from ``math``."""
+"""Names that ``from numpy import *`` gives only in later versions; they would hide those of Python and ``math``."""
 
 _WHERE_NEEDED = None if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else False
 
 
 def item(a: Any) -> Any:  # noqa: ANN401 - whatever scripts take for a number
-    """Return the number in an array of one; anything else stays."""
+    """Return the element of an array of one element; return anything else unchanged."""
     return a.item() if isinstance(a, np.ndarray) and a.size == 1 else a
 
 
@@ -48,7 +48,7 @@ def _alen(a: Any) -> int:  # noqa: ANN401 - whatever makes an array
 
 
 def _array(object: Any, dtype: Any = None, copy: bool = True, *args: Any, **options: Any) -> Any:  # noqa: ANN401
-    """Copy where it must be with ``copy=False`` too; lists of unlike lengths are objects."""
+    """Return an array as NumPy 1 did: ``copy=False`` may copy, and lists of unlike lengths become objects."""
     may_copy: Any = True if copy else _WHERE_NEEDED
     try:
         return np.array(object, dtype, *args, copy=may_copy, **options)
@@ -76,7 +76,7 @@ def _find_common_type(array_types: Iterable[Any], scalar_types: Iterable[Any]) -
 
 
 def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that gives floats for integers, too."""
+    """Return a function whose results are floats for integers, too."""
 
     @functools.wraps(function)
     def call(x: Any, *args: Any, **options: Any) -> Any:  # noqa: ANN401 - whatever makes an array
@@ -117,4 +117,4 @@ def _names() -> dict[str, object]:
 
 
 NAMES = _names()
-"""What a script finds in ``numpy`` first."""
+"""Names that ``numpy`` has for scripts, in place of its own."""

@@ -1,4 +1,4 @@
-"""Statements and expressions that Python 3 reads too, but takes for something else."""
+"""Statements and expressions that Python 3 reads, but gives another meaning."""
 
 import ast
 
@@ -101,7 +101,7 @@ class Statements(ast.NodeTransformer):
         return node
 
     def visit_Compare(self, node: ast.Compare) -> ast.AST:
-        """Take ``array == None`` for one question, as NumPy did before 1.13, and not for one on each element."""
+        """Compare ``array == None`` as a whole, as NumPy did before 1.13, and not element by element."""
         self.generic_visit(node)
         operands = [node.left, *node.comparators]
         for place, operator in enumerate(node.ops):

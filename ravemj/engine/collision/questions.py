@@ -19,7 +19,7 @@ from ravemj.model.scene import KinBody
 
 
 class MovedBy(NamedTuple):
-    """Stands for the links that some DOFs move, or the pairs of links that they move against each other."""
+    """The links that some DOFs move, or the pairs of links that they move against each other."""
 
     dofs: tuple[int, ...]
 
@@ -36,62 +36,51 @@ LinkOf = tuple[BodyState, int]
 
 def body_and_others(
     world: CollisionWorld,
-    body: BodyState,
+    body: BodyState | LinkOf,
     links: Links = None,
     without_bodies: frozenset[BodyState] = frozenset(),
     without_links: frozenset[LinkOf] = frozenset(),
 ) -> Pairs:
-    """Return the pairs of a body, or of some links and what they hold, and all other bodies."""
+    """Return the pairs of a body and all other bodies.
+
+    Args:
+        world: Where they are.
+        body: The body with what it holds, or one link, without what that holds.
+        links: Only these links of the body, and what they hold.
+        without_bodies: Other bodies that are left out.
+        without_links: Links of other bodies that are left out.
+    """
 
     def find() -> tuple[Ints, Ints]:
-        others = _without(world, world.geoms_of_others(body), without_bodies, without_links)
-        return cross(_part(world, body, links), others)
+        others = _without(world, world.geoms_of_others(body_of(body)), without_bodies, without_links)
+        return cross(_geoms(world, body, links), others)
 
     return world.pairs(("others", body, links, without_bodies, without_links), find)
 
 
-def link_and_others(
-    world: CollisionWorld,
-    link: LinkOf,
-    without_bodies: frozenset[BodyState] = frozenset(),
-    without_links: frozenset[LinkOf] = frozenset(),
+def each_other(
+    world: CollisionWorld, first: BodyState | LinkOf, second: BodyState | LinkOf, links: Links = None
 ) -> Pairs:
-    """Return the pairs of a link, without what it holds, and all other bodies."""
+    """Return the pairs of two bodies, of a link and a body, or of two links.
+
+    There are none if one body holds the other, nor of a link and its own body; two links of one body are tested,
+    adjacent or not.
+
+    Args:
+        world: Where they are.
+        first: A body, or a link.
+        second: Another one.
+        links: Only these links of a first body, and what they hold.
+    """
 
     def find() -> tuple[Ints, Ints]:
-        others = _without(world, world.geoms_of_others(link[0]), without_bodies, without_links)
-        return cross(world.geoms_of_link(*link), others)
+        if isinstance(first, BodyState) or isinstance(second, BodyState):
+            together = body_of(second) in world.group(body_of(first))
+        else:
+            together = first == second
+        return cross(_geoms(world, first, links), _nothing() if together else _geoms(world, second))
 
-    return world.pairs(("link and others", link, without_bodies, without_links), find)
-
-
-def bodies(world: CollisionWorld, first: BodyState, second: BodyState, links: Links = None) -> Pairs:
-    """Return the pairs of two bodies; none if one holds the other."""
-
-    def find() -> tuple[Ints, Ints]:
-        together = second in world.group(first)
-        return cross(_part(world, first, links), _nothing() if together else world.geoms_of_group(second))
-
-    return world.pairs(("bodies", first, second, links), find)
-
-
-def link_and_body(world: CollisionWorld, link: LinkOf, body: BodyState) -> Pairs:
-    """Return the pairs of a link and a body; none if it is the link's own or one holds the other."""
-
-    def find() -> tuple[Ints, Ints]:
-        together = body in world.group(link[0])
-        return cross(world.geoms_of_link(*link), _nothing() if together else world.geoms_of_group(body))
-
-    return world.pairs(("link and body", link, body), find)
-
-
-def links(world: CollisionWorld, first: LinkOf, second: LinkOf) -> Pairs:
-    """Return the pairs of two links, also of one body, adjacent or not."""
-
-    def find() -> tuple[Ints, Ints]:
-        return cross(world.geoms_of_link(*first), _nothing() if first == second else world.geoms_of_link(*second))
-
-    return world.pairs(("links", first, second), find)
+    return world.pairs(("each other", first, second, links), find)
 
 
 def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> Pairs:
@@ -108,6 +97,13 @@ def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> P
         return joined(_within(world, body, wanted))
 
     return world.pairs(("itself", body, asked), find)
+
+
+def link_and_own_body(world: CollisionWorld, link: LinkOf) -> Pairs:
+    """Return the pairs of a link, or what it holds, and the rest of its body, as far as ``itself`` has them."""
+    body, index = link
+    others = range(len(body.scene.links))
+    return itself(world, body, frozenset((min(index, other), max(index, other)) for other in others))
 
 
 def _within(
@@ -137,6 +133,15 @@ def moved_apart(body: KinBody, dofs: Iterable[int]) -> frozenset[Pair]:
     """Return the pairs of links, the smaller index first, that any of the DOFs moves against each other."""
     movers = [dofs_moving(body, link) & set(dofs) for link in range(len(body.links))]
     return frozenset((a, b) for a, b in combinations(range(len(movers)), 2) if movers[a] != movers[b])
+
+
+def body_of(thing: BodyState | LinkOf) -> BodyState:
+    """Return a body itself, or the body of a link."""
+    return thing if isinstance(thing, BodyState) else thing[0]
+
+
+def _geoms(world: CollisionWorld, thing: BodyState | LinkOf, links: Links = None) -> Ints:
+    return _part(world, thing, links) if isinstance(thing, BodyState) else world.geoms_of_link(*thing)
 
 
 def _part(world: CollisionWorld, body: BodyState, links: Links) -> Ints:

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
 
@@ -51,6 +52,30 @@ def first_hit(
             reach = fraction
             best = RayHit(geom, fraction, start + fraction * direction, normal.copy())
     return best
+
+
+def first_hits(
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints, rays: Floats, *, front_facing_only: bool
+) -> tuple[NDArray[np.bool_], Floats]:
+    """Return where many rays first meet a surface; see ``first_hit``.
+
+    Args:
+        model: The model.
+        data: Its state.
+        geoms: The geoms that they can meet.
+        rays: Start and direction of each [m], shape (n, 6).
+        front_facing_only: Whether hits from behind, on the inside of a surface, are left out.
+
+    Returns:
+        Which rays meet something, shape (n,); and position and outward normal of each hit, shape (n, 6), else zeros.
+    """
+    found, points = np.zeros(len(rays), dtype=np.bool_), np.zeros((len(rays), 6))
+    for number, ray in enumerate(rays):
+        hit = first_hit(model, data, geoms, ray[:3], ray[3:])
+        if hit is not None and not (front_facing_only and hit.normal @ ray[3:] >= 0):
+            found[number] = True
+            points[number] = (*hit.position, *hit.normal)
+    return found, points
 
 
 def _near(model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints, start: Floats, direction: Floats) -> list[int]:

@@ -5,9 +5,10 @@ from contextlib import contextmanager
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
-from ravemj.engine.collision.rays import RayHit, first_hit
+from ravemj.engine.collision.rays import RayHit, first_hit, first_hits
 from ravemj.engine.collision.shapes import TOUCHING, ShapeTests
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
@@ -183,8 +184,17 @@ class CollisionWorld:
 
     def ray(self, start: Floats, direction: Floats, geoms: Ints | None = None) -> RayHit | None:
         """Return where a ray first meets one of the geoms; None: any that collides. See ``rays.first_hit``."""
-        among = np.flatnonzero(self.collides) if geoms is None else geoms
-        return first_hit(self._model, self._data, among, start, direction)
+        return first_hit(self._model, self._data, self._among(geoms), start, direction)
+
+    def rays(
+        self, rays: Floats, geoms: Ints | None = None, *, front_facing_only: bool = False
+    ) -> tuple[NDArray[np.bool_], Floats]:
+        """Return where many rays first meet one of the geoms; None: any that collides. See ``rays.first_hits``."""
+        among = self._among(geoms)
+        return first_hits(self._model, self._data, among, rays, front_facing_only=front_facing_only)
+
+    def _among(self, geoms: Ints | None) -> Ints:
+        return np.flatnonzero(self.collides) if geoms is None else geoms
 
     @contextmanager
     def moved(self, motions: Mapping[tuple[BodyState, int], Floats]) -> Generator[None]:

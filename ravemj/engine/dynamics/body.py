@@ -43,7 +43,8 @@ class BodyDynamics:
         self._qvel, self._qacc, self._gravity = self._data.qvel, self._data.qacc, model.opt.gravity
         self._velocities: Floats | None = None  # of the links: those that the data are set for
         self._velocities_stamp = -1
-        self._with_joints = self._are_moving = self._roots_move = False
+        self._with_joints: bool = False
+        self._are_moving = self._roots_move = False
         self._rates = np.zeros(kinematics.dof)
         self._rest_qacc = np.zeros(model.nv)
 

@@ -154,6 +154,24 @@ class Simulation:
             for body in self.bodies:
                 self.remove(body)
 
+    def copy(self, other: "Simulation") -> dict[BodyState, BodyState]:
+        """Replace bodies, view and gravity by copies of another world's. The caller holds both locks.
+
+        Returns:
+            For each body of the other world its copy.
+        """
+        self.clear()
+        self.view = other.view
+        self.set_gravity(other.gravity)
+        copies = {body: self.create(body.scene) for body in other.bodies}
+        for body, copy in copies.items():
+            copy.copy(body)
+            self.insert(copy, body.index)
+            copy.rest_poses = body.rest_poses
+        for body, copy in copies.items():
+            copy.grabs = [grab._replace(body=copies[grab.body]) for grab in body.grabs]
+        return copies
+
     def set_gravity(self, gravity: Vec3) -> None:
         """Set the acceleration of free fall [m/s^2]."""
         with self.lock:

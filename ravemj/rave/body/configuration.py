@@ -268,7 +268,7 @@ class Configuration(BodyPart):
     def GetConfigurationValues(self) -> Floats:
         """Return the joint values, then the pose (x, y, z, qw, qx, qy, qz), shape (dof + 7,)."""
         with self._simulation.lock:
-            return configuration_values(self)
+            return configuration_values(self.GetDOFValues(), self.GetTransform())
 
     def SetConfigurationValues(self, values: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits) -> None:
         """Set the joint values and the pose.

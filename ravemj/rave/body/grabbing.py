@@ -16,7 +16,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
-from ravemj.rave.infos.content import Info
+from ravemj.rave.infos.base import Info
 from ravemj.rave.interface import Interface
 from ravemj.rave.link import Link
 

@@ -1,4 +1,4 @@
-"""What moves robots in time."""
+"""Controllers of robots."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""What all controllers have in common."""
+"""Base class of controllers."""
 
 from typing import TYPE_CHECKING
 

@@ -21,7 +21,7 @@ _SLACK = 1e-6
 
 
 class _Path(NamedTuple):
-    """A trajectory, and what of it moves the robot.
+    """A trajectory, and the part of it that moves the robot.
 
     Attributes:
         trajectory: A copy of the user's.

@@ -25,7 +25,7 @@ class _Part(NamedTuple):
 
 
 class MultiController(Controller):
-    """Shares the DOFs of a robot out to several controllers; ``RaveCreateMultiController`` makes it.
+    """Distributes the DOFs of a robot among several controllers; ``RaveCreateMultiController`` makes it.
 
     Example:
         >>> multi = RaveCreateMultiController(env)

@@ -24,7 +24,7 @@ class VelocityController(Controller):
     _velocities: Floats | None = None
 
     def Reset(self, options: int = 0) -> None:
-        """Let go of the joints.
+        """Stop driving the joints.
 
         Args:
             options: OpenRAVE has no meaning for them.

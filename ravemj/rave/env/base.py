@@ -1,4 +1,4 @@
-"""What the parts of an environment's API share."""
+"""Base class of the parts of ``Environment``."""
 
 from typing import TYPE_CHECKING, cast
 from weakref import WeakValueDictionary
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class EnvironmentPart(UserData):
-    """Part of the API of an environment; ``Environment`` joins the parts."""
+    """State that the parts of ``Environment`` share."""
 
     _internal = ("wrap",)
 

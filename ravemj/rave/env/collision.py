@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers
+from ravemj.core.handles import Handle
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
@@ -16,27 +16,15 @@ from ravemj.rave.kinbody import KinBody
 from ravemj.rave.report import CollisionReport
 
 CollisionCallback = Callable[[CollisionReport, bool], int]
-"""Takes a report of one collision and whether time runs, and returns a ``CollisionAction``."""
+"""A function of a report of one collision and of whether physics asks; it returns a ``CollisionAction``."""
 
 
-class CollisionCallbackHandle(ApiObject):
+class CollisionCallbackHandle(Handle):
     """Keeps a function registered; it is not called any more once this is closed or gone."""
-
-    def __init__(self, callbacks: list[CollisionCallback], callback: CollisionCallback) -> None:
-        self._callbacks, self._callback = callbacks, callback
-        callbacks.append(callback)
-
-    def Close(self) -> None:
-        """End it. A second time does nothing."""
-        if self._callback in self._callbacks:
-            self._callbacks.remove(self._callback)
-
-    def __del__(self) -> None:
-        self.Close()
 
 
 class Collision(EnvironmentPart):
-    """Tests whether things touch."""
+    """Collision checking: what touches what, and what rays hit."""
 
     _internal = ("collision_callbacks",)
 
@@ -46,13 +34,13 @@ class Collision(EnvironmentPart):
         self._checker: CollisionChecker | None = None
 
     def GetCollisionChecker(self) -> CollisionChecker:
-        """Return what answers ``CheckCollision``; never None."""
+        """Return the collision checker, which answers ``CheckCollision``; never None."""
         if self._checker is None:
             self._checker = CollisionChecker(self._environment)
         return self._checker
 
     def SetCollisionChecker(self, collisionchecker: CollisionChecker | None) -> bool:
-        """Choose what answers ``CheckCollision``.
+        """Choose the collision checker, which answers ``CheckCollision``.
 
         Args:
             collisionchecker: A checker of this environment; None: one for which nothing collides.
@@ -62,10 +50,8 @@ class Collision(EnvironmentPart):
         """
         self._check_alive()
         checker = collisionchecker or NoCollisionChecker(self._environment)
-        if (
-            checked_kind(checker, CollisionChecker, "SetCollisionChecker: collisionchecker").GetEnv()
-            is not self._environment
-        ):
+        checked_kind(checker, CollisionChecker, "SetCollisionChecker: collisionchecker")
+        if checker.GetEnv() is not self._environment:
             raise ArgumentError("SetCollisionChecker: collisionchecker was made for another environment")
         self._checker = checker
         return True
@@ -110,7 +96,7 @@ class Collision(EnvironmentPart):
     def CheckCollisionRays(
         self, rays: ArrayLike, body: KinBody | None = None, front_facing_only: bool = False
     ) -> tuple[NDArray[np.bool_], Floats]:
-        """Shoot many rays.
+        """Return where many rays first hit something.
 
         Args:
             rays: A row for each: start, and direction with the range as its length [m], shape (n, 6).
@@ -129,16 +115,10 @@ class Collision(EnvironmentPart):
             rows = rows.reshape(-1, 6)
         if rows.ndim != 2 or rows.shape[1] != 6:
             raise ArgumentError(f"CheckCollisionRays: rays have shape {rows.shape}, and should have shape (n, 6)")
-        found, points = np.zeros(len(rows), dtype=bool), np.zeros((len(rows), 6))
-        checker = self.GetCollisionChecker()
         with self._simulation.lock:
             world = self._simulation.collisions()
-            for number, row in enumerate(rows):
-                hit = checker.cast(world, row[:3], row[3:], ... if body is None else body)
-                if hit is not None and not (front_facing_only and hit.normal @ row[3:] >= 0):
-                    found[number] = True
-                    points[number] = (*hit.position, *hit.normal)
-        return found, points
+            targets = self.GetCollisionChecker().ray_targets(world, ... if body is None else body)
+            return world.rays(rows, targets, front_facing_only=front_facing_only)
 
     def RegisterCollisionCallback(self, fncallback: CollisionCallback) -> CollisionCallbackHandle:
         """Register a function that decides about each collision.
@@ -150,4 +130,5 @@ class Collision(EnvironmentPart):
         Returns:
             A handle: keep it as long as the function should be called.
         """
-        return CollisionCallbackHandle(self.collision_callbacks, fncallback)
+        self.collision_callbacks.append(fncallback)
+        return CollisionCallbackHandle(self.collision_callbacks.remove, fncallback)

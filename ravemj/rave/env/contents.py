@@ -1,19 +1,26 @@
-"""Bodies that come and go."""
+"""Bodies, sensors and modules of an environment."""
 
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from ravemj.core.arguments import checked_kind
+from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
-from ravemj.rave.enums import InterfaceAddMode
+from ravemj.model import scene
+from ravemj.model.triangles import links_triangles
+from ravemj.rave.enums import InterfaceAddMode, TriangulateOptions
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.interface import Interface
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor
+from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 
 class Contents(EnvironmentPart):
-    """The bodies of an environment."""
+    """The bodies of an environment, as objects and as triangles; and modules, of which there are none."""
+
+    TriangulateOptions = TriangulateOptions
 
     def Add(self, interface: Interface, addMode: Any = False, cmdargs: str = "") -> None:  # noqa: ANN401 - OpenRAVE's
         """Add a body or robot to the environment, in the pose that it has.
@@ -42,7 +49,7 @@ class Contents(EnvironmentPart):
             self.AddKinBody(interface, addMode)
 
     def _add_other(self, interface: object) -> None:
-        """Take what is no body: a viewer of ours, which is here already."""
+        """Accept a viewer of this environment, which is attached already; refuse anything else that is no body."""
         if any(interface is viewer for viewer in self._viewers):
             return
         kind = "None" if interface is None else type(interface).__name__
@@ -96,7 +103,7 @@ class Contents(EnvironmentPart):
     RemoveKinBody = Remove
 
     def _remove_other(self, interface: object) -> bool:
-        """Take out what is no body: a viewer, which closes."""
+        """Close and remove a viewer; return whether it was there."""
         if interface is None:
             raise ArgumentError("Remove: takes a body or robot, not None")
         for viewer in self._viewers:
@@ -182,6 +189,75 @@ class Contents(EnvironmentPart):
 
     GetBodyFromEnvironmentId = GetBodyFromEnvironmentBodyIndex
 
+    def Triangulate(self, body: KinBody) -> TriMesh:
+        """Return all shapes of a body as triangles, in the world as the body stands now.
+
+        Args:
+            body: The body; what it holds is left out.
+        """
+        checked_kind(body, KinBody, "Triangulate: body")
+        with self._simulation.lock:
+            return _triangles([body.simulation_state])
+
+    def TriangulateScene(self, options: int = TriangulateOptions.Everything, name: str = "") -> TriMesh:
+        """Return the shapes of several bodies as triangles, in the world as they stand now.
+
+        Args:
+            options: Which bodies, a ``TriangulateOptions``.
+            name: The name that ``Body`` and ``AllExceptBody`` mean.
+        """
+        takes = _CHOICES[TriangulateOptions(options)]
+        with self._simulation.lock:
+            return _triangles(state for state in self._simulation.bodies if takes(state.scene, name))
+
+    def AddModule(self, module: object, args: str = "") -> int:
+        """Refuse any module, since ``RaveCreateModule`` makes none; it never returns.
+
+        Args:
+            module: What ``RaveCreateModule`` returned.
+            args: What the module starts with.
+
+        Raises:
+            openrave_exception: always.
+        """
+        del args
+        if module is None:
+            message = "module is None, as RaveCreateModule returns for names that no plugin has"
+        else:
+            message = f"module is a {type(module).__name__}, and should be what RaveCreateModule returned"
+        raise ArgumentError(f"AddModule: {message}")
+
+    LoadProblem = AddModule
+
+    def GetModules(self) -> list[object]:
+        """Return the modules that were added: none."""
+        return []
+
+    GetLoadedProblems = GetModules
+
+    def RemoveProblem(self, module: object) -> bool:
+        """Remove a module; the older name of ``Remove``.
+
+        Returns:
+            False: it was not there.
+        """
+        return self.Remove(module)
+
     def GetUnit(self) -> tuple[str, float]:
         """Return the unit of length and how many metres it is: always the metre."""
         return ("m", 1.0)
+
+
+_CHOICES: dict[TriangulateOptions, Callable[[scene.KinBody, str], bool]] = {
+    TriangulateOptions.Obstacles: lambda body, name: not body.is_robot,
+    TriangulateOptions.Robots: lambda body, name: body.is_robot,
+    TriangulateOptions.Everything: lambda body, name: True,
+    TriangulateOptions.Body: lambda body, name: body.name == name,
+    TriangulateOptions.AllExceptBody: lambda body, name: body.name != name,
+}
+
+
+def _triangles(bodies: Iterable[BodyState]) -> TriMesh:
+    """Return all shapes of bodies in the world."""
+    parts = [links_triangles(body.scene.links, body.link_transforms()) for body in bodies]
+    return trimesh_of(scene.Mesh.merged(parts))

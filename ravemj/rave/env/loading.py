@@ -1,4 +1,4 @@
-"""Model files, and models as text."""
+"""Loading of models, from files and from text."""
 
 import logging
 import os
@@ -7,16 +7,18 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, send_warnings
+from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, Source, SourceError, send_warnings
+from ravemj.model.scene import Mesh
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
+from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml import Reading
 
 Attributes = Mapping[str, str]
-"""What acts on the bodies of a file, by name: see ``Load``."""
+"""Attributes for the bodies of a file, by name; see ``Load``."""
 
 Text = str | bytes | os.PathLike[str]
 Argument = KinBody | Text | Attributes | None
@@ -25,7 +27,7 @@ _LOG = logging.getLogger("ravemj")
 
 
 class Loading(EnvironmentPart):
-    """Reads models."""
+    """Loads models."""
 
     def Load(self, filename: Text, atts: Attributes | None = None) -> bool:
         """Add the content of a model file to the environment.
@@ -166,6 +168,31 @@ class Loading(EnvironmentPart):
         with self._simulation.lock:
             into.simulation_state.rebuild(replace(scene, is_robot=into.IsRobot()))
         return into
+
+    def ReadTrimeshURI(self, filename: str) -> TriMesh | None:
+        """Read a mesh file: all its triangles, in metres and in the frame of the file.
+
+        Args:
+            filename: The file. It is looked for in the working folder, then in the folders of the environment variable
+                ``OPENRAVE_DATA``.
+
+        Returns:
+            The triangles, or None, with the reason in the log, where there is no such file or it is broken.
+        """
+        from ravemj.formats.meshes import read_mesh  # noqa: PLC0415 - slow to import
+        from ravemj.formats.readers import find  # noqa: PLC0415
+
+        path = find(filename)
+        try:
+            if path is None:
+                raise SourceError("there is no such file", Source(filename), "check the path, or set OPENRAVE_DATA")
+            parts = read_mesh(path)
+        except SourceError as error:
+            _LOG.error("%s", error)
+            return None
+        return trimesh_of(Mesh.merged(part.mesh for part in parts))
+
+    ReadTrimeshFile = ReadTrimeshURI
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

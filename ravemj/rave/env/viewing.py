@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Viewing(EnvironmentPart):
-    """Shows the environment."""
+    """Viewers of the environment, and pictures without one."""
 
     _internal = ("open_viewer", "renderer")
 
@@ -55,7 +55,7 @@ class Viewing(EnvironmentPart):
         return bool(viewername)
 
     def open_viewer(self, name: str, show: bool) -> "Viewer | None":
-        """Attach a viewer beside those that there are; None for a name that is no viewer's."""
+        """Attach a further viewer and return it; None for a name that is no viewer's."""
         from ravemj.gui.viewers import open_viewer  # noqa: PLC0415 - slow to import
 
         self._check_alive()
@@ -180,7 +180,7 @@ class Viewing(EnvironmentPart):
 
     @property
     def renderer(self) -> SimulationRenderer:
-        """What draws the environment."""
+        """The renderer of the environment."""
         return self._renderer
 
     def _repr_png_(self) -> bytes:

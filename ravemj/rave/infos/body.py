@@ -1,4 +1,4 @@
-"""The description of a body."""
+"""Descriptions of bodies and robots."""
 
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -16,10 +16,9 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.content import Info
+from ravemj.rave.infos.base import Info, identity
 from ravemj.rave.infos.joint import JointInfo
 from ravemj.rave.infos.link import LinkInfo
-from ravemj.rave.infos.numbers import identity
 from ravemj.rave.infos.robot import AttachedSensorInfo, ManipulatorInfo
 
 if TYPE_CHECKING:
@@ -29,7 +28,7 @@ T = TypeVar("T")
 
 
 class ExtractInfoOptions(IntFlag):
-    """What ``body.ExtractInfo`` takes."""
+    """Options of ``body.ExtractInfo``."""
 
     Everything = 0
     SkipDOFValues = 1
@@ -38,7 +37,7 @@ class ExtractInfoOptions(IntFlag):
 
 @dataclass(eq=False, repr=False)
 class KinBodyInfo(Info):
-    """What a body is made of.
+    """The description of a body.
 
     Attributes:
         _name: Its name.
@@ -74,7 +73,7 @@ class KinBodyInfo(Info):
 
 @dataclass(eq=False, repr=False)
 class RobotBaseInfo(KinBodyInfo):
-    """What a robot is made of.
+    """The description of a robot.
 
     Attributes:
         _vManipInfos: Its arms, a list of ``ManipulatorInfo``.

@@ -15,8 +15,7 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceE
 from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import GeometryType
-from ravemj.rave.infos.content import Info
-from ravemj.rave.infos.numbers import filled, identity, pose, vector
+from ravemj.rave.infos.base import Info, filled, identity, pose, vector
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 
 if TYPE_CHECKING:

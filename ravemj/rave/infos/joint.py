@@ -6,7 +6,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,9 +18,7 @@ from ravemj.model.joints import about, directions_at, reported_anchor, wxyz_from
 from ravemj.model.mimic import Equations
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import JointType
-from ravemj.rave.infos.content import Info
-from ravemj.rave.infos.numbers import filled, per_axis, vector
-from ravemj.rave.infos.parameters import ParameterFields
+from ravemj.rave.infos.base import Info, ParameterFields, filled, per_axis, vector
 
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.actuator import Motor
@@ -33,6 +31,19 @@ _KINDS: dict[JointType, scene.JointKind] = {
     JointType.Spherical: "spherical",
 }
 _AXES: dict[scene.JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "spherical": 3}
+_AXIS_FIELDS = (
+    ("_vresolution", "resolution", 0.02),
+    ("_vmaxvel", "max_velocity", 10.0),
+    ("_vmaxaccel", "max_acceleration", 50.0),
+    ("_vmaxtorque", "max_torque", 0.0),
+    ("_vweights", "weight", 1.0),
+    ("_voffsets", "wrap_offset", 0.0),
+    ("_vlowerlimit", "lower", 0.0),
+    ("_vupperlimit", "upper", 0.0),
+    ("_bIsCircular", "circular", 0.0),
+)
+"""Fields with a number for each axis, their names in ``scene.Axis``, and what stands for numbers that are missing."""
+
 _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -145,7 +156,9 @@ class JointInfo(ParameterFields):
         """
         joint = body.all_joints[index]
         mimic = joint.mimic
-        axes = joint.axes
+        of_axes: dict[str, Any] = {
+            field: np.array([getattr(axis, name) for axis in joint.axes]) for field, name, _ in _AXIS_FIELDS
+        }
         return cls(
             _type=JointType[joint.kind.capitalize()],
             _name=joint.name,
@@ -154,17 +167,9 @@ class JointInfo(ParameterFields):
             _vanchor=np.array(reported_anchor(joint)),
             _vaxes=[np.array(direction) for direction in _directions(body, joint, values)],
             _vcurrentvalues=np.array(values),
-            _vresolution=np.array([axis.resolution for axis in axes]),
-            _vmaxvel=np.array([axis.max_velocity for axis in axes]),
-            _vmaxaccel=np.array([axis.max_acceleration for axis in axes]),
-            _vmaxtorque=np.array([axis.max_torque for axis in axes]),
-            _vweights=np.array([axis.weight for axis in axes]),
-            _voffsets=np.array([axis.wrap_offset for axis in axes]),
-            _vlowerlimit=np.array([axis.lower for axis in axes]),
-            _vupperlimit=np.array([axis.upper for axis in axes]),
-            _bIsCircular=np.array([axis.circular for axis in axes]),
             _bIsActive=index < len(body.joints) or mimic is not None,
             _vmimic=[] if mimic is None else [[mimic.position, mimic.velocity, mimic.acceleration]],
+            **of_axes,
         ).with_parameters(joint.parameters)
 
     def named_values(self) -> list[tuple[tuple[str, int], float]]:
@@ -220,27 +225,24 @@ class JointInfo(ParameterFields):
         directions = [vector(axis, "JointInfo._vaxes") for axis in self._vaxes[:count]]
         directions += [(0.0, 0.0, 1.0)] * (count - len(directions))
         motor = None if self._infoElectricMotor is None else self._infoElectricMotor.motor()
-        circular = per_axis(self._bIsCircular, count, 0.0, "JointInfo._bIsCircular")
-        lower = per_axis(self._vlowerlimit, count, 0.0, "JointInfo._vlowerlimit")
-        upper = per_axis(self._vupperlimit, count, 0.0, "JointInfo._vupperlimit")
-        torque = per_axis(self._vmaxtorque, count, 0.0, "JointInfo._vmaxtorque")
-        return tuple(
-            scene.Axis(
-                direction=_UNIT[i] if kind == "spherical" else _unit(directions[i]),
-                reference=0.0 if kind == "spherical" else values[i],
-                lower=-scene.UNLIMITED if circular[i] else lower[i],
-                upper=scene.UNLIMITED if circular[i] else upper[i],
-                circular=bool(circular[i]),
-                weight=per_axis(self._vweights, count, 1.0, "JointInfo._vweights")[i],
-                resolution=per_axis(self._vresolution, count, 0.02, "JointInfo._vresolution")[i],
-                max_velocity=per_axis(self._vmaxvel, count, 10.0, "JointInfo._vmaxvel")[i],
-                max_acceleration=per_axis(self._vmaxaccel, count, 50.0, "JointInfo._vmaxaccel")[i],
-                max_torque=torque[i] if motor is None or motor.torque is None else motor.torque,
-                armature=0.0 if motor is None else motor.inertia,
-                wrap_offset=per_axis(self._voffsets, count, 0.0, "JointInfo._voffsets")[i],
-            )
-            for i in range(count)
-        )
+        columns = {
+            name: per_axis(getattr(self, field), count, default, f"JointInfo.{field}")
+            for field, name, default in _AXIS_FIELDS
+        }
+        axes = list[scene.Axis]()
+        for i, numbers in enumerate(zip(*columns.values(), strict=True)):
+            fields: dict[str, Any] = dict(zip(columns, numbers, strict=True))
+            fields["direction"] = _UNIT[i] if kind == "spherical" else _unit(directions[i])
+            fields["reference"] = 0.0 if kind == "spherical" else values[i]
+            fields["circular"] = bool(fields["circular"])
+            if fields["circular"]:
+                fields.update(lower=-scene.UNLIMITED, upper=scene.UNLIMITED)
+            if motor is not None:
+                fields["armature"] = motor.inertia
+                if motor.torque is not None:
+                    fields["max_torque"] = motor.torque
+            axes.append(scene.Axis(**fields))
+        return tuple(axes)
 
     def _equations(self) -> Equations | None:
         first = self._vmimic[0] if self._vmimic else None

@@ -15,9 +15,8 @@ from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
 from ravemj.model.shape_bodies import FROM_SCRIPT
+from ravemj.rave.infos.base import ParameterFields, filled, identity, pose
 from ravemj.rave.infos.geometry import GeometryInfo
-from ravemj.rave.infos.numbers import filled, identity, pose
-from ravemj.rave.infos.parameters import ParameterFields
 
 if TYPE_CHECKING:
     from ravemj.model.builder import LinkBuilder

@@ -1,4 +1,4 @@
-"""The descriptions of what robots have besides."""
+"""Descriptions of manipulators and attached sensors."""
 
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -14,8 +14,7 @@ from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.content import Info
-from ravemj.rave.infos.numbers import identity, pose, vector
+from ravemj.rave.infos.base import Info, identity, pose, vector
 
 if TYPE_CHECKING:
     from ravemj.model.manipulators import ManipulatorBuilder

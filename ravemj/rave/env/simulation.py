@@ -7,14 +7,12 @@ from ravemj.engine.clock import Clock
 from ravemj.engine.simulation import DEFAULT_GRAVITY
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.rave.env.base import EnvironmentPart
-from ravemj.rave.kinbody import KinBody
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.robot import Robot
-from ravemj.rave.sensors import Sensor
 
 
-class Running(EnvironmentPart):
-    """Lets time pass: physics, then controllers, then sensors.
+class Simulating(EnvironmentPart):
+    """Simulation time: each step runs physics, then controllers, then sensors.
 
     Time passes by itself from the first command to a controller, or the first question for the time, until
     ``StopSimulation``; before that no thread runs. While ``with env:`` holds the environment, it stands still.
@@ -29,7 +27,7 @@ class Running(EnvironmentPart):
         self._engine.attach()
 
     def StartSimulation(self, timestep: float, realtime: bool = True) -> None:
-        """Let time pass by itself, in a thread.
+        """Run simulation time in a thread.
 
         Args:
             timestep: Length of the steps [s].
@@ -39,7 +37,7 @@ class Running(EnvironmentPart):
         self._clock.start(_checked_step(timestep, "StartSimulation", least=1e-6), realtime=realtime)
 
     def StopSimulation(self, shutdownthread: int = 1) -> None:
-        """Let time stand still, until ``StartSimulation``; ``StepSimulation`` still works.
+        """Stop simulation time until ``StartSimulation``; ``StepSimulation`` still works.
 
         Args:
             shutdownthread: Whether to wait for the end of a step that is under way.
@@ -47,7 +45,7 @@ class Running(EnvironmentPart):
         self._clock.stop(wait=bool(shutdownthread))
 
     def StepSimulation(self, timestep: float) -> None:
-        """Let time pass by one step: physics, controllers, sensors.
+        """Run one step of simulation time: physics, controllers, sensors.
 
         Args:
             timestep: How long [s].
@@ -62,7 +60,7 @@ class Running(EnvironmentPart):
         self._clock.step(_checked_step(timestep, "StepSimulation"))
 
     def IsSimulationRunning(self) -> bool:
-        """Return whether time passes by itself."""
+        """Return whether simulation time runs in a thread."""
         self._clock.wake()
         return self._clock.is_allowed
 
@@ -72,7 +70,7 @@ class Running(EnvironmentPart):
         return self._clock.now
 
     def SetPhysicsEngine(self, physics: "PhysicsEngine | str | None") -> bool:
-        """Choose what happens to bodies in time.
+        """Choose the physics engine.
 
         Args:
             physics: What ``RaveCreatePhysicsEngine`` made; None: nothing falls. A name stands for a new engine with
@@ -106,30 +104,18 @@ class Running(EnvironmentPart):
         return engine
 
     def GetPhysicsEngine(self) -> PhysicsEngine:
-        """Return what holds gravity and moves bodies in time; never None."""
+        """Return the physics engine, which holds gravity and moves bodies; never None."""
         return self._engine
-
-    def GetSensors(self) -> list[Sensor]:
-        """Return the devices of all attached sensors of all robots."""
-        attached = [one for body in self._bodies() if isinstance(body, Robot) for one in body.GetAttachedSensors()]
-        return [sensor for one in attached if (sensor := one.GetSensor()) is not None]
-
-    def GetSensor(self, name: str) -> Sensor | None:
-        """Return the device of that name, as ``sensor.GetName()`` says it (robot, colon, attached sensor), or None."""
-        return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
-
-    def _bodies(self) -> list[KinBody]:
-        return [self.wrap(state) for state in self._simulation.bodies]
 
     @property
     def clock(self) -> Clock:
-        """What counts simulation time and lets it pass; below the OpenRAVE API."""
+        """The clock of simulation time; below the OpenRAVE API."""
         return self._clock
 
     def _advance(self, timestep: float) -> None:
-        """Let time pass by one step, under the lock."""
+        """Run one step of simulation time; the clock holds the lock."""
         self._engine.SimulateStep(timestep)
-        for body in self._bodies():
+        for body in map(self.wrap, self._simulation.bodies):
             if isinstance(body, Robot):
                 body.step_controller(timestep)
 

@@ -9,11 +9,16 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
-from ravemj.rave.joints.base import JointPart
+from ravemj.model import scene
+from ravemj.rave.member import Member
 
 
-class JointLimits(JointPart):
+class JointLimits(Member):
     """Limits, weights and resolutions, one number for each axis of the joint. Setting them moves nothing."""
+
+    @property
+    def _scene(self) -> scene.Joint:
+        return self._state.scene.all_joints[self._index]
 
     def GetLimits(self) -> tuple[Floats, Floats]:
         """Return the lower and the upper limits [rad or m], each of shape (axes,); ±10000 for a circular joint."""

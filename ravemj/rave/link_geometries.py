@@ -1,19 +1,29 @@
-"""Shapes of a link."""
+"""Geometries of a link: shapes, groups of them, collision checking and bounding boxes."""
 
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.arrays import checked_transform
 from ravemj.errors import ArgumentError
+from ravemj.geometry_functions import AABB
 from ravemj.model import scene
-from ravemj.model.scene import Mesh
+from ravemj.model.bounds import enclosing_box, link_bounds
+from ravemj.model.triangles import links_triangles
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo
 from ravemj.rave.infos.link import geometries_of
-from ravemj.rave.links.base import LinkPart
+from ravemj.rave.member import Member
 from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 
-class LinkShapes(LinkPart):
-    """The geometries of a link, and other sets of them that can be swapped in."""
+class LinkGeometries(Member):
+    """The geometries of a link, groups that can replace them, collision checking and bounding boxes."""
+
+    @property
+    def _scene(self) -> scene.Link:
+        return self._state.scene.links[self._index]
 
     def GetGeometries(self) -> list[Geometry]:
         """Return the link's shapes, in the order of the file.
@@ -34,9 +44,7 @@ class LinkShapes(LinkPart):
 
     def GetCollisionData(self) -> TriMesh:
         """Return all shapes of the link as triangles, in the link's frame; copies."""
-        return trimesh_of(
-            Mesh.merged(one.triangulated().moved(one.T_link_geometry.matrix()) for one in self._scene.geometries)
-        )
+        return trimesh_of(links_triangles([self._scene], [np.eye(4)]))
 
     def InitGeometries(self, geometryinfos: Sequence[GeometryInfo]) -> None:
         """Give the link other shapes in place of its own.
@@ -160,3 +168,54 @@ class LinkShapes(LinkPart):
             Whether that changed something.
         """
         return any([geometry.SetVisible(visible) for geometry in self.GetGeometries()])
+
+    def Enable(self, enable: bool) -> None:
+        """Enable or disable the link for collision checking; nothing else changes.
+
+        Args:
+            enable: False: collision checking leaves it out.
+        """
+        with self._state.simulation.lock:
+            enabled = list(self._state.link_enabled)
+            enabled[self._index] = bool(enable)
+            self._state.link_enabled = enabled
+
+    def IsEnabled(self) -> bool:
+        """Return whether collision checking looks at the link."""
+        return self._state.link_enabled[self._index]
+
+    def SetIgnoreSelfCollision(self, bIgnore: bool) -> None:
+        """Leave the link out of ``body.CheckSelfCollision``, or take it in again.
+
+        Args:
+            bIgnore: Whether it is left out.
+        """
+        with self._state.simulation.lock:
+            self._state.edit_link(self._index, self_collision_ignored=bool(bIgnore))
+            self._state.simulation.collision_stamp += 1
+
+    def IsSelfCollisionIgnored(self) -> bool:
+        """Return whether ``body.CheckSelfCollision`` leaves the link out."""
+        return self._scene.self_collision_ignored
+
+    def ComputeAABB(self) -> AABB:
+        """Return the smallest box along the world's axes that holds the link's geometries.
+
+        Returns:
+            The box, with methods ``pos()`` and ``extents()``; a point at the link's origin if there is no geometry.
+        """
+        with self._state.simulation.lock:
+            return self.ComputeAABBFromTransform(self._state.link_transform(self._index))
+
+    def ComputeAABBFromTransform(self, transform: ArrayLike) -> AABB:
+        """Return the box of ``ComputeAABB`` for the link standing at a pose: 4x4, 3x4 or 7 numbers.
+
+        Args:
+            transform: ``T_world_link``: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
+        """
+        T_a_link = checked_transform(transform, "ComputeAABBFromTransform: transform")
+        return enclosing_box(link_bounds(self._scene, T_a_link), T_a_link)
+
+    def ComputeLocalAABB(self) -> AABB:
+        """Return the smallest box along the link's axes that holds its geometries, in the link's frame."""
+        return self.ComputeAABBFromTransform(np.eye(4))

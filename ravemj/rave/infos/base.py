@@ -1,0 +1,131 @@
+"""Base classes of infos, and checks of the numbers in their fields."""
+
+# Users put anything into fields, which have the names that OpenRAVE gives them.
+# pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportPrivateUsage=false
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import MISSING, Field, dataclass, field, fields
+from enum import Enum
+from typing import Any, ClassVar, Self, cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.arrays import checked_numbers, checked_transform
+from ravemj.core.transforms import Floats, Pose, Vec3, pose_of
+from ravemj.errors import ArgumentError
+from ravemj.model.scene import Parameters
+from ravemj.rave.trimesh import TriMesh
+
+
+@dataclass(eq=False, repr=False)
+class Info:
+    """An info: it compares by its fields, and prints as the expression that makes it, without default values."""
+
+    _called: ClassVar[str]
+    """The class as users write it."""
+
+    def __eq__(self, other: object) -> bool:
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(_same(getattr(self, one.name), getattr(other, one.name)) for one in fields(self) if one.compare)
+
+    __hash__ = None  # pyright: ignore[reportAssignmentType] - fields change
+
+    def __repr__(self) -> str:
+        shown = {one.name: getattr(self, one.name) for one in fields(self) if one.repr}
+        new = {one.name: _default(one) for one in fields(self)}
+        changed = [f"{name}={_written(value)}" for name, value in shown.items() if not _same(value, new[name])]
+        return f"{self._called}({', '.join(changed)})"
+
+    def __dir__(self) -> list[str]:
+        shown = {one.name for one in fields(self) if one.repr}
+        return [name for name in super().__dir__() if name.startswith("__") or name in shown]
+
+
+@dataclass(eq=False, repr=False)
+class ParameterFields(Info):
+    """The fields of links and joints that hold parameters."""
+
+    _mapFloatParameters: Mapping[str, ArrayLike] = field(default_factory=dict[str, ArrayLike])
+    _mapIntParameters: Mapping[str, ArrayLike] = field(default_factory=dict[str, ArrayLike])
+    _mapStringParameters: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    def with_parameters(self, parameters: Parameters) -> Self:
+        """Take over parameters; return this object."""
+        self._mapFloatParameters = {name: np.array(values) for name, values in parameters.floats}
+        self._mapIntParameters = {name: np.array(values, dtype=np.int_) for name, values in parameters.integers}
+        self._mapStringParameters = dict(parameters.texts)
+        return self
+
+    def parameters(self) -> Parameters:
+        """Return the parameters that the fields hold."""
+        floats = {name: checked_numbers(values, name).ravel() for name, values in self._mapFloatParameters.items()}
+        integers = {name: checked_numbers(values, name).ravel() for name, values in self._mapIntParameters.items()}
+        return Parameters(
+            tuple((name, tuple(values.tolist())) for name, values in floats.items()),
+            tuple((name, tuple(values.astype(np.int_).tolist())) for name, values in integers.items()),
+            tuple((name, str(text)) for name, text in self._mapStringParameters.items()),
+        )
+
+
+def identity() -> Floats:
+    """Return a new 4x4 identity."""
+    return np.eye(4)
+
+
+def filled(value: float, count: int = 3) -> Callable[[], Floats]:
+    """Return what makes a new array of equal numbers."""
+    return lambda: np.full(count, float(value))
+
+
+def vector(values: ArrayLike, name: str) -> Vec3:
+    """Return the first three numbers of a field."""
+    numbers = checked_numbers(values, name).ravel()
+    if len(numbers) < 3 or not np.isfinite(numbers[:3]).all():
+        raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be three finite numbers")
+    x, y, z = numbers[:3].tolist()
+    return (x, y, z)
+
+
+def pose(values: ArrayLike, name: str) -> Pose:
+    """Return the pose of a field: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]."""
+    return pose_of(checked_transform(values, name))
+
+
+def per_axis(values: ArrayLike | None, count: int, default: float, name: str) -> list[float]:
+    """Return a number for each axis of a joint; where the field has too few, the default."""
+    numbers = np.zeros(0) if values is None else checked_numbers(values, name).ravel()
+    if np.isnan(numbers).any():
+        raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be numbers")
+    return [*numbers[:count].tolist(), *[default] * (count - len(numbers))]
+
+
+def _default(one: Field[Any]) -> object:
+    return one.default if one.default_factory is MISSING else one.default_factory()
+
+
+def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put into fields
+    """Return whether two values are the same numbers, texts and infos."""
+    if isinstance(first, TriMesh) and isinstance(second, TriMesh):
+        return _same(first.toDict(), second.toDict())
+    if isinstance(first, Mapping) and isinstance(second, Mapping):
+        return first.keys() == second.keys() and all(_same(first[key], second[key]) for key in first)
+    if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):
+        return np.array_equal(cast("Any", first), cast("Any", second))
+    if isinstance(first, list | tuple) and isinstance(second, list | tuple):
+        return len(first) == len(second) and all(map(_same, first, second))
+    return bool(first == second)
+
+
+def _written(value: object) -> str:
+    """Return the text of a value, without ``array`` and what else has to be imported."""
+    if isinstance(value, Enum):
+        return f"{type(value).__name__}.{value.name}"
+    if isinstance(value, np.ndarray | np.generic):
+        return repr(value.tolist())
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key!r}: {_written(one)}' for key, one in value.items())}}}"
+    if isinstance(value, Sequence) and not isinstance(value, str | bytes):
+        return f"[{', '.join(map(_written, value))}]"
+    return repr(value)

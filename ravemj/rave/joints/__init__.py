@@ -1,1 +1,0 @@
-"""Parts of the API of a joint."""
