@@ -18,7 +18,7 @@ class Simulating(EnvironmentPart):
     ``StopSimulation``; before that no thread runs. While ``with env:`` holds the environment, it stands still.
     """
 
-    _internal = ("clock", "wake_clock")
+    _internal = ("clock",)
 
     def __init__(self) -> None:
         super().__init__()
