@@ -71,7 +71,7 @@ def _link(name: str, before: str) -> str:
 
 
 def _of(what: str, robot: ravemj.Robot, limits: tuple[float, float, float]) -> list[Row]:
-    return [*_one(what, robot, limits), _many(what, robot)]
+    return [*_one(what, robot, limits), *_single_pose(what, robot, limits), _many(what, robot)]
 
 
 class Bare:
@@ -113,6 +113,19 @@ def _one(what: str, robot: ravemj.Robot, limits: tuple[float, float, float]) -> 
         raise RuntimeError("the poses differ")
     calls = max(1, 100 // count)  # short runs, which other programs seldom interrupt
 
+    listed, arrayed, bared = take_turns(
+        [microseconds(function, calls) for function in (as_list, as_array, floor)], 1000
+    )
+    return [
+        Row(f"{what}: SetDOFValues + GetLinkTransformations : mj_kinematics, poses", "µs", listed, bared, limits[1]),
+        Row(f"{what}: SetDOFValues + link_transforms : mj_kinematics, poses", "µs", arrayed, bared, 2.5),
+    ]
+
+
+def _single_pose(what: str, robot: ravemj.Robot, limits: tuple[float, float, float]) -> list[Row]:
+    bare, moving = Bare(robot), robot.qpos_indices >= 0
+    values, qpos = np.where(moving, 0.5, 0.0), np.full(moving.sum(), 0.5)
+
     def last_pose() -> Floats:
         return robot.GetLinks()[-1].GetTransform()
 
@@ -130,16 +143,11 @@ def _one(what: str, robot: ravemj.Robot, limits: tuple[float, float, float]) -> 
         bare.qpos[:] = qpos
         mujoco.mj_kinematics(bare.model, bare.data)
 
-    functions = (as_list, as_array, floor, placed, placed_floor, last_pose, last_floor)
-    listed, arrayed, bared, placed_, placed_bare, last, last_bare = take_turns(
-        [microseconds(function, calls) for function in functions], 1000
-    )
-    only, both, pose = limits
+    functions = (placed, placed_floor, last_pose, last_floor)
+    ours, floor, last, last_bare = take_turns([microseconds(function, 20) for function in functions], 500)
     return [
-        Row(f"{what}: SetDOFValues + GetTransform : mj_kinematics", "µs", placed_, placed_bare, only),
-        Row(f"{what}: GetLinks()[-1].GetTransform() : a pose", "µs", last, last_bare, pose),
-        Row(f"{what}: SetDOFValues + GetLinkTransformations : mj_kinematics, poses", "µs", listed, bared, both),
-        Row(f"{what}: SetDOFValues + link_transforms : mj_kinematics, poses", "µs", arrayed, bared, 2.5),
+        Row(f"{what}: SetDOFValues + GetTransform : mj_kinematics", "µs", ours, floor, limits[0]),
+        Row(f"{what}: GetLinks()[-1].GetTransform() : a pose", "µs", last, last_bare, limits[2]),
     ]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.batch.chain import Chain
-from ravemj.engine.batch.kinematic_state import KinematicState
+from ravemj.engine.batch.kinematic_state import KinematicState, cross
 from ravemj.engine.dynamics import BodyDynamics
 from ravemj.engine.kinematics import BodyKinematics
 from ravemj.model.inertia import Inertias
@@ -84,10 +84,28 @@ class Batch:
             point: In the link's frame [m], shape (3,).
             out: Takes the derivatives of the point's position and the link's angular velocity, shape (N, 6, dof).
         """
+        path, slides = self._chain.path_to(link), self._dynamics.tree.slides
+        T_step_link = self._chain.T_step_links[link]
         for part in self._chunks(len(values), MOTIONS):
-            state = self._state(np.ascontiguousarray(values[part].T))
-            place = state.positions[link] + np.tensordot(point, state.rotations[link], 1)
-            out[part] = state.jacobian(link, place).transpose(2, 1, 0)
+            now = np.ascontiguousarray(values[part].T)
+            steps = list(self._chain.frames(now, path))
+            place = np.tensordot(T_step_link[:3] @ (*point, 1.0), steps[-1][1][:3], 1) + steps[-1][1][3]
+            columns = np.zeros((self._dynamics.tree.count, 6, now.shape[1]))
+            for step, frame in steps:
+                first = step.coordinate
+                if step.kind == "spherical":  # its coordinates turn about the child's axes
+                    axes = np.tensordot(self._chain.T_step_links[step.child][:3, :3].T, frame[:3], 1)
+                elif step.kind == "root":
+                    continue
+                else:
+                    axes = frame[2:3]
+                some = slice(first, first + len(axes))
+                if slides[first]:
+                    columns[some, :3] = axes
+                else:
+                    columns[some, :3], columns[some, 3:] = cross(axes, (place - frame[3])[None]), axes
+            coupling = self._dynamics.couplings.at(now, second=False)
+            out[part] = coupling.backward(columns).transpose(2, 1, 0)
 
     def inverse_dynamics(
         self, values: Floats, rates: Floats, accelerations: Floats, inertias: Inertias, gravity: Floats, out: Floats

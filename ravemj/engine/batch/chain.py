@@ -3,7 +3,7 @@
 A frame is an array of shape (4, 3, N): three axes and an origin, of three components each, for N configurations.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -96,18 +96,28 @@ class Chain:
             self.steps[step.parent].last = index
         return index
 
-    def frames(self, values: Floats) -> Iterator[tuple[Step, Floats]]:
+    def path_to(self, link: int) -> list[int]:
+        """Return the steps from its root to a link."""
+        path = [self._step_of[link]]
+        while self.steps[path[-1]].parent != ROOT:
+            path.append(self.steps[path[-1]].parent)
+        return path[::-1]
+
+    def frames(self, values: Floats, wanted: Sequence[int] | None = None) -> Iterator[tuple[Step, Floats]]:
         """Yield the steps with their frames.
 
         A frame is let go when no other hangs on it any more, so that the memory in use stays in the cache.
 
         Args:
             values: Joint values, shape (dof, N).
+            wanted: Which steps, parents before children; None: all.
         """
-        ways = self._ways(values)
+        chosen = range(len(self.steps)) if wanted is None else wanted
+        ways = self._ways(values, chosen)
         cosines, sines = _cosines_and_sines(ways)
         frames: dict[int, Floats] = {}
-        for index, step in enumerate(self.steps):
+        for row, index in enumerate(chosen):
+            step = self.steps[index]
             if step.kind == "root":
                 frame = self._root_frame(step.child, values.shape[1])
             else:
@@ -116,9 +126,9 @@ class Chain:
                     vectors = values[step.source[1] :][:3] if step.source[0] == "dof" else np.zeros((3, ways.shape[1]))
                     frame = _turned(parent, step.T_parent_frame, vectors)
                 elif step.kind == "slider":
-                    frame = _slid(parent, step.T_parent_frame, ways[index])
+                    frame = _slid(parent, step.T_parent_frame, ways[row])
                 else:
-                    frame = _hinged(parent, *self._crosswise[index], cosines[index], sines[index])
+                    frame = _hinged(parent, *self._crosswise[index], cosines[row], sines[row])
                 if self.steps[step.parent].last == index:
                     del frames[step.parent]
             frames[index] = frame
@@ -128,11 +138,11 @@ class Chain:
         frame = self._kinematics.link_transform(link)[:3].T
         return np.repeat(frame[:, :, None], count, axis=2)
 
-    def _ways(self, values: Floats) -> Floats:
-        """Return how far each joint is from where its frame is given, shape (steps, N)."""
-        ways = np.zeros((len(self.steps), values.shape[1]))
+    def _ways(self, values: Floats, chosen: Sequence[int]) -> Floats:
+        """Return how far some joints are from where their frames are given, shape (len(chosen), N)."""
+        ways = np.zeros((len(chosen), values.shape[1]))
         first_values = self._first_values(values)
-        for index, step in enumerate(self.steps):
+        for index, step in enumerate(self.steps[number] for number in chosen):
             kind, place = step.source
             if kind == "dof":
                 ways[index] = values[place]

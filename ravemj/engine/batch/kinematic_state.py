@@ -35,20 +35,6 @@ class KinematicState:
         self.screws[tree.slides, :3] = 0.0
         self.screws[tree.slides, 3:] = axes[tree.slides]
 
-    def jacobian(self, link: int, point: Floats) -> Floats:
-        """Return how a link's point and the link move with each DOF.
-
-        Args:
-            link: Index of the link.
-            point: From the reference point [m], shape (3, N).
-
-        Returns:
-            Velocity of the point and angular velocity for one unit of each DOF's, shape (dof, 6, N).
-        """
-        turning = self.screws[:, :3]
-        columns = np.concatenate((self.screws[:, 3:] + cross(turning, point[None]), turning), axis=1)
-        return self.coupling.backward(self.tree.moves[link][:, None, None] * columns)
-
     def twists(self, velocities: Floats) -> Floats:
         """Return the motion of the links that each coordinate moves last, shape (coordinates, 6, N).
 

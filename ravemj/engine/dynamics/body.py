@@ -44,7 +44,8 @@ class BodyDynamics:
         self._velocities: Floats | None = None  # of the links: those that the data are set for
         self._velocities_stamp = -1
         self._with_joints: bool = False
-        self._are_moving = self._roots_move = False
+        self._are_moving: bool = False
+        self._roots_move: bool = False
         self._rates = np.zeros(kinematics.dof)
         self._rest_qacc = np.zeros(model.nv)
 
@@ -302,8 +303,8 @@ class BodyDynamics:
 
     def _set_joint_velocities(self) -> None:
         """Write the velocities of the joints, and the accelerations that coupled ones have at constant velocities."""
-        if self._columns is not None and isinstance(self._columns[0], slice):
-            self._qvel[self._columns[0]] = self._rates
+        if self._coupling_matrix is not None:
+            np.matmul(self._coupling_matrix, self._rates, out=self._qvel)
             return
         coupling = self._coupling(second=True)
         self._qvel[self._inner] = coupling.forward(self._rates)
@@ -327,6 +328,8 @@ class BodyDynamics:
         if accelerations is not None:
             if self._columns is not None and isinstance(self._columns[0], slice):
                 qacc[self._columns[0]] += accelerations
+            elif self._coupling_matrix is not None:
+                qacc += self._coupling_matrix @ accelerations
             else:
                 qacc[self._inner] += self._coupling().forward(accelerations)
 

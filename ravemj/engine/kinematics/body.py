@@ -17,6 +17,8 @@ from ravemj.model.scene import KinBody
 NO_QPOS = -1
 """In place of an index into ``qpos``, where a joint has none since it moves no link."""
 
+_IDENTITY = np.eye(4)
+
 _BODY, _JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
 
 
@@ -84,6 +86,7 @@ class BodyKinematics:
         self._is_placed = self._has_coms = False
         (names,) = compiled.mjcf.names
         self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
+        self._body_ids: list[int] = self.body_ids.tolist()
         self._links = index_range(self.body_ids)
         self.roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
         free = model.body_jntadr[self.body_ids[self.roots]]
@@ -120,7 +123,8 @@ class BodyKinematics:
         self.qpos_indices = np.array(indices, dtype=int)
         self._moving = self.qpos_indices != NO_QPOS
         self._to_qpos = index_range(self.qpos_indices[self._moving])
-        self._is_plain = bool(self._moving.all()) and not self.mimic.joints
+        self._all_move = bool(self._moving.all())
+        self._is_plain = self._all_move and not self.mimic.joints
         self._mimic_qpos = [(one.joint, self.joint_qpos[one.joint][:1]) for one in self.mimic.joints]
         self._loops = [
             (first, joint)
@@ -166,7 +170,7 @@ class BodyKinematics:
 
         A weld's is 0; a joint that closes a loop has the value that the poses of its links show.
         """
-        if self._is_plain:
+        if self._all_move:
             return self.qpos[self._to_qpos].copy()
         values = np.zeros(self.dof)
         values[self._moving] = self.qpos[self._to_qpos]
@@ -186,10 +190,8 @@ class BodyKinematics:
         """
         if self.displaced:
             self._undo_displacement()
-        if self._is_plain:
-            self.qpos[self._to_qpos] = values
-        else:
-            self.qpos[self._to_qpos] = values[self._moving]
+        self.qpos[self._to_qpos] = values if self._all_move else values[self._moving]
+        if not self._is_plain:
             for ball in self.spherical:
                 self.qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
             if self._mimic_qpos:
@@ -210,7 +212,8 @@ class BodyKinematics:
     def first_values(self, values: Floats) -> list[float]:
         """Return the first value of each joint, active ones and then passive ones, for given DOF values."""
         plain = values.tolist()
-        return [plain[first] for first in self.first_dofs] + [passive[0] for passive in self._passive_values]
+        active = plain if len(self.first_dofs) == self.dof else [plain[first] for first in self.first_dofs]
+        return active + [passive[0] for passive in self._passive_values]
 
     def passive_values(self, index: int) -> Floats:
         """Return the values of a passive joint [rad or m], shape (axes,); a copy."""
@@ -303,7 +306,8 @@ class BodyKinematics:
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
-        self.place()
+        if not self._is_placed:
+            self.place()
         transforms = self._homogeneous.copy()
         transforms[:, :3, 3] = self._xpos[self._links]
         transforms[:, :3, :3] = self._xmat[self._links].reshape(-1, 3, 3)
@@ -311,9 +315,10 @@ class BodyKinematics:
 
     def link_transform(self, link: int) -> Floats:
         """Return ``T_world_link`` of one link, shape (4, 4); a copy."""
-        self.place()
-        transform = np.eye(4)
-        body_id = self.body_ids[link]
+        if not self._is_placed:
+            self.place()
+        transform = _IDENTITY.copy()  # faster than making one
+        body_id = self._body_ids[link]
         transform[:3, 3] = self._xpos[body_id]
         transform[:3, :3] = self._xmat[body_id].reshape(3, 3)
         return transform

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_indices, checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Ints, pose_of
+from ravemj.engine.kinematics import BodyKinematics
 from ravemj.errors import ArgumentError, Diagnostic, RavemjError, send_warning
 from ravemj.geometry_functions import DOFAffine
 from ravemj.rave.body.base import BodyPart
@@ -74,15 +75,16 @@ class Configuration(BodyPart):
         """
         with self._simulation.lock:
             kinematics = self._state.kinematics
-            target = self._full_values(values, dofindices)
+            target = self._full_values(kinematics, values, dofindices)
             if not kinematics.limits.contain(target):
                 target = self._settled(target, checklimits)
-            self._state.set_values(target, clamp_mimic=checklimits != CheckLimitsAction.Nothing)
+            kinematics.set_values(target, clamp_mimic=checklimits != CheckLimitsAction.Nothing)
+            self._state.moved()
 
-    def _full_values(self, values: ArrayLike, dofindices: "ArrayLike | None") -> Floats:
+    def _full_values(self, kinematics: BodyKinematics, values: ArrayLike, dofindices: "ArrayLike | None") -> Floats:
         """Return one value for each DOF, in DOF order."""
         given = checked_numbers(values, "SetDOFValues")
-        dof = self._state.kinematics.dof
+        dof = kinematics.dof
         if dofindices is None:
             if given.shape == (dof,):
                 return given
@@ -95,7 +97,7 @@ class Configuration(BodyPart):
         indices = checked_indices(dofindices, dof)
         if given.ndim != 1 or len(given) < len(indices):
             raise ArgumentError(f"SetDOFValues: values has shape {given.shape} for {len(indices)} dofindices")
-        full = self._state.kinematics.values()
+        full = kinematics.values()
         full[indices] = given[: len(indices)]
         return full
 

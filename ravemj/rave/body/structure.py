@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 class Structure(BodyPart):
     """Links and joints: which there are, what moves what, the path between links, mass, hashes of the structure."""
 
+    _links: tuple[Link, ...] = ()
+
     @property
     def _body(self) -> "KinBody":
         return cast("KinBody", self)
@@ -32,8 +34,17 @@ class Structure(BodyPart):
             >>> [link.GetName() for link in robot.GetLinks()]
             ['Base', 'Arm0', 'Arm1']
         """
-        links = [Link(self._body, self._state, index) for index in range(len(self._state.scene.links))]
-        return [links[index] for index in checked_indices(... if indices is None else indices, len(links), "indices")]
+        links = self._all_links()
+        if indices is None:
+            return list(links)
+        return [links[index] for index in checked_indices(indices, len(links), "indices").tolist()]
+
+    def _all_links(self) -> tuple[Link, ...]:
+        """Return the links, which are made once: they are numbers of links, whatever the body is built of."""
+        count = len(self._state.scene.links)
+        if len(self._links) != count:
+            self._links = tuple(Link(self._body, self._state, index) for index in range(count))
+        return self._links
 
     def GetLink(self, name: str) -> Link | None:
         """Return the link of that name, or None.
@@ -43,7 +54,10 @@ class Structure(BodyPart):
             >>> robot.GetLink("no such link") is None
             True
         """
-        return next((link for link in self.GetLinks() if link.GetName() == name), None)
+        for link, scene in zip(self._all_links(), self._state.scene.links, strict=True):
+            if scene.name == name:
+                return link
+        return None
 
     def GetJoints(self, indices: Sequence[int] | None = None) -> list[Joint]:
         """Return the joints that have DOFs, in DOF order.
