@@ -281,7 +281,6 @@ def heeded(monkeypatch):
         raise EndedError(code)
 
     monkeypatch.setattr(os, "_exit", leave)
-    monkeypatch.setattr(endings, "_delayed", [])
     before = signal.signal(signal.SIGTERM, endings._end)
     yield
     signal.signal(signal.SIGTERM, before)
