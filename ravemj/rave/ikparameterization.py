@@ -8,21 +8,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.arrays import checked_numbers, checked_transform, checked_vector
-from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
-from ravemj.geometry_functions import Ray, quatRotateDirection, rotationMatrixFromQuat
+from ravemj.errors import ArgumentError, UnsupportedError
+from ravemj.geometry_functions import Ray
 from ravemj.rave.enums import IkParameterizationType
+from ravemj.rave.goal_motion import POINTS, RAYS, moved, moved_inside, pose_of_goal
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.showing import Shown
-from ravemj.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
+from ravemj.transforms import Floats, Pose, pose_of
 
 _Type = IkParameterizationType
-_RAYS = {_Type.Ray4D, _Type.TranslationDirection5D}
-_POINTS = {_Type.Translation3D, _Type.Lookat3D}
-_WITH_DIRECTION = {_Type.Direction3D, *_RAYS}
-"""Types whose first three numbers are a direction."""
-_WITH_POINT = {*_POINTS, *_RAYS, _Type.TranslationLocalGlobal6D}
-"""Types whose last three numbers are a point that moves."""
-_PLANAR = {_Type.TranslationXY2D, _Type.TranslationXYOrientation3D}
 _ANGLES = {kind for kind in _Type if "AxisAngle" in kind.name}
 _CUSTOM_DATA = 0x10000
 _ANGLE_WEIGHT = 0.4
@@ -213,7 +207,7 @@ class IkParameterization(Shown):
         return self._values.copy()
 
     def _pose(self, kind: IkParameterizationType) -> Pose:
-        return _pose(self._of(kind))
+        return pose_of_goal(self._of(kind))
 
     # Transforms and distances
 
@@ -224,13 +218,13 @@ class IkParameterization(Shown):
             transform: 4x4, or [w, x, y, z, tx, ty, tz].
         """
         pose = pose_of(checked_transform(transform, "transform"))
-        self._values = _moved(self._type, self._values, pose)
+        self._values = moved(self._type, self._values, pose)
 
     def Transform(self, transform: ArrayLike) -> "IkParameterization":
         """Return ``transform * goal``."""
-        moved = IkParameterization(self)
-        moved.MultiplyTransform(transform)
-        return moved
+        goal = IkParameterization(self)
+        goal.MultiplyTransform(transform)
+        return goal
 
     def __rmul__(self, transform: ArrayLike) -> "IkParameterization":
         return self.Transform(transform)
@@ -248,12 +242,12 @@ class IkParameterization(Shown):
             openrave_exception: OpenRAVE moves no goal of type ``Ray4D`` so.
         """
         pose = pose_of(checked_transform(transform, "transform"))
-        self._values = _moved_inside(self._type, self._values, pose)
+        self._values = moved_inside(self._type, self._values, pose)
 
     def __mul__(self, transform: ArrayLike) -> "IkParameterization":
-        moved = IkParameterization(self)
-        moved.MultiplyTransformRight(transform)
-        return moved
+        goal = IkParameterization(self)
+        goal.MultiplyTransformRight(transform)
+        return goal
 
     def ComputeDistanceSqr(self, other: "IkParameterization") -> float:
         """Return the squared distance to another goal of the same type; angles count in radians, and less for poses.
@@ -268,9 +262,9 @@ class IkParameterization(Shown):
             return _turn(a, b) ** 2
         if self._type == _Type.Direction3D:
             return _angle(a, b) ** 2
-        if self._type in _POINTS:
+        if self._type in POINTS:
             return _length2(a - b)
-        if self._type in _RAYS:
+        if self._type in RAYS:
             across: Callable[[Floats], Floats] = _across if self._type == _Type.Ray4D else lambda ray: ray[3:]
             return _length2(across(a) - across(b)) + _angle(a[:3], b[:3]) ** 2
         raise UnsupportedError(f"ComputeDistanceSqr of {self._type.name}", "inverse kinematics of that type")
@@ -332,7 +326,7 @@ def _numbers(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: ANN40
     """Return the numbers of a goal that a user gave as a matrix, a ray or a vector."""
     if kind == _Type.Transform6D:
         return pose_of(checked_transform(value, "value")).numbers()
-    if kind in _RAYS:
+    if kind in RAYS:
         if not isinstance(value, Ray):
             raise ArgumentError(f"value: is a {type(value).__name__}, and should be a Ray")
         direction = value.dir()
@@ -345,60 +339,6 @@ def _numbers(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: ANN40
             return checked_vector([angle, *checked_vector(point, 3, "value: point")], count, "value")
         case _:
             return checked_vector(value, count, "value")
-
-
-def _moved(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
-    """Return the numbers of a goal that is moved by a pose."""
-    rotation, translation = pose.matrix()[:3, :3], np.array(pose.position)
-    if kind == _Type.Transform6D:
-        return (pose @ _pose(values)).numbers()
-    if kind == _Type.Rotation3D:
-        return np.array(multiply(pose.wxyz, _wxyz(values)))
-    if kind in _PLANAR:
-        return np.append(rotation[:2, :2] @ values[:2] + translation[:2], values[2:] + _turn_about_z(pose))
-    if kind not in _WITH_DIRECTION | _WITH_POINT:
-        raise UnsupportedError(f"moving a goal of type {kind.name}", "inverse kinematics of that type")
-    moved = values.copy()
-    if kind in _WITH_DIRECTION:
-        moved[:3] = rotation @ values[:3]
-    if kind in _WITH_POINT:
-        moved[-3:] = rotation @ values[-3:] + translation
-    return moved
-
-
-def _moved_inside(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
-    """Return the numbers of a goal that is moved by a pose in its own frame."""
-    rotation, translation = pose.matrix()[:3, :3], np.array(pose.position)
-    if kind == _Type.Transform6D:
-        return (_pose(values) @ pose).numbers()
-    if kind == _Type.Rotation3D:
-        return np.array(multiply(_wxyz(values), pose.wxyz))
-    if kind in _PLANAR:
-        return np.append(values[:2] + translation[:2], values[2:] + _turn_about_z(pose))
-    if kind not in (_WITH_DIRECTION | _WITH_POINT) - {_Type.Ray4D}:
-        raise RavemjError(f"a goal of type {kind.name} cannot be moved in its own frame")
-    moved, frame = values.copy(), np.eye(3)
-    if kind in _WITH_DIRECTION:
-        frame = rotationMatrixFromQuat(quatRotateDirection([0, 0, 1], values[:3]))
-        moved[:3] = frame @ rotation[:, 2]
-    if kind in _WITH_POINT:
-        moved[-3:] += frame @ translation
-    return moved
-
-
-def _turn_about_z(pose: Pose) -> float:
-    """Return the part of a rotation that turns about z [rad]."""
-    return 2 * math.atan2(pose.wxyz[3], pose.wxyz[0])
-
-
-def _wxyz(values: Floats) -> Wxyz:
-    w, x, y, z = values[:4].tolist()
-    return normalize((w, x, y, z))
-
-
-def _pose(values: Floats) -> Pose:
-    x, y, z = values[4:].tolist()
-    return Pose((x, y, z), _wxyz(values))
 
 
 def _ray(values: Floats) -> Ray:
