@@ -8,10 +8,13 @@ import types
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 CONFORMANCE = Path(__file__).parent / "conformance"
 CORPUS = Path(__file__).resolve().parents[2] / "shared" / "corpus"
 """Published models with OpenRAVE's numbers; they belong to other projects and are no part of this repository."""
+
+NEEDS_THE_CORPUS = [pytest.mark.skipif(not CORPUS.is_dir(), reason="they are not beside the repository, in ../shared/corpus")]
 
 
 def _load_suite():
