@@ -49,9 +49,12 @@ def pytest_terminal_summary(terminalreporter, exitstatus, config):
     for reason, count in reasons.most_common():
         terminalreporter.line(f"{count:5} {reason}")
     yield
+    options = config.option
+    is_whole = config.args_source is config.ArgsSource.TESTPATHS and options.markexpr == "not stress"
+    if not is_whole or options.keyword:
+        return
     passed, failed = stats.get("passed", 0), stats.get("failed", 0) + stats.get("error", 0)
-    is_whole = config.args_source is config.ArgsSource.TESTPATHS and config.option.markexpr == "not stress"
-    if exitstatus == pytest.ExitCode.OK and passed and is_whole and not config.option.keyword:
+    if exitstatus == pytest.ExitCode.OK and passed:
         but = f"; {reasons.total():,} were skipped, for the reasons above" if reasons else ""
         terminalreporter.line(f"ravemj works here: {passed:,} tests passed{but}.", green=True)
     if exitstatus == pytest.ExitCode.TESTS_FAILED:

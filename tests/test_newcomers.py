@@ -34,7 +34,6 @@ def folder(tmp_path) -> Path:
     [
         (0, [], DONE),
         (2, [], FAILED),
-        (2, ["-k", "number"], FAILED),
         (0, ["-k", "number"], None),  # no word about all of it
         (0, ["test_it.py"], None),
         (0, ["-m", "stress or not stress"], None),
