@@ -59,10 +59,12 @@ def test_everything_that_is_read_has_its_note_and_no_note_is_stale(section):
     assert not set(section.tags) & set(section.left_out)
 
 
-@pytest.mark.parametrize("section", coverage.sections(), ids=lambda section: section.element)
+@pytest.mark.parametrize(
+    "section",
+    [section for section in coverage.sections() if section.element in WAYS_IN],  # others have to be complete
+    ids=lambda section: section.element,
+)
 def test_children_are_treated_as_the_page_says(section, tmp_path):
-    if section.element not in WAYS_IN:
-        pytest.skip("is refused when it is incomplete")
     path = tmp_path / "model.xml"
     children = [(tag, "ignored-tag") for tag in section.left_out if not tag.startswith("(")]
     children += [("nonsense", "ignored-tag" if section.element == "PhysicsEngine" else "unknown-tag")]
