@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from browsers import browser  # noqa: F401 - a fixture
 from hypothesis import HealthCheck, settings
+from newcomers import pytest_report_header, pytest_terminal_summary  # noqa: F401 - hooks
 from screens import display, folder  # noqa: F401 - fixtures
 
 import ravemj

@@ -330,12 +330,13 @@ class Trial:
         Raises:
             BaseException: anything but a ``RavemjError`` goes through.
         """
-        with tempfile.TemporaryDirectory(prefix="fuzz-") as folder, time_limit(self.seconds):
+        with tempfile.TemporaryDirectory(prefix="fuzz-") as folder:
             for name, content in files.items():
                 path = Path(folder, name)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(content)
-            with warnings.catch_warnings():
+            # The limit is for reading alone: if it interrupts writing, a file stays open until another test fails of it.
+            with time_limit(self.seconds), warnings.catch_warnings():
                 warnings.simplefilter("error")
                 warnings.simplefilter("ignore", RavemjWarning)
                 return self._read(str(Path(folder, MAIN)))

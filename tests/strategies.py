@@ -17,6 +17,8 @@ import numpy as np
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 
+DEV = os.environ.get("HYPOTHESIS_PROFILE") == "dev"
+
 T = TypeVar("T")
 Vector = tuple[float, float, float]
 
@@ -27,12 +29,11 @@ def examples(count: int) -> settings:
     The same examples each time, and as they were drawn when one fails; with HYPOTHESIS_PROFILE=dev new ones each time,
     twenty times as many, and the failing one made small.
     """
-    dev = os.environ.get("HYPOTHESIS_PROFILE") == "dev"
     return settings(
-        max_examples=count * 20 if dev else count,
-        derandomize=not dev,
+        max_examples=count * 20 if DEV else count,
+        derandomize=not DEV,
         database=None,
-        phases=[Phase.explicit, Phase.generate, Phase.shrink] if dev else [Phase.explicit, Phase.generate],
+        phases=[Phase.explicit, Phase.generate, Phase.shrink] if DEV else [Phase.explicit, Phase.generate],
         suppress_health_check=[
             HealthCheck.function_scoped_fixture,
             HealthCheck.too_slow,
@@ -499,7 +500,10 @@ def draw_scene(choices: Choices, taste: Taste | None = None) -> SceneModel:
 
 
 def scenes(taste: Taste | None = None) -> st.SearchStrategy[SceneModel]:
-    return st.composite(lambda draw: draw_scene(DrawnChoices(draw), taste))()
+    """Draw scenes: from seeds, or decision by decision, which takes hypothesis long, where it can make them small."""
+    if DEV:
+        return st.composite(lambda draw: draw_scene(DrawnChoices(draw), taste))()
+    return choices().map(lambda chosen: draw_scene(chosen, taste))
 
 
 def choices() -> st.SearchStrategy[Choices]:

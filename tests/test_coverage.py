@@ -60,10 +60,12 @@ def test_everything_that_is_known_has_a_meaning_and_is_either_read_or_left_out(s
     assert not set(section.attributes) & set(section.left_out_attributes)
 
 
-@pytest.mark.parametrize("section", coverage.sections(), ids=lambda section: section.element)
+@pytest.mark.parametrize(
+    "section",
+    [section for section in coverage.sections() if section.element in WAYS_IN],  # others have to be complete
+    ids=lambda section: section.element,
+)
 def test_children_are_treated_as_the_page_says(section, tmp_path):
-    if section.element not in WAYS_IN:
-        pytest.skip("is refused when it is incomplete")
     path = tmp_path / "model.xml"
     children = [(tag, "ignored-tag") for tag in section.left_out if not tag.startswith("(")]
     children += [("nonsense", "ignored-tag" if section.element == "PhysicsEngine" else "unknown-tag")]

@@ -281,7 +281,6 @@ def heeded(monkeypatch):
         raise EndedError(code)
 
     monkeypatch.setattr(os, "_exit", leave)
-    monkeypatch.setattr(signals, "_delayed", [])
     before = signal.signal(signal.SIGTERM, signals._end)
     yield
     signal.signal(signal.SIGTERM, before)

@@ -2,10 +2,10 @@
 
 import collections
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
+from agreement import CONFORMANCE, CORPUS, NEEDS_THE_CORPUS
 from lxml import etree
 
 from ravemj.errors import SourceError
@@ -14,13 +14,10 @@ from ravemj.formats.meshes.collada.document import ColladaDocument, attribute_nu
 from ravemj.formats.meshes.collada.triangles import primitive_groups
 from ravemj.model.scene import Mesh
 
-SHARED = Path(__file__).resolve().parents[2] / "shared"
-CASES = SHARED / "conformance" / "cases"
-CORPUS = SHARED / "corpus"
+CASES = CONFORMANCE / "cases"
 DATA = CORPUS / "models" / "rdiankov+openrave" / "src"
 
-needs_corpus = pytest.mark.skipif(not CORPUS.is_dir(), reason=f"no corpus of OpenRAVE models at {CORPUS}")
-needs_cases = pytest.mark.skipif(not CASES.is_dir(), reason=f"no conformance cases at {CASES}")
+(needs_corpus,) = NEEDS_THE_CORPUS
 
 
 @pytest.fixture(autouse=True)
@@ -132,7 +129,6 @@ def test_every_mesh_of_the_corpus_has_triangles():
             assert read_mesh(str(path)), path.name
 
 
-@needs_cases
 @pytest.mark.parametrize(
     ("case", "geometry", "file", "scale", "given"),
     [

@@ -1,6 +1,7 @@
 """What holds for every model: the same meaning in every spelling, and the motion that OpenRAVE's format describes."""
 
 import dataclasses
+import math
 import warnings
 
 import mujoco
@@ -84,7 +85,8 @@ def assert_same(first, second, tolerance=0.0):
         for one, other in zip(first, second, strict=True):
             assert_same(one, other, tolerance)
     elif isinstance(first, float):
-        assert first == pytest.approx(second, rel=tolerance, abs=tolerance, nan_ok=True)
+        close = math.isclose(first, second, rel_tol=tolerance, abs_tol=tolerance)
+        assert close or (math.isnan(first) and math.isnan(second)), (first, second)
     else:
         assert first == second
 

@@ -34,7 +34,7 @@ def _open_window(env: Environment) -> WindowViewer | None:
 
 
 def _serve(env: Environment, host: str, port: int) -> None:
-    """Serve the page, print its address, and wait for Ctrl-C: there is no other way to end a page."""
+    """Serve the page, print its address, and wait for Ctrl-C, which is how it ends."""
     from ravemj.gui.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
 
     viewer = env.serve_viewer(host, port)

@@ -65,8 +65,8 @@ def signals_delayed() -> Generator[None]:
         yield
     finally:
         _delays.remove(block)
-        if _delayed:
-            signal.raise_signal(_delayed[0])
+        if _delayed and not _delays:
+            signal.raise_signal(_delayed.pop())
 
 
 @contextmanager

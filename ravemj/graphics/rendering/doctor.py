@@ -48,7 +48,7 @@ def probe_backends() -> list[BackendReport]:
     Each is tried in a process of its own, because a broken driver can end the process that loads it. So this
     takes a second or two, and never fails.
     """
-    reports = [_probe(backend) for backend in GL_BACKENDS]
+    reports = [probe(backend) for backend in GL_BACKENDS]
     return [*reports, BackendReport(RAY, True, "ray casting on the CPU, needs no OpenGL", "")]
 
 
@@ -69,7 +69,8 @@ def _driver_name(context: OffscreenContext) -> str:
     return name.decode(errors="replace") if name else "an unnamed OpenGL driver"
 
 
-def _probe(backend: str) -> BackendReport:
+def probe(backend: str) -> BackendReport:
+    """Try one of ``GL_BACKENDS`` in a process of its own."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path or os.curdir for path in sys.path)}
     environment.pop("MUJOCO_GL", None)
     try:
