@@ -10,6 +10,7 @@ from strategies import Taste, choices, examples, number, scene_node, scenes, xml
 from test_properties import SMOOTH, Kinematics, draw_smooth, draw_values, spin
 
 import ravemj
+from ravemj.engine import batch
 from ravemj.engine.dynamics import rotation_rate
 
 Nothing = ravemj.CheckLimitsAction.Nothing
@@ -391,6 +392,28 @@ class TestBatch:
             close(jacobians[index, 3:], body.ComputeJacobianAxisAngle(link), 1e-10)
             body.SetDOFVelocities(rates[index], [0, 0, 0], [0, 0, 0], Nothing)
             close(torques[index], body.ComputeInverseDynamics(growths[index]), 1e-9)
+
+    def test_bodies_of_many_links_go_another_way(self, robot, monkeypatch):
+        robot.SetTransform(ravemj.matrixFromPose([0.5, 0.5, -0.5, 0.5, 1, -2, 3]))
+        values, rates, changes = np.random.default_rng(0).uniform(-1, 1, (3, 20, 2))
+        by_numpy = robot.batch_inverse_dynamics(values, rates, changes)
+        monkeypatch.setattr(batch, "FEW_LINKS", 0)
+        by_mujoco = robot.batch_inverse_dynamics(values, rates, changes)
+        assert np.abs(by_numpy).max() > 1
+        close(by_mujoco, by_numpy, 1e-9)
+
+    def test_velocities_are_read_off_where_the_links_are_now(self, robot):
+        """The links keep their velocities when they move; what these show of the joints is another thing then."""
+        robot.SetDOFVelocities([0.5, 0])
+        torques = robot.ComputeInverseDynamics([0, 0])
+        robot.SetDOFValues([1.2, -0.7])
+        kept, rates = robot.GetLinkVelocities(), robot.GetDOFVelocities()
+        moved = robot.ComputeInverseDynamics([0, 0])
+        fresh = robot.GetEnv().CloneSelf(1).GetRobots()[0]
+        fresh.SetLinkVelocities(kept)
+        close(fresh.GetDOFVelocities(), rates, 1e-12)
+        close(fresh.ComputeInverseDynamics([0, 0]), moved, 1e-9)
+        assert np.abs(moved - torques).max() > 1e-3
 
     def test_chunks_join(self, robot):
         values = np.linspace(-1, 1, 2 * 2503).reshape(-1, 2)

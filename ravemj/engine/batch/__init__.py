@@ -5,7 +5,9 @@ for hundreds of them. Work goes in chunks that fit the processor's cache, and me
 """
 
 from collections.abc import Iterator
+from functools import cached_property
 
+import mujoco
 import numpy as np
 
 from ravemj.core.transforms import Floats
@@ -17,6 +19,10 @@ from ravemj.model.inertia import Inertias
 
 POSES, MOTIONS = 60_000, 8_000
 """Poses of links, and their motions, that are worked out together: few enough for the cache, enough for numpy."""
+
+
+FEW_LINKS = 30
+"""Up to so many links numpy is faster than MuJoCo called for each configuration."""
 
 
 class Batch:
@@ -120,6 +126,10 @@ class Batch:
             gravity: Acceleration of free fall [m/s^2], shape (3,).
             out: Takes torques [N m], for sliders forces [N], shape (N, dof).
         """
+        if len(self._kinematics.body_ids) > FEW_LINKS and self._inverse_dynamics_by_mujoco(
+            values, rates, accelerations, gravity, out
+        ):
+            return
         for part in self._chunks(len(values), MOTIONS):
             now, speed, change = (np.ascontiguousarray(one[part].T) for one in (values, rates, accelerations))
             state = self._state(now, second=True)
@@ -129,3 +139,32 @@ class Batch:
             changes = state.accelerations(twists, velocities, coupling.forward(change) + coupling.bias(speed))
             wrenches = state.needed_forces(inertias, state.of_links(twists), state.of_links(changes), gravity)
             out[part] = coupling.backward(state.forces(wrenches)).T
+
+    def _inverse_dynamics_by_mujoco(
+        self, values: Floats, rates: Floats, accelerations: Floats, gravity: Floats, out: Floats
+    ) -> bool:
+        """Do the same one configuration after the other; return False where joints couple or links were displaced."""
+        kinematics, coupling = self._kinematics, self._dynamics.couplings.constant
+        if coupling is None or not self._dynamics.couplings.is_one_to_one or kinematics.displaced:
+            return False
+        model, data = kinematics.model, self._data
+        model.opt.gravity[:] = gravity
+        data.qpos[:] = kinematics.qpos
+        dofs, forces = coupling.dofs, np.zeros(model.nv)
+        places = kinematics.qpos_indices[dofs]
+        columns = np.arange(model.nv)[kinematics.inner_qvel][coupling.coordinates]
+        qpos, qvel, qacc = data.qpos, data.qvel, data.qacc
+        out[:] = 0.0
+        for row, now, speed, change in zip(out, values[:, dofs], rates[:, dofs], accelerations[:, dofs], strict=True):
+            qpos[places], qvel[columns], qacc[columns] = now, speed, change
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_comPos(model, data)
+            mujoco.mj_comVel(model, data)
+            mujoco.mj_rne(model, data, 1, forces)
+            row[dofs] = forces[columns]
+        return True
+
+    @cached_property
+    def _data(self) -> mujoco.MjData:
+        """A state of the body's model beside its own one; all velocities but those of joints stay 0."""
+        return mujoco.MjData(self._kinematics.model)

@@ -11,7 +11,8 @@ import mujoco
 import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
-from ravemj.engine.dynamics.coupling import Coupling, CouplingMap, rotation_rate
+from ravemj.engine.dynamics.coupling import Coupling, CouplingMap
+from ravemj.engine.dynamics.joint_velocities import JointVelocities, cross
 from ravemj.engine.dynamics.tree import Tree
 from ravemj.engine.kinematics import BodyKinematics, index_range
 from ravemj.model.scene import Joint
@@ -36,7 +37,7 @@ class BodyDynamics:
         self._inner = np.arange(model.nv)[kinematics.inner_qvel]
         self._moving, self._turning = np.zeros((3, model.nv)), np.zeros((3, model.nv))
         self._forces = np.zeros(model.nv)
-        self._of_dofs = _JointAxes(kinematics.body.joints, kinematics.body_ids)
+        self._joint_velocities = JointVelocities(kinematics)
         self._columns = self._one_to_one_columns()
         constant = self.couplings.constant
         self._coupling_matrix = None if constant is None else self._matrix(constant)
@@ -112,7 +113,7 @@ class BodyDynamics:
         chain = np.flatnonzero(self.tree.moves[link])
         columns = np.stack((self._moving, self._turning))[:, :, self._inner[chain]].transpose(2, 0, 1)
         spins = columns[:, None, 1]
-        moved, turned = _cross(spins, columns[None, :, 0]), _cross(spins, columns[None, :, 1])  # w_a x v_b as [a, b]
+        moved, turned = cross(spins, columns[None, :, 0]), cross(spins, columns[None, :, 1])  # w_a x v_b as [a, b]
         before = (chain[:, None] <= self.tree.carriers[chain])[..., None]  # the first moves the axis of the second
         count = self.tree.count
         by_coordinates = np.zeros((count, count, 6))
@@ -167,7 +168,7 @@ class BodyDynamics:
         """Return the velocities of the links for those in MuJoCo's data, shape (links, 6)."""
         motions = self._data.cvel[self._kinematics.body_ids]
         spins = motions[:, :3]
-        return np.concatenate((motions[:, 3:] + _cross(spins, self._arms()), spins), axis=1)
+        return np.concatenate((motions[:, 3:] + cross(spins, self._arms()), spins), axis=1)
 
     def link_velocities(self, rates: Floats, base: Floats) -> Floats:
         """Return the velocities of the links.
@@ -188,65 +189,12 @@ class BodyDynamics:
         return self._present_velocities()
 
     def joint_velocities(self, velocities: Floats, joints: Sequence[Joint]) -> list[Floats]:
-        """Return the velocities of joints, active or passive, that velocities of links show.
-
-        Args:
-            velocities: Those of the links, shape (links, 6).
-            joints: Which joints.
-
-        Returns:
-            For each joint those of its axes [rad/s or m/s], shape (axes,).
-        """
-        return self._shown(velocities, _JointAxes(joints, self._kinematics.body_ids))
+        """Return the velocities of joints that velocities of links show; see ``JointVelocities``."""
+        return self._joint_velocities.of(joints, velocities)
 
     def dof_velocities(self, velocities: Floats) -> Floats:
         """Return the velocities of the DOFs that velocities of links show, shape (links, 6) to (dof,)."""
-        if not velocities.any():
-            return np.zeros(self._kinematics.dof)
-        if self._of_dofs.special:
-            return np.concatenate([np.zeros(0), *self._shown(velocities, self._of_dofs)])
-        return self._of_first_axes(velocities, self._of_dofs)
-
-    def _shown(self, velocities: Floats, of: "_JointAxes") -> list[Floats]:
-        self._kinematics.place()
-        shown = list(self._of_first_axes(velocities, of)[:, None])
-        for index, joint in of.special:
-            turning = velocities[joint.child, 3:] - velocities[joint.parent, 3:]
-            if joint.kind == "spherical":
-                rotation = self._data.xmat[self._body_ids[joint.parent]].reshape(3, 3)
-                shown[index] = self._spherical_velocity(joint, rotation.T @ turning)
-            else:
-                shown[index] = np.linalg.pinv(self._two_axes(joint)) @ turning
-        return shown
-
-    def _of_first_axes(self, velocities: Floats, of: "_JointAxes") -> Floats:
-        """Return the velocities of the first axes of joints, shape (joints,)."""
-        rotations = self._data.xmat[of.parent_ids].reshape(-1, 3, 3)
-        axes = np.matmul(rotations, of.directions)[:, :, 0]
-        apart = velocities[of.children]
-        apart -= velocities[of.parents]
-        rates = np.einsum("ij,ij->i", axes, apart[:, 3:])
-        if len(slides := of.slides):
-            positions = self._data.xpos
-            arms = positions[of.child_ids[slides]] - positions[of.parent_ids[slides]]
-            moving = apart[slides, :3] - _cross(velocities[of.parents[slides], 3:], arms)
-            rates[slides] = np.einsum("ij,ij->i", axes[slides], moving)
-        return rates
-
-    def _two_axes(self, joint: Joint) -> Floats:
-        """Return the axes of a ``hinge2`` as columns, shape (3, 2)."""
-        places = self._kinematics.joint_qpos[self._kinematics.body.all_joints.index(joint)]
-        ids = np.flatnonzero(np.isin(self._model.jnt_qposadr, places))
-        return self._data.xaxis[ids].T if places else np.zeros((3, 2))
-
-    def _spherical_velocity(self, joint: Joint, turning: Floats) -> Floats:
-        """Return the rate of a rotation vector, for an angular velocity in the parent's axes."""
-        found = next((one for one in self._kinematics.spherical if one.joint.child == joint.child), None)
-        if found is None:
-            return turning
-        vector = np.array(found.to_values(self._data.qpos[found.qpos].tolist()))
-        rate, _ = rotation_rate(vector)
-        return np.linalg.inv(rate.T) @ turning  # the left Jacobian is the right one's transpose
+        return self._joint_velocities.of_dofs(velocities)
 
     def link_accelerations(
         self, velocities: Floats, accelerations: Floats, external: Mapping[int, Floats] | None = None
@@ -268,7 +216,7 @@ class BodyDynamics:
         mujoco.mj_rnePostConstraint(self._model, data)
         motions = data.cacc[self._kinematics.body_ids]
         turning = motions[:, :3]
-        linear = motions[:, 3:] + _cross(turning, self._arms()) + _cross(speeds[:, 3:], speeds[:, :3])
+        linear = motions[:, 3:] + cross(turning, self._arms()) + cross(speeds[:, 3:], speeds[:, :3])
         return np.concatenate((linear, turning), axis=1)
 
     def _set_velocities(self, velocities: Floats, *, with_joints: bool = True) -> None:
@@ -397,32 +345,3 @@ class BodyDynamics:
 def _turning_acceleration(velocity: Floats) -> Floats:
     """Return the acceleration of a link that goes on turning as it does, shape (6,): its origin's is ``w x v``."""
     return np.concatenate((np.cross(velocity[3:], velocity[:3]), np.zeros(3)))
-
-
-class _JointAxes:
-    """Which links joints are between, and their axes.
-
-    Attributes:
-        parents: Index of the parent link of each joint, shape (joints,).
-        children: Index of the child link.
-        parent_ids: MuJoCo's index of the parent link.
-        child_ids: MuJoCo's index of the child link.
-        directions: First axis, in the parent link, shape (joints, 3, 1).
-        slides: Which of them are sliders.
-        special: Those that have more than one axis, with their indices.
-    """
-
-    def __init__(self, joints: Sequence[Joint], body_ids: Ints) -> None:
-        self.parents = np.array([joint.parent for joint in joints], dtype=int)
-        self.children = np.array([joint.child for joint in joints], dtype=int)
-        self.parent_ids, self.child_ids = body_ids[self.parents], body_ids[self.children]
-        self.directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3, 1)
-        self.slides = np.array([index for index, joint in enumerate(joints) if joint.kind == "slider"], dtype=int)
-        self.special = [(index, joint) for index, joint in enumerate(joints) if joint.kind in {"spherical", "hinge2"}]
-
-
-def _cross(one: Floats, other: Floats) -> Floats:
-    """Return cross products along the last axis; faster than ``np.cross`` for few vectors."""
-    ax, ay, az = one[..., 0], one[..., 1], one[..., 2]
-    bx, by, bz = other[..., 0], other[..., 1], other[..., 2]
-    return np.stack((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), axis=-1)

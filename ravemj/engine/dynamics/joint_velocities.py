@@ -1,0 +1,108 @@
+"""Velocities of joints, read off the velocities of links, which are the state in OpenRAVE."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.dynamics.coupling import rotation_rate
+from ravemj.engine.kinematics import BodyKinematics
+from ravemj.model.scene import Joint
+
+
+class JointAxes:
+    """Which links joints are between, and their axes.
+
+    Attributes:
+        parents: Index of the parent link of each joint, shape (joints,).
+        children: Index of the child link.
+        parent_ids: MuJoCo's index of the parent link.
+        child_ids: MuJoCo's index of the child link.
+        directions: First axis, in the parent link, shape (joints, 3, 1).
+        slides: Which of them are sliders.
+        special: Those that have more than one axis, with their indices.
+    """
+
+    def __init__(self, joints: Sequence[Joint], body_ids: Ints) -> None:
+        self.parents = np.array([joint.parent for joint in joints], dtype=int)
+        self.children = np.array([joint.child for joint in joints], dtype=int)
+        self.parent_ids, self.child_ids = body_ids[self.parents], body_ids[self.children]
+        self.directions = np.array([joint.axes[0].direction for joint in joints]).reshape(-1, 3, 1)
+        self.slides = np.array([index for index, joint in enumerate(joints) if joint.kind == "slider"], dtype=int)
+        self.special = [(index, joint) for index, joint in enumerate(joints) if joint.kind in {"spherical", "hinge2"}]
+
+
+class JointVelocities:
+    """Reads velocities of a body's joints off those of its links."""
+
+    def __init__(self, kinematics: BodyKinematics) -> None:
+        self._kinematics = kinematics
+        self._of_dofs = JointAxes(kinematics.body.joints, kinematics.body_ids)
+
+    def of(self, joints: Sequence[Joint], velocities: Floats) -> list[Floats]:
+        """Return the velocities of joints, active or passive, that velocities of links show.
+
+        Args:
+            joints: Which joints.
+            velocities: Those of the links, shape (links, 6).
+
+        Returns:
+            For each joint those of its axes [rad/s or m/s], shape (axes,).
+        """
+        return self._shown(velocities, JointAxes(joints, self._kinematics.body_ids))
+
+    def of_dofs(self, velocities: Floats) -> Floats:
+        """Return the velocities of the DOFs that velocities of links show, shape (links, 6) to (dof,)."""
+        if not velocities.any():
+            return np.zeros(self._kinematics.dof)
+        if self._of_dofs.special:
+            return np.concatenate([np.zeros(0), *self._shown(velocities, self._of_dofs)])
+        return self._of_first_axes(velocities, self._of_dofs)
+
+    def _shown(self, velocities: Floats, of: JointAxes) -> list[Floats]:
+        shown = list(self._of_first_axes(velocities, of)[:, None])
+        for index, joint in of.special:
+            turning = velocities[joint.child, 3:] - velocities[joint.parent, 3:]
+            if joint.kind == "spherical":
+                rotation = self._kinematics.data.xmat[self._kinematics.body_ids[joint.parent]].reshape(3, 3)
+                shown[index] = self._spherical_velocity(joint, rotation.T @ turning)
+            else:
+                shown[index] = np.linalg.pinv(self._two_axes(joint)) @ turning
+        return shown
+
+    def _of_first_axes(self, velocities: Floats, of: JointAxes) -> Floats:
+        """Return the velocities of the first axes of joints, shape (joints,)."""
+        self._kinematics.place()
+        rotations = self._kinematics.data.xmat[of.parent_ids].reshape(-1, 3, 3)
+        axes = np.matmul(rotations, of.directions)[:, :, 0]
+        apart = velocities[of.children]
+        apart -= velocities[of.parents]
+        rates = np.einsum("ij,ij->i", axes, apart[:, 3:])
+        if len(slides := of.slides):
+            positions = self._kinematics.data.xpos
+            arms = positions[of.child_ids[slides]] - positions[of.parent_ids[slides]]
+            moving = apart[slides, :3] - cross(velocities[of.parents[slides], 3:], arms)
+            rates[slides] = np.einsum("ij,ij->i", axes[slides], moving)
+        return rates
+
+    def _two_axes(self, joint: Joint) -> Floats:
+        """Return the axes of a ``hinge2`` as columns, shape (3, 2)."""
+        places = self._kinematics.joint_qpos[self._kinematics.body.all_joints.index(joint)]
+        ids = np.flatnonzero(np.isin(self._kinematics.model.jnt_qposadr, places))
+        return self._kinematics.data.xaxis[ids].T if places else np.zeros((3, 2))
+
+    def _spherical_velocity(self, joint: Joint, turning: Floats) -> Floats:
+        """Return the rate of a rotation vector, for an angular velocity in the parent's axes."""
+        found = next((one for one in self._kinematics.spherical if one.joint.child == joint.child), None)
+        if found is None:
+            return turning
+        vector = np.array(found.to_values(self._kinematics.data.qpos[found.qpos].tolist()))
+        rate, _ = rotation_rate(vector)
+        return np.linalg.inv(rate.T) @ turning  # the left Jacobian is the right one's transpose
+
+
+def cross(one: Floats, other: Floats) -> Floats:
+    """Return cross products along the last axis; faster than ``np.cross`` for few vectors."""
+    ax, ay, az = one[..., 0], one[..., 1], one[..., 2]
+    bx, by, bz = other[..., 0], other[..., 1], other[..., 2]
+    return np.stack((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx), axis=-1)
