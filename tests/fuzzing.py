@@ -335,7 +335,7 @@ class Trial:
                 path = Path(folder, name)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(content)
-            # The limit is for reading alone: if it interrupts writing, a file stays open until another test fails of it.
+            # The limit is for reading alone: in writing, it would leave a file open, of which another test fails.
             with time_limit(self.seconds), warnings.catch_warnings():
                 warnings.simplefilter("error")
                 warnings.simplefilter("ignore", RavemjWarning)
