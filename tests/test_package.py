@@ -119,16 +119,13 @@ def circles(typing: bool) -> list[set[str]]:
 
 
 NAME_EACH_OTHER = """
-    rave.environment rave.env.base rave.env.cloning rave.env.collision rave.env.contents rave.env.drawing
-    rave.env.loading rave.env.locking rave.env.meshing rave.env.modules rave.env.running rave.env.viewing
-    rave.kinbody rave.body.building rave.body.collision rave.body.configuration rave.body.grabbing rave.body.saving
-    rave.body.structure rave.body.velocities
-    rave.robot rave.body.active rave.body.manipulators rave.manipulator rave.arm_collision rave.sensors
-    rave.link rave.links.base rave.links.collision rave.links.loads rave.links.mass rave.links.parameters
-    rave.links.shapes rave.joint rave.joints.base rave.joints.following rave.joints.limits
-    rave.interface rave.collision rave.report rave.physics rave.specification rave.configuration_data rave.trajectory
-    rave.controllers rave.controllers.base rave.controllers.ideal rave.controllers.multi rave.controllers.velocity
-    rave.tables
+    rave.arm_collision rave.body.active rave.body.building rave.body.collision rave.body.configuration
+    rave.body.grabbing rave.body.manipulators rave.body.saving rave.body.structure rave.body.velocities
+    rave.collision rave.configuration_data rave.controllers rave.controllers.base rave.controllers.ideal
+    rave.controllers.multi rave.controllers.velocity rave.env.base rave.env.collision rave.env.contents
+    rave.env.drawing rave.env.loading rave.env.simulation rave.env.viewing rave.environment rave.interface
+    rave.joint rave.joint_limits rave.kinbody rave.link rave.link_geometries rave.manipulator rave.member
+    rave.physics rave.report rave.robot rave.sensors rave.specification rave.tables rave.trajectory
 """
 """Classes of the API whose methods take and return one another, and the topics that make them up."""
 
