@@ -3,8 +3,8 @@
 MuJoCo loads that library while it is imported, and fails without it. Whoever wants no picture does not need it, and
 whoever wants one gets ravemj's own message when it is drawn (``ravemj.rendering.contexts``).
 
-On the way MuJoCo may import glfw, which asks its library for its version in a process of its own. Signals wait until that
-process has ended: Ctrl-C, which reaches both, would have it print a traceback.
+On the way MuJoCo may import glfw, which asks its library for its version in a process of its own. Signals wait until
+that process has ended: Ctrl-C, which reaches both, would have it print a traceback.
 
 What MuJoCo warns of goes to the log; by itself it writes a file ``MUJOCO_LOG.TXT`` into the working folder.
 """
