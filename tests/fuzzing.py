@@ -4,6 +4,7 @@
 nothing pass but a scene or a ``RavemjError``.
 """
 
+import functools
 import random
 import re
 import tempfile
@@ -86,6 +87,7 @@ def parsed(content: bytes) -> Node | None:
     return node(root)
 
 
+@functools.cache
 def seed_documents() -> list[Files]:
     """Return the models of the repository, and the conformance cases where they are at hand."""
     mains = [path for folder in SEEDS for path in sorted(folder.rglob("*.xml"))]
@@ -262,7 +264,7 @@ class Fuzzer:
 
     def __init__(self, seed: int) -> None:
         self._seed = seed
-        self.seeds = seed_documents()
+        self.seeds = list(seed_documents())
 
     def make(self, number: int) -> Files:
         source = random.Random(f"{self._seed}/{number}")

@@ -440,6 +440,13 @@ def test_within_limits_is_the_first_candidate_there(text, x, y, lower, width):
                 assert slope == pytest.approx((ends[1] - ends[0]) / (2 * step), rel=1e-3, abs=1e-3)
 
 
+def test_an_enormous_equation_has_its_first_value():
+    text = "polyroots2(1, -3, 2)" + "+x" * 20_000
+    equation = parse(text, NAMES)
+    assert equation.within(1.5, 2.5) is equation
+    assert parse("polyroots2(1, -3, 2)", NAMES).within(1.5, 2.5).evaluate({}) == 2
+
+
 def test_limits_change_nothing_where_there_is_one_value():
     equation = parse("SASS(x, y, 2) + 1", NAMES)
     assert equation.within(-1, 1) is equation

@@ -201,11 +201,14 @@ class Expression:
     def within(self, lower: float, upper: float) -> "Expression":
         """Return the expression that has the first candidate within limits, else the first, for the caller to clamp.
 
+        Of an equation that is enormous with all its candidates only the first one counts.
+
         Args:
             lower: The least value.
             upper: The greatest value.
         """
-        return Expression(first_within(self.nodes, lower, upper)) if self.is_multivalued else self
+        found = first_within(self.nodes, lower, upper) if self.is_multivalued else self.root
+        return self if found is self.root else Expression(found)
 
     def polynomial(self, variable: str, max_degree: int = 4) -> tuple[float, ...] | None:
         """Return the coefficients, in ascending order, if this is a polynomial in one variable, else None.
