@@ -18,7 +18,7 @@ from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryFile
 
-IMPORTED = "ravemj.cli ravemj.readers av fissix imageio.v3 IPython PIL.Image rich.console rich.table".split()
+IMPORTED = ("ravemj.cli", "ravemj.readers", "av", "fissix", "imageio.v3", "IPython", "PIL.Image", "rich.table")
 
 
 class Forks:

@@ -6,7 +6,7 @@ import time
 import pytest
 from fuzzing import MAIN, Fuzzer, Outcome, Trial, parsed, smaller
 from lxml import etree
-from waiting import PATIENCE, time_limit
+from waiting import time_limit
 
 import ravemj
 from ravemj import mjcf

@@ -1,15 +1,14 @@
 """Each row of the summary of controls, with real mouse and keys: the window does what the core does, and shows it."""
 
 import math
-import time
 
 import numpy as np
 import pytest
 from command_line import TUTORIAL, colour_of
 from desk import ASLANT, DISTANCE, SIZE, Desk
 from screens import NEEDS_A_SCREEN
-from waiting import await_that
 from test_interaction import SLIDING
+from waiting import await_that
 
 from ravemj.interaction import Button, Resize, Tool, tools
 from ravemj.interaction.cube import Cube
