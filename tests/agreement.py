@@ -14,9 +14,7 @@ CONFORMANCE = Path(__file__).parent / "conformance"
 CORPUS = Path(__file__).resolve().parents[2] / "shared" / "corpus"
 """Published models with OpenRAVE's numbers; they belong to other projects and are no part of this repository."""
 
-NEEDS_THE_CORPUS = [
-    pytest.mark.skipif(not CORPUS.is_dir(), reason="they are not beside the repository, in ../shared/corpus")
-]
+NEEDS_THE_CORPUS = [pytest.mark.skipif(not CORPUS.is_dir(), reason="there are no published models in ../shared/corpus")]
 
 
 def _load_suite():

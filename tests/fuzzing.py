@@ -337,7 +337,7 @@ class Trial:
                 path = Path(folder, name)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_bytes(content)
-            # The limit is for reading alone: in writing, it would leave a file open, of which another test fails.
+            # For reading alone: where the limit interrupts writing, a file stays open, and a later test fails of it.
             with time_limit(self.seconds), warnings.catch_warnings():
                 warnings.simplefilter("error")
                 warnings.simplefilter("ignore", RavemjWarning)

@@ -43,9 +43,8 @@ def _no_gl() -> str:
 def pytest_terminal_summary(terminalreporter, exitstatus, config):
     """Say why tests were skipped and, last, what came of a run of all."""
     stats = {name: len(reports) for name, reports in terminalreporter.stats.items()}
-    reasons = Counter(
-        report.longrepr[2].removeprefix("Skipped: ") for report in terminalreporter.stats.get("skipped", ())
-    )
+    skipped = terminalreporter.stats.get("skipped", ())
+    reasons = Counter(report.longrepr[2].removeprefix("Skipped: ") for report in skipped)
     if reasons:
         terminalreporter.section("skipped tests, by reason")
     for reason, count in reasons.most_common():
@@ -61,7 +60,7 @@ def pytest_terminal_summary(terminalreporter, exitstatus, config):
         terminalreporter.line(f"ravemj works here: {passed:,} tests passed{but}.", green=True)
     if exitstatus == pytest.ExitCode.TESTS_FAILED:
         terminalreporter.line(
-            f"ravemj does not work here as it should: {failed:,} of {passed + failed:,} tests failed. Please report "
-            "the lines above that begin with FAILED or ERROR, and what .venv/bin/ravemj doctor prints.",
+            f"ravemj does not work here as it should: {failed:,} of {passed + failed:,} tests failed. "
+            "Please report the lines above that begin with FAILED or ERROR, and what .venv/bin/ravemj doctor prints.",
             red=True,
         )
