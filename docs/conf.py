@@ -32,5 +32,5 @@ napoleon_use_ivar = True
 nitpick_ignore_regex = [  # pages of others, which a build without network knows nothing of
     ("py:class", r"(collections|mujoco|np|numpy|optparse|os|weakref)\..*|EllipsisType|NDArray|Path"),
     ("py:class", r"Parameters|Result"),  # type variables
-    ("py:class", r"Simulation|Studio|_\w+"),  # below the API
+    ("py:class", r"IkParameterizationData|Simulation|SimulationRenderer|_\w+"),  # below the API
 ]

@@ -21,7 +21,7 @@ Attributes = Mapping[str, str]
 """Attributes for the bodies of a file, by name; see ``Load``."""
 
 Text = str | bytes | os.PathLike[str]
-Argument = KinBody | Text | Attributes | None
+_Argument = KinBody | Text | Attributes | None
 
 _LOG = logging.getLogger("ravemj")
 
@@ -111,7 +111,7 @@ class Loading(EnvironmentPart):
         self._files.update(dict.fromkeys(reading.files))
         self._found.update(dict.fromkeys(reading.diagnostics))
 
-    def ReadKinBodyURI(self, *arguments: Argument, **named: Argument) -> KinBody | None:
+    def ReadKinBodyURI(self, *arguments: _Argument, **named: _Argument) -> KinBody | None:
         """Read a body from a file without adding it: ``ReadKinBodyURI(filename[, atts])``.
 
         Also ``ReadKinBodyURI(body, filename[, atts])``, which makes that body anew. ``atts`` are as for ``Load``.
@@ -128,14 +128,14 @@ class Loading(EnvironmentPart):
 
     ReadKinBodyXMLFile = ReadKinBodyURI
 
-    def ReadKinBodyData(self, *arguments: Argument, **named: Argument) -> KinBody | None:
+    def ReadKinBodyData(self, *arguments: _Argument, **named: _Argument) -> KinBody | None:
         """Return a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
         into, data, given = _read_arguments("ReadKinBodyData", arguments, named)
         return self._read(_read_data(data, given), into, is_robot=False)
 
     ReadKinBodyXMLData = ReadKinBodyData
 
-    def ReadRobotURI(self, *arguments: Argument, **named: Argument) -> Robot | None:
+    def ReadRobotURI(self, *arguments: _Argument, **named: _Argument) -> Robot | None:
         """Return a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
 
         A body that the file does not call a robot becomes one.
@@ -146,7 +146,7 @@ class Loading(EnvironmentPart):
 
     ReadRobotXMLFile = ReadRobotURI
 
-    def ReadRobotData(self, *arguments: Argument, **named: Argument) -> Robot | None:
+    def ReadRobotData(self, *arguments: _Argument, **named: _Argument) -> Robot | None:
         """Return a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
         into, data, given = _read_arguments("ReadRobotData", arguments, named)
         robot = self._read(_read_data(data, given), into, is_robot=True)
@@ -206,7 +206,7 @@ class Loading(EnvironmentPart):
 
 
 def _read_arguments(
-    caller: str, arguments: tuple[Argument, ...], named: dict[str, Argument]
+    caller: str, arguments: tuple[_Argument, ...], named: dict[str, _Argument]
 ) -> tuple[KinBody | None, str | bytes, Attributes]:
     """Return the body to fill, if one is given, the file or text, and the attributes."""
     given = [*arguments, *(named.pop(name) for name in ("filename", "data", "atts") if name in named)]
