@@ -1,7 +1,7 @@
 """Starts commands as forks of a process that has imported everything, in milliseconds where a new one takes a second.
 
 A fork has a folder, variables, standard output and standard error of its own, and ends as ``python -m MODULE`` ends.
-The process that forks has one thread, and never draws.
+The process that forks never draws, so that each fork has an OpenGL context of its own too.
 """
 
 import atexit
@@ -13,6 +13,7 @@ import signal
 import socket
 import subprocess
 import sys
+import warnings
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
@@ -90,7 +91,9 @@ def _serve(requests: socket.socket) -> None:
             sys.exit()  # the tests are over
         while not content.endswith(b"\n"):
             content += requests.recv(1 << 16)
-        child = os.fork()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # the threads that numpy has started sleep
+            child = os.fork()
         if child == 0:
             break
         for file in files:
