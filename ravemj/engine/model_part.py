@@ -46,8 +46,7 @@ class ModelPart:
 
     def take(self, kinematics: BodyKinematics) -> None:
         """Go where the body is."""
-        qpos = kinematics.qpos
-        self._qpos[:] = qpos if self.is_free else qpos[kinematics.inner_qpos]
+        self._qpos[:] = kinematics.qpos if self.is_free else kinematics.qpos[kinematics.inner_qpos]
         if kinematics.pose_stamp > self.stamp:
             self._take_poses(kinematics)
         self.stamp = kinematics.stamp

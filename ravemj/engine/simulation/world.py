@@ -205,8 +205,12 @@ class Simulation:
         Raises:
             CompileError: MuJoCo refuses the model.
         """
-        model, stamp = self.compiled(), self.collision_stamp
-        known = self._collisions
+        model, stamp, known = self._world, self.collision_stamp, self._collisions
+        if model is None:
+            model = self.compiled()
+        elif self.changed:  # as in ``compiled``, in fewer steps, since planners ask this most
+            model.take(self.changed)
+            self.changed.clear()
         if known is None or known.model is not model or known.stamp != stamp:
             from ravemj.engine.collision.world import CollisionWorld  # noqa: PLC0415 - slow to import
 

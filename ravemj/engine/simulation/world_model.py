@@ -46,13 +46,12 @@ class WorldModel(Compiled):
     def take(self, bodies: Iterable[BodyState]) -> None:
         """Take over what changed of some bodies: joint values, poses, masses, colours."""
         for body in bodies:
-            part = self._parts.get(body)
-            if part is not None:
-                if body.scene is not self._described[body]:
-                    self._describe(part, self._described[body].links, body.scene.links)
-                    self._described[body] = body.scene
-                if body.is_compiled:
-                    part.take(body.own_kinematics)
+            part, described = self._parts[body], self._described[body]
+            if body.scene is not described:
+                self._describe(part, described.links, body.scene.links)
+                self._described[body] = body.scene
+            if body.is_compiled:
+                part.take(body.own_kinematics)
         mujoco.mj_kinematics(self.model, self.data)
 
     def _describe(self, part: ModelPart, before: Iterable[Link], links: Iterable[Link]) -> None:
