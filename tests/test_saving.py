@@ -112,7 +112,7 @@ class Clock(threading.Event):
 
 
 def test_without_a_motion_a_video_is_what_happens_until_it_is_stopped(viewer, robot, tmp_path, monkeypatch):
-    clock = viewer._saving._stop = Clock()
+    clock = viewer._recorder._stop = Clock()
     monkeypatch.setattr(recorder, "time", SimpleNamespace(monotonic=lambda: clock.now, strftime=time.strftime))
     notices = viewer.interaction.controls.notices
     record(viewer)

@@ -197,6 +197,13 @@ VALUES = np.arange(10) / 8
 WORLD = world_with_arm()
 
 
+@pytest.fixture(autouse=True, scope="module")
+def _world():
+    """Make the environment anew: ``RaveDestroy`` in tests of other files has emptied it."""
+    global WORLD  # noqa: PLW0603 - hypothesis takes no fixtures of functions
+    WORLD = world_with_arm()
+
+
 @given(indices, indices, st.integers(0, 3))
 def test_joint_values_come_from_the_data_or_the_body(present, wanted, rows):
     source, target = spec_of(joints("arm", present)), spec_of(joints("arm", wanted), ("deltatime", 1))

@@ -213,9 +213,9 @@ class BodyState:
         Args:
             T_world_links: Shape (links, 4, 4).
             last_values: Joint values to which those of hinges are next, full turns apart [rad or m], shape (dof,);
-                the body is in the world. None: the present values; this never compiles.
+                the body is in the world. None: the present values.
         """
-        kinematics = self.own_kinematics
+        kinematics = self.own_kinematics if last_values is None else self.kinematics
         place_links(kinematics, T_world_links, kinematics.values() if last_values is None else last_values)
         self.moved()
 
