@@ -115,5 +115,6 @@ def _serve(requests: socket.socket) -> None:
 if __name__ == "__main__":
     for name in IMPORTED:
         import_module(name)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # shells let what runs in the background ignore it
     gc.freeze()  # else the end of each fork goes through all of it
     _serve(socket.socket(fileno=int(sys.argv[1])))

@@ -52,6 +52,11 @@ def test_half_turns_back_from_their_matrix(axis):
     assert wxyz_from_rows(rows_from_wxyz(wxyz)) == pytest.approx(wxyz)
 
 
+def test_axes_of_subnormal_length_turn_as_longer_ones():
+    short, long = (wxyz_from_axis_angle((0.0, size, size), 1.0) for size in (5e-324, 1.0))
+    np.testing.assert_allclose(short, long, rtol=1e-15)
+
+
 @given(rotations, rotations)
 def test_multiply_is_matrix_product(a, b):
     product = np.array(rows_from_wxyz(a)) @ rows_from_wxyz(b)

@@ -130,6 +130,10 @@ def normalize(wxyz: Wxyz) -> Wxyz:
     return (w / length, x / length, y / length, z / length)
 
 
+_SHORTEST = 1e-290
+"""Below this length a vector's components may be subnormal."""
+
+
 def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
     """Return the right-handed rotation by an angle [rad] about an axis of any length; no axis, no rotation.
 
@@ -141,6 +145,9 @@ def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
     length = math.hypot(*axis)
     if length == 0.0:
         return UNIT_WXYZ
+    if length < _SHORTEST:  # subnormal numbers have few digits; a power of two loses none
+        axis = (axis[0] * 2.0**600, axis[1] * 2.0**600, axis[2] * 2.0**600)
+        length = math.hypot(*axis)
     if math.isinf(angle):
         raise OverflowError("there is no turn by an infinite angle")
     cosine, sine = math.cos(angle / 2), math.sin(angle / 2)
