@@ -1,5 +1,6 @@
 """What the pictures show: geometry, colours and identities, by OpenGL and by ray casting."""
 
+import gc
 import math
 import threading
 
@@ -383,6 +384,27 @@ def test_closed_renderers_say_so(how):
     for call in (renderer.render, renderer.segment):
         with pytest.raises(RenderingError, match="closed"):
             call(data, TUTORIAL)
+
+
+@pytest.mark.parametrize("how", [GL])
+def test_renderers_that_are_collected_while_another_draws(how, monkeypatch):
+    """Garbage in a circle is finalized in any order; the context first left the rest to whatever was current."""
+    from ravemj.graphics.rendering.gl_scene import GlScene
+
+    class Owner:
+        def __init__(self, renderer):
+            self.renderer, self.self = renderer, self
+
+    model, data = state_of(PENDULUM)
+    with open_as(how, model) as renderer:
+        expected = renderer.render(data, TUTORIAL)
+        Owner(open_as(how, model)).renderer.render(data, TUTORIAL)
+        draw = GlScene.draw
+        with monkeypatch.context() as patch:
+            patch.setattr(GlScene, "draw", lambda *arguments: (draw(*arguments), gc.collect()))
+            first = renderer.render(data, TUTORIAL)
+        assert np.array_equal(first, expected)
+        assert np.array_equal(renderer.render(data, TUTORIAL), expected)
 
 
 @both

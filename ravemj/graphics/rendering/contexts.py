@@ -73,6 +73,7 @@ class OffscreenContext:
             context_class: type[_GLContext] = importlib.import_module(f"mujoco.{backend}").GLContext
             self._context = _make_glfw(context_class) if backend == "glfw" else context_class(64, 64)
         _used.add(backend)
+        _not_freed.add(self._context)
 
     @contextlib.contextmanager
     def current(self) -> Generator[None]:
@@ -93,6 +94,7 @@ class OffscreenContext:
     def close(self) -> None:
         """Free the context; what was made in it must be freed before."""
         self._context.free()
+        _not_freed.discard(self._context)
 
 
 class Closeable(Protocol):
@@ -233,5 +235,6 @@ def _make_glfw(context_class: type[_GLContext]) -> _GLContext:
 _CHECKS: dict[str, Callable[[], None]] = {"egl": check_egl, "osmesa": _check_osmesa, "glfw": _check_glfw}
 _open: "weakref.WeakSet[Closeable]" = weakref.WeakSet()
 _used: set[str] = set()
+_not_freed: set[_GLContext] = set()  # keeps garbage collection from freeing a context before what was made in it
 _remembered: list[str] = []
 _lock = threading.RLock()
