@@ -13,10 +13,11 @@
     RavemjWarning               .code .diagnostic: read, but not as the author may think
 """
 
+import os
 import re
 import sys
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Literal, NamedTuple
@@ -189,15 +190,17 @@ class Diagnostic:
 
 
 class RavemjWarning(UserWarning):
-    """A diagnostic, sent through Python's ``warnings``; filter on this class.
+    """Findings of one code, sent through Python's ``warnings``; filter on this class.
 
     Attributes:
-        diagnostic: The finding, with its place in the file.
+        diagnostic: The first finding, with its place in the file.
+        diagnostics: All findings of this code from one reading, the first one included.
     """
 
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(str(diagnostic))
+    def __init__(self, diagnostic: Diagnostic, *others: Diagnostic) -> None:
+        super().__init__(f"{diagnostic}{_and_others(diagnostic, others)}")
         self.diagnostic = diagnostic
+        self.diagnostics = (diagnostic, *others)
 
     @property
     def code(self) -> str:
@@ -244,26 +247,45 @@ def describe(kind: str, message: str, source: Source, hint: str) -> str:
     return f"{source}: {kind}: {message}{tail}{included}"
 
 
+def _and_others(first: Diagnostic, others: Sequence[Diagnostic]) -> str:
+    """Return the words for further findings: how many there are, where the first ones are, and what lists them all."""
+    if not others:
+        return ""
+    file = first.source.file
+    sources = [other.source for other in others]
+    listed = list(dict.fromkeys(f"line {at.line}" if at.file == file else str(at) for at in sources))
+    shown = ", ".join([*listed[:_PLACES], *(["…"] if len(listed) > _PLACES else [])])
+    loaded = first.source
+    while loaded.included_from is not None:
+        loaded = loaded.included_from
+    return f" (and {len(others)} more [{first.code}]: {shown}; `ravemj check {loaded.file}` lists them all)"
+
+
 def send_warnings(diagnostics: Iterable[Diagnostic]) -> None:
-    """Send every diagnostic through Python's ``warnings``, pointing at the caller of ravemj."""
+    """Send diagnostics through Python's ``warnings``, one warning for each code."""
+    by_code: dict[str, list[Diagnostic]] = {}
     for diagnostic in diagnostics:
-        send_warning(diagnostic, 3)
+        by_code.setdefault(diagnostic.code, []).append(diagnostic)
+    for findings in by_code.values():
+        send_warning(*findings)
 
 
-def send_warning(diagnostic: Diagnostic, stacklevel: int) -> None:
-    """Send a diagnostic through Python's ``warnings``, which counts stack levels in the same way.
+def send_warning(diagnostic: Diagnostic, *others: Diagnostic) -> None:
+    """Send findings of one code through Python's ``warnings``; the warning points at the user's line.
 
     What ``warnings`` keeps in order to show each text once is kept here, and bounded: a million values outside limits
     would be a million texts.
     """
     frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage] - what warnings.warn does
-    for _ in range(stacklevel - 1):
-        frame = frame.f_back or frame
+    while frame.f_code.co_filename.startswith(_PACKAGE) and frame.f_back is not None:
+        frame = frame.f_back
     if len(_shown) > _MOST_SHOWN:
         _shown.clear()
     place = frame.f_code.co_filename, frame.f_lineno, frame.f_globals.get("__name__")
-    warnings.warn_explicit(RavemjWarning(diagnostic), None, *place, registry=_shown)  # pyright: ignore
+    warnings.warn_explicit(RavemjWarning(diagnostic, *others), None, *place, registry=_shown)  # pyright: ignore
 
 
+_PACKAGE = os.path.join(os.path.dirname(__file__), "")  # where no line of a user stands
+_PLACES = 3
 _MOST_SHOWN = 1000
 _shown: dict[str | tuple[str, type[Warning], int], int] = {}

@@ -359,6 +359,7 @@ JOINT = """<Robot name="r"><KinBody><Body name="a"/>
 <Body name="b"/>
 <Joint name="j" type="hinge">
 {}</Joint></KinBody></Robot>"""
+URDF = '<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="fixed">{}</joint></robot>'
 BAD_MODELS = {
     "missing.xml": (None, "missing.xml: error: "),
     "words.txt": ("no XML at all\n", "words.txt:1: error: not well-formed XML"),
@@ -367,6 +368,13 @@ BAD_MODELS = {
     "open.xml": ("<Robot>\n<KinBody>\n</Robot>\n", "open.xml:3: error: "),
     "body.xml": (JOINT.format("<Body>a</Body><Body>c</Body>"), r"body.xml:\d: error: .*'c'"),
     "include.xml": ('<Environment>\n<Robot file="gone.xml"/>\n</Environment>', r"include.xml:2: error: .*gone\.xml"),
+    "mjcf.xml": ("<mujoco/>", "mjcf.xml:1: error: this is MJCF.*mujoco.MjModel.from_xml_path"),
+    "urdf.xml": (URDF.format('<parent link="a"/>'), "urdf.xml:1: error: this is URDF.*mujoco.MjModel.from_xml_path"),
+    "links.xml": (URDF.format(""), "links.xml:1: error: this is URDF"),
+    "latin.xml": (
+        '<?xml version="1.0" encoding="utf-8"?>\n<Robot>\n<KinBody name="caf\xe9"/></Robot>'.encode("latin-1"),
+        "latin.xml:3: error: the byte 0xE9 is not UTF-8.*encoding=",
+    ),
     "inside.xml": (
         '<Environment>\n<Robot file="open.xml"/>\n</Environment>',
         r"open.xml:3: error: .*included from inside\.xml:2",
@@ -386,7 +394,7 @@ BAD_MODELS = {
 def test_a_bad_model_is_one_line_with_file_and_line(folder, name):
     for file, (text, _) in BAD_MODELS.items():
         if text is not None:
-            (folder / file).write_text(text)
+            (folder / file).write_bytes(text if isinstance(text, bytes) else text.encode())
     (folder / "a.png").write_text("kept")
     before = listing(folder)
     done = ravemj_command(folder, "render", name, "-o", "a.png")
@@ -417,8 +425,10 @@ BAD_FILES = {
 }
 TO_A = "play env.xml -o a.mp4 "
 BAD_WORDS = [
-    ("", 2, "ravemj: error: .*COMMAND"),
     ("dance env.xml", 2, "ravemj: error: .*'dance'"),
+    ("infoo env.xml", 2, "ravemj: error: .*'infoo' is none of .* did you mean info"),
+    ("info env.xml --jsn", 2, "ravemj info: error: .*--jsn.* did you mean --json.* see ravemj info --help"),
+    ("convert env.xml --base foxed", 2, "ravemj convert: error: .*'foxed' is none of fixed, openrave"),
     ("play", 2, "ravemj play: error: .*MODEL"),
     ("render env.xml", 2, "ravemj render: error: .*-o"),
     ("alias", 2, "ravemj alias: error: .*--install"),
@@ -428,6 +438,8 @@ BAD_WORDS = [
     (TO_A + "--to 1", 1, "ravemj: error: --to has 1 .*2 DOFs"),
     (TO_A + "--to 1,0 --trajectory swing.csv", 2, "ravemj play: error: .*--trajectory"),
     (TO_A + "--size 0x9", 2, "ravemj play: error: .*640x480"),
+    (TO_A + "--size 100000x100000", 2, "ravemj play: error: .*16384x16384"),
+    (TO_A + "--background rde", 2, "ravemj play: error: .*'rde' is no colour like .*red"),
     (TO_A + "--fps 0", 2, "ravemj play: error: .*--fps"),
     (TO_A + "--duration -1", 2, "ravemj play: error: .*--duration"),
     (TO_A + "--background 1,2,3", 2, "ravemj play: error: .*'1,2,3' is no colour"),
@@ -451,8 +463,9 @@ BAD_WORDS = [
     ("play env.xml -o .", 1, "ravemj: error: "),
     ("play env.xml -o a.gif --fps 100", 1, "ravemj: error: .*50 frames"),
     ("render env.xml -o a.bmp", 1, "ravemj: error: .*a.bmp.*png"),
+    ("render env.xml -o a", 1, "ravemj: error: .* no suffix.*png"),
     ("render env.xml -o gone/a.png", 1, "ravemj: error: .*gone"),
-    ("render env.xml -o a.png --q 1,2,3", 1, "ravemj: error: .*2 DOFs"),
+    ("render env.xml -o a.png --q 1,2,3", 1, "ravemj: error: --q has 3 values.*2 DOFs: Joint0, Joint1$"),
     ("convert env.xml -o gone/a.xml", 1, "ravemj: error: .*gone"),
     ("convert env.xml -o .", 1, "ravemj: error: "),
     ("run gone.py", 1, "gone.py: error: "),
@@ -474,6 +487,18 @@ def test_a_bad_argument_is_one_line_and_touches_nothing(folder, capsys, words, c
         done = ravemj_command(folder, *words.split())
     _check_failure(done, code, pattern)
     assert listing(folder) == before
+
+
+def test_no_words_at_all_get_the_help(folder):
+    done = ravemj_command(folder)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert all(f"    {command} " in done.stderr for command in COMMANDS)
+
+
+@pytest.mark.parametrize(("colour", "pixel"), [("red", [255, 0, 0]), ("#00ff80", [0, 255, 128])])
+def test_the_background_may_be_a_colour_of_css(folder, colour, pixel):
+    said(ravemj_command(folder, "render", "env.xml", "-o", "b.png", "--size", "32x24", "--background", colour))
+    assert list(Image.open(folder / "b.png").getpixel((0, 0))) == pixel
 
 
 def test_an_unwritable_folder_is_said_before_anything_is_drawn(folder):

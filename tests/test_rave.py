@@ -78,6 +78,20 @@ class TestEnvironment:
         with pytest.warns(ravemj.RavemjWarning):
             assert ravemj.load(path).diagnostics[0].code == "unknown-body"
 
+    def test_warnings_of_one_load_are_gathered_and_point_at_the_user(self, tmp_path):
+        path = tmp_path / "odd.xml"
+        lines = ["<KinBody name='b'>", *["<Odd/>"] * 6, "<Body name='a'><Odder/></Body></KinBody>"]
+        path.write_text("\n".join(lines))
+        with pytest.warns(ravemj.RavemjWarning) as caught:
+            env = ravemj.load(path)
+        assert {warning.filename for warning in caught} == {__file__}
+        (warning,) = (each.message for each in caught)
+        assert warning.code == "unknown-tag"
+        assert warning.diagnostics == env.diagnostics
+        assert len(env.diagnostics) == 7
+        words = f"(and 6 more [unknown-tag]: line 3, line 4, line 5, …; `ravemj check {path}` lists them all)"
+        assert str(warning).endswith(words)
+
     def test_data_folder(self, models, monkeypatch):
         monkeypatch.setenv("OPENRAVE_DATA", str(models))
         assert ravemj.Environment().Load("env.xml")

@@ -54,8 +54,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Sequence[str]) -> int:
+    parser = make_parser()
+    if not arguments:
+        parser.print_help(sys.stderr)
+        return 2
     try:
-        options = make_parser().parse_args(_joined(arguments))
+        options = parser.parse_args(_joined(arguments))
         return options.run(options)
     finally:
         signals.heed_signals()  # again, where the command has left them to a script

@@ -30,7 +30,10 @@ def load_model(options: argparse.Namespace) -> Environment:
 
 
 def failure_of(findings: Sequence[Diagnostic]) -> SourceError:
-    """Return the one-line error with which findings end a command."""
+    """Return the one-line error with which findings end a command; the code of the first one stands at its end."""
     first = findings[0]
     more = f" (and {len(findings) - 1} more: see ravemj check)" if len(findings) > 1 else ""
-    return SourceError(f"{first.message} [{first.code}]{more}", first.source, first.hint)
+    code = f" [{first.code}]"
+    if first.hint:
+        return SourceError(f"{first.message}{more}", first.source, f"{first.hint}{code}")
+    return SourceError(f"{first.message}{more}{code}", first.source)

@@ -1,7 +1,9 @@
 """The arguments of the commands, with their help."""
 
 import argparse
+import difflib
 import math
+from collections.abc import Iterable, Sequence
 from typing import NoReturn, TypeAlias
 
 from ravemj.cli import check, convert, info, pictures, sessions, view
@@ -12,6 +14,27 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: error: {message}; see {self.prog} --help\n")
+
+    def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride] - its overloads
+        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Refuse what a command does not know, so that the message names the command."""
+        parsed, unknown = super().parse_known_args(args, namespace or argparse.Namespace())
+        if unknown:
+            self.error(f"unknown: {' '.join(unknown)}{_did_you_mean(unknown[0], self._option_string_actions)}")
+        return parsed, unknown
+
+    def _check_value(self, action: argparse.Action, value: object) -> None:
+        """Refuse a value that is no choice, with the nearest one."""
+        if action.choices is not None and value not in action.choices:
+            choices = [str(choice) for choice in action.choices]
+            guess = _did_you_mean(str(value), choices)
+            raise argparse.ArgumentError(action, f"'{value}' is none of {', '.join(choices)}{guess}")
+
+
+def _did_you_mean(word: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(word, known, 1)
+    return f"; did you mean {close[0]}?" if close else ""
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -68,8 +91,9 @@ def _add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> Non
     parser.add_argument(
         "--background",
         type=_colour,
-        metavar="R,G,B",
-        help="background, each from 0 to 1; default: the model's, or white",
+        metavar="COLOUR",
+        help="background: red, green and blue from 0 to 1, as 0.8,0.85,0.9, or a CSS name or #rrggbb; default: the "
+        "model's, or white",
     )
 
 
@@ -300,15 +324,32 @@ def _port(text: str) -> int:
 
 def _size(text: str) -> tuple[int, int]:
     width, cross, height = text.lower().partition("x")
-    if not (
-        cross and width.isdecimal() and height.isdecimal() and 0 < int(width) <= 16384 and 0 < int(height) <= 16384
-    ):
-        raise argparse.ArgumentTypeError(f"'{text}' is no size like 640x480")
+    if not (cross and all(side.isdecimal() and 0 < int(side) <= _LONGEST_SIDE for side in (width, height))):
+        raise argparse.ArgumentTypeError(f"'{text}' is no size like 640x480, up to {_LONGEST_SIDE}x{_LONGEST_SIDE}")
     return int(width), int(height)
 
 
 def _colour(text: str) -> list[float]:
+    if text[:1].isalpha() or text.startswith("#"):
+        return _colour_of_name(text)
     colour = _vector(text)
     if len(colour) != 3 or not all(0 <= part <= 1 for part in colour):
-        raise argparse.ArgumentTypeError(f"'{text}' is no colour like 0.8,0.85,0.9")
+        raise _no_colour(text)
     return colour
+
+
+def _colour_of_name(text: str) -> list[float]:
+    """Return what CSS means by a name or by hexadecimal digits."""
+    from PIL import ImageColor  # noqa: PLC0415 - slow to import
+
+    try:
+        return [part / 255 for part in ImageColor.getrgb(text)[:3]]
+    except ValueError:
+        raise _no_colour(text) from None
+
+
+def _no_colour(text: str) -> argparse.ArgumentTypeError:
+    return argparse.ArgumentTypeError(f"'{text}' is no colour like 0.8,0.85,0.9 or red or #d9e2e6")
+
+
+_LONGEST_SIDE = 16384

@@ -50,11 +50,22 @@ def _motion(options: argparse.Namespace, body: KinBody) -> Motion:
         return motion if options.duration is None else motion.rescaled(options.duration)
     if options.to is None:
         goal = body.simulation_state.kinematics.limits.clamp(np.array([math.pi] + [0.0] * (len(start) - 1)))
-    elif len(options.to) != len(start):
-        raise ArgumentError(f"--to has {len(options.to)} values, and '{body.GetName()}' has {len(start)} DOFs")
     else:
-        goal = options.to
+        goal = _checked_values("--to", options.to, body)
     return Motion.line(start, goal, options.duration or 1.0)
+
+
+def _checked_values(option: str, values: list[float], body: KinBody) -> list[float]:
+    """Return the joint values of an option, one for each DOF.
+
+    Raises:
+        ArgumentError: there are fewer or more.
+    """
+    dof = body.GetDOF()
+    if len(values) != dof:
+        joints = ", ".join(joint.GetName() for joint in body.GetJoints())
+        raise ArgumentError(f"{option} has {len(values)} values, and '{body.GetName()}' has {dof} DOFs: {joints}")
+    return values
 
 
 def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot) -> bool:
@@ -90,7 +101,8 @@ def render(options: argparse.Namespace) -> int:
     camera = None if options.camera is None else read_camera(options.camera)
     env = load_model(options)
     if options.q is not None:
-        moving_body(env).SetDOFValues(options.q)
+        body = moving_body(env)
+        body.SetDOFValues(_checked_values("--q", options.q, body))
     width, height = options.size
     matrix = None if camera is None else camera.T_world_camera
     write_picture(options.output, env.render(width, height, camera=matrix, background=options.background))

@@ -314,7 +314,8 @@ def _known_suffix(path: AnyPath, known: Iterable[str]) -> str:
     suffix = _FOLDER if text.endswith(("/", os.sep)) else Path(text).suffix.lower()
     if suffix not in known:
         names = ", ".join(name or "a folder (no suffix or a final /)" for name in known)
-        raise ArgumentError(f"cannot write {text}: '{suffix}' is none of {names}")
+        found = f"'{suffix}' is none of" if suffix else "its name has no suffix, and should end with one of"
+        raise ArgumentError(f"cannot write {text}: {found} {names}")
     return suffix
 
 

@@ -127,7 +127,7 @@ def within_limits(body: KinBody, motion: Motion) -> Motion:
                 f"[{lower[dof]:.6g}, {upper[dof]:.6g}]; it stops at the limit"
             )
             diagnostic = Diagnostic("warning", "value-outside-limits", message, source)
-            send_warning(diagnostic, 3)
+            send_warning(diagnostic)
     return Motion(motion.times, values)
 
 

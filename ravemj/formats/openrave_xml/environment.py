@@ -115,13 +115,21 @@ class _Document:
         self.gravity: Vec3 | None = None
 
     def read(self, root: Element) -> None:
-        """Read a root element."""
+        """Read a root element.
+
+        Raises:
+            SourceError: this is another format.
+        """
+        if _is_urdf(root):
+            raise _other_format("URDF", root.source)
         if root.tag == "environment":
             self.read_environment(root)
         elif root.tag in {"robot", "kinbody"}:
             if root.complete:
                 self.read_body(root)
         elif root.tag not in INTERFACES:
+            if root.tag == "mujoco":
+                raise _other_format("MJCF, MuJoCo's own format", root.source)
             raise SourceError(
                 f"the root element is <{root.spelled}>, and OpenRAVE expects <Environment>, <Robot> or <KinBody>",
                 root.source,
@@ -153,6 +161,24 @@ class _Document:
         self.bodies.append(body)
         if refusal is not None:
             raise refusal
+
+
+def _is_urdf(root: Element) -> bool:
+    """Tell URDF's ``<robot>`` from OpenRAVE's: by joints whose parents are attributes, or by links without a body."""
+    if root.tag != "robot":
+        return False
+    parents = (
+        part for child in root.children if child.tag == "joint" for part in child.children if part.tag == "parent"
+    )
+    return any("link" in parent.attributes for parent in parents) or (
+        any(child.tag == "link" for child in root.children)
+        and not any(child.tag == "kinbody" for child in root.children)
+    )
+
+
+def _other_format(name: str, source: Source) -> SourceError:
+    hint = f"MuJoCo reads it: mujoco.MjModel.from_xml_path, or python -m mujoco.viewer --mjcf={source.file}"
+    return SourceError(f"this is {name}; ravemj reads OpenRAVE's XML and COLLADA", source, hint)
 
 
 class _EnvironmentScope:

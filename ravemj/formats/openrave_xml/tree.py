@@ -102,6 +102,7 @@ class _Parser:
         self._path = path
         self._included_from = included_from
         self._content = b""
+        self._encoding = ""  # that the file declares
         self._entities: list[str] = []
         self._open: list[Element] = []
         self._text: list[str] = []  # since the last tag
@@ -111,6 +112,7 @@ class _Parser:
         self._expat.EndElementHandler = self._end
         self._expat.CharacterDataHandler = self._text.append
         self._expat.DefaultHandler = self._other
+        self._expat.XmlDeclHandler = self._declaration
         self._expat.EntityDeclHandler = self._declared
 
     def parse(self, content: bytes) -> SourceError | None:
@@ -119,17 +121,34 @@ class _Parser:
         try:
             self._expat.Parse(content, True)
         except expat.ExpatError as error:
-            reason = expat.ErrorString(error.code) or "syntax error"
-            source = Source(self._path, error.lineno, self._included_from)
-            return SourceError(f"not well-formed XML: {reason}", source)
+            return self._explained(error)
         except (LookupError, ValueError) as error:  # an encoding that Python does not know
             return SourceError(f"not readable as XML: {error}", self._here())
         except SourceError as error:
             return error
         return None
 
+    def _explained(self, error: expat.ExpatError) -> SourceError:
+        """Return a syntax error in words; what expat calls an invalid token may be a byte of another encoding."""
+        source = Source(self._path, error.lineno, self._included_from)
+        if self._encoding.lower() in {"", "utf-8", "utf8"}:
+            try:
+                self._content.decode()
+            except UnicodeDecodeError as wrong:
+                byte, line = self._content[wrong.start], self._content.count(b"\n", 0, wrong.start) + 1
+                if line == error.lineno:
+                    hint = (
+                        'save it as UTF-8, or name its encoding in the first line: <?xml version="1.0" encoding="…"?>'
+                    )
+                    return SourceError(f"the byte 0x{byte:02X} is not UTF-8, the encoding of the file", source, hint)
+        return SourceError(f"not well-formed XML: {expat.ErrorString(error.code) or 'syntax error'}", source)
+
     def _here(self) -> Source:
         return Source(self._path, self._expat.CurrentLineNumber, self._included_from)
+
+    def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:
+        del version, standalone
+        self._encoding = encoding or ""
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         if self._entities and attributes:

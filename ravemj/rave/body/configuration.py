@@ -122,7 +122,7 @@ class Configuration(BodyPart):
         if checklimits == CheckLimitsAction.CheckLimitsThrow:
             raise ArgumentError(message)
         diagnostic = Diagnostic("warning", "value-outside-limits", f"{message}; it stops at the limit", joint.source)
-        send_warning(diagnostic, 4)
+        send_warning(diagnostic)
 
     @property
     def qpos_indices(self) -> Ints:

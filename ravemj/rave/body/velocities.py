@@ -106,7 +106,7 @@ class Velocities(BodyPart, Interface):
             if checklimits == CheckLimitsAction.CheckLimitsThrow:
                 raise ArgumentError(message)
             diagnostic = Diagnostic("warning", "value-outside-limits", f"{message}, which it gets", joint.source)
-            send_warning(diagnostic, 3)
+            send_warning(diagnostic)
         return limited
 
     def GetLinkVelocities(self) -> Floats:
