@@ -434,6 +434,31 @@ class TestIncludes:
         assert (finding.code, finding.source.line) == ("missing-file", 2)
         assert "gone.xml" in finding.message
 
+    @pytest.mark.parametrize(
+        ("places", "root", "taken"),
+        [
+            (["shared.xml"], None, "shared.xml"),
+            (["a/shared.xml"], "a", "a/shared.xml"),
+            (["shared.xml"], "a", None),
+            (["shared.xml", "a/shared.xml"], None, None),
+            (["a/b/shared.xml", "shared.xml"], None, "a/b/shared.xml"),
+        ],
+    )
+    def test_a_file_in_a_folder_above(self, tmp_path, places, root, taken):
+        """Up to the root of a repository, and only where exactly one fits; the places of OpenRAVE come first."""
+        (tmp_path / "a" / "b").mkdir(parents=True)
+        for place in places:
+            (tmp_path / place).write_text(f'<KinBody><Body name="{place}"/></KinBody>')
+        if root is not None:
+            (tmp_path / root / ".git").mkdir()
+        path = tmp_path / "a" / "b" / "model.xml"
+        path.write_text('<Environment>\n<KinBody name="b" file="shared.xml"/></Environment>')
+        reading = read(path)
+        assert [link.name for body in reading.scene.bodies for link in body.links] == ([taken] if taken else [])
+        beside = taken == "a/b/shared.xml"
+        codes = [] if beside else ["found-above" if taken else "missing-file"]
+        assert [(finding.code, finding.source.line) for finding in reading.diagnostics] == [(code, 2) for code in codes]
+
     def test_a_file_that_includes_itself(self, write):
         path = write('<Environment>\n  <Environment file="model.xml"/>\n</Environment>')
         assert str(read(path).failure) == f"{path}:2: error: the file includes itself through model.xml"

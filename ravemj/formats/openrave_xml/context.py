@@ -13,6 +13,8 @@ from ravemj.formats.openrave_xml.tree import Element, parse_file
 
 MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
+_MOST_ABOVE = 4
+"""Folders above a file in which what it names is looked for: robots in repositories lie no deeper."""
 _LONGEST_NAME = 80
 """No known name is anywhere near as long."""
 
@@ -129,6 +131,9 @@ class Context:
     def find(self, name: str, source: Source, *folders: str) -> str | None:
         """Look a file up in some folders, beside the file that names it, then in those of ``OPENRAVE_DATA``.
 
+        Where it is in none of them, as in repositories that were cloned and no more, the folders above the file that
+        names it are asked.
+
         Args:
             name: The file.
             source: Where it is named.
@@ -150,6 +155,12 @@ class Context:
                 self._found[question] = candidate
                 return candidate
             looked_at.append(candidate)
+        above = _found_above(name, os.path.dirname(source.file))
+        if above is not None:
+            message = f"{name} is in none of the places where OpenRAVE looks, so {above} is taken"
+            self.diagnostics.warn("found-above", message, source, "OpenRAVE needs its folder in OPENRAVE_DATA")
+            self._found[question] = above
+            return above
         hint = "" if data_folders else "put it there, or set OPENRAVE_DATA to the folder that it is in"
         message = f"there is no file {name}; looked at {', '.join(dict.fromkeys(looked_at))}"
         self.diagnostics.warn("missing-file", message, source, hint)
@@ -178,6 +189,22 @@ class Context:
         except SourceError as error:
             self.diagnostics.warn("broken-mesh", f"{error.source}: {error.message}", source)
             return ()
+
+
+def _found_above(name: str, folder: str) -> str | None:
+    """Return the path of a file in the one of the folders above another that has it; None if several have.
+
+    The search ends at the root of a repository, and after some folders.
+    """
+    if os.path.isabs(name):
+        return None
+    found: set[str] = set()
+    for _ in range(_MOST_ABOVE):
+        if os.path.exists(os.path.join(folder, ".git")):
+            break
+        folder = os.path.normpath(os.path.join(folder, os.pardir))
+        found.update(filter(os.path.isfile, [os.path.join(folder, name)]))
+    return found.pop() if len(found) == 1 else None
 
 
 def _is_same_file(first: str, second: str) -> bool:
