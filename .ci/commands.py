@@ -83,8 +83,10 @@ def check() -> None:
 
 
 def info() -> None:
-    """Tell the numbers of a COLLADA file."""
+    """Tell the numbers of a COLLADA file, and of a model that the wheel brings."""
     assert [body["dof"] for body in json.loads(do("info", "scara.dae", "--json"))["bodies"]] == [4]
+    assert Path(ravemj.model_path("puma560")).is_relative_to(sys.prefix)
+    assert [body["dof"] for body in json.loads(do("info", "puma560", "--json"))["bodies"]] == [6]
 
 
 def run() -> None:

@@ -1,7 +1,7 @@
 """OpenRAVE's models, tutorial, Python API and GUI, on MuJoCo.
 
 >>> import ravemj
->>> env = ravemj.load("models/env.xml")
+>>> env = ravemj.load(ravemj.model_path("pendulum"))
 >>> robot = env.GetRobots()[0]
 >>> robot.SetDOFValues([0.785, 0.785])
 >>> picture = env.render(640, 480)
@@ -32,6 +32,7 @@ from ravemj.errors import (
     SourceError,
     UnsupportedError,
 )
+from ravemj.formats.shipped import model_path
 from ravemj.geometry_functions import *  # noqa: F403 - as its __all__ lists them
 from ravemj.rave import *  # noqa: F403 - OpenRAVE's names, which ravemj/rave/__init__.py lists
 from ravemj.rave.recording import record
@@ -62,6 +63,7 @@ __all__ = [
     "databases",
     "interfaces",
     "misc",
+    "model_path",
     "planningutils",
     "read_motion",
     "record",

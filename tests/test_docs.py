@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from command_line import ravemj_command
 
 import ravemj
 import ravemj.compat.openravepy
@@ -42,6 +43,33 @@ def test_commands_are_understood(page):
                 make_parser().parse_args(words[1:])
             elif words and words[0].startswith("./"):
                 assert (ROOT / words[0]).is_file()
+
+
+def commands_that_end():
+    """Return the commands of README and of the help, but for those that wait for a user or change this Python."""
+    shown = [*blocks(ROOT / "README.md", "sh"), *blocks(ROOT / "docs" / "cli.md", "console")]
+    commands = [shlex.split(re.split(r" [|>] ", line)[0], comments=True) for line in "".join(shown).splitlines()]
+    ending = (words for words in commands if words[0] == "ravemj" and words[1] not in {"view", "shell", "alias"})
+    return [words[1:] for words in ending if "-i" not in words]
+
+
+@pytest.mark.parametrize("words", commands_that_end(), ids=" ".join)
+def test_commands_work(tmp_path, words):
+    (tmp_path / "models").symlink_to(ROOT / "models")
+    for source, name in {
+        "models/env.xml": "env.xml",
+        "models/double-pendulum.xml": "double-pendulum.xml",
+        "models/panda.xml": "robot.xml",
+        "models/puma560.xml": "arm.xml",
+        "models/tutorial-camera.json": "camera.json",
+    }.items():
+        (tmp_path / name).write_bytes((ROOT / source).read_bytes())
+    (tmp_path / "swing.csv").write_text("time,Joint0,Joint1\n0,0,0\n0.2,1,-1\n")
+    for script in ("myscript.py", "oldscript.py"):
+        (tmp_path / script).write_text("import openravepy\nassert openravepy.Environment().Load('env.xml')\n")
+    expanded = [path for word in words for path in ([*tmp_path.glob(word)] if "*" in word else [word])]  # as shells do
+    done = ravemj_command(tmp_path, *expanded)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -13,6 +13,7 @@ import ravemj
 from ravemj.errors import Diagnostics
 from ravemj.formats import mjcf
 from ravemj.formats.readers import read_file
+from ravemj.formats.shipped import SHIPPED_MODELS
 
 MODELS = Path(ravemj.__file__).parent.parent / "models"
 ROBOTS = ["puma560.xml", "panda.xml", "scara.dae"]
@@ -178,3 +179,13 @@ def test_meshes_of_the_collada_robot_are_closed_and_face_outwards(name):
         a, b, c = np.moveaxis(mesh.vertices[mesh.indices], 1, 0)
         assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0
         np.testing.assert_allclose(np.cross(b - a, c - a).sum(axis=0), 0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", SHIPPED_MODELS)
+def test_models_that_come_with_ravemj_load_by_their_name(name):
+    assert ravemj.load(ravemj.model_path(name)).GetBodies()
+
+
+def test_a_model_that_does_not_come_with_ravemj():
+    with pytest.raises(ravemj.ArgumentError, match="'wam'.*pendulum, panda"):
+        ravemj.model_path("wam")

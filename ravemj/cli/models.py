@@ -1,12 +1,14 @@
 """Loading the model of a command."""
 
 import argparse
+import os
 import warnings
 from collections.abc import Sequence
 
 from ravemj.cli.checking import FATAL_CODES
 from ravemj.cli.console import print_findings
 from ravemj.errors import Diagnostic, RavemjWarning, SourceError
+from ravemj.formats.shipped import SHIPPED_MODELS, model_path
 from ravemj.rave import Environment, load
 
 
@@ -19,7 +21,7 @@ def load_model(options: argparse.Namespace) -> Environment:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)  # they are printed below, all at once
         try:
-            env = load(options.model)
+            env = load(model_file(options.model))
         except SourceError as error:
             raise error if error.cause is None else failure_of([error.cause]) from None
     fatal = [finding for finding in env.diagnostics if options.strict or finding.code in FATAL_CODES]
@@ -27,6 +29,11 @@ def load_model(options: argparse.Namespace) -> Environment:
         raise failure_of(fatal)
     print_findings(env.diagnostics)
     return env
+
+
+def model_file(name: str) -> str:
+    """Return the file that a word of the command line names: a path, or the name of a model that comes with ravemj."""
+    return model_path(name) if name in SHIPPED_MODELS and not os.path.exists(name) else name
 
 
 def failure_of(findings: Sequence[Diagnostic]) -> SourceError:

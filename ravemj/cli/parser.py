@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import NoReturn, TypeAlias
 
 from ravemj.cli import check, convert, info, pictures, sessions, view
+from ravemj.formats.shipped import SHIPPED_MODELS
 
 
 class _Parser(argparse.ArgumentParser):
@@ -76,7 +77,10 @@ def _command(commands: Commands, name: str, summary: str, *examples: str) -> arg
 
 def _add_model(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "model", metavar="MODEL", help="OpenRAVE XML or COLLADA file: an environment, a robot or a kinbody"
+        "model",
+        metavar="MODEL",
+        help="OpenRAVE XML or COLLADA file: an environment, a robot or a kinbody; or a model that comes with ravemj: "
+        f"{', '.join(SHIPPED_MODELS)}",
     )
     parser.add_argument("--strict", action="store_true", help="take warnings about the model for errors")
 
@@ -102,8 +106,8 @@ def _add_view(commands: Commands) -> None:
         commands,
         "view",
         "show a model in a window, or as a page in a browser, and move it with the mouse",
-        "ravemj view models/env.xml",
-        "ravemj view --web models/env.xml      # prints the address of the page; Ctrl-C ends it",
+        "ravemj view pendulum",
+        "ravemj view --web workshop            # prints the address of the page; Ctrl-C ends it",
         "ravemj view --web --port 8080 robot.xml",
     )
     _add_model(parser)
@@ -125,10 +129,10 @@ def _add_play(commands: Commands) -> None:
         commands,
         "play",
         "play a motion of a robot: in a window, or into a video",
-        "ravemj play models/env.xml",
-        "ravemj play models/env.xml -o pendulum.mp4 --camera models/tutorial-camera.json",
-        'ravemj play models/env.xml -o frames/ --to "1.57,-1.57" --duration 2',
-        "ravemj play models/env.xml -o swing.gif --trajectory swing.csv --fps 25",
+        "ravemj play pendulum",
+        "ravemj play env.xml -o pendulum.mp4 --camera camera.json",
+        'ravemj play pendulum -o frames/ --to "1.57,-1.57" --duration 2',
+        "ravemj play env.xml -o swing.gif --trajectory swing.csv --fps 25",
     )
     _add_model(parser)
     parser.add_argument(
@@ -163,8 +167,8 @@ def _add_render(commands: Commands) -> None:
         commands,
         "render",
         "draw a picture of a model",
-        "ravemj render models/env.xml -o pendulum.png",
-        'ravemj render models/env.xml -o pendulum.png --q "0.785,0.785" --size 1280x720',
+        "ravemj render workshop -o workshop.png",
+        'ravemj render pendulum -o pendulum.png --q "0.785,0.785" --size 1280x720',
     )
     _add_model(parser)
     parser.add_argument("-o", "--output", type=_target, required=True, metavar="FILE", help=".png, .jpg or .webp")
@@ -180,9 +184,9 @@ def _add_convert(commands: Commands) -> None:
         commands,
         "convert",
         "translate a model to MJCF, MuJoCo's format",
-        "ravemj convert models/env.xml -o pendulum/      # pendulum/env.xml, and assets/ for meshes",
-        "ravemj convert models/env.xml -o pendulum.mjcf.xml --actuators position",
-        "ravemj convert models/env.xml | less",
+        "ravemj convert robot.xml -o robot/      # robot/robot.xml, and assets/ for meshes",
+        "ravemj convert puma560 -o puma.mjcf.xml --actuators position",
+        "ravemj convert pendulum | less",
     )
     _add_model(parser)
     parser.add_argument(
@@ -216,7 +220,7 @@ def _add_check(commands: Commands) -> None:
         commands,
         "check",
         "find what is wrong in models, and what OpenRAVE passes over in silence",
-        "ravemj check models/env.xml",
+        "ravemj check env.xml",
         "ravemj check --strict models/*.xml",
         "ravemj check --json robot.xml      # a list of file, line, code, severity, message, hint, included_from",
     )
@@ -231,8 +235,8 @@ def _add_info(commands: Commands) -> None:
         commands,
         "info",
         "show the links, joints, manipulators and sensors of a model",
-        "ravemj info models/env.xml",
-        "ravemj info models/env.xml --json > env.json",
+        "ravemj info panda",
+        "ravemj info panda --json > panda.json",
     )
     _add_model(parser)
     parser.add_argument("--json", action="store_true", help="print all numbers as JSON")
@@ -259,9 +263,7 @@ def _add_run(commands: Commands) -> None:
 
 
 def _add_shell(commands: Commands) -> None:
-    parser = _command(
-        commands, "shell", "open IPython with env, robot and viewer of a model", "ravemj shell models/env.xml"
-    )
+    parser = _command(commands, "shell", "open IPython with env, robot and viewer of a model", "ravemj shell puma560")
     _add_model(parser)
     parser.set_defaults(run=sessions.shell)
 
