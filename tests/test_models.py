@@ -187,5 +187,5 @@ def test_models_that_come_with_ravemj_load_by_their_name(name):
 
 
 def test_a_model_that_does_not_come_with_ravemj():
-    with pytest.raises(ravemj.ArgumentError, match="'wam'.*pendulum, panda"):
+    with pytest.raises(ravemj.ArgumentError, match=r"'wam'.*pendulum, panda"):
         ravemj.model_path("wam")
