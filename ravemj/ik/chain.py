@@ -14,6 +14,9 @@ from numpy.typing import ArrayLike
 
 from ravemj.ik.vectors import Bools, Floats, skew
 
+Turns = Sequence[Floats] | Floats
+"""For each joint cosines and sines, shape (2, …), or distances, (1, …); one array where all joints are revolute."""
+_IDENTITY = np.eye(3)
 _FEW = 128
 """Up to so many postures, calls of numpy cost more than its arithmetic."""
 
@@ -102,6 +105,23 @@ class Chain:
         return len(self.axes)
 
     @cached_property
+    def turning(self) -> Bools:
+        """Which joints turn, shape (n,)."""
+        return ~self.prismatic
+
+    @cached_property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Limits, both of shape (n,), which circular joints do not have."""
+        return np.where(self.circular, -np.inf, self.lower), np.where(self.circular, np.inf, self.upper)
+
+    @cached_property
+    def wide(self) -> list[int]:
+        """Joints with limits that can show a posture in several turns."""
+        span = self.upper - self.lower
+        several = self.turning & ~self.circular & np.isfinite(span) & (span >= 2 * np.pi - 1e-9)
+        return np.nonzero(several)[0].tolist()
+
+    @cached_property
     def reach(self) -> float:
         """Length of the chain [m]: the sum of distances from point to point and on to the tool; never 0."""
         points = np.vstack([self.points[~self.prismatic], self.T_base_tool[:3, 3]])
@@ -123,7 +143,7 @@ class Chain:
         steps = [np.linalg.inv(first) @ second for first, second in itertools.pairwise(frames)]
         return [np.array(step.T, dtype=float, order="C") for step in steps]
 
-    def _frames(self, turns: Sequence[Floats]) -> list[Floats]:
+    def _frames(self, turns: Turns) -> list[Floats]:
         """Place the frames of the joints, each before its motion, and last the tool.
 
         Args:
@@ -132,7 +152,7 @@ class Chain:
         Returns:
             Columns x, y, z and origin by components by configurations, each of shape (4, 3, M).
         """
-        count = turns[0].shape[-1] if turns else 1
+        count = turns[0].shape[-1] if len(turns) else 1
         frame = np.repeat(self._steps[0][:, :3, None], count, axis=2)
         frames = [frame]
         for value, step, sliding in zip(turns, self._steps[1:], self.prismatic.tolist(), strict=True):
@@ -164,13 +184,16 @@ class Chain:
                 motion[0, :3, 3] += point
         return motions.reshape(self.dof, 3, 16)
 
-    def _few_tool_columns(self, turns: Sequence[Floats]) -> Floats:
+    def _few_tool_columns(self, turns: Turns) -> Floats:
         """As ``tool_columns``, in fewer calls of numpy, with more arithmetic."""
         count = turns[0].shape[-1]
         factors = np.zeros((self.dof, 3, count))
         factors[:, 0] = 1
-        for factor, turn in zip(factors, turns, strict=True):
-            factor[1 : 1 + len(turn)] = turn
+        if isinstance(turns, np.ndarray):
+            factors[:, 1:] = turns
+        else:
+            for factor, turn in zip(factors, turns, strict=True):
+                factor[1 : 1 + len(turn)] = turn
         steps = (factors.swapaxes(1, 2) @ self._motions).reshape(self.dof, count, 4, 4)
         poses = steps[0]
         for step in steps[1:]:
@@ -184,9 +207,9 @@ class Chain:
             for column, sliding in zip(np.moveaxis(values, -1, 0), self.prismatic.tolist(), strict=True)
         ]
 
-    def tool_columns(self, turns: Sequence[Floats]) -> Floats:
+    def tool_columns(self, turns: Turns) -> Floats:
         """Return the tool's x, y, z and origin, shape (4, 3, M), for cosines and sines; see ``turns``."""
-        if turns and turns[0].shape[-1] <= _FEW:
+        if len(turns) and turns[0].shape[-1] <= _FEW:
             return self._few_tool_columns(turns)
         return self._frames(turns)[-1]
 
@@ -265,6 +288,6 @@ def check_poses(poses: Floats) -> None:
     if not np.isfinite(poses).all():
         raise ValueError("a pose is not finite")
     rotations = poses[..., :3, :3]
-    error = np.abs(np.swapaxes(rotations, -1, -2) @ rotations - np.eye(3)).max(initial=0.0)
+    error = np.abs(np.swapaxes(rotations, -1, -2) @ rotations - _IDENTITY).max(initial=0.0)
     if error > 1e-6 or (np.linalg.det(rotations) < 0).any() or (poses[..., 3, :] != (0.0, 0.0, 0.0, 1.0)).any():
         raise ValueError("a pose is no rigid transform: its rotation has scale, shear or a mirror in it")

@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from string import ascii_lowercase
 
 import numpy as np
 
-from ravemj.ik.chain import Chain
+from ravemj.ik.chain import Chain, Turns
 from ravemj.ik.families.loops import Family
+from ravemj.ik.families.one_pose import OnePose
 from ravemj.ik.limits import nearest_turns
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Bools, Floats, Ints, Transform, cross, tile
@@ -71,6 +73,10 @@ class ClosedForm:
         self._locked = {joints[place]: place for place in family.arm.locked}
         self._scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
         self._rows = np.array(task.rows)
+        places = [(row in task.rows) / chain.reach**2 for row in range(3)]
+        self._counts = np.array([0.5 * (max(task.rows) > 2)] * 9 + places)
+        self._order = [index for index, _ in sorted(self._answers, key=lambda answer: answer[1])]
+        self._one_pose = OnePose.of(family)
 
     @property
     def locked(self) -> list[int]:
@@ -109,14 +115,15 @@ class ClosedForm:
                 self._check(poses[part], turns, values[..., part], valid[:, part], merged[part], limits=limits)
         return Solutions(values.transpose(2, 1, 0), valid.T, merged)
 
-    def _check(
-        self, poses: Floats, turns: list[Floats], values: Floats, valid: Bools, merged: Bools, *, limits: bool
-    ) -> None:
+    def _check(self, poses: Floats, turns: Turns, values: Floats, valid: Bools, merged: Bools, *, limits: bool) -> None:
         """Fill in values, and which of them are solutions, for what the family says."""
-        for joint, turn in enumerate(turns):
-            values[joint] = np.arctan2(turn[1], turn[0]) if len(turn) > 1 else turn[0]
+        if isinstance(turns, np.ndarray):
+            np.arctan2(turns[:, 1], turns[:, 0], out=values)
+        else:
+            for joint, turn in enumerate(turns):
+                values[joint] = np.arctan2(turn[1], turn[0]) if len(turn) > 1 else turn[0]
         goal = np.ascontiguousarray(poses[:, :3].transpose(2, 1, 0))
-        tool = self.chain.tool_columns([turn.reshape(len(turn), -1) for turn in turns])
+        tool = self.chain.tool_columns(_flat(turns))
         error = self._error(tool.reshape(4, 3, *valid.shape), goal[:, :, None])
         np.less_equal(error, EXACT, out=valid)
         doubtful = (error <= self.near) & ~valid
@@ -132,8 +139,10 @@ class ClosedForm:
         flat = self.chain.turns(values.reshape(len(values), -1).T)
         return [turn.reshape(len(turn), *values.shape[1:]) for turn in flat]
 
-    def _turns(self, poses: Floats, locked: Floats, shape: tuple[int, ...]) -> list[Floats]:
+    def _turns(self, poses: Floats, locked: Floats, shape: tuple[int, ...]) -> Turns:
         """Return what the family says for each joint of the chain, turns (2, B, N) or distances (1, B, N)."""
+        if self._one_pose is not None and len(poses) == 1:
+            return self._turns_of_one(poses[0], self._one_pose)
         reach = self.chain.reach
         given: dict[int, Floats] = {}
         turns: list[Floats] = [np.zeros((1, *shape))] * self.chain.dof
@@ -149,6 +158,16 @@ class ClosedForm:
         branches = shape[0]
         return [_filled(tile(turn, branches), (len(turn), *shape)) for turn in turns]
 
+    def _turns_of_one(self, pose: Floats, solver: OnePose) -> Floats:
+        """Return what the family says for one pose, found by another way of computing it, shape (6, 2, B, 1)."""
+        motion = pose @ self._tool
+        motion[:3, 3] /= self.chain.reach
+        x, y, z, _ = motion.tolist()
+        found = solver.solve((tuple(x[:3]), tuple(y[:3]), tuple(z[:3]), (x[3], y[3], z[3])))
+        numbers = chain.from_iterable(chain.from_iterable(found))
+        turns = np.fromiter(numbers, float, 12 * len(found)).reshape(-1, 6, 2)
+        return turns[:, self._order].transpose(1, 2, 0)[..., None]
+
     def _motion(self, poses: Floats, locked: dict[int, Floats]) -> Transform:
         """Return the motion that the joints have to make, or the place where the tool has to be, in units of reach."""
         whole = self.task in (Task.TRANSFORM, Task.PLANAR)
@@ -159,12 +178,9 @@ class ClosedForm:
 
     def _error(self, tool: Floats, goal: Floats) -> Floats:
         """Return the error of tool columns: the length of the differences, in units of the reach and in radians."""
-        way = (tool[3] - goal[3])[self._rows[self._rows < 3]]
-        square = np.einsum("i...,i...->...", way, way) * self._scale[0] ** 2
-        if self._rows[-1] > 2:
-            turned = (tool[:3] - goal[:3]).reshape(9, *square.shape)
-            square += np.einsum("i...,i...->...", turned, turned) / 2
-        return np.sqrt(square)
+        away = tool - goal
+        away *= away
+        return np.sqrt((self._counts @ away.reshape(12, -1)).reshape(away.shape[2:]))
 
     def errors(self, values: Floats, poses: Floats) -> Floats:
         """Return the errors of values (M, n) for poses (M, 4, 4), in units of the reach and in radians."""
@@ -210,6 +226,13 @@ class ClosedForm:
         turning = ~chain.prismatic
         values[:, turning] = np.mod(values[:, turning] + np.pi, 2 * np.pi) - np.pi
         return values, errors
+
+
+def _flat(turns: Turns) -> Turns:
+    """Return turns and distances with branches and poses as one axis."""
+    if isinstance(turns, np.ndarray):
+        return turns.reshape(*turns.shape[:2], -1)
+    return [turn.reshape(len(turn), -1) for turn in turns]
 
 
 def _filled(values: Floats, shape: tuple[int, ...]) -> Floats:

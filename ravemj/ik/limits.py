@@ -1,6 +1,7 @@
 """Whole turns: which angles that show the same posture are within the limits of an arm."""
 
 import itertools
+from math import ceil, floor
 
 import numpy as np
 
@@ -10,11 +11,6 @@ from ravemj.ik.vectors import Bools, Floats
 TOLERANCE = 1e-10
 """How far [rad or m] values may be beyond a limit; they are put onto it."""
 _TURN = 2 * np.pi
-
-
-def _bounds(chain: Chain) -> tuple[Floats, Floats]:
-    lower = np.where(chain.circular, -np.inf, chain.lower)
-    return lower, np.where(chain.circular, np.inf, chain.upper)
 
 
 def nearest_turns(
@@ -33,16 +29,15 @@ def nearest_turns(
     Returns:
         The values, and for each row whether all are within the limits, shape (...).
     """
-    lower, upper = _bounds(chain)
-    turning = ~chain.prismatic
+    lower, upper = chain.bounds
     with np.errstate(invalid="ignore"):
         least = np.ceil((lower - tolerance - values) / _TURN)
         most = np.floor((upper + tolerance - values) / _TURN)
         wanted = np.round((np.where(chain.circular, 0.0, near) - values) / _TURN)
-        turns = np.clip(wanted, least, np.maximum(most, least)) * turning
+        turns = np.minimum(np.maximum(wanted, least), np.maximum(most, least)) * chain.turning
         moved = values + _TURN * turns
         good = (moved >= lower - tolerance) & (moved <= upper + tolerance)
-    return np.clip(moved, lower, upper), np.logical_and.reduce(good, axis=-1)
+    return np.minimum(np.maximum(moved, lower), upper), np.logical_and.reduce(good, axis=-1)
 
 
 def all_turns(chain: Chain, values: Floats) -> Floats:
@@ -51,18 +46,20 @@ def all_turns(chain: Chain, values: Floats) -> Floats:
     A revolute joint with a range of more than a turn gives several values, several such joints all combinations.
     Circular joints give one value, in [-pi, pi].
     """
-    lower, upper = _bounds(chain)
+    lower, upper = chain.bounds
     first, inside = nearest_turns(chain, values)
     rows = first[inside]
-    turning = ~chain.prismatic & ~chain.circular
-    more = turning & ((rows - _TURN >= lower - TOLERANCE) | (rows + _TURN <= upper + TOLERANCE)).any(axis=0)
-    for joint in np.nonzero(more)[0]:
-        least = np.ceil((lower[joint] - TOLERANCE - rows[:, joint]) / _TURN).astype(int)
-        most = np.floor((upper[joint] + TOLERANCE - rows[:, joint]) / _TURN).astype(int)
-        counts = most - least + 1
-        steps = np.fromiter(itertools.chain.from_iterable(map(range, least, most + 1)), int, counts.sum())
-        rows = np.repeat(rows, counts, axis=0)
-        rows[:, joint] = np.clip(rows[:, joint] + _TURN * steps, lower[joint], upper[joint])
+    for joint in chain.wide:
+        low, high = float(lower[joint]), float(upper[joint])
+        steps = [
+            range(ceil((low - TOLERANCE - value) / _TURN), floor((high + TOLERANCE - value) / _TURN) + 1)
+            for value in rows[:, joint].tolist()
+        ]
+        counts = list(map(len, steps))
+        if any(count > 1 for count in counts):
+            turns = np.array(list(itertools.chain.from_iterable(steps)))
+            rows = np.repeat(rows, counts, axis=0)
+            rows[:, joint] = np.minimum(np.maximum(rows[:, joint] + _TURN * turns, low), high)
     return rows
 
 

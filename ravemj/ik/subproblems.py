@@ -14,7 +14,7 @@ import numpy as np
 
 from ravemj.ik.vectors import TINY, Floats, Screw, dot
 
-_ON_AXIS = 2e-11
+ON_AXIS = 2e-11
 """Unit vectors that are nearer to an axis count as being along it: any turn is exact enough."""
 _SHIFTS = 2 * np.pi / 5 * np.arange(5).reshape(5, 1, 1)
 
@@ -42,7 +42,7 @@ def turn_between(joint: Screw, start: Floats, end: Floats) -> Floats:
     """
     _, across, later = joint.split(end)
     start = joint.across(start)  # else the rounding of what is along the axis counts, where that is most
-    return normalized(np.array([dot(start, across), -dot(start, later)]), _ON_AXIS**2)
+    return normalized(np.array([dot(start, across), -dot(start, later)]), ON_AXIS**2)
 
 
 def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:

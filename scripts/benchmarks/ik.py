@@ -17,6 +17,7 @@ from ravemj.ik.compiled import CompiledKinematics
 
 MANY = 20000
 POSES = 200
+_IDLE = "the limit is that of µs on an idle machine, where the floor is 1"
 
 
 def rows() -> list[Row]:
@@ -24,7 +25,7 @@ def rows() -> list[Row]:
     puma, panda, parallel = _model("puma560.xml"), _model("panda.xml"), _parallel()
     found = [_derived(name, chain) for name, chain in (("PUMA", puma), ("Panda", panda), ("UR-like", parallel))]
     found += [_batch("PUMA", puma, 8.0), _batch("UR-like", parallel, None), _batch("six general joints", _odd(), None)]
-    found += [_one(puma), _first(panda)]
+    found += [_one("PUMA", puma, 250.0), _one("UR-like", parallel, None), _eaik("PUMA", puma), _first(panda)]
     return found + _searches("PUMA", puma) + _searches("Panda", panda)
 
 
@@ -69,7 +70,7 @@ def _batch(name: str, chain: Chain, limit: float | None) -> Row:
         raise RuntimeError("a pose has no solution")
     batch, floor = take_turns([microseconds(lambda: solver.solve(poses)), microseconds(_floor(chain, values), 1)], 5)
     mean = found.valid.sum() / count
-    note = f"{mean:.1f} solutions a pose; the limit is that of µs on an idle machine, where the floor is 1"
+    note = f"{mean:.1f} solutions a pose; {_IDLE}"
     return Row(
         f"{name}: all solutions, a pose of a batch : mj_kinematics", "µs", batch / count, floor / 100, limit, note=note
     )
@@ -87,16 +88,41 @@ def _floor(chain: Chain, values: Floats) -> Callable[[], None]:
     return place
 
 
-def _one(chain: Chain) -> Row:
+def _one(name: str, chain: Chain, limit: float | None) -> Row:
     solver = make_solver(chain)
-    _, poses = _poses(chain, POSES)
+    values, poses = _poses(chain, POSES)
 
     def each() -> None:
         for pose in poses:
             solver.solve_one(pose)
 
-    (measured,) = take_turns([microseconds(each)], 5)
-    return Row("PUMA: all solutions of one pose", "µs", measured / POSES)
+    measured, floor = take_turns([microseconds(each), microseconds(_floor(chain, values), 1)], 5)
+    what = f"{name}: all solutions of one pose : mj_kinematics"
+    return Row(what, "µs", measured / POSES, floor / 100, limit, note=_IDLE)
+
+
+def _eaik(name: str, chain: Chain) -> Row:
+    """Compare one core of our batch with a loop of EAIK, which is C++ behind a call from Python for each pose."""
+    what = f"{name}: all solutions, a pose of a batch : EAIK"
+    solver = make_solver(chain).closed
+    if solver is None:
+        raise RuntimeError(f"{name} has no closed form")
+    _, poses = _poses(chain, MANY // 10)
+    ours = microseconds(lambda: solver.solve(poses))
+    try:
+        from eaik.IK_HP import HPRobot  # noqa: PLC0415 - optional
+    except ImportError:
+        (measured,) = take_turns([ours], 5)
+        return Row(what, "µs", measured / len(poses), note="no EAIK here: pip install --no-deps EAIK")
+    points = np.vstack([np.zeros(3), chain.points, chain.T_base_tool[:3, 3]])
+    other = HPRobot(chain.axes, np.diff(points, axis=0))
+    turned = poses.copy()
+    turned[:, :3, :3] = poses[:, :3, :3] @ chain.T_base_tool[:3, :3].T
+    rows = np.array(other.IK(turned[0]).Q)
+    if not (np.abs(chain.forward(rows) - poses[0]).max(axis=(1, 2)) < 1e-6).any():
+        raise RuntimeError("EAIK answers another question")
+    measured, floor = take_turns([ours, microseconds(lambda: [other.IK(pose) for pose in turned])], 5)
+    return Row(what, "µs", measured / len(poses), floor / len(poses))
 
 
 def _first(chain: Chain) -> Row:

@@ -30,6 +30,9 @@ class Wrist:
 
     Attributes:
         centre: The point, shape (3, 1, 1).
+        side: A direction across the last axis, shape (3, 1, 1); where it has to point says how far that joint turns.
+        phase: Cosine and sine of the middle joint where the outer axes are as near to each other as they come.
+        gaps: 1 - cos of the least angle between them, and 1 + cos of the greatest one.
     """
 
     names = ((1, 2),)
@@ -39,10 +42,10 @@ class Wrist:
         a, b, c = (screw.axis.ravel() for screw in screws)
         cosine, sine = a @ c - (a @ b) * (b @ c), a @ skew(b) @ c
         self._size = float(np.hypot(cosine, sine))
-        self._phase = cosine / self._size, sine / self._size
+        self.phase = float(cosine / self._size), float(sine / self._size)
         gaps = 1 - self._size - (a @ b) * (b @ c), 1 - self._size + (a @ b) * (b @ c)
-        self._gaps = [0.0 if abs(gap) < 1e-12 else gap for gap in gaps]
-        self._side = constant(perpendicular(c))
+        self.gaps = [0.0 if abs(gap) < 1e-12 else float(gap) for gap in gaps]
+        self.side = constant(perpendicular(c))
 
     def describe(self, joints: Sequence[int]) -> tuple[str, str]:
         """Return what the family is called, and why, for joints of these indices."""
@@ -54,8 +57,8 @@ class Wrist:
         tip = needed.turned(last.axis)
         two = self._middle(tip)
         turn = turn_between(first, middle.turned(two, last.axis), tile(tip, two.shape[-2]))
-        side = first.turned_back(turn, tile(needed.turned(self._side), two.shape[-2]))
-        return [turn, two, turn_between(last, self._side, middle.turned_back(two, side))]
+        side = first.turned_back(turn, tile(needed.turned(self.side), two.shape[-2]))
+        return [turn, two, turn_between(last, self.side, middle.turned_back(two, side))]
 
     def _middle(self, tip: Floats) -> Floats:
         """Return both turns of the middle joint for a direction of the last axis.
@@ -65,10 +68,10 @@ class Wrist:
         """
         axis = self.screws[0].axis
         least, most = (dot(away, away) / 2 for away in (axis - tip, axis + tip))
-        below = np.maximum(least - self._gaps[0], 0.0)  # 1 - cos and 1 + cos of the angle from the phase, in proportion
-        above = np.maximum(most - self._gaps[1], 0.0)
+        below = np.maximum(least - self.gaps[0], 0.0)  # 1 - cos and 1 + cos of the angle from the phase, in proportion
+        above = np.maximum(most - self.gaps[1], 0.0)
         cosine, sine = (above - below) / (above + below), 2 * np.sqrt(below * above) / (above + below)
-        c, s = self._phase
+        c, s = self.phase
         cosines, sines = [c * cosine - s * sine, c * cosine + s * sine], [s * cosine + c * sine, s * cosine - c * sine]
         return np.array([np.concatenate(cosines, axis=-2), np.concatenate(sines, axis=-2)])
 

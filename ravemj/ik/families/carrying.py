@@ -28,6 +28,7 @@ class CarryPoint:
     Attributes:
         pair: How the first and the third joint are found.
         foot: The joint, 0 or 2, that the axis of the revolute middle joint meets; 1 if none.
+        measure: What the middle joint keeps, where that is the same for all poses.
     """
 
     def __init__(self, screws: Screws, start: Floats, goal: Floats) -> None:
@@ -39,7 +40,7 @@ class CarryPoint:
         self.middle = screws[1]
         self.foot = 1 if self.middle.prismatic else _foot(screws)
         self._crossing = _crossing(screws) if self.middle.prismatic else (None, None)
-        self._measure = self._measured(screws) if all(screw.shared for screw in screws) else None
+        self.measure = self._measured(screws) if all(screw.shared for screw in screws) else None
         self._cached: dict[int, Side] = {}
         sides = self._sides(screws, start, goal)
         sphere = not self.middle.prismatic
@@ -47,7 +48,7 @@ class CarryPoint:
         if pair is None:
             raise NoFamilyError
         self.pair = pair
-        if self._measure is not None:
+        if self.measure is not None:
             if start.size == 3:
                 self._cached[1] = sides[1]
             if goal.size == 3:
@@ -69,7 +70,7 @@ class CarryPoint:
         return Measure(one, cross(middle.axis, one), sphere=False)
 
     def _sides(self, screws: Screws, start: Floats, goal: Floats) -> tuple[Side, Side]:
-        measure = self._measure or self._measured(screws)
+        measure = self.measure or self._measured(screws)
         one = self._cached.get(0) or measure.side(screws[0], goal, -1.0)
         three = self._cached.get(1) or measure.side(screws[2], start, 1.0)
         return one, three
