@@ -51,10 +51,9 @@ class Pose(NamedTuple):
 
     def matrix(self) -> Floats:
         """Return the transform as a 4x4 matrix."""
-        matrix = np.eye(4)
-        matrix[:3, :3] = rows_from_wxyz(self.wxyz)
-        matrix[:3, 3] = self.position
-        return matrix
+        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rows_from_wxyz(self.wxyz)
+        x, y, z = self.position
+        return np.array(((xx, xy, xz, x), (yx, yy, yz, y), (zx, zy, zz, z), (0.0, 0.0, 0.0, 1.0)))
 
     def numbers(self) -> Floats:
         """Return [w, x, y, z, tx, ty, tz], shape (7,)."""
@@ -91,6 +90,11 @@ def scale(a: Vec3, factor: float) -> Vec3:
 def dot(a: Vec3, b: Vec3) -> float:
     """Return the scalar product of two vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vec3, b: Vec3) -> Vec3:
+    """Return the cross product of two vectors."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def multiply(a: Wxyz, b: Wxyz) -> Wxyz:

@@ -131,12 +131,27 @@ def evaluation_order(mimics: dict[int, Mimic]) -> list[int]:
     return topological_order(moving, lambda index: [leader for leader in leaders(moving[index]) if leader in moving])
 
 
+class Multiple(NamedTuple):
+    """The equation ``slope * x + offset``, which nearly all mimic joints have.
+
+    Attributes:
+        leader: The joint whose first value is x.
+        slope: What it is multiplied by.
+        offset: What is added.
+    """
+
+    leader: int
+    slope: float
+    offset: float
+
+
 class MimicJoint(NamedTuple):
     """A joint whose value is a function of the values of others.
 
     Attributes:
         joint: Its index among the active joints followed by the passive ones.
         expression: The function, of ``joint0``, ``joint1``, …
+        multiple: The same as a multiple of one joint's value, if it is that.
         evaluate: The same, of the first values of all joints.
         lower: Its lower limit [rad or m].
         upper: Its upper limit; a circular joint has none.
@@ -144,6 +159,7 @@ class MimicJoint(NamedTuple):
 
     joint: int
     expression: "Expression"
+    multiple: Multiple | None
     evaluate: Callable[[Sequence[float]], float]
     lower: float
     upper: float
@@ -168,7 +184,7 @@ class MimicJoints:
             values: The first value of each joint [rad or m], active joints and then passive ones.
             clamp: Whether mimic joints stop at their limits.
         """
-        for index, _, evaluate, lower, upper in self.joints:
+        for index, _, _, evaluate, lower, upper in self.joints:
             value = evaluate(values)
             if clamp:
                 value = min(max(value, lower), upper)
@@ -176,7 +192,7 @@ class MimicJoints:
 
     def evaluate_many(self, values: list[Floats]) -> None:
         """Do the same for many configurations: an array of shape (N,) for each joint."""
-        for joint, expression, _, lower, upper in self.joints:
+        for joint, expression, _, _, lower, upper in self.joints:
             named = {f"joint{leader}": values[leader] for leader in leaders(expression)}
             found = np.broadcast_to(expression.evaluate_many(named), np.shape(values[joint]))
             values[joint] = np.clip(found, lower, upper)
@@ -186,14 +202,21 @@ def _prepared(index: int, joints: Sequence[Joint]) -> MimicJoint:
     equation, axis = joints[index].equation, joints[index].axes[0]
     assert equation is not None
     lower, upper = (-math.inf, math.inf) if axis.circular else (axis.lower, axis.upper)
-    return MimicJoint(index, equation, _function(equation, len(joints)), lower, upper)
+    multiple = _multiple(equation)
+    return MimicJoint(index, equation, multiple, _function(equation, multiple, len(joints)), lower, upper)
 
 
-def _function(expression: "Expression", count: int) -> Callable[[Sequence[float]], float]:
-    """Return a fast form of an expression over the first values of that many joints."""
-    affine = expression.affine
-    if affine is not None and len(affine.slopes) == 1:  # nearly all equations are a*x + b
-        ((name, slope),) = affine.slopes.items()
-        leader, offset = int(name.removeprefix("joint")), affine.offset
-        return lambda values: slope * values[leader] + offset
-    return expression.compiled([f"joint{number}" for number in range(count)])
+def _multiple(equation: "Expression") -> Multiple | None:
+    affine = equation.affine
+    if affine is None or len(affine.slopes) != 1:
+        return None
+    ((name, slope),) = affine.slopes.items()
+    return Multiple(int(name.removeprefix("joint")), slope, affine.offset)
+
+
+def _function(equation: "Expression", multiple: Multiple | None, count: int) -> Callable[[Sequence[float]], float]:
+    """Return a fast form of an equation over the first values of that many joints."""
+    if multiple is None:
+        return equation.compiled([f"joint{number}" for number in range(count)])
+    leader, slope, offset = multiple
+    return lambda values: slope * values[leader] + offset

@@ -2,7 +2,7 @@
 
 import tempfile
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import mujoco
@@ -13,8 +13,14 @@ from benchmarks.measure import MODEL, ROOT, Row, microseconds, take_turns
 from ravemj.core.transforms import Floats
 
 AXES = ("1 0 0", "0 1 0", "0 0 1")
-LIMITS = ((3.0, 2.0, 2.0), (2.5, 2.0, 2.0), (1.5, 1.6, 2.0))
-"""Greatest ratios: of values alone, of values and all poses, of one pose."""
+LIMITS = {
+    "pendulum": (3.0, 2.0),
+    "arm of 7 joints": (2.5, 2.0),
+    "90 links": (1.5, 1.6),
+    "PR2": (None, None),
+    "Panda with gripper": (3.0, 2.0),
+}
+"""Greatest ratios of values alone, and of values and all poses."""
 
 PR2 = "rdiankov+openrave/src/robots/pr2-beta-static.zae"
 
@@ -25,8 +31,7 @@ MANY = 600
 def rows() -> list[Row]:
     """Compare our calls with the MuJoCo calls that they stand for, for robots of several sizes."""
     with tempfile.TemporaryDirectory() as folder:
-        limits = dict(zip(("pendulum", "arm of 7 joints", "90 links"), LIMITS, strict=True))
-        return [row for name, robot in robots(Path(folder)) if name in limits for row in _of(name, robot, limits[name])]
+        return [row for name, robot in robots(Path(folder)) for row in _of(name, robot)]
 
 
 def robots(folder: Path) -> Iterator[tuple[str, ravemj.Robot]]:
@@ -70,8 +75,13 @@ def _link(name: str, before: str) -> str:
     return f"<Body name='{name}'>{place}<rotationaxis>0 0 1 10</rotationaxis>{geometry}</Body>"
 
 
-def _of(what: str, robot: ravemj.Robot, limits: tuple[float, float, float]) -> list[Row]:
-    return [*_one(what, robot, limits), *_single_pose(what, robot, limits), _many(what, robot)]
+def _of(what: str, robot: ravemj.Robot) -> Iterator[Row]:
+    placed, posed = LIMITS[what]
+    yield from _one(what, robot, posed)
+    yield from _values_alone(what, robot, placed)
+    yield from _getters(what, robot)
+    if not robot.GetPassiveJoints():  # bare MuJoCo lets no joint follow another
+        yield _many(what, robot)
 
 
 class Bare:
@@ -81,6 +91,7 @@ class Bare:
         self.model = robot.GetEnv().model
         self.data = mujoco.MjData(self.model)
         self.qpos, self.xpos, self.xmat = self.data.qpos, self.data.xpos[1:], self.data.xmat[1:]
+        self.data.qpos[:] = robot.GetEnv().data.qpos
 
     def place(self, qpos: Floats, transforms: Floats) -> None:
         """Write the poses of the links, without the last rows."""
@@ -90,9 +101,17 @@ class Bare:
         transforms[:, :3, :3] = self.xmat.reshape(-1, 3, 3)
 
 
-def _one(what: str, robot: ravemj.Robot, limits: tuple[float, float, float]) -> list[Row]:
-    bare, moving = Bare(robot), robot.qpos_indices >= 0
-    values, qpos = np.where(moving, 0.5, 0.0), np.full(moving.sum(), 0.5)
+def _middle(robot: ravemj.Robot) -> Floats:
+    """Return joint values off zero, where sines and cosines have to be computed, within the limits."""
+    lower, upper = robot.GetDOFLimits()
+    return np.where(lower < upper, np.clip(0.5, lower, upper), 0.0)
+
+
+def _one(what: str, robot: ravemj.Robot, limit: float | None) -> list[Row]:
+    values = _middle(robot)
+    robot.SetDOFValues(values)
+    bare = Bare(robot)
+    qpos = bare.qpos.copy()
     count = len(bare.xpos)
 
     def as_list() -> list[Floats]:
@@ -117,38 +136,71 @@ def _one(what: str, robot: ravemj.Robot, limits: tuple[float, float, float]) -> 
         [microseconds(function, calls) for function in (as_list, as_array, floor)], 1000
     )
     return [
-        Row(f"{what}: SetDOFValues + GetLinkTransformations : mj_kinematics, poses", "µs", listed, bared, limits[1]),
+        Row(f"{what}: SetDOFValues + GetLinkTransformations : mj_kinematics, poses", "µs", listed, bared, limit),
         Row(f"{what}: SetDOFValues + link_transforms : mj_kinematics, poses", "µs", arrayed, bared, 2.5),
     ]
 
 
-def _single_pose(what: str, robot: ravemj.Robot, limits: tuple[float, float, float]) -> list[Row]:
-    bare, moving = Bare(robot), robot.qpos_indices >= 0
-    values, qpos = np.where(moving, 0.5, 0.0), np.full(moving.sum(), 0.5)
+def _values_alone(what: str, robot: ravemj.Robot, limit: float | None) -> Iterator[Row]:
+    values = _middle(robot)
+    robot.SetDOFValues(values)
+    bare, kinematics, plain = Bare(robot), robot.simulation_state.kinematics, values.tolist()
+    qpos = bare.qpos.copy()
 
-    def last_pose() -> Floats:
-        return robot.GetLinks()[-1].GetTransform()
+    def placed() -> None:
+        robot.SetDOFValues(values)
+        kinematics.place()  # what is asked for next would do it
 
-    def last_floor() -> Floats:
+    def placed_of_list() -> None:
+        robot.SetDOFValues(plain)
+        kinematics.place()
+
+    def floor() -> None:
+        bare.qpos[:] = qpos
+        mujoco.mj_kinematics(bare.model, bare.data)
+
+    ours, listed, bared = take_turns([microseconds(one, 20) for one in (placed, placed_of_list, floor)], 500)
+    yield Row(f"{what}: SetDOFValues : qpos, mj_kinematics", "µs", ours, bared, limit)
+    yield Row(f"{what}: SetDOFValues of a list : the same", "µs", listed, bared)
+
+
+def _getters(what: str, robot: ravemj.Robot) -> Iterator[Row]:
+    """Compare what loops call beside ``SetDOFValues`` with the least that numpy can do for it."""
+    bare, values, place = Bare(robot), robot.GetDOFValues(), robot.GetTransform()
+    last = robot.GetLinks()[-1].GetName()
+
+    def pose() -> Floats:
         transform = np.eye(4)
         transform[:3, 3] = bare.xpos[-1]
         transform[:3, :3] = bare.xmat[-1].reshape(3, 3)
         return transform
 
-    def placed() -> None:
-        robot.SetDOFValues(values)
-        robot.GetTransform()  # without it the links would not be placed
+    def entered() -> None:
+        with robot:
+            pass
 
-    def placed_floor() -> None:
-        bare.qpos[:] = qpos
-        mujoco.mj_kinematics(bare.model, bare.data)
+    def listed() -> Floats:
+        return robot.GetLinks()[-1].GetTransform()
 
-    functions = (placed, placed_floor, last_pose, last_floor)
-    ours, floor, last, last_bare = take_turns([microseconds(function, 20) for function in functions], 500)
-    return [
-        Row(f"{what}: SetDOFValues + GetTransform : mj_kinematics", "µs", ours, floor, limits[0]),
-        Row(f"{what}: GetLinks()[-1].GetTransform() : a pose", "µs", last, last_bare, limits[2]),
+    def found() -> Floats:
+        link = robot.GetLink(last)
+        assert link is not None
+        return link.GetTransform()
+
+    calls: list[tuple[str, Callable[[], object], float | None]] = [
+        ("GetLinks()[-1].GetTransform()", listed, 2.0),
+        ("GetLink(name).GetTransform()", found, None),
+        ("GetDOFValues()", robot.GetDOFValues, None),
+        ("GetActiveDOFValues()", robot.GetActiveDOFValues, None),
+        ("SetActiveDOFValues", lambda: robot.SetActiveDOFValues(values), None),
+        ("GetDOFLimits()", robot.GetDOFLimits, None),
+        ("SetTransform", lambda: robot.SetTransform(place), None),
+        ("GetJointFromDOFIndex", lambda: robot.GetJointFromDOFIndex(0), None),
+        ("with robot:", entered, None),
     ]
+    *measured, bared = take_turns([microseconds(call, 20) for _, call, _ in calls] + [microseconds(pose, 20)], 200)
+    for (label, _, limit), ours in zip(calls, measured, strict=True):
+        yield Row(f"{what}: {label} : a pose from xpos and xmat", "µs", ours, bared, limit)
 
 
 def _many(what: str, robot: ravemj.Robot) -> Row:

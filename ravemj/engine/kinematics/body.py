@@ -17,8 +17,6 @@ from ravemj.model.scene import KinBody
 NO_QPOS = -1
 """In place of an index into ``qpos``, where a joint has none since it moves no link."""
 
-_IDENTITY = np.eye(4)
-
 _BODY, _JOINT = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
 
 
@@ -29,7 +27,7 @@ class Configuration(NamedTuple):
         qpos: MuJoCo's, of the body's own model.
         positions: Positions of the links in their parents at rest, in MuJoCo's order.
         quaternions: Their orientations, wxyz.
-        passive: The values of the passive joints.
+        passive: The values of the passive joints; those of mimic joints that move a link are in ``qpos``.
         displaced: Whether links are where their joints do not place them.
     """
 
@@ -81,9 +79,9 @@ class BodyKinematics:
         self.body = body
         compiled = Compiled.mechanism(body)
         self.model, self.data = model, data = compiled.model, compiled.data
-        self.qpos, self._xpos, self._xmat = data.qpos, data.xpos, data.xmat
+        self.qpos, self._xpos, self._xmat = data.qpos, data.xpos, data.xmat.reshape(-1, 3, 3)
         self.stamp = self.pose_stamp = 0
-        self._is_placed = self._has_coms = False
+        self._placed_stamp = self._coms_stamp = -1  # ``stamp`` when poses and centres of mass were last up to date
         (names,) = compiled.mjcf.names
         self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
         self._body_ids: list[int] = self.body_ids.tolist()
@@ -97,8 +95,10 @@ class BodyKinematics:
         self._rest = (model.body_pos.copy(), model.body_quat.copy())
         self.displaced = False
         self._find_joints(names.joints)
-        self._homogeneous = np.zeros((len(self.body_ids), 4, 4))
-        self._homogeneous[:, 3, 3] = 1.0
+        self._one, self._all = np.eye(4), np.tile(np.eye(4), (len(self.body_ids), 1, 1))
+        # Views are made once, since making one takes as long as writing a pose.
+        self._position, self._rotation = self._one[:3, 3], self._one[:3, :3]
+        self._positions, self._rotations = self._all[:, :3, 3], self._all[:, :3, :3]
         self._passive_values = [[axis.value for axis in joint.axes] for joint in body.passive_joints]
         self.describe(body)
         self.set_values(np.array([axis.value for axis in body.dof_axes]))
@@ -112,7 +112,6 @@ class BodyKinematics:
         ]
         sizes = (len(joint.axes) for joint in body.joints)
         self.first_dofs = list(itertools.accumulate(sizes, initial=0))[:-1]
-        self.mimic = MimicJoints(body.all_joints if body.joints else ())
         self.spherical: list[SphericalJoint] = []
         indices: list[int] = []
         for joint, first, places in zip(body.joints, self.first_dofs, self.joint_qpos, strict=False):
@@ -121,11 +120,14 @@ class BodyKinematics:
                 self.spherical.append(SphericalJoint(joint, slice(first, first + 3), joint_slice))
             indices += places if places and joint.kind != "spherical" else [NO_QPOS] * len(joint.axes)
         self.qpos_indices = np.array(indices, dtype=int)
-        self._moving = self.qpos_indices != NO_QPOS
-        self._to_qpos = index_range(self.qpos_indices[self._moving])
-        self._all_move = bool(self._moving.all())
-        self._is_plain = self._all_move and not self.mimic.joints
-        self._mimic_qpos = [(one.joint, self.joint_qpos[one.joint][:1]) for one in self.mimic.joints]
+        self._moving = np.flatnonzero(self.qpos_indices != NO_QPOS)
+        self._all_move = len(self._moving) == len(indices)
+        moving_qpos = index_range(self.qpos_indices[self._moving])
+        # The slice itself is made once, too: ``_written[_places]`` are the values of the DOFs that move.
+        self._written, self._places = (
+            (self.qpos[moving_qpos], ...) if isinstance(moving_qpos, slice) else (self.qpos, moving_qpos)
+        )
+        self._is_plain = not self.spherical and all(joint.mimic is None for joint in body.all_joints)
         self._loops = [
             (first, joint)
             for first, joint, places in zip(self.first_dofs, body.joints, self.joint_qpos, strict=False)
@@ -139,31 +141,42 @@ class BodyKinematics:
         axes = body.dof_axes
         self.dof = len(axes)
         self.limits = Limits(axes)
-        if self.mimic.joints:
-            self.mimic = MimicJoints(body.all_joints)
+        self._find_mimic_joints(body)
         for body_id, link, old in zip(self.body_ids, body.links, before, strict=True):
             if link.inertial is not old.inertial:
                 write_inertial(self.model, int(body_id), link.inertial)
                 self._touch()
 
+    def _find_mimic_joints(self, body: KinBody) -> None:
+        """Find the mimic joints, and those among them that are a multiple of a DOF."""
+        self.mimic = MimicJoints(body.all_joints if body.joints else ())
+        self._mimic_qpos = {one.joint: places[0] for one in self.mimic.joints if (places := self.joint_qpos[one.joint])}
+        self._multiples = [
+            (self.first_dofs[leader], slope, offset, one.lower, one.upper, self._mimic_qpos[one.joint])
+            for one in self.mimic.joints
+            if one.joint in self._mimic_qpos and one.multiple is not None
+            for leader, slope, offset in [one.multiple]
+            if leader < len(self.first_dofs)
+        ]
+        self._are_multiples = len(self._multiples) == len(self.mimic.joints)
+
     def _touch(self) -> None:
         """Take note that more than joint values was written."""
-        self._is_placed = self._has_coms = False
         self.stamp += 1
         self.pose_stamp = self.stamp
 
     def place(self) -> None:
         """Bring the poses of the links up to date."""
-        if not self._is_placed:
+        if self._placed_stamp != self.stamp:
             mujoco.mj_kinematics(self.model, self.data)
-            self._is_placed = True
+            self._placed_stamp = self.stamp
 
     def place_coms(self) -> None:
         """Bring poses, centres of mass and the axes of motion up to date, which Jacobians and dynamics need."""
-        if not self._has_coms:
+        if self._coms_stamp != self.stamp:
             self.place()
             mujoco.mj_comPos(self.model, self.data)
-            self._has_coms = True
+            self._coms_stamp = self.stamp
 
     def values(self) -> Floats:
         """Return the joint values [rad or m], shape (dof,); a copy.
@@ -171,9 +184,9 @@ class BodyKinematics:
         A weld's is 0; a joint that closes a loop has the value that the poses of its links show.
         """
         if self._all_move:
-            return self.qpos[self._to_qpos].copy()
+            return self._written[self._places].copy()
         values = np.zeros(self.dof)
-        values[self._moving] = self.qpos[self._to_qpos]
+        values[self._moving] = self._written[self._places]
         for ball in self.spherical:
             values[ball.dofs] = ball.to_values(self.qpos[ball.qpos].tolist())
         for dof, joint in self._loops:
@@ -190,24 +203,32 @@ class BodyKinematics:
         """
         if self.displaced:
             self._undo_displacement()
-        self.qpos[self._to_qpos] = values if self._all_move else values[self._moving]
+        self._written[self._places] = values if self._all_move else values[self._moving]
         if not self._is_plain:
             for ball in self.spherical:
                 self.qpos[ball.qpos] = ball.to_qpos(values[ball.dofs].tolist())
-            if self._mimic_qpos:
+            if self.mimic.joints:
                 self._set_mimic(values, clamp=clamp_mimic)
-        self._is_placed = self._has_coms = False
         self.stamp += 1
 
     def _set_mimic(self, values: Floats, *, clamp: bool) -> None:
         """Write the values of the mimic joints."""
+        if self._are_multiples:
+            plain, qpos = values.tolist(), self.qpos
+            for dof, slope, offset, lower, upper, place in self._multiples:
+                value = slope * plain[dof] + offset
+                if clamp:
+                    value = lower if value < lower else value
+                    value = upper if value > upper else value
+                qpos[place] = value
+            return
         known = self.first_values(values)
         self.mimic.evaluate(known, clamp=clamp)
-        first_passive = len(self.first_dofs)
-        for index, places in self._mimic_qpos:
-            self._passive_values[index - first_passive][0] = known[index]
-            for place in places:
-                self.qpos[place] = known[index]
+        for one in self.mimic.joints:
+            if one.joint in self._mimic_qpos:
+                self.qpos[self._mimic_qpos[one.joint]] = known[one.joint]
+            else:
+                self._passive_values[one.joint - len(self.first_dofs)][0] = known[one.joint]
 
     def first_values(self, values: Floats) -> list[float]:
         """Return the first value of each joint, active ones and then passive ones, for given DOF values."""
@@ -217,7 +238,8 @@ class BodyKinematics:
 
     def passive_values(self, index: int) -> Floats:
         """Return the values of a passive joint [rad or m], shape (axes,); a copy."""
-        return np.array(self._passive_values[index])
+        place = self._mimic_qpos.get(len(self.first_dofs) + index)
+        return np.array(self._passive_values[index] if place is None else [self.qpos[place]])
 
     def set_qpos(self, qpos: Floats, *, inner_only: bool) -> None:
         """Take over MuJoCo's configuration from a model in which time moved the body.
@@ -228,9 +250,6 @@ class BodyKinematics:
         """
         self.qpos[self.inner_qpos if inner_only else slice(None)] = qpos
         self._touch()
-        for index, places in self._mimic_qpos:
-            for place in places:
-                self._passive_values[index - len(self.first_dofs)][0] = float(self.qpos[place])
 
     def _undo_displacement(self) -> None:
         """Let the joints place the links again that ``place_links`` put elsewhere; the roots stay."""
@@ -306,22 +325,18 @@ class BodyKinematics:
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""
-        if not self._is_placed:
-            self.place()
-        transforms = self._homogeneous.copy()
-        transforms[:, :3, 3] = self._xpos[self._links]
-        transforms[:, :3, :3] = self._xmat[self._links].reshape(-1, 3, 3)
-        return transforms
+        self.place()
+        self._positions[...] = self._xpos[self._links]
+        self._rotations[...] = self._xmat[self._links]
+        return self._all.copy()
 
     def link_transform(self, link: int) -> Floats:
         """Return ``T_world_link`` of one link, shape (4, 4); a copy."""
-        if not self._is_placed:
-            self.place()
-        transform = _IDENTITY.copy()  # faster than making one
+        self.place()
         body_id = self._body_ids[link]
-        transform[:3, 3] = self._xpos[body_id]
-        transform[:3, :3] = self._xmat[body_id].reshape(3, 3)
-        return transform
+        self._position[...] = self._xpos[body_id]
+        self._rotation[...] = self._xmat[body_id]
+        return self._one.copy()
 
     def link_pose(self, link: int) -> Pose:
         """Return ``T_world_link`` of one link."""
