@@ -216,8 +216,14 @@ class BodyKinematics:
         return active + [passive[0] for passive in self._passive_values]
 
     def passive_values(self, index: int) -> Floats:
-        """Return the values of a passive joint [rad or m], shape (axes,); a copy."""
-        return np.array(self._passive_values[index])
+        """Return the values of a passive joint [rad or m], shape (axes,); a copy.
+
+        One that closes a loop has the value that the poses of its links show.
+        """
+        joint = self.body.passive_joints[index]
+        if joint.places_child or joint.static or not self.dof:
+            return np.array(self._passive_values[index])
+        return np.array(measured_values(joint, self.link_pose(joint.parent).inverse() @ self.link_pose(joint.child)))
 
     def set_qpos(self, qpos: Floats, *, inner_only: bool) -> None:
         """Take over MuJoCo's configuration from a model in which time moved the body.
