@@ -19,6 +19,8 @@ from ravemj.model.mimic import Equations, MimicJoints, NamedJoint, leaders, reso
 
 _ROUNDING = 1e-9  # of values that were degrees
 
+_Z: Vec3 = (0.0, 0.0, 1.0)
+
 DEFAULT_INERTIAL = scene.Inertial(1.0, ZERO, ((0.4, 0.0, 0.0), (0.0, 0.4, 0.0), (0.0, 0.0, 0.4)))
 """A link without mass properties weighs 1 kg, like a unit sphere."""
 
@@ -66,13 +68,7 @@ class JointBuilder:
     @property
     def fixed(self) -> bool:
         """True for a weld."""
-        moves = self.equations is not None and self.equations.position
-        return not moves and self.has_no_room
-
-    @property
-    def has_no_room(self) -> bool:
-        """True where the limits of all axes are equal."""
-        return all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
+        return all(axis.lower >= axis.upper and not axis.circular for axis in self.axes)
 
 
 @dataclass(slots=True)
@@ -118,14 +114,18 @@ class BodyBuilder:
             return self._frozen([link.pose for link in self.links], [], 0)
         listed = self._in_order()
         has_dofs = bool(listed and listed[0].active)
-        mimics = _with_welds(listed, resolve(_named(listed), diagnostics))
+        mimics = resolve(_named(listed), diagnostics)
         decided = self._decide(listed, mimics)
         poses = [link.pose for link in self.links]
         joints = [
-            _directed(joint, mimics.get(index), swap=swap, places_child=index in decided.order, has_dofs=has_dofs)
+            _directed(joint, mimics.get(index), swap=swap, places_child=index in decided.order)
             for index, (joint, swap) in enumerate(zip(listed, decided.swapped, strict=True))
         ]
         if has_dofs:
+            joints = [
+                _welded(joint, built, diagnostics) if built.fixed else joint
+                for joint, built in zip(joints, listed, strict=True)
+            ]
             joints = self._settled(joints, poses, diagnostics)
             placing = [joints[index] for index in decided.order]
             place_links(poses, placing, [[axis.value for axis in joint.axes] for joint in placing])
@@ -159,8 +159,7 @@ class BodyBuilder:
             mimic = mimics.get(index)
             follows = leaders(mimic.expression) if mimic is not None and mimic.expression is not None else ()
             passive = tuple(leader for leader in follows if not listed[leader].active)
-            fixed = joint.fixed if mimic is None else mimic.static
-            edges.append(hierarchy.Edge(joint.links, fixed, joint.active, passive))
+            edges.append(hierarchy.Edge(joint.links, joint.fixed, joint.active, passive))
         return hierarchy.decide([link.static for link in self.links], edges)
 
     def _settled(
@@ -212,18 +211,7 @@ def _named(listed: Sequence[JointBuilder]) -> list[NamedJoint]:
     return named
 
 
-def _with_welds(listed: Sequence[JointBuilder], mimics: dict[int, scene.Mimic]) -> dict[int, scene.Mimic]:
-    """Return the followers; those that are welds and follow nothing but welds are marked."""
-    fixed = [joint.has_no_room for joint in listed if joint.active for _ in joint.axes]
-    return {
-        index: replace(mimic, static=listed[index].has_no_room and all(fixed[dof] for dof in mimic.dofs))
-        for index, mimic in mimics.items()
-    }
-
-
-def _directed(
-    joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, places_child: bool, has_dofs: bool
-) -> scene.Joint:
+def _directed(joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, places_child: bool) -> scene.Joint:
     """Return the joint with parent and child decided; swapping turns its axes round."""
     parent, child = joint.links
     T_parent_child, anchor, axes = joint.T_first_second, joint.anchor, joint.axes
@@ -232,10 +220,6 @@ def _directed(
         T_parent_child = T_parent_child.inverse()
         anchor = T_parent_child.apply(anchor)
         axes = tuple(replace(axis, direction=scale(rotate(T_parent_child.wxyz, axis.direction), -1.0)) for axis in axes)
-    if (joint.fixed if mimic is None else mimic.static) and has_dofs:  # OpenRAVE moves the frame of a weld to its child
-        anchor = T_parent_child.position
-        turn = T_parent_child.wxyz if joint.weld_turn is None else joint.weld_turn
-        axes = tuple(replace(axis, direction=rotate(turn, axis.direction)) for axis in axes)
     return scene.Joint(
         name=joint.name,
         kind=joint.kind,
@@ -249,6 +233,18 @@ def _directed(
         parameters=joint.parameters,
         source=joint.source,
     )
+
+
+def _welded(joint: scene.Joint, built: JointBuilder, diagnostics: Diagnostics) -> scene.Joint:
+    """Return a weld as OpenRAVE reports it: its frame is that of its child, and its limits are 0."""
+    if any(axis.lower for axis in joint.axes):
+        message = "a joint with equal limits does not move; OpenRAVE moves the limits to 0"
+        diagnostics.warn("openrave-bug", message, joint.source)
+    turn = joint.T_parent_child.wxyz if built.weld_turn is None else built.weld_turn
+    is_z = joint.kind == "hinge" and built.weld_turn is None  # whatever the file says
+    axes = (replace(axis, direction=rotate(turn, _Z if is_z else axis.direction)) for axis in joint.axes)
+    axes = tuple(replace(axis, lower=0.0, upper=0.0) for axis in axes)
+    return replace(joint, anchor=joint.T_parent_child.position, axes=axes)
 
 
 def _limited(

@@ -1,16 +1,23 @@
 """Which link of a joint is its parent, and which joint places which link.
 
-OpenRAVE decides both from a joint graph without direction. The rules, measured on OpenRAVE 0.149: a link's
-depth is its least number of joints from link 0 or from a static link; the shallower link of a joint is its
-parent; joints act in order of depth, and the first one to reach a link places it. Later ones close a loop and
-are not satisfied, except that a fixed joint always places its child.
+OpenRAVE decides both from a joint graph without direction. The rules, measured on OpenRAVE 0.149: link 0 and static
+links have depth 0, and depths grow along paths from link 0; the shallower link of a joint is its parent; joints act
+in order of depth, and the first one to reach a link places it. Later ones close a loop and are not satisfied, except
+that a fixed joint always places its child.
 """
 
+import sys
 from collections import deque
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ravemj.core.graphs import topological_order
+
+_UNREACHED = -1
+"""The depth of a link that no path joins to link 0; OpenRAVE compares it with others."""
+
+
+_HIGHEST = (sys.maxsize, sys.maxsize)
 
 
 class Edge(NamedTuple):
@@ -48,24 +55,45 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
         static_links: For each link, whether it is static.
         edges: The joints: active ones in DOF order, then passive ones.
     """
-    depths = _depths(static_links, edges)
-    has_dofs = any(edge.active for edge in edges)  # without any, OpenRAVE directs nothing
-    swapped = tuple(has_dofs and _is_swapped(edge.links, static_links, depths) for edge in edges)
+    has_dofs = any(edge.active for edge in edges)  # without any, OpenRAVE makes no depths
+    depths = _depths(static_links, edges) if has_dofs else [_UNREACHED] * len(static_links)
+    swapped = tuple(_is_swapped(edge.links, static_links, depths, has_dofs=has_dofs) for edge in edges)
     ends = [tuple(reversed(edge.links)) if swap else edge.links for edge, swap in zip(edges, swapped, strict=True)]
-    unreached = len(static_links)
-
-    def key(index: int) -> tuple[int, int, bool, int]:
-        first, second = sorted(unreached if depths[link] is None else depths[link] or 0 for link in ends[index])
-        return first, second, not edges[index].active, index
-
+    levels = [_level(links, depths) for links in ends]
+    grounded = [static_links[first] or static_links[second] for first, second in ends]
     placed_by: dict[int, int] = {}
-    order = _leaders_first(sorted(range(len(edges)), key=key), edges)
+    order = _leaders_first(_acting_order(levels, grounded), edges)
     for index in order:
         parent, child = ends[index]
         free = child != 0 and child not in placed_by
         if (free or edges[index].fixed) and child not in _ancestors(parent, placed_by, ends):
             placed_by[child] = index
     return Hierarchy(swapped, _parents_first(set(placed_by.values()), ends, order))
+
+
+def _level(links: tuple[int, ...], depths: Sequence[int]) -> tuple[int, int]:
+    """Return the depths of a joint's links, the smaller one first: joints on lower levels act first."""
+    first, second = sorted(depths[link] for link in links)
+    return first, second
+
+
+def _acting_order(levels: Sequence[tuple[int, int]], grounded: Sequence[bool]) -> list[int]:
+    """Return the joints in the order in which OpenRAVE lets them act.
+
+    A joint waits for all joints on lower levels, but one at a static link not for others at static links. Those that
+    wait no longer queue up in the order of the file.
+    """
+    queue, order = deque[int](), list[int]()
+    waiting = list(range(len(levels)))
+    while waiting or queue:
+        unfinished = [*queue, *waiting]
+        lowest = min(levels[index] for index in unfinished)
+        lowest_free = min((levels[index] for index in unfinished if not grounded[index]), default=_HIGHEST)
+        ready = [index for index in waiting if levels[index] <= (lowest_free if grounded[index] else lowest)]
+        queue.extend(ready)
+        waiting = [index for index in waiting if index not in set(ready)] if ready else waiting
+        order.append(queue.popleft())
+    return order
 
 
 def _leaders_first(order: Sequence[int], edges: Sequence[Edge]) -> list[int]:
@@ -84,34 +112,55 @@ def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Se
     return tuple(topological_order([index for index in order if index in placing], carrying))
 
 
-def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int | None]:
-    neighbours: dict[int, list[int]] = {}
+def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
+    """Return the depth of each link: one more than the least depth that is known of its parents.
+
+    A parent is the link before on a path from link 0 that meets no link twice. So a static link passes its depth on
+    only to what lies behind it as seen from link 0.
+    """
+    neighbours: list[list[int]] = [[] for _ in static_links]
     for edge in edges:
         first, second = edge.links
-        neighbours.setdefault(first, []).append(second)
-        neighbours.setdefault(second, []).append(first)
-    depths: list[int | None] = [0 if index == 0 or static else None for index, static in enumerate(static_links)]
-    queue = deque(index for index, depth in enumerate(depths) if depth == 0)
-    while queue:
-        link = queue.popleft()
-        for neighbour in neighbours.get(link, ()):
-            if depths[neighbour] is None:
-                depths[neighbour] = (depths[link] or 0) + 1
-                queue.append(neighbour)
+        neighbours[first].append(second)
+        neighbours[second].append(first)
+    depths = [0 if index == 0 or static else _UNREACHED for index, static in enumerate(static_links)]
+    waiting = {link: _parents(link, neighbours) for link, depth in enumerate(depths) if depth == _UNREACHED}
+    settled = True
+    while settled:
+        settled = False
+        for link in list(waiting):
+            known = [depths[parent] for parent in waiting[link] if depths[parent] != _UNREACHED]
+            if known:
+                depths[link] = 1 + min(known)
+                del waiting[link]
+                settled = True
     return depths
 
 
-def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Sequence[int | None]) -> bool:
+def _parents(link: int, neighbours: Sequence[Sequence[int]]) -> list[int]:
+    """Return the neighbours of a link that a path from link 0 reaches without that link."""
+    reached = {0, link}
+    pending = [0]
+    while pending:
+        for neighbour in neighbours[pending.pop()]:
+            if neighbour not in reached:
+                reached.add(neighbour)
+                pending.append(neighbour)
+    return [neighbour for neighbour in neighbours[link] if neighbour in reached]
+
+
+def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Sequence[int], *, has_dofs: bool) -> bool:
     """Return True where the second listed link is the parent."""
     first, second = links
-    if static_links[first] != static_links[second]:
-        static, other = (first, second) if static_links[first] else (second, first)
-        parent = other if other == 0 else static  # link 0 is never a child
-        return parent == second
-    depth_first, depth_second = depths[first], depths[second]
-    if depth_first is None or depth_second is None:
+    if static_links[first] and static_links[second]:
         return False
-    return depth_second < depth_first
+    if static_links[second]:
+        return first != 0  # link 0 is never a child
+    if not has_dofs:
+        return False
+    if static_links[first]:
+        return second == 0
+    return depths[second] < depths[first]
 
 
 def _ancestors(link: int, placed_by: dict[int, int], ends: Sequence[tuple[int, ...]]) -> Iterator[int]:

@@ -101,7 +101,8 @@ def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
         return tuple(axis.reference for axis in joint.axes)
     (axis,) = joint.axes
     if joint.kind == "slider":
-        moved = dot(axis.direction, add(now.position, scale(rest.position, -1.0)))
+        D = Pose(add(now.position, scale(rotate(turned, rest.position), -1.0)), turned)
+        moved = dot(axis.direction, add(D.apply(joint.anchor), scale(joint.anchor, -1.0)))
     else:
         moved = _nearest_turn(axis, 2 * math.atan2(dot(axis.direction, turned[1:]), turned[0]))
     return (axis.reference + (moved if abs(moved) > ROUNDING else 0.0),)

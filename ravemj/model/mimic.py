@@ -174,7 +174,7 @@ class MimicJoints:
 
     def __init__(self, joints: Sequence[Joint]) -> None:
         """Prepare the mimic joints among the active joints followed by the passive ones."""
-        mimics = {index: joint.mimic for index, joint in enumerate(joints) if joint.mimic is not None}
+        mimics = {i: joint.mimic for i, joint in enumerate(joints) if joint.mimic is not None and not joint.static}
         self.joints = [_prepared(index, joints) for index in evaluation_order(mimics)]
 
     def evaluate(self, values: list[float], *, clamp: bool = True) -> None:

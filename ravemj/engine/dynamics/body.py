@@ -57,7 +57,7 @@ class BodyDynamics:
         columns = np.zeros(self._kinematics.dof, dtype=int)
         columns[self.couplings.constant.dofs] = self._inner[self.couplings.constant.coordinates]
         idle = np.setdiff1d(np.arange(self._kinematics.dof), self.couplings.constant.dofs)
-        return index_range(columns), idle
+        return columns if len(idle) else index_range(columns), idle
 
     def _matrix(self, coupling: Coupling) -> Floats:
         """Return the coupling matrix with a row for each of MuJoCo's velocities, shape (nv, dof)."""

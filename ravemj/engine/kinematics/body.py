@@ -237,7 +237,13 @@ class BodyKinematics:
         return active + [passive[0] for passive in self._passive_values]
 
     def passive_values(self, index: int) -> Floats:
-        """Return the values of a passive joint [rad or m], shape (axes,); a copy."""
+        """Return the values of a passive joint [rad or m], shape (axes,); a copy.
+
+        One that closes a loop has the value that the poses of its links show.
+        """
+        joint = self.body.passive_joints[index]
+        if not (joint.places_child or joint.static) and self.dof:
+            return np.array(measured_values(joint, self.link_pose(joint.parent).inverse() @ self.link_pose(joint.child)))
         place = self._mimic_qpos.get(len(self.first_dofs) + index)
         return np.array(self._passive_values[index] if place is None else [self.qpos[place]])
 

@@ -217,7 +217,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
             links=(reader.links[0], reader.links[1]),
             T_first_second=first.inverse() @ second,
             anchor=T_first_frame.apply(ZERO if kind == "slider" else reader.anchor),  # OpenRAVE drops a slider's
-            axes=_fixed_at_zero(axes, element, context),
+            axes=axes,
             enabled=not is_false(element.attributes.get("enable", "true")),
             equations=_equations(element, context),
             source=element.source,
@@ -241,16 +241,6 @@ def _driven(axis: Axis, motor: Motor) -> Axis:
     """Return an axis with the data of its motor, which win over ``<maxtorque>``."""
     torque = axis.max_torque if motor.torque is None else motor.torque
     return replace(axis, max_torque=torque, armature=motor.inertia)
-
-
-def _fixed_at_zero(axes: tuple[Axis, ...], element: Element, context: Context) -> tuple[Axis, ...]:
-    """Return the axes with the limits of a weld moved to 0, as OpenRAVE does it."""
-    if not all(axis.lower == axis.upper and not axis.circular for axis in axes):
-        return axes
-    if any(axis.lower for axis in axes):
-        message = "a joint with equal limits does not move; OpenRAVE moves the limits to 0"
-        context.diagnostics.warn("openrave-bug", message, element.source)
-    return tuple(replace(axis, lower=0.0, upper=0.0) for axis in axes)
 
 
 def frame_of_link(body: BodyBuilder, element: Element, context: Context) -> Pose:

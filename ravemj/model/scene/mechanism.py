@@ -121,7 +121,6 @@ class Mimic(Record):
         expression: The equation over ``joint0``, ``joint1``, … (active joints, then passive ones); None where joints
             follow each other in a circle, and none of them moves.
         dofs: Indices of the DOFs that it depends on, directly or through other followers.
-        static: True where none of these DOFs can move, and the limits of the joint itself leave no room.
     """
 
     position: str
@@ -129,7 +128,6 @@ class Mimic(Record):
     acceleration: str
     expression: "Expression | None"
     dofs: tuple[int, ...]
-    static: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
@@ -165,14 +163,17 @@ class Joint(Record):
 
     @property
     def equation(self) -> "Expression | None":
-        """What the joint follows, or None; of several values the equation has the first within the joint's limits."""
-        if self.mimic is None or self.mimic.expression is None or self.axes[0].circular:
-            return None if self.mimic is None else self.mimic.expression
+        """What the joint follows; of several values the equation has the first within the joint's limits.
+
+        None for a joint that follows none, and for a weld.
+        """
+        if self.mimic is None or self.mimic.expression is None or self.static:
+            return None
+        if self.axes[0].circular:
+            return self.mimic.expression
         return self.mimic.expression.within(self.axes[0].lower, self.axes[0].upper)
 
     @property
     def static(self) -> bool:
-        """True for a weld: a joint whose limits leave no room, and that follows nothing that moves."""
-        if self.mimic is not None:
-            return self.mimic.static
-        return all(axis.lower == axis.upper and not axis.circular for axis in self.axes)
+        """True for a weld: a joint whose limits leave no room."""
+        return all(axis.lower >= axis.upper and not axis.circular for axis in self.axes)
