@@ -188,7 +188,7 @@ def run(code: str) -> str:
 
 
 def test_import_loads_no_slow_or_optional_package():
-    slow = {"IPython", "imageio", "av", "PIL", "rich", "trimesh", "coacd", "scipy"}
+    slow = {"IPython", "imageio", "av", "PIL", "rich", "trimesh", "fcl", "coacd", "scipy"}
     loaded = set(run("import ravemj, sys; print(*{name.split('.')[0] for name in sys.modules})").split())
     assert not slow & loaded
 

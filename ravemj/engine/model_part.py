@@ -44,12 +44,14 @@ class ModelPart:
         self._qpos = data.qpos[self.qpos]
         self.stamp = -1
 
-    def take(self, kinematics: BodyKinematics) -> None:
-        """Go where the body is."""
+    def take(self, kinematics: BodyKinematics) -> bool:
+        """Go where the body is, and return whether more than joint values changed."""
         self._qpos[:] = kinematics.qpos if self.is_free else kinematics.qpos[kinematics.inner_qpos]
-        if kinematics.pose_stamp > self.stamp:
+        has_moved = kinematics.pose_stamp > self.stamp
+        if has_moved:
             self._take_poses(kinematics)
         self.stamp = kinematics.stamp
+        return has_moved
 
     def _take_poses(self, kinematics: BodyKinematics) -> None:
         """Take over where the roots are, and what was displaced."""

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision import arms
-from ravemj.engine.collision.world import CollisionWorld, Pairs
+from ravemj.engine.collision.pairs import Pairs
+from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.model import scene
 from ravemj.rave.report import CollisionReport

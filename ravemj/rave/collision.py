@@ -11,8 +11,9 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.transforms import Ints
 from ravemj.engine.collision import questions
 from ravemj.engine.collision.findings import GeometryOf, Listed, find_collisions
+from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.questions import LinkOf, Links, MovedBy
-from ravemj.engine.collision.world import CollisionWorld, Pairs
+from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import Ray

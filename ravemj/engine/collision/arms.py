@@ -4,8 +4,9 @@ from collections.abc import Iterable
 
 from ravemj.core.graphs import ordered_pair
 from ravemj.core.transforms import Floats
+from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.questions import LinkOf, body_and_others, held_with, itself
-from ravemj.engine.collision.world import CollisionWorld, Pairs
+from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.model.chains import independent_links, links_beyond
 from ravemj.model.scene import Manipulator

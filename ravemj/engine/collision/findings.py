@@ -3,8 +3,9 @@
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
+from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.shapes import Contact
-from ravemj.engine.collision.world import CollisionWorld, Pairs
+from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 
 Listed = Literal["first pair", "links", "geometries"]

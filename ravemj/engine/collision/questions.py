@@ -11,8 +11,9 @@ import numpy as np
 
 from ravemj.core.graphs import Pair
 from ravemj.core.transforms import Ints
+from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.resting import tested_pairs
-from ravemj.engine.collision.world import CollisionWorld, Pairs, cross, joined
+from ravemj.engine.collision.world import CollisionWorld, cross, joined
 from ravemj.engine.simulation import BodyState
 from ravemj.model.chains import dofs_moving
 from ravemj.model.scene import KinBody

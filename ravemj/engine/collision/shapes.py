@@ -14,6 +14,7 @@ TOUCHING = 1e-10
 """Shapes this near [m] touch, and count as colliding."""
 
 _RANGE = 1e-8  # m; MuJoCo looks no farther when only touching is asked for
+_GRAZING = 1e-6  # m; hulls that are less deep in each other may just touch
 _FAR = 1e10  # m
 
 
@@ -47,16 +48,28 @@ class ShapeTests:
 
     def touch(self, first: int, second: int) -> bool:
         """Return whether two geoms overlap or touch."""
-        if mujoco.mj_geomDistance(self._model, self._data, first, second, _RANGE, None) > TOUCHING:
-            return False
-        return self._triangles is None or self._exact(self._triangles, first, second, _RANGE, TOUCHING) <= TOUCHING
+        hulls = mujoco.mj_geomDistance(self._model, self._data, first, second, _RANGE, None)
+        triangles = self._triangles
+        if hulls > TOUCHING or triangles is None:
+            return hulls <= TOUCHING
+        if hulls > -_GRAZING:  # whether triangles overlap that just touch is up to rounding; distances are not
+            return self.distance(first, second, _RANGE) <= TOUCHING
+        if triangles.is_concave(first):
+            return triangles.touch(first, second, TOUCHING)
+        return not triangles.is_concave(second) or triangles.touch(second, first, TOUCHING)
 
     def distance(self, first: int, second: int, limit: float = _FAR) -> float:
         """Return the signed distance of two geoms [m], negative if they overlap; at most ``limit``."""
         hulls = mujoco.mj_geomDistance(self._model, self._data, first, second, limit, self._segment)
-        if self._triangles is None or hulls >= limit:
+        triangles = self._triangles
+        if triangles is None or hulls >= limit:
             return hulls
-        return self._exact(self._triangles, first, second, limit, -_FAR, hulls)
+        if triangles.is_concave(first):
+            return triangles.distance(first, second, limit, self._segment)
+        if triangles.is_concave(second):
+            hulls = triangles.distance(second, first, limit, self._segment)
+            self._segment[:] = np.roll(self._segment, 3)
+        return hulls
 
     def contact(self, first: int, second: int) -> Contact:
         """Return the deepest contact of two geoms that touch."""
@@ -67,15 +80,3 @@ class ShapeTests:
             normal = self._data.geom_xpos[first] - self._data.geom_xpos[second]
         length = float(np.linalg.norm(normal))
         return Contact((start + end) / 2, normal / length if length else np.array([0.0, 0.0, 1.0]), depth)
-
-    def _exact(
-        self, triangles: "TriangleTests", first: int, second: int, limit: float, enough: float, hulls: float = 0.0
-    ) -> float:
-        """Return the distance with meshes that are not convex taken as triangles; ``hulls`` is that of the hulls."""
-        if triangles.is_concave(first):
-            return triangles.distance(first, second, limit, enough, self._segment)
-        if triangles.is_concave(second):
-            found = triangles.distance(second, first, limit, enough, self._segment)
-            self._segment[:] = np.roll(self._segment, 3)
-            return found
-        return hulls

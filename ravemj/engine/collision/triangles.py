@@ -1,11 +1,15 @@
 """Meshes as the triangles that they consist of, where MuJoCo would take their convex hulls.
 
-MuJoCo measures distances between convex shapes. A triangle is one: a mesh of three corners, the last one twice. So a
-scratch model with two such meshes and one geom of any other shape takes the triangles in turn.
+FCL keeps a tree of boxes over the triangles of each mesh; it finds those that overlap, and how far meshes are apart.
+MuJoCo measures how deep two triangles, or a triangle and a solid, are in each other. To MuJoCo a triangle is a mesh of
+three corners, the last one twice, so a scratch model with two such meshes and one geom of any other shape takes them in
+turn.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable
+from itertools import chain
 
+import fcl
 import mujoco
 import numpy as np
 
@@ -23,24 +27,31 @@ _XML = """<mujoco><asset>
 </worldbody></mujoco>"""
 _TRIANGLE, _OTHER_TRIANGLE, _SOLID = range(3)
 
-_CHUNK = 64  # triangles
+_Candidate = tuple[float, Floats, Floats | None]
+"""A lower bound of the distance [m], a triangle of a mesh, and one of another mesh where that is what is measured."""
 
-_Pair = tuple[int, int, float]
-"""Two triangles, and how far the boxes around them are apart."""
+_SLACK = 1e-4  # m; boxes are wider by this, since FCL's test of a box and a triangle ends at an error of 1e-6
+
+_ANY = fcl.CollisionRequest()
+_ALL = fcl.CollisionRequest(num_max_contacts=2**31 - 1)
+_NEAREST = fcl.DistanceRequest(enable_nearest_points=True)
 
 
 class TriangleTests:
-    """Distances of meshes that are not convex, in one compiled model."""
+    """Tests of meshes that are not convex, in one compiled model.
+
+    What is inside a closed mesh and touches no triangle is apart from it.
+    """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self._model, self._data = model, data
         self._is_convex: dict[int, bool] = {}
-        self._triangles: dict[int, _Triangles] = {}
+        self._meshes: dict[int, _Triangles] = {}
+        self._objects: dict[int, fcl.CollisionObject] = {}
         self._scratch = mujoco.MjModel.from_xml_string(_XML)
         self._scratch_data = mujoco.MjData(self._scratch)
         self._scratch_data.geom_xmat[:] = np.eye(3).ravel()
         self._corners = self._scratch.mesh_vert.reshape(2, 4, 3)
-        self._segment = np.zeros(6)
 
     def is_concave(self, geom: int) -> bool:
         """Return whether a geom is a mesh that does not fill its hull or has holes."""
@@ -51,131 +62,173 @@ class TriangleTests:
             self._is_convex[mesh] = _fills_its_hull(self._model, mesh)
         return not self._is_convex[mesh]
 
-    def distance(self, first: int, second: int, limit: float, enough: float, segment: Floats) -> float:
-        """Return the signed distance [m] of two geoms, the first one a mesh, meshes taken as their triangles.
-
-        What is inside a closed mesh and touches no triangle is apart from it.
+    def touch(self, mesh: int, other: int, touching: float) -> bool:
+        """Return whether a mesh and another geom overlap.
 
         Args:
-            first: A geom that is a mesh.
-            second: Another geom.
+            mesh: A geom that is a mesh.
+            other: Another geom.
+            touching: The distance up to which a solid touches a mesh [m]. Two meshes have to overlap.
+        """
+        overlaps = fcl.CollisionResult()
+        if not fcl.collide(self._placed(mesh), self._placed(other), _ANY, overlaps):
+            return False
+        if self._is_mesh(other):
+            return True
+        box, triangles = self._place_solid(mesh, other), self._triangles_of(mesh)
+        first = -np.inf, triangles.corners[overlaps.contacts[0].b1], None
+        candidates = chain([first], triangles.near(*box, touching))
+        return self._least(mesh, _SOLID, candidates, 2 * touching, np.zeros(6), enough=touching) <= touching
+
+    def distance(self, mesh: int, other: int, limit: float, segment: Floats) -> float:
+        """Return the signed distance [m] of a mesh and another geom.
+
+        Args:
+            mesh: A geom that is a mesh.
+            other: Another geom.
             limit: Greater distances are of no interest [m].
-            enough: The search ends at a distance like this or less [m].
-            segment: Takes the points of first and second that are nearest or deepest, in the world, shape (6,).
+            segment: Takes the nearest or deepest points of mesh and other, in the world, shape (6,).
 
         Returns:
             The distance, or ``limit`` if it is not less.
         """
-        rotation, position = self._data.geom_xmat[first].reshape(3, 3), self._data.geom_xpos[first]
-        second_rotation = self._data.geom_xmat[second].reshape(3, 3)
-        T_first_second = rotation.T @ second_rotation, rotation.T @ (self._data.geom_xpos[second] - position)
-        triangles = self._triangles_of(first)
-        box = _turned_box(self._model.geom_aabb[second], T_first_second)
-        others = self._prepare(first, second, T_first_second, limit)
-        best = limit
-        for chunk in triangles.chunks(*box, limit):
-            if chunk[0][2] > best:
-                break
-            pairs = chunk if others is None else _pairs(triangles, chunk, others, best)
-            best = self._nearest(triangles, others, pairs, best, enough)
-            if best <= enough:
-                break
-        segment[:] = (self._segment.reshape(2, 3) @ rotation.T + position).ravel()
-        return best
+        if not self._is_mesh(other):
+            candidates = self._triangles_of(mesh).near(*self._place_solid(mesh, other), limit)
+            return self._least(mesh, _SOLID, candidates, limit, segment)
+        placed = self._placed(mesh), self._placed(other)
+        overlaps, nearest = fcl.CollisionResult(), fcl.DistanceResult()
+        if fcl.collide(*placed, _ALL, overlaps):
+            return self._deepest(mesh, other, overlaps.contacts, limit, segment)
+        distance = fcl.distance(*placed, _NEAREST, nearest)
+        if distance < limit:
+            segment[:] = np.concatenate(nearest.nearest_points)
+        return min(distance, limit)
 
-    def _nearest(
-        self, triangles: "_Triangles", others: "_Triangles | None", pairs: "list[_Pair]", limit: float, enough: float
-    ) -> float:
-        """Return the least distance of some pairs, and keep where it is, in the frame of the first, in ``_segment``."""
-        best, here = limit, np.zeros(6)
-        place = _SOLID if others is None else _OTHER_TRIANGLE
-        for index, other, gap in pairs:
-            if gap > best or best <= enough:
-                break
-            self._write(_TRIANGLE, triangles.corners[index])
-            if others is not None:
-                self._write(_OTHER_TRIANGLE, others.corners[other])
-            found = mujoco.mj_geomDistance(self._scratch, self._scratch_data, _TRIANGLE, place, best, here)
-            if found < best:
-                best, self._segment[:] = found, here
-        return best
+    def _deepest(self, mesh: int, other: int, overlaps: Iterable[fcl.Contact], limit: float, segment: Floats) -> float:
+        """Return ``distance`` of two meshes of which some triangles overlap."""
+        pairs = np.array(sorted({(overlap.b1, overlap.b2) for overlap in overlaps}))
+        rotation, position = self._pose_in(mesh, other)
+        ours = self._triangles_of(mesh).corners[pairs[:, 0]]
+        theirs = self._triangles_of(other).corners[pairs[:, 1]] @ rotation.T + position
+        candidates = ((-np.inf, one, two) for one, two in zip(ours, theirs, strict=True))
+        return self._least(mesh, _OTHER_TRIANGLE, candidates, limit, segment)
 
-    def _prepare(
-        self, first: int, second: int, T_first_second: tuple[Floats, Floats], limit: float
-    ) -> "_Triangles | None":
-        """Return the triangles of the second geom that the first may reach, in the first one's frame.
+    def _place_solid(self, mesh: int, solid: int) -> tuple[Floats, Floats]:
+        """Put a shape that is no mesh into the scratch model.
 
-        What is no mesh goes into the scratch model, and None is returned.
+        Returns:
+            Centre and half the edges of a box around it along the axes of the mesh, in the mesh's frame.
         """
-        rotation, position = T_first_second
-        if self._model.geom_dataid[second] >= 0:
-            box = _turned_box(self._model.geom_aabb[first], (rotation.T, -rotation.T @ position))
-            triangles = self._triangles_of(second)
-            near, _ = triangles.near(*box, limit)
-            return _Triangles(triangles.corners[near] @ rotation.T + position)
-        self._scratch.geom_type[_SOLID] = self._model.geom_type[second]
-        self._scratch.geom_size[_SOLID] = self._model.geom_size[second]
-        self._scratch_data.geom_xpos[_SOLID] = position
-        self._scratch_data.geom_xmat[_SOLID] = rotation.ravel()
-        return None
+        rotation, position = self._pose_in(mesh, solid)
+        self._scratch.geom_type[_SOLID] = self._model.geom_type[solid]
+        self._scratch.geom_size[_SOLID] = self._model.geom_size[solid]
+        self._scratch_data.geom_xpos[_SOLID], self._scratch_data.geom_xmat[_SOLID] = position, rotation.ravel()
+        centre, half = self._model.geom_aabb[solid].reshape(2, 3)
+        return rotation @ centre + position, np.abs(rotation) @ half
 
-    def _triangles_of(self, geom: int) -> "_Triangles":
-        mesh = int(self._model.geom_dataid[geom])
-        if mesh not in self._triangles:
-            vertices, triangles = _mesh_arrays(self._model, mesh)
-            self._triangles[mesh] = _Triangles(vertices[triangles])
-        return self._triangles[mesh]
+    def _least(
+        self,
+        mesh: int,
+        place: int,
+        candidates: Iterable[_Candidate],
+        limit: float,
+        segment: Floats,
+        enough: float = -np.inf,
+    ) -> float:
+        """Return the least distance of some candidates in the frame of a mesh, as ``distance``.
+
+        Args:
+            mesh: The geom.
+            place: What triangles are measured against in the scratch model.
+            candidates: Those whose bound is least come first.
+            limit: See ``distance``.
+            segment: See ``distance``.
+            enough: The search ends at this distance or less [m].
+        """
+        best, found = limit, np.zeros(6)
+        for bound, triangle, other in candidates:
+            if bound > best:
+                break
+            self._write(_TRIANGLE, triangle)
+            if other is not None:
+                self._write(_OTHER_TRIANGLE, other)
+            distance = mujoco.mj_geomDistance(self._scratch, self._scratch_data, _TRIANGLE, place, best, found)
+            if distance < best:
+                best, segment[:] = distance, found
+                if best <= enough:
+                    break
+        if best < limit:
+            rotation, position = self._pose(mesh)
+            segment[:] = (segment.reshape(2, 3) @ rotation.T + position).ravel()
+        return best
 
     def _write(self, place: int, corners: Floats) -> None:
         self._corners[place, :3] = corners
         self._corners[place, 3] = corners[2]
 
+    def _is_mesh(self, geom: int) -> bool:
+        return bool(self._model.geom_dataid[geom] >= 0)
+
+    def _triangles_of(self, geom: int) -> "_Triangles":
+        mesh = int(self._model.geom_dataid[geom])
+        if mesh not in self._meshes:
+            self._meshes[mesh] = _Triangles(*_mesh_arrays(self._model, mesh))
+        return self._meshes[mesh]
+
+    def _pose(self, geom: int) -> tuple[Floats, Floats]:
+        return self._data.geom_xmat[geom].reshape(3, 3), self._data.geom_xpos[geom]
+
+    def _pose_in(self, first: int, second: int) -> tuple[Floats, Floats]:
+        """Return the rotation and the position of the second geom in the first one's frame."""
+        (rotation, position), (second_rotation, second_position) = self._pose(first), self._pose(second)
+        return rotation.T @ second_rotation, rotation.T @ (second_position - position)
+
+    def _placed(self, geom: int) -> fcl.CollisionObject:
+        """Return a mesh where it is now, or a box around another shape, for FCL."""
+        rotation, position = self._pose(geom)
+        if not self._is_mesh(geom):
+            position = position + rotation @ self._model.geom_aabb[geom, :3]
+        if geom not in self._objects:
+            self._objects[geom] = fcl.CollisionObject(self._shape(geom))
+        self._objects[geom].setTransform(fcl.Transform(rotation, position))
+        return self._objects[geom]
+
+    def _shape(self, geom: int) -> fcl.CollisionGeometry:
+        if self._is_mesh(geom):
+            return self._triangles_of(geom).tree
+        return fcl.Box(*(2 * (self._model.geom_aabb[geom, 3:] + _SLACK)).tolist())
+
 
 class _Triangles:
-    """Triangles with a box around each, all in one frame."""
+    """The triangles of a mesh, with a box around each.
 
-    def __init__(self, corners: Floats) -> None:
-        self.corners = corners
-        self.low, self.high = corners.min(axis=1), corners.max(axis=1)
+    Attributes:
+        corners: Their corners, shape (n, 3, 3).
+        tree: FCL's tree of boxes.
+    """
 
-    def near(self, low: Floats, high: Floats, limit: float) -> tuple[Ints, Floats]:
-        """Return the triangles whose boxes are no farther than ``limit`` from a box, and how far; the nearest first."""
-        gaps = _gaps(self.low, self.high, low, high)
-        near = np.flatnonzero(gaps <= limit)
-        near = near[np.argsort(gaps[near], kind="stable")]
-        return near, gaps[near]
+    def __init__(self, vertices: Floats, triangles: Ints) -> None:
+        self.corners = vertices[triangles]
+        self._low, self._high = self.corners.min(axis=1), self.corners.max(axis=1)
+        self.tree = fcl.BVHModel()
+        self.tree.beginModel(len(triangles), len(vertices))
+        self.tree.addSubModel(vertices, triangles)
+        self.tree.endModel()
 
-    def chunks(self, low: Floats, high: Floats, limit: float) -> "Iterator[list[_Pair]]":
-        """Yield what ``near`` returns, some triangles at a time, as pairs with nothing."""
-        near, gaps = self.near(low, high, limit)
-        for start in range(0, len(near), _CHUNK):
-            part = slice(start, start + _CHUNK)
-            yield [(index, -1, gap) for index, gap in zip(near[part].tolist(), gaps[part].tolist(), strict=True)]
+    def near(self, centre: Floats, half: Floats, limit: float) -> Iterable[_Candidate]:
+        """Yield the triangles whose boxes are no farther than ``limit`` from a box, the nearest first.
 
-
-def _pairs(triangles: _Triangles, chunk: list[_Pair], others: _Triangles, limit: float) -> list[_Pair]:
-    """Return the pairs of triangles whose boxes are no farther apart than ``limit``, and how far; the nearest first."""
-    chosen = np.array([index for index, _, _ in chunk])
-    low, high = triangles.low[chosen], triangles.high[chosen]
-    near, _ = others.near(low.min(axis=0), high.max(axis=0), limit)
-    gaps = _gaps(low[:, None], high[:, None], others.low[near], others.high[near])
-    rows, columns = np.nonzero(gaps <= limit)
-    found = gaps[rows, columns]
-    order = np.argsort(found, kind="stable")
-    return list(zip(chosen[rows[order]].tolist(), near[columns[order]].tolist(), found[order].tolist(), strict=True))
-
-
-def _gaps(low: Floats, high: Floats, other_low: Floats, other_high: Floats) -> Floats:
-    """Return how far boxes are apart; arrays of corners are broadcast, their last axis is x, y, z."""
-    apart = np.maximum(np.maximum(low - other_high, other_low - high), 0.0)
-    return np.sqrt((apart * apart).sum(axis=-1))
-
-
-def _turned_box(aabb: Floats, T_a_b: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
-    """Return the corners of the box in frame a around a box in frame b, given by its centre and half its edges."""
-    rotation, position = T_a_b
-    centre, half = rotation @ aabb[:3] + position, np.abs(rotation) @ aabb[3:]
-    return centre - half, centre + half
+        Args:
+            centre: Centre of the box, in the frame of the mesh [m], shape (3,).
+            half: Half its edges [m], shape (3,).
+            limit: The limit [m].
+        """
+        apart = np.maximum(np.maximum(self._low - centre - half, centre - half - self._high), 0.0)
+        bounds = np.sqrt((apart * apart).sum(axis=1))
+        near = np.flatnonzero(bounds <= limit)
+        bounds[bounds == 0.0] = -np.inf
+        for index in near[np.argsort(bounds[near], kind="stable")].tolist():
+            yield bounds[index], self.corners[index], None
 
 
 def _mesh_arrays(model: mujoco.MjModel, mesh: int) -> tuple[Floats, Ints]:

@@ -8,54 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.collision.pairs import Detection, Pairs
 from ravemj.engine.collision.rays import RayHit, first_hit, first_hits
-from ravemj.engine.collision.shapes import TOUCHING, ShapeTests
+from ravemj.engine.collision.shapes import ShapeTests
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
 
 MOST_PAIRS = 1_000_000
 """Pairs of geoms that are kept for all questions together."""
-
-_ONES = np.ones(3)  # summing rows by a product with it is the fastest way for few of them
-_NO_PAIRS: list[tuple[int, int]] = []
-
-
-class Pairs:
-    """Pairs of geoms, with spheres around them for a first look.
-
-    Attributes:
-        first: The first geom of each pair, shape (n,).
-        second: The second one, shape (n,).
-    """
-
-    def __init__(self, first: Ints, second: Ints, radii: Floats) -> None:
-        count = len(first)
-        self._geoms = np.concatenate([first, second])
-        self.first, self.second = self._geoms[:count], self._geoms[count:]
-        self._reach = radii[first] + radii[second]
-        self._square = (self._reach * (1 + 1e-9) + 2 * TOUCHING) ** 2
-        # For what is computed each time: making new arrays takes longer than filling these.
-        self._centers = np.empty((2 * count, 3))
-        self._from, self._apart = self._centers[:count], self._centers[count:]
-        self._distance = np.empty(count)
-
-    def near(self, positions: Floats) -> list[tuple[int, int]]:
-        """Return the pairs whose spheres touch, in order, for the present positions of all geoms.
-
-        The caller holds the lock.
-        """
-        apart = self._apart
-        positions.take(self._geoms, 0, self._centers, "clip")  # all are there; the default mode is slower
-        apart -= self._from
-        apart *= apart
-        found = (apart.dot(_ONES, self._distance) < self._square).nonzero()[0]
-        if not len(found):
-            return _NO_PAIRS
-        return list(zip(self.first[found].tolist(), self.second[found].tolist(), strict=True))
-
-    def gaps(self, positions: Floats) -> Floats:
-        """Return how far apart the spheres of each pair are [m], negative where they overlap, shape (n,)."""
-        return np.linalg.norm(positions[self.first] - positions[self.second], axis=1) - self._reach
 
 
 class CollisionWorld:
@@ -75,8 +35,8 @@ class CollisionWorld:
     def __init__(self, bodies: tuple[BodyState, ...], model: WorldModel, stamp: int) -> None:
         self.bodies, self.model, self.stamp = bodies, model, stamp
         self._model, self._data = model.model, model.data
-        self._positions = model.data.geom_xpos
         self.shapes = ShapeTests(model.model, model.data)
+        self._detection = Detection(model, self.shapes)
         self._number = {body: number for number, body in enumerate(self.bodies)}
         self._pairs: dict[Hashable, Pairs] = {}
         self._pair_count = 0
@@ -146,26 +106,26 @@ class CollisionWorld:
             if self._pair_count > MOST_PAIRS:
                 self._pairs.clear()
                 self._pair_count = len(first)
-            pairs = self._pairs[question] = self.make_pairs(first, second)
+            pairs = self._pairs[question] = Pairs(first, second, self._detection)
         return pairs
 
     def make_pairs(self, first: Ints, second: Ints) -> Pairs:
         """Return pairs of geoms for a question that is asked once."""
-        return Pairs(first, second, self._model.geom_rbound)
+        return Pairs(first, second, self._detection, once=True)
 
     def collide(self, pairs: Pairs) -> bool:
         """Return whether any of the pairs touch or overlap."""
-        near = pairs.near(self._positions)
+        near = pairs.near()
         return bool(near) and any(self.shapes.touch(first, second) for first, second in near)
 
     def hits(self, pairs: Pairs) -> Iterator[tuple[int, int]]:
         """Yield the pairs that touch or overlap."""
         touch = self.shapes.touch
-        return ((first, second) for first, second in pairs.near(self._positions) if touch(first, second))
+        return ((first, second) for first, second in pairs.near() if touch(first, second))
 
     def nearest(self, pairs: Pairs, limit: float) -> tuple[float, tuple[int, int] | None]:
         """Return the least signed distance of the pairs [m] and the pair, or the limit and None if none is nearer."""
-        gaps, found = pairs.gaps(self._positions), None
+        gaps, found = pairs.gaps(), None
         for number in np.argsort(gaps, kind="stable"):
             if gaps[number] >= limit:
                 break
@@ -177,7 +137,7 @@ class CollisionWorld:
 
     def count_within(self, pairs: Pairs, tolerance: float) -> int:
         """Return how many of the pairs are nearer than a tolerance [m]."""
-        near = np.flatnonzero(pairs.gaps(self._positions) <= tolerance)
+        near = np.flatnonzero(pairs.gaps() <= tolerance)
         beyond = float(np.nextafter(tolerance, np.inf))
         measured = (self.shapes.distance(int(pairs.first[n]), int(pairs.second[n]), beyond) for n in near)
         return sum(distance <= tolerance for distance in measured)
@@ -204,6 +164,7 @@ class CollisionWorld:
             motions: For a body and a link, the motion in the world, shape (4, 4).
         """
         positions, rotations = self._data.geom_xpos, self._data.geom_xmat
+        self._detection.is_overruled = True
         try:
             for (body, link), motion in motions.items():
                 for geom in self.geoms_of_link(body, link, enabled_only=False):
@@ -211,6 +172,7 @@ class CollisionWorld:
                     rotations[geom] = (motion[:3, :3] @ rotations[geom].reshape(3, 3)).ravel()
             yield
         finally:
+            self._detection.is_overruled = False
             mujoco.mj_kinematics(self._model, self._data)
 
 

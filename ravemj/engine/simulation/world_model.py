@@ -18,6 +18,10 @@ class WorldModel(Compiled):
     """All bodies with their shapes in one model: for collisions, pictures and export.
 
     Each body is at home in its own model (``BodyState.own_kinematics``). Here is a copy; ``take`` brings it up to date.
+
+    Attributes:
+        stamp: Grows with every change that was taken over.
+        pose_stamp: Grows where more than joint values changed.
     """
 
     def __init__(self, bodies: Iterable[BodyState], view: View, diagnostics: Diagnostics) -> None:
@@ -26,6 +30,7 @@ class WorldModel(Compiled):
         Raises:
             CompileError: MuJoCo refuses the model.
         """
+        self.stamp = self.pose_stamp = 0
         bodies = tuple(bodies)
         scene = Scene(tuple(body.scene for body in bodies), view)
         super().__init__(scene, diagnostics)
@@ -50,8 +55,9 @@ class WorldModel(Compiled):
             if body.scene is not described:
                 self._describe(part, described.links, body.scene.links)
                 self._described[body] = body.scene
-            if body.is_compiled:
-                part.take(body.own_kinematics)
+            if body.is_compiled and part.take(body.own_kinematics):
+                self.pose_stamp += 1
+        self.stamp += 1
         mujoco.mj_kinematics(self.model, self.data)
 
     def _describe(self, part: ModelPart, before: Iterable[Link], links: Iterable[Link]) -> None:

@@ -1,0 +1,184 @@
+"""Pairs of geoms, and which of them are near each other."""
+
+from functools import cached_property
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.collision.shapes import TOUCHING, ShapeTests
+from ravemj.engine.simulation.world_model import WorldModel
+
+FEW = 16
+"""So few pairs are looked at one by one, since MuJoCo's collision detection looks at all geoms."""
+
+_MARGIN = 1e-6  # m; MuJoCo's collision detection finds what is this near: more than exact tests call touching
+_OVERRIDE = int(mujoco.mjtEnableBit.mjENBL_OVERRIDE)
+_MOST_CONTACTS = 1 / 4096  # for each byte of MuJoCo's working memory, where a contact takes 600
+
+_ONES = np.ones(3)  # summing rows by a product with it is the fastest way for few of them
+_NO_NUMBERS: list[int] = []
+_NO_PAIRS: list[tuple[int, int]] = []
+_NO_KEYS = np.zeros(0, dtype=np.int_)
+
+Bools = NDArray[np.bool_]
+
+
+class Detection:
+    """MuJoCo's collision detection, which runs once for each configuration of a world and finds hulls that touch.
+
+    It leaves out the geoms of one weld group, between which the model has no joint, those of a group and the one that
+    it hangs on, unless that is the world's, and what the model excludes.
+
+    Attributes:
+        model: The model.
+        shapes: Exact tests of its geoms.
+        positions: Positions of all geoms, shape (geoms, 3).
+        radii: Radii of the spheres around them, shape (geoms,).
+        is_overruled: Whether geoms are where their links are not, so that only spheres find what is near.
+    """
+
+    def __init__(self, model: WorldModel, shapes: ShapeTests) -> None:
+        self.model, self.shapes = model, shapes
+        self._model, self._data = model.model, model.data
+        self.positions, self.radii = model.data.geom_xpos, model.model.geom_rbound
+        self.is_overruled = False
+        self._stamp = -1
+        self._keys, self._found = _NO_KEYS, b""
+        self._option = self._model.opt
+        self._option.o_margin = _MARGIN  # only ``_OVERRIDE`` lets it count
+        self._most = int(self._data.narena * _MOST_CONTACTS)
+        bodies = self._model.body_weldid
+        self._bodies = self._model.geom_bodyid
+        self._welds = bodies[self._bodies]
+        self._carriers = bodies[self._model.body_parentid[self._welds]]
+        self._masks = self._model.geom_contype, self._model.geom_conaffinity
+
+    def keys_of(self, first: Ints, second: Ints) -> Ints:
+        """Return a number for each pair of geoms, whichever of them comes first."""
+        return np.minimum(first, second) * self._model.ngeom + np.maximum(first, second)
+
+    def are_welded(self, first: Ints, second: Ints) -> Bools:
+        """Return for each pair of geoms whether no joint is between them."""
+        return self._welds[first] == self._welds[second]
+
+    def finds(self, first: Ints, second: Ints) -> Bools:
+        """Return for each pair of geoms whether MuJoCo's collision detection would look at it."""
+        welds, others = self._welds[first], self._welds[second]
+        hanging = (self._carriers[first] == others) | (self._carriers[second] == welds)
+        hanging &= (welds != 0) & (others != 0)
+        types, affinities = self._masks
+        masked = ((types[first] & affinities[second]) | (types[second] & affinities[first])) == 0
+        bodies, other_bodies = self._bodies[first], self._bodies[second]
+        signatures = (np.minimum(bodies, other_bodies) << 16) + np.maximum(bodies, other_bodies)
+        excluded = np.isin(signatures, self._model.exclude_signature)
+        return ~((welds == others) | hanging | masked | excluded)
+
+    def keys(self) -> Ints | None:
+        """Return the keys of the pairs whose hulls touch now; None if they are too many for MuJoCo.
+
+        The array is the same one as long as the pairs are the same.
+        """
+        if self._stamp != self.model.stamp:
+            self._stamp = self.model.stamp
+            self._detect()
+        return self._keys if len(self._keys) < self._most else None
+
+    def _detect(self) -> None:
+        option, flags = self._option, self._option.enableflags
+        option.enableflags = flags | _OVERRIDE
+        mujoco.mj_collision(self._model, self._data)
+        option.enableflags = flags
+        if not self._data.ncon:
+            self._keys, self._found = _NO_KEYS, b""
+            return
+        geoms = self._data.contact.geom
+        found = geoms.tobytes()
+        if found != self._found:
+            self._keys, self._found = self.keys_of(*geoms.T.astype(np.int_)), found
+
+
+class Pairs:
+    """Pairs of geoms that a question is about.
+
+    Attributes:
+        first: The first geom of each pair, shape (n,).
+        second: The second one, shape (n,).
+    """
+
+    def __init__(self, first: Ints, second: Ints, detection: Detection, *, once: bool = False) -> None:
+        """Take pairs.
+
+        Args:
+            first: The first geom of each pair, shape (n,).
+            second: The second one, shape (n,).
+            detection: Finds those whose hulls touch.
+            once: Whether they are looked at once, so that preparing them is not worth its time.
+        """
+        self.first, self.second = first, second
+        self._detection = detection
+        found = np.zeros(len(first), dtype=bool) if once or len(first) <= FEW else detection.finds(first, second)
+        keys, self._rest = detection.keys_of(first[found], second[found]), np.flatnonzero(~found)
+        order = np.argsort(keys)
+        self._keys, self._numbers = keys[order], np.flatnonzero(found)[order]
+        self._spheres = _Spheres(first[self._rest], second[self._rest], detection)
+        self._rest_is_welded = bool(detection.are_welded(first[self._rest], second[self._rest]).all())
+        self._rest_stamp = -1
+        self._rest_touching = self._touching = _NO_NUMBERS
+        self._touching_keys = _NO_KEYS
+
+    def near(self) -> list[tuple[int, int]]:
+        """Return the pairs that may touch, in order. The caller holds the lock."""
+        detection = self._detection
+        keys = None if detection.is_overruled else detection.keys() if len(self._keys) else _NO_KEYS
+        if keys is None:
+            return self._geoms(self._all_spheres.near())
+        if keys is not self._touching_keys:
+            places = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+            self._touching = self._numbers[places[self._keys[places] == keys]].tolist()
+            self._touching_keys = keys
+        if not self._rest_is_welded or self._rest_stamp != detection.model.pose_stamp:
+            near = self._rest[self._spheres.near()].tolist()
+            touch, first, second = detection.shapes.touch, self.first, self.second
+            self._rest_touching = [number for number in near if touch(int(first[number]), int(second[number]))]
+            self._rest_stamp = detection.model.pose_stamp
+        if not self._touching and not self._rest_touching:
+            return _NO_PAIRS
+        return self._geoms(sorted({*self._touching, *self._rest_touching}))
+
+    @cached_property
+    def _all_spheres(self) -> "_Spheres":
+        return _Spheres(self.first, self.second, self._detection)
+
+    def _geoms(self, numbers: list[int] | Ints) -> list[tuple[int, int]]:
+        return list(zip(self.first[numbers].tolist(), self.second[numbers].tolist(), strict=True))
+
+    def gaps(self) -> Floats:
+        """Return how far apart the spheres of each pair are [m], negative where they overlap, shape (n,)."""
+        positions, radii = self._detection.positions, self._detection.radii
+        apart = np.linalg.norm(positions[self.first] - positions[self.second], axis=1)
+        return apart - radii[self.first] - radii[self.second]
+
+
+class _Spheres:
+    """Spheres around pairs of geoms."""
+
+    def __init__(self, first: Ints, second: Ints, detection: Detection) -> None:
+        count = len(first)
+        self._positions = detection.positions
+        self._geoms = np.concatenate([first, second])
+        reach = detection.radii[first] + detection.radii[second]
+        self._square = (reach * (1 + 1e-9) + 2 * TOUCHING) ** 2
+        # For what is computed each time: making new arrays takes longer than filling these.
+        self._centers = np.empty((2 * count, 3))
+        self._from, self._apart = self._centers[:count], self._centers[count:]
+        self._distance = np.empty(count)
+
+    def near(self) -> Ints:
+        """Return the numbers of the pairs whose spheres touch, in order."""
+        apart = self._apart
+        self._positions.take(self._geoms, 0, self._centers, "clip")  # all are there; the default mode is slower
+        apart -= self._from
+        apart *= apart
+        return (apart.dot(_ONES, self._distance) < self._square).nonzero()[0]
