@@ -4,7 +4,7 @@ Every constructor raises ``UnsupportedError``, which is a ``NotImplementedError`
 """
 
 from ravemj.errors import UnsupportedError
-from ravemj.rave.planning import PLANNING
+from ravemj.rave.plugins import PLANNING
 
 
 class BaseManipulation:

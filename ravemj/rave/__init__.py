@@ -24,15 +24,17 @@ from ravemj.rave.enums import (
     CloningOptions,
     CollisionAction,
     CollisionOptions,
+    ConstraintFilterOptions,
     DebugLevel,
     GeometryType,
     IkFilterOptions,
     IkReturnAction,
     InterfaceAddMode,
     InterfaceType,
+    Interval,
     JointType,
     PhysicsEngineOptions,
-    PlannerStatus,
+    PlannerAction,
     PlannerStatusCode,
     SaveParameters,
     SelectionOptions,
@@ -76,11 +78,16 @@ from ravemj.rave.logs import (
 )
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
-from ravemj.rave.planning import Planner, PlanningError
+from ravemj.rave.planning import (
+    Planner,
+    PlannerProgress,
+    PlannerStatus,
+    PlanningError,
+    RaveCreatePlanner,
+)
 from ravemj.rave.plugins import (
     RaveCreateIkSolver,
     RaveCreateModule,
-    RaveCreatePlanner,
     RaveCreateProblem,
     RaveCreateSensor,
     RaveCreateSpaceSampler,
@@ -116,6 +123,7 @@ __all__ = [
     "CollisionOptionsStateSaver",
     "CollisionReport",
     "ConfigurationSpecification",
+    "ConstraintFilterOptions",
     "Controller",
     "DebugLevel",
     "ElectricMotorActuatorInfo",
@@ -133,6 +141,7 @@ __all__ = [
     "IkReturnAction",
     "InterfaceAddMode",
     "InterfaceType",
+    "Interval",
     "Joint",
     "JointType",
     "KinBody",
@@ -144,6 +153,8 @@ __all__ = [
     "PhysicsEngine",
     "PhysicsEngineOptions",
     "Planner",
+    "PlannerAction",
+    "PlannerProgress",
     "PlannerStatus",
     "PlannerStatusCode",
     "PlanningError",

@@ -256,22 +256,52 @@ class PlannerStatusCode(IntFlag):
     InterruptedWithSolution = 3
 
 
-class PlannerStatus(IntFlag):
-    """How planning ended: OpenRAVE 0.9 compares it as a number, later versions look at its ``statusCode``."""
-
-    Failed = 0
-    HasSolution = 1
-    Interrupted = 2
-    InterruptedWithSolution = 3
-
-    @property
-    def statusCode(self) -> PlannerStatusCode:
-        """The same as a ``PlannerStatusCode``."""
-        return PlannerStatusCode(self.value)
-
-
 class PhysicsEngineOptions(IntFlag):
     """What physics engines look at."""
 
     SelfCollisions = 1
     """Links of one body collide with one another."""
+
+
+class PlannerAction(IntEnum):
+    """What a function of ``planner.RegisterPlanCallback`` says."""
+
+    vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
+    Interrupt = 1
+    """Stop."""
+    ReturnWithAnySolution = 2
+    """Stop if there is a path already, however long."""
+
+
+class Interval(IntFlag):
+    """Which ends of a line count."""
+
+    Open = Default = 0
+    OpenStart = 1
+    OpenEnd = 2
+    Closed = 3
+    IntervalMask = 0xFFFF
+    AllLinear = 0x10000
+    Cubic = 0x20000
+    Quintic = 0x40000
+    InterpolationMask = 0xFFFF0000
+
+
+
+class ConstraintFilterOptions(IntFlag):
+    """What tests of configurations look at."""
+
+    CheckEnvCollisions = 1
+    CheckSelfCollisions = 2
+    CheckTimeBasedConstraints = 4
+    BreakOnFirstValidation = 8
+    CheckUserConstraints = 0x8000
+    RecommendedOptions = 0xFFFF
+    CheckWithPerturbation = 0x10000
+    FillCheckedConfiguration = 0x20000
+    FillCollisionReport = 0x40000
+    FromPathSampling = 0x80000
+    FromPathShortcutting = 0x100000
+    FromTrajectorySmoother = 0x200000
+    FinalValuesNotReached = 0x40000000
+    StateSettingError = 0x80000000

@@ -11,12 +11,13 @@ from ravemj.geometry_functions.ik_parameterization import INVERSE_KINEMATICS
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
 from ravemj.rave.interface import checked_environment
-from ravemj.rave.planning import PLANNING, Planner
+from ravemj.rave.planning.names import PLANNERS
 from ravemj.rave.sensors import SENSING, Sensor
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
 
+PLANNING = "motion planning"
 _GRASPING = "planning of grasps"
 _SAMPLING = "sampling of spaces"
 
@@ -24,23 +25,6 @@ _LOG = logging.getLogger("ravemj")
 
 MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
     {
-        InterfaceType.planner: {
-            "basicrrt": PLANNING,
-            "birrt": PLANNING,
-            "constraintparabolicsmoother": PLANNING,
-            "cubictrajectoryretimer": PLANNING,
-            "explorationrrt": PLANNING,
-            "graspgradient": _GRASPING,
-            "grasper": _GRASPING,
-            "linearsmoother": PLANNING,
-            "lineartrajectoryretimer": PLANNING,
-            "parabolicsmoother": PLANNING,
-            "parabolictrajectoryretimer": PLANNING,
-            "ra*": PLANNING,
-            "rastar": PLANNING,
-            "shortcut_linear": PLANNING,
-            "workspacetrajectorytracker": PLANNING,
-        },
         InterfaceType.module: {
             "basemanipulation": PLANNING,
             "grasper": _GRASPING,
@@ -91,19 +75,6 @@ def RaveCreateModule(env: Environment, name: str) -> None:
 
 
 RaveCreateProblem = RaveCreateModule
-
-
-def RaveCreatePlanner(env: Environment, name: str) -> Planner | None:
-    """Refuse to make a planner; return None where OpenRAVE does not know the name either.
-
-    Args:
-        env: The environment.
-        name: The name.
-
-    Raises:
-        UnsupportedError: the planner is one of OpenRAVE's own.
-    """
-    return _refuse(env, InterfaceType.planner, name)
 
 
 def RaveCreateIkSolver(env: Environment, name: str) -> None:
@@ -171,6 +142,7 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
         InterfaceType.controller: ["IdealController", "IdealVelocityController", "odevelocity"],
         InterfaceType.kinbody: [""],
         InterfaceType.physicsengine: ["GenericPhysicsEngine", "ode", "bullet", "mujoco"],
+        InterfaceType.planner: list(PLANNERS),
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],
         InterfaceType.viewer: list(VIEWERS),

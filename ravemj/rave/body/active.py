@@ -7,11 +7,11 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector
 from ravemj.core.transforms import Floats, Ints, Vec3, wxyz_jacobian
-from ravemj.engine.affine import AffineMotion, translation_columns
+from ravemj.engine.affine import AffineMotion
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import Z_AXIS, DOFAffine, affine_values, pose_with_values
 from ravemj.model.joints import wrapped_angle
-from ravemj.rave.body.affine import AffineSettings
+from ravemj.rave.body.affine import AffineSettings, affine_numbers
 from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.body.configuration import Configuration
 from ravemj.rave.body.dynamics import Dynamics
@@ -205,20 +205,7 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
 
     def _affine_numbers(self, name: str) -> Floats:
         """Return a setting of all active parts of the base's pose."""
-        affine, kinds = self.active_choice.affine, self.affine_kinds
-        parts = [getattr(kinds["Translation"], name)[translation_columns(affine)]]
-        if affine & DOFAffine.RotationAxis:
-            parts.append(getattr(kinds["RotationAxis"], name)[self._axis_number() : self._axis_number() + 1])
-        elif affine & DOFAffine.Rotation3D:
-            parts.append(getattr(kinds["Rotation3D"], name))
-        elif affine & DOFAffine.RotationQuat:
-            parts.append(getattr(kinds["RotationQuat"], name))
-        return np.concatenate(parts)
-
-    def _axis_number(self) -> int:
-        """Return 0, 1 or 2 for a rotation about x, y or z, and 3 for any other axis."""
-        axis = self.active_choice.axis
-        return next((number for number in range(3) if axis[number] == 1.0), 3)
+        return affine_numbers(self.affine_kinds, self.active_choice.affine, self.active_choice.axis, name)
 
     def GetActiveConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
         """Return what the active values are: the layout of the waypoints of trajectories for them.

@@ -2,7 +2,7 @@
 
 # ruff: noqa: D102 - the docstrings of the methods come from the table
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import wraps
 from inspect import Signature, signature
@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_vector
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, Vec3
+from ravemj.engine.affine import translation_columns
+from ravemj.geometry_functions.affine import DOFAffine
 from ravemj.rave.body.base import BodyPart
 
 Topic = TypeVar("Topic", bound=BodyPart)
@@ -60,6 +62,26 @@ _ARGUMENTS = {
     "MaxVels": "\n\nArgs:\n    velocities: Largest velocities.",
     "Resolution": "\n\nArgs:\n    resolution: Step for each value.",
 }
+
+
+def affine_numbers(kinds: Mapping[str, AffineKind], affine: int, axis: Vec3, name: str) -> Floats:
+    """Return a setting of some parts of a pose, shape (n,).
+
+    Args:
+        kinds: The settings.
+        affine: The parts, ``DOFAffine``.
+        axis: Axis of ``DOFAffine.RotationAxis``.
+        name: The setting, a field of ``AffineKind``.
+    """
+    parts = [getattr(kinds["Translation"], name)[translation_columns(affine)]]
+    if affine & DOFAffine.RotationAxis:
+        number = next((number for number in range(3) if axis[number] == 1.0), 3)
+        parts.append(getattr(kinds["RotationAxis"], name)[number : number + 1])
+    elif affine & DOFAffine.Rotation3D:
+        parts.append(getattr(kinds["Rotation3D"], name))
+    elif affine & DOFAffine.RotationQuat:
+        parts.append(getattr(kinds["RotationQuat"], name))
+    return np.concatenate(parts)
 
 
 def default_kinds() -> dict[str, AffineKind]:

@@ -1,0 +1,248 @@
+"""Verifying of trajectories and lines, and configurations nearby without collisions."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats, Pose, normalize
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.planning.jitter import nearby
+from ravemj.planning.verification import Samples, flaw
+from ravemj.rave.enums import ConstraintFilterOptions, Interval
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.planning import PlannerParameters
+from ravemj.rave.report import CollisionReport
+from ravemj.rave.robot import Robot
+from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.rave.trajectory import Trajectory
+
+
+def VerifyTrajectory(
+    parameters: PlannerParameters | None, trajectory: Trajectory, samplingstep: float = 0.002, releasegil: bool = True
+) -> None:
+    """Check that a trajectory keeps limits and constraints at every moment; the robot stays where it is.
+
+    Looked at are values, speeds, accelerations (where velocities do not jump) and collisions, in steps of time and at
+    all waypoints.
+
+    Args:
+        parameters: What moves and its limits; None: the bodies of the trajectory with their limits.
+        trajectory: A trajectory with times.
+        samplingstep: The steps [s].
+        releasegil: Not used.
+
+    Raises:
+        openrave_exception: it does not (``InconsistentConstraints``); the text says what, and when.
+
+    Example:
+        >>> planningutils.VerifyTrajectory(None, trajectory, 0.01)
+    """
+    from ravemj.compat.planningutils.retiming import of_bodies  # noqa: PLC0415 - imports planners
+
+    del releasegil
+    checked_kind(trajectory, Trajectory, "VerifyTrajectory: trajectory")
+    if not samplingstep > 0:
+        raise ArgumentError(f"VerifyTrajectory: samplingstep is {samplingstep}, and should be above 0")
+    values = (of_bodies(trajectory) if parameters is None else parameters).resolved()
+    spec = ConfigurationSpecification.of(values.groups)
+    samples = _samples(trajectory, spec, samplingstep)
+    if values.bodies is None:
+        wrong = flaw(samples, values.limits(), lambda one: True)
+    else:
+        with values.bodies.kept():
+            wrong = flaw(samples, values.limits(), values.allowed())
+    if wrong is not None:
+        raise RavemjError(f"VerifyTrajectory: {wrong}", ErrorCode.InconsistentConstraints)
+
+
+def _samples(traj: Trajectory, spec: ConfigurationSpecification, step: float) -> Samples:
+    own, end = traj.GetConfigurationSpecification(), traj.GetDuration()
+    stops = np.cumsum([own.ExtractDeltaTime(row) or 0.0 for row in traj.GetAllWaypoints2D()])
+    times = np.unique(np.concatenate([np.arange(0.0, end, step), stops]))
+    rates: list[Floats | None] = []
+    for order in (1, 2):
+        wanted = spec.ConvertToDerivativeSpecification(order)
+        has_all = all(own.FindCompatibleGroup(group.name, True) for group in wanted.GetGroups())
+        rates.append(traj.SamplePoints2D(times, wanted) if has_all else None)
+    jumps = any(group.interpolation == "next" for group in own.GetTimeDerivativeSpecification(1).GetGroups())
+    return Samples(times, traj.SamplePoints2D(times, spec), rates[0], rates[1], has_jumps=jumps)
+
+
+class DynamicsCollisionConstraint(ApiObject):
+    """Tests straight lines between configurations for collisions.
+
+    Args:
+        plannerparameters: What moves.
+        checkbodies: For OpenRAVE; the bodies of the parameters are tested.
+        filtermask: What is looked at, ``ConstraintFilterOptions``.
+    """
+
+    def __init__(
+        self, plannerparameters: PlannerParameters, checkbodies: object = (), filtermask: int = 0xFFFFFFFF
+    ) -> None:
+        del checkbodies
+        self._report = CollisionReport()
+        self._mask = int(filtermask)
+        self.SetPlannerParameters(plannerparameters)
+
+    def SetPlannerParameters(self, parameters: PlannerParameters) -> None:
+        """Choose what moves.
+
+        Args:
+            parameters: What moves.
+        """
+        self._parameters = checked_kind(parameters, PlannerParameters, "parameters")
+
+    def SetFilterMask(self, filtermask: int) -> None:
+        """Choose what is looked at.
+
+        Args:
+            filtermask: ``ConstraintFilterOptions``; 2, for instance, leaves other bodies out.
+        """
+        self._mask = int(filtermask)
+
+    def GetReport(self) -> CollisionReport:
+        """Return the last collision that was found."""
+        return self._report
+
+    def Check(
+        self,
+        q0: ArrayLike,
+        q1: ArrayLike,
+        dq0: ArrayLike,
+        dq1: ArrayLike,
+        timeelapsed: float,
+        interval: int = Interval.Closed,
+        options: int = 0xFFFF,
+        filterreturn: bool = False,
+    ) -> int | dict[str, Any]:
+        """Return what is wrong with the line between two configurations; the robot is moved along it.
+
+        Args:
+            q0: Its start.
+            q1: Its end.
+            dq0: Velocities at the start; not used.
+            dq1: Velocities at the end; not used.
+            timeelapsed: How long the motion takes [s].
+            interval: Which ends count, an ``Interval``.
+            options: What is looked at, ``ConstraintFilterOptions``.
+            filterreturn: Whether to return a dictionary that says where, too.
+
+        Returns:
+            0: nothing; else a bit of ``ConstraintFilterOptions``. The dictionary has it as ``returncode``.
+        """
+        wanted, parameters = int(options) & self._mask, self._parameters
+        code = parameters.CheckPathAllConstraints(q0, q1, dq0, dq1, timeelapsed, interval, wanted)
+        self._report = CollisionReport()
+        invalid = np.zeros(0)
+        if code:
+            invalid = parameters.GetStateFn()
+            collisions = int(ConstraintFilterOptions.CheckEnvCollisions | ConstraintFilterOptions.CheckSelfCollisions)
+            if code & collisions:
+                parameters.resolved().problem(invalid, wanted, self._report)
+        if not filterreturn:
+            return code
+        line = np.linalg.norm(np.asarray(q1, dtype=float) - q0)
+        part = float(np.linalg.norm(invalid - q0) / line) if code and line > 0 else 0.0
+        return {
+            "returncode": code,
+            "invalidvalues": invalid,
+            "invalidvelocities": np.zeros(len(invalid)),
+            "fTimeWhenInvalid": part * float(timeelapsed),
+            "configurations": np.zeros(0),
+            "configurationtimes": np.zeros(0),
+            "reportstr": str(self._report) if code else "",
+        }
+
+
+def JitterCurrentConfiguration(
+    plannerparameters: PlannerParameters, maxiterations: int = 5000, jitter: float = 0.015, perturbation: float = 1e-5
+) -> bool:
+    """Move to a configuration nearby that is without collisions.
+
+    Args:
+        plannerparameters: What moves.
+        maxiterations: How many configurations are tried.
+        jitter: How far each value may move [rad or m].
+        perturbation: How far each value can be off without a collision [rad or m].
+
+    Returns:
+        Whether there is one; if the present configuration is, nothing moves.
+    """
+    checked_kind(plannerparameters, PlannerParameters, "plannerparameters")
+    values = plannerparameters.resolved()
+    if values.bodies is None:
+        raise ArgumentError("JitterCurrentConfiguration: nothing moves; call SetRobotActiveJoints(robot) first")
+    allowed, bodies = values.allowed(), values.bodies
+    random = np.random.default_rng(int(values.numbers["_nrandomgeneratorseed"]))
+
+    def roomy(one: Floats) -> bool:
+        return allowed(one) and allowed(one + perturbation) and allowed(one - perturbation)
+
+    with bodies.kept():
+        start = bodies.values()
+        found = nearby(values.space(), start, roomy, maxiterations, jitter, random)
+    if found is not None and found is not start:
+        with bodies.lock:
+            bodies.move(found)
+    return found is not None
+
+
+def JitterActiveDOF(
+    robot: Robot, maxiterations: int = 5000, maxjitter: float = 0.015, perturbation: float = 1e-5
+) -> int:
+    """Move the active DOFs a little, out of collision: OpenRAVE 0.9's name.
+
+    Args:
+        robot: The robot.
+        maxiterations: How many configurations are tried.
+        maxjitter: How far each value may move [rad or m].
+        perturbation: How far each value can be off without a collision [rad or m].
+
+    Returns:
+        0: nothing had to move; 1: it moved; -1: there is no such configuration.
+    """
+    params = PlannerParameters()
+    params.SetRobotActiveJoints(robot)
+    before = robot.GetActiveDOFValues()
+    if not JitterCurrentConfiguration(params, maxiterations, maxjitter, perturbation):
+        return -1
+    return int((robot.GetActiveDOFValues() != before).any())
+
+
+def JitterTransform(body: KinBody, jitter: float, maxiterations: int = 1000) -> bool:
+    """Move a body a little, out of collision.
+
+    Args:
+        body: The body.
+        jitter: How far it may move along each axis [m], and turn about each [rad].
+        maxiterations: How many poses are tried.
+
+    Returns:
+        Whether there is such a pose; if the present one is, nothing moves.
+    """
+    checked_kind(body, KinBody, "JitterTransform: body")
+    reach = float(checked_numbers(jitter, "JitterTransform: jitter")[0])
+    env, random = body.GetEnv(), np.random.default_rng(0)
+    with env.simulation.lock:
+        if not env.CheckCollision(body):
+            return True
+        before = body.GetTransform()
+        for attempt in range(maxiterations):
+            size = reach * (attempt + 1) / maxiterations
+            x, y, z = random.uniform(-size, size, 3).tolist()
+            half = random.uniform(-size, size, 3) / 2
+            a, b, c = half.tolist()
+            motion = Pose((x, y, z), normalize((1.0, a, b, c))).matrix()
+            moved = before.copy()
+            moved[:3, :3] = motion[:3, :3] @ before[:3, :3]
+            moved[:3, 3] += motion[:3, 3]
+            body.SetTransform(moved)
+            if not env.CheckCollision(body):
+                return True
+        body.SetTransform(before)
+    return False

@@ -1,0 +1,175 @@
+"""Changes of trajectories: layout, direction, parts, derivatives, several at once."""
+
+import math
+import operator
+from collections.abc import Sequence
+from functools import reduce
+
+import numpy as np
+
+from ravemj.core.arguments import checked_kind
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.groups import DELTATIME
+from ravemj.trajectories.interpolation import HELD
+
+_ODD_DERIVATIVES = ("velocities", "jerks")
+
+def ConvertTrajectorySpecification(trajectory: Trajectory, spec: ConfigurationSpecification) -> None:
+    """Change the layout of a trajectory in place; what the trajectory lacks is taken from the bodies as they are.
+
+    Args:
+        trajectory: The trajectory.
+        spec: The new layout.
+    """
+    rows = trajectory.GetAllWaypoints2D(spec)
+    trajectory.Init(spec)
+    trajectory.Insert(0, rows.ravel())
+
+
+def ReverseTrajectory(traj: Trajectory) -> Trajectory:
+    """Return the trajectory backwards, in a new one.
+
+    The times between waypoints are kept, and velocities change their sign.
+
+    Example:
+        >>> back = planningutils.ReverseTrajectory(traj)
+    """
+    spec = traj.GetConfigurationSpecification()
+    rows = traj.GetAllWaypoints2D()[::-1]
+    for group in spec.GetGroups():
+        if group.kind == DELTATIME:
+            rows[:, group.columns] = np.roll(rows[:, group.columns], 1, axis=0)
+            rows[:1, group.columns] = 0
+        elif group.kind.endswith(_ODD_DERIVATIVES):
+            rows[:, group.columns] *= -1
+    return _made(traj, spec, rows)
+
+
+def MergeTrajectories(trajectories: Sequence[Trajectory]) -> Trajectory | None:
+    """Return one trajectory that runs several at once, with a waypoint wherever one of them has one.
+
+    Args:
+        trajectories: Trajectories with times; each stays at its last waypoint when it is over.
+
+    Returns:
+        A new trajectory; None if there are none.
+    """
+    if not trajectories:
+        return None
+    spec = reduce(operator.add, (traj.GetConfigurationSpecification() for traj in trajectories))
+    times = np.unique(np.concatenate([np.cumsum(_deltas(traj)) for traj in trajectories]))
+    rows = np.zeros((len(times), spec.GetDOF()))
+    for traj in trajectories:
+        samples = np.array([traj.Sample(time) for time in times.tolist()])
+        own = traj.GetConfigurationSpecification()
+        rows = own.ConvertDataFromPrevious(rows.ravel(), spec, samples.ravel(), len(times), None).reshape(rows.shape)
+    rows[:, spec.GetGroupFromName(DELTATIME).offset] = np.diff(times, prepend=0)
+    return _made(trajectories[0], spec, rows)
+
+
+def _deltas(traj: Trajectory) -> Floats:
+    """Return the times between waypoints [s]."""
+    column = traj.GetConfigurationSpecification().GetGroupFromName(DELTATIME).columns
+    return traj.GetAllWaypoints2D()[:, column].ravel()
+
+
+def _made(like: Trajectory, spec: ConfigurationSpecification, rows: Floats) -> Trajectory:
+    made = Trajectory(like.GetEnv(), like.GetXMLId())
+    made.Init(spec)
+    made.Insert(0, rows.ravel())
+    return made
+
+
+def GetTrajectorySegment(trajectory: Trajectory, starttime: float, endtime: float) -> Trajectory:
+    """Return a part of a trajectory, in a new one; its time starts at 0.
+
+    Args:
+        trajectory: A trajectory with times.
+        starttime: When the part starts [s]; times outside the trajectory are cut.
+        endtime: When it ends [s]. Before the start: the part has no duration.
+
+    Raises:
+        ArgumentError: the part starts at the end of the trajectory.
+
+    Example:
+        >>> part = planningutils.GetTrajectorySegment(trajectory, 0.02, 0.05)
+    """
+    checked_kind(trajectory, Trajectory, "GetTrajectorySegment: trajectory")
+    duration = trajectory.GetDuration()
+    start, end = max(0.0, float(starttime)), min(duration, float(endtime))
+    if not start < duration or math.isnan(end):
+        raise ArgumentError(f"starttime: is {starttime}, and should be before the end of the trajectory, {duration:g} s")
+    times = np.cumsum(_deltas(trajectory))
+    inner = times[(times > start) & (times < end)].tolist()
+    chosen = [start] if end == start else [start, *inner, end if end > start else start]
+    spec = trajectory.GetConfigurationSpecification()
+    rows = np.array([trajectory.Sample(time) for time in chosen])
+    rows[:, spec.GetGroupFromName(DELTATIME).offset] = np.diff(chosen, prepend=chosen[0])
+    return _made(trajectory, spec, rows)
+
+
+def SegmentTrajectory(trajectory: Trajectory, starttime: float, endtime: float) -> None:
+    """Cut a trajectory down to a part of it; see ``GetTrajectorySegment``.
+
+    Args:
+        trajectory: Changed in place.
+        starttime: When the part starts [s].
+        endtime: When it ends [s].
+    """
+    trajectory.Swap(GetTrajectorySegment(trajectory, starttime, endtime))
+
+
+def ComputeTrajectoryDerivatives(trajectory: Trajectory, maxderiv: int) -> None:
+    """Add the time derivatives that a trajectory lacks.
+
+    Args:
+        trajectory: Changed in place; it has times.
+        maxderiv: 1: velocities; 2: accelerations, too; and so on.
+
+    Example:
+        >>> planningutils.ComputeTrajectoryDerivatives(trajectory, 2)
+    """
+    checked_kind(trajectory, Trajectory, "ComputeTrajectoryDerivatives: trajectory")
+    spec, elapsed = trajectory.GetConfigurationSpecification(), _deltas(trajectory)
+    old = trajectory.GetConfigurationSpecification()
+    for order in range(1, maxderiv + 1):
+        spec.AddDerivativeGroups(order)
+    rows = trajectory.GetAllWaypoints2D(spec)
+    for order in range(maxderiv):
+        for group in spec.GetTimeDerivativeSpecification(order).GetGroups():
+            derivative = spec.FindTimeDerivativeGroup(group, True)
+            if derivative is not None and old.FindCompatibleGroup(derivative, True) is None:
+                lower = spec.GetGroupFromName(group.name)
+                integral = spec.FindTimeIntegralGroup(lower, True)
+                below = None if integral is None else rows[:, integral.columns]
+                rates = _rates(rows[:, lower.columns], lower.interpolation, below, elapsed)
+                rows[:, derivative.columns] = rates
+    trajectory.Init(spec)
+    trajectory.Insert(0, rows.ravel())
+
+
+def _rates(values: Floats, interpolation: str, integral: Floats | None, elapsed: Floats) -> Floats:
+    """Return the derivatives of values at the ends of the ways to the waypoints.
+
+    Args:
+        values: Shape (m, n).
+        interpolation: How they change.
+        integral: Their integrals, which velocities of cubic curves depend on.
+        elapsed: Times between waypoints [s], shape (m,).
+    """
+    rates = np.zeros_like(values)
+    passed = np.flatnonzero(elapsed[1:] > 0) + 1
+    time = elapsed[passed][:, None]
+    if interpolation in HELD:
+        return rates
+    if interpolation == "quadratic" and integral is not None:
+        step = integral[passed] - integral[passed - 1]
+        rates[passed] = (4 * values[passed] + 2 * values[passed - 1]) / time - 6 * step / time**2
+        if len(passed) and passed[0] == 1:
+            rates[0] = 6 * step[0] / time[0] ** 2 - (4 * values[0] + 2 * values[1]) / time[0]
+        return rates
+    rates[passed] = (values[passed] - values[passed - 1]) / time
+    return rates

@@ -1,0 +1,346 @@
+"""Times for trajectories, and smoothing."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_numbers
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.rave.planning import Planner, PlannerParameters, PlannerStatus, RaveCreatePlanner
+from ravemj.rave.robot import Robot
+from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.groups import is_position
+
+_RETIMER = "LinearTrajectoryRetimer"
+_SMOOTHER = "ParabolicSmoother"
+
+
+def RetimeActiveDOFTrajectory(
+    trajectory: Trajectory,
+    robot: Robot,
+    hastimestamps: bool = False,
+    maxvelmult: float = 1.0,
+    maxaccelmult: float = 1.0,
+    plannername: str = "",
+    plannerparameters: str = "",
+) -> PlannerStatus:
+    """Give a trajectory of the active DOFs times that respect the limits; collisions are not looked at.
+
+    Args:
+        trajectory: Changed in place; what is not active is dropped from it.
+        robot: Whose active DOFs and limits.
+        hastimestamps: Whether to keep the times that there are, if the limits allow.
+        maxvelmult: Factor of the velocity limits.
+        maxaccelmult: Factor of the acceleration limits.
+        plannername: The retimer, ``ParabolicTrajectoryRetimer`` for instance; empty: ``LinearTrajectoryRetimer``.
+        plannerparameters: Its parameters as XML text.
+
+    Returns:
+        How it ended; the trajectory is as it was where it failed.
+
+    Raises:
+        openrave_exception: there is no such retimer (``Assert``), or a waypoint is outside the limits
+            (``InconsistentConstraints``).
+
+    Example:
+        >>> trajectory = RaveCreateTrajectory(env, "")
+        >>> trajectory.Init(robot.GetActiveConfigurationSpecification())
+        >>> trajectory.Insert(0, [0, 0, 1, 0.5])
+        >>> planningutils.RetimeActiveDOFTrajectory(trajectory, robot) == PlannerStatus.HasSolution
+        True
+        >>> trajectory.GetDuration()
+        0.1
+    """
+    checked_kind(trajectory, Trajectory, "RetimeActiveDOFTrajectory: trajectory")
+    extra = stamped(hastimestamps, plannerparameters)
+    params = _active(robot, extra, maxvelmult, maxaccelmult)
+    return _run(trajectory, params, plannername or _RETIMER)
+
+
+def RetimeTrajectory(
+    trajectory: Trajectory,
+    hastimestamps: bool = False,
+    maxvelmult: float = 1.0,
+    maxaccelmult: float = 1.0,
+    plannername: str = "",
+    plannerparameters: str = "",
+) -> PlannerStatus:
+    """Give a trajectory of any bodies times that respect their limits; see ``RetimeActiveDOFTrajectory``.
+
+    Args:
+        trajectory: Changed in place.
+        hastimestamps: Whether to keep the times that there are, if the limits allow.
+        maxvelmult: Factor of the velocity limits.
+        maxaccelmult: Factor of the acceleration limits.
+        plannername: The retimer; empty: ``LinearTrajectoryRetimer``.
+        plannerparameters: Its parameters as XML text.
+    """
+    checked_kind(trajectory, Trajectory, "RetimeTrajectory: trajectory")
+    params = of_bodies(trajectory, stamped(hastimestamps, plannerparameters), maxvelmult, maxaccelmult)
+    return _run(trajectory, params, plannername or _RETIMER)
+
+
+def RetimeAffineTrajectory(
+    trajectory: Trajectory,
+    maxvelocities: ArrayLike,
+    maxaccelerations: ArrayLike,
+    hastimestamps: bool = False,
+    plannername: str = "",
+    plannerparameters: str = "",
+) -> PlannerStatus:
+    """Give a trajectory of poses times that respect limits.
+
+    The way of a translation is straight; it takes its length over the least limit of its values.
+
+    Args:
+        trajectory: Changed in place.
+        maxvelocities: A velocity limit for each value.
+        maxaccelerations: An acceleration limit for each value.
+        hastimestamps: Whether to keep the times that there are, if the limits allow.
+        plannername: The retimer; empty: ``LinearTrajectoryRetimer``, the only one for poses.
+        plannerparameters: Its parameters as XML text.
+
+    Raises:
+        openrave_exception: there are more or fewer limits than values (``InvalidArguments``).
+    """
+    checked_kind(trajectory, Trajectory, "RetimeAffineTrajectory: trajectory")
+    params = _affine(trajectory, maxvelocities, maxaccelerations, stamped(hastimestamps, plannerparameters))
+    return _run(trajectory, params, plannername or _RETIMER)
+
+
+def SmoothActiveDOFTrajectory(
+    trajectory: Trajectory,
+    robot: Robot,
+    maxvelmult: float = 1.0,
+    maxaccelmult: float = 1.0,
+    plannername: str = "",
+    plannerparameters: str = "",
+) -> PlannerStatus:
+    """Shorten and time a trajectory of the active DOFs; the result is without collisions.
+
+    Args:
+        trajectory: Changed in place; its ends stay.
+        robot: Whose active DOFs and limits.
+        maxvelmult: Factor of the velocity limits.
+        maxaccelmult: Factor of the acceleration limits.
+        plannername: The smoother; empty: ``ParabolicSmoother``.
+        plannerparameters: Its parameters as XML text.
+
+    Returns:
+        How it ended; the trajectory is as it was where it failed.
+    """
+    checked_kind(trajectory, Trajectory, "SmoothActiveDOFTrajectory: trajectory")
+    return _run(trajectory, _active(robot, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER)
+
+
+def SmoothTrajectory(
+    trajectory: Trajectory,
+    maxvelmult: float = 1.0,
+    maxaccelmult: float = 1.0,
+    plannername: str = "",
+    plannerparameters: str = "",
+) -> PlannerStatus:
+    """Shorten and time a trajectory of any bodies; see ``SmoothActiveDOFTrajectory``.
+
+    Args:
+        trajectory: Changed in place.
+        maxvelmult: Factor of the velocity limits.
+        maxaccelmult: Factor of the acceleration limits.
+        plannername: The smoother; empty: ``ParabolicSmoother``.
+        plannerparameters: Its parameters as XML text.
+    """
+    checked_kind(trajectory, Trajectory, "SmoothTrajectory: trajectory")
+    return _run(trajectory, of_bodies(trajectory, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER)
+
+
+def SmoothAffineTrajectory(
+    trajectory: Trajectory,
+    maxvelocities: ArrayLike,
+    maxaccelerations: ArrayLike,
+    plannername: str = "",
+    plannerparameters: str = "",
+) -> PlannerStatus:
+    """Shorten and time a trajectory of poses.
+
+    Args:
+        trajectory: Changed in place.
+        maxvelocities: A velocity limit for each value.
+        maxaccelerations: An acceleration limit for each value.
+        plannername: The smoother; empty: ``LinearSmoother``, the only one for poses.
+        plannerparameters: Its parameters as XML text.
+    """
+    checked_kind(trajectory, Trajectory, "SmoothAffineTrajectory: trajectory")
+    params = _affine(trajectory, maxvelocities, maxaccelerations, plannerparameters)
+    return _run(trajectory, params, plannername or "LinearSmoother")
+
+
+class ActiveDOFTrajectoryRetimer(ApiObject):
+    """A retimer for several trajectories of the DOFs that are active when it is made.
+
+    Args:
+        robot: The robot; its limits are those of each call.
+        plannername: The retimer.
+        plannerparameters: Its parameters as XML text.
+
+    Raises:
+        openrave_exception: there is no such retimer (``Assert``).
+    """
+
+    def __init__(self, robot: Robot, plannername: str, plannerparameters: str = "") -> None:
+        self._robot = checked_kind(robot, Robot, "robot")
+        self._spec = robot.GetActiveConfigurationSpecification()
+        self._planner = _planner(robot, plannername)
+        self._extra = plannerparameters
+
+    def PlanPath(self, traj: Trajectory, hastimestamps: bool = False, releasegil: bool = True) -> PlannerStatus:
+        """Retime a trajectory in place; see ``RetimeActiveDOFTrajectory``.
+
+        Args:
+            traj: The trajectory.
+            hastimestamps: Whether to keep the times that there are.
+            releasegil: Not used.
+        """
+        del releasegil
+        return self._run(traj, stamped(hastimestamps, self._extra))
+
+    def _run(self, traj: Trajectory, extra: str) -> PlannerStatus:
+        params = PlannerParameters()
+        params.SetConfigurationSpecification(self._robot.GetEnv(), self._spec)
+        params.SetExtraParameters(_alone(extra))
+        self._planner.InitPlan(self._robot, params)
+        return self._planner.PlanPath(traj)
+
+
+class ActiveDOFTrajectorySmoother(ActiveDOFTrajectoryRetimer):
+    """A smoother for several trajectories; see ``ActiveDOFTrajectoryRetimer``."""
+
+    def PlanPath(  # pyright: ignore[reportIncompatibleMethodOverride] - OpenRAVE's arguments
+        self, traj: Trajectory, releasegil: bool = True
+    ) -> PlannerStatus:
+        """Smooth a trajectory in place; see ``SmoothActiveDOFTrajectory``.
+
+        Args:
+            traj: The trajectory.
+            releasegil: Not used.
+        """
+        del releasegil
+        return self._run(traj, self._extra)
+
+
+class AffineTrajectoryRetimer(ApiObject):
+    """A retimer for several trajectories of poses.
+
+    Args:
+        plannername: The retimer; empty: ``parabolictrajectoryretimer``, which fails, as in OpenRAVE.
+        plannerparameters: Its parameters as XML text.
+    """
+
+    def __init__(self, plannername: str, plannerparameters: str = "") -> None:
+        self._name = plannername or "parabolictrajectoryretimer"
+        self._extra = plannerparameters
+
+    def GetPlannerName(self) -> str:
+        """Return the name of the retimer."""
+        return self._name
+
+    def PlanPath(
+        self,
+        traj: Trajectory,
+        maxvelocities: ArrayLike,
+        maxaccelerations: ArrayLike,
+        maxjerks: ArrayLike | bool = False,
+        hastimestamps: bool = False,
+        releasegil: bool = True,
+    ) -> PlannerStatus:
+        """Retime a trajectory in place; see ``RetimeAffineTrajectory``.
+
+        Args:
+            traj: The trajectory.
+            maxvelocities: A velocity limit for each value.
+            maxaccelerations: An acceleration limit for each value.
+            maxjerks: A jerk limit for each value; it may be left out before ``hastimestamps``.
+            hastimestamps: Whether to keep the times that there are.
+            releasegil: Not used.
+        """
+        del releasegil
+        keeps = maxjerks if isinstance(maxjerks, bool) else hastimestamps
+        return RetimeAffineTrajectory(traj, maxvelocities, maxaccelerations, keeps, self._name, self._extra)
+
+
+def _active(robot: Robot, extra: str, maxvelmult: float, maxaccelmult: float) -> PlannerParameters:
+    params = PlannerParameters()
+    params.SetRobotActiveJoints(robot)
+    return _scaled(params, extra, maxvelmult, maxaccelmult)
+
+
+def of_bodies(
+    traj: Trajectory, extra: str = "", maxvelmult: float = 1.0, maxaccelmult: float = 1.0
+) -> PlannerParameters:
+    """Return parameters for the joints and poses that a trajectory is about.
+
+    Args:
+        traj: The trajectory.
+        extra: Further parameters as XML text.
+        maxvelmult: Factor of the velocity limits.
+        maxaccelmult: Factor of the acceleration limits.
+    """
+    spec = ConfigurationSpecification.of(traj.GetConfigurationSpecification().GetGroups())
+    for group in spec.GetGroups():
+        if not is_position(group):
+            spec.RemoveGroups(group.name)
+    spec.ResetGroupOffsets()
+    params = PlannerParameters()
+    params.SetConfigurationSpecification(traj.GetEnv(), spec)
+    return _scaled(params, extra, maxvelmult, maxaccelmult)
+
+
+def _scaled(params: PlannerParameters, extra: str, maxvelmult: float, maxaccelmult: float) -> PlannerParameters:
+    for name, factor in (("maxvelmult", maxvelmult), ("maxaccelmult", maxaccelmult)):
+        if not (np.isfinite(factor) and factor > 0):
+            raise ArgumentError(f"{name}: is {factor}, and should be above 0")
+    params.SetConfigVelocityLimit(params.GetConfigVelocityLimit() * maxvelmult)
+    params.SetConfigAccelerationLimit(params.GetConfigAccelerationLimit() * maxaccelmult)
+    params.SetExtraParameters(_alone(extra))
+    return params
+
+
+def _affine(
+    traj: Trajectory, maxvelocities: ArrayLike, maxaccelerations: ArrayLike, extra: str
+) -> PlannerParameters:
+    params = of_bodies(traj, extra)
+    dof = params.GetDOF()
+    given: Sequence[tuple[str, ArrayLike]] = (("maxvelocities", maxvelocities), ("maxaccelerations", maxaccelerations))
+    velocities, accelerations = (checked_numbers(numbers, name).ravel() for name, numbers in given)
+    for (name, _), numbers in zip(given, (velocities, accelerations), strict=True):
+        if len(numbers) != dof or not (numbers >= 0).all():
+            raise ArgumentError(f"{name}: are {numbers.tolist()}, and should be {dof} numbers, none below 0")
+    params.SetConfigVelocityLimit(velocities)
+    params.SetConfigAccelerationLimit(accelerations)
+    return params
+
+
+def _alone(extra: str) -> str:
+    """Return parameters for a planner that works alone: times are no multiples of anything."""
+    return f"<_fsteplength>0</_fsteplength>{extra}"
+
+
+def stamped(hastimestamps: bool, extra: str) -> str:
+    """Return parameters that say whether times are kept."""
+    return f"<hastimestamps>1</hastimestamps>{extra}" if hastimestamps else extra
+
+
+def _planner(robot_or_traj: Robot | Trajectory, name: str) -> Planner:
+    planner = RaveCreatePlanner(robot_or_traj.GetEnv(), name)
+    if planner is None:
+        raise RavemjError(f"there is no planner '{name}'", ErrorCode.Assert)
+    return planner
+
+
+def _run(traj: Trajectory, params: PlannerParameters, name: str) -> PlannerStatus:
+    planner = _planner(traj, name)
+    planner.InitPlan(None, params)
+    return planner.PlanPath(traj)

@@ -1,0 +1,72 @@
+"""Straight lines between configurations: are they allowed everywhere?"""
+
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.planning.space import Space
+
+Allowed = Callable[[Floats], bool]
+"""Whether a configuration is without collisions, and keeps the user's constraints."""
+
+
+class Edges:
+    """Tests straight lines in steps of the space's resolution.
+
+    Attributes:
+        space: Where the lines are.
+        allowed: Tests one configuration.
+        tests: How many configurations were tested.
+    """
+
+    def __init__(self, space: Space, allowed: Allowed) -> None:
+        self.space, self.allowed = space, allowed
+        self.tests = 0
+
+    def point(self, configuration: Floats) -> bool:
+        """Return whether a configuration is allowed."""
+        self.tests += 1
+        return self.allowed(configuration)
+
+    def line(self, start: Floats, step: Floats) -> bool:
+        """Return whether the line from a configuration that is allowed is so everywhere, its end included.
+
+        Lines in collision are mostly so in their middle: halves are tested before quarters.
+
+        Args:
+            start: Where it starts.
+            step: How far it goes.
+        """
+        allowed = self.allowed
+        for part in bisection_order(self.space.steps(step)):
+            self.tests += 1
+            if not allowed(start + part * step):
+                return False
+        return True
+
+
+@lru_cache(maxsize=1024)
+def bisection_order(steps: int) -> tuple[float, ...]:
+    """Return the parts of the way at which a line of some steps is tested: its end, its middle, its quarters, ..."""
+    order, pending = [1.0], [(0, steps)]
+    for low, high in pending:
+        middle = (low + high) // 2
+        if low < middle:
+            order.append(middle / steps)
+            pending += [(low, middle), (middle, high)]
+    return tuple(order)
+
+
+def path_is_allowed(edges: Edges, points: Floats) -> bool:
+    """Return whether a path of straight lines is allowed everywhere, shape (m, n)."""
+    space = edges.space
+    return edges.point(points[0]) and all(
+        edges.line(points[index], space.difference(points[index + 1], points[index])) for index in range(len(points) - 1)
+    )
+
+
+def length(space: Space, points: Floats) -> float:
+    """Return the length of a path of straight lines, in weighted distances."""
+    return float(np.linalg.norm(space.weights * space.difference(points[1:], points[:-1]), axis=1).sum())

@@ -1,0 +1,144 @@
+"""Motions of joints by constant accelerations: one ramp to a cruising speed, and one from it.
+
+The formulas follow from the areas under speed over time; see K. Hauser and V. Ng-Thow-Hing, "Fast smoothing of
+manipulator trajectories using optimal bounded-acceleration shortcuts", ICRA 2010.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+
+_ROUNDING = 1e-9
+"""Relative."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ramps:
+    """A motion of several joints over one time.
+
+    Attributes:
+        duration: How long it takes [s].
+        start: Velocities at its start [rad/s or m/s], shape (n,).
+        cruise: Velocities between the ramps, shape (n,).
+        end: Velocities at its end, shape (n,).
+        first: When the first ramp of each joint ends [s], shape (n,).
+        last: When its last ramp starts [s], shape (n,).
+    """
+
+    duration: float
+    start: Floats
+    cruise: Floats
+    end: Floats
+    first: Floats
+    last: Floats
+
+    def changes(self, same: float) -> Floats:
+        """Return when accelerations change [s], up to the end; ``same`` is how near [s] changes are at one time."""
+        moving = (self.start != 0) | (self.cruise != 0) | (self.end != 0)
+        inner = np.sort(np.concatenate([self.first[moving], self.last[moving]]))
+        inner = inner[(inner > same) & (inner < self.duration - same)]
+        apart = np.diff(inner, prepend=-1.0) > same
+        return np.append(inner[apart], self.duration)
+
+    def velocities(self, times: Floats) -> Floats:
+        """Return the velocities at some times [s], shape (len(times), n)."""
+        t = times[:, None]
+        speeding, slowing = self._accelerations()
+        up = self.start + speeding * np.minimum(t, self.first)
+        return up + slowing * np.maximum(t - self.last, 0.0)
+
+    def values(self, times: Floats) -> Floats:
+        """Return how far the joints are from their start [rad or m], shape (len(times), n)."""
+        t = times[:, None]
+        speeding, slowing = self._accelerations()
+        ramp, rest = np.minimum(t, self.first), np.maximum(t - self.last, 0.0)
+        first = self.start * ramp + speeding * ramp**2 / 2
+        return first + self.cruise * np.maximum(t - self.first, 0.0) + slowing * rest**2 / 2
+
+    def _accelerations(self) -> tuple[Floats, Floats]:
+        tail = self.duration - self.last
+        speeding = np.where(self.first > 0, (self.cruise - self.start) / np.where(self.first > 0, self.first, 1.0), 0.0)
+        slowing = np.where(tail > 0, (self.end - self.cruise) / np.where(tail > 0, tail, 1.0), 0.0)
+        return speeding, slowing
+
+    def reach(self) -> tuple[Floats, Floats]:
+        """Return the least and the greatest values that the joints pass, from their start [rad or m], shape (n,)."""
+        speeding, slowing = self._accelerations()
+        with np.errstate(divide="ignore", invalid="ignore"):
+            turns = np.nan_to_num(np.stack([-self.start / speeding, self.last - self.cruise / slowing]), posinf=0.0)
+        times = np.clip(turns, 0.0, self.duration)
+        times = np.vstack([times, self.first, self.last, np.full_like(self.first, self.duration)])
+        passed = np.stack([self.values(row)[np.arange(len(row)), np.arange(len(row))] for row in times])
+        return np.minimum(passed.min(axis=0), 0.0), np.maximum(passed.max(axis=0), 0.0)
+
+
+def shortest_ramps(steps: Floats, start: Floats, end: Floats, speed: Floats, acceleration: Floats) -> Floats:
+    """Return how long each joint takes at least [s], shape (n,); infinite where its limits forbid the motion.
+
+    Args:
+        steps: How far [rad or m], shape (n,).
+        start: Velocities at the start, shape (n,).
+        end: Velocities at the end, shape (n,).
+        speed: Greatest speeds, shape (n,).
+        acceleration: Greatest accelerations, shape (n,).
+    """
+    forward = _one_way(steps, start, end, speed, acceleration)
+    backward = _one_way(-steps, -start, -end, speed, acceleration)
+    times = np.minimum(forward, backward)
+    times[(np.abs(start) > speed) | (np.abs(end) > speed)] = np.inf
+    times[(steps == 0) & (start == 0) & (end == 0)] = 0.0
+    return times
+
+
+def _one_way(steps: Floats, start: Floats, end: Floats, speed: Floats, acceleration: Floats) -> Floats:
+    """Return the times of motions that go up to a peak and down from it; infinite where there is no such peak."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        square = acceleration * steps + (start**2 + end**2) / 2
+        peak = np.sqrt(np.maximum(square, 0.0))
+        possible = (square >= 0) & (peak >= np.maximum(start, end) - 1e-12) & (acceleration > 0) & (speed > 0)
+        triangle = (2 * peak - start - end) / acceleration
+        ramps = (2 * speed - start - end) / acceleration
+        cruise = (steps - (2 * speed**2 - start**2 - end**2) / (2 * acceleration)) / speed
+        return np.where(possible, np.where(peak <= speed, triangle, ramps + cruise), np.inf)
+
+
+def fit_ramps(
+    steps: Floats, start: Floats, end: Floats, duration: float, speed: Floats, acceleration: Floats
+) -> Ramps | None:
+    """Return motions that take a given time with the least accelerations, or None where a joint has none.
+
+    The accelerations of both ramps of a joint are the same, in opposite directions. A joint that would get too fast
+    cruises at its greatest speed.
+
+    Args:
+        steps: How far [rad or m], shape (n,).
+        start: Velocities at the start, shape (n,).
+        end: Velocities at the end, shape (n,).
+        duration: The time [s], above 0.
+        speed: Greatest speeds, shape (n,).
+        acceleration: Greatest accelerations, shape (n,).
+    """
+    change, excess = end - start, steps - (start + end) * (duration / 2)
+    # From the area under two ramps: a^2 T^2 - 4 a (d - (v0 + v1) T / 2) - (v1 - v0)^2 = 0; the greater root has its
+    # change of acceleration within the time.
+    side = np.where(excess < 0, -1.0, 1.0)
+    rate = (2 * excess + side * np.sqrt(4 * excess**2 + (duration * change) ** 2)) / duration**2
+    moving = rate != 0
+    divisor = np.where(moving, rate, 1.0)
+    first = np.where(moving, np.clip((duration + change / divisor) / 2, 0.0, duration), 0.0)
+    last, cruise = np.where(moving, first, duration), start + rate * first
+    too_fast = np.abs(cruise) > speed * (1 + _ROUNDING)
+    if too_fast.any():
+        limited = side * speed
+        room = limited * duration - steps
+        squares = (limited - start) ** 2 + (limited - end) ** 2
+        rate = np.where(too_fast, squares / np.where(too_fast & (room != 0), 2 * room, 1.0), rate)
+        cruise, divisor = np.where(too_fast, limited, cruise), np.where(rate != 0, rate, 1.0)
+        first = np.where(too_fast, (limited - start) / divisor, first)
+        last = np.where(too_fast, duration - (limited - end) / divisor, last)
+    in_order = (first >= 0) & (last >= first - _ROUNDING * duration) & (last <= duration * (1 + _ROUNDING))
+    if not in_order.all() or (np.abs(rate) > acceleration * (1 + _ROUNDING)).any():
+        return None
+    return Ramps(duration, start, cruise, end, first, np.maximum(last, first))

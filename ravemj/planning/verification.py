@@ -1,0 +1,96 @@
+"""Whether a motion keeps its limits at every moment, and where it does not."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.planning.edges import Allowed
+from ravemj.planning.retiming.segments import Limits
+
+EXACT = 1e-9
+"""How much values, speeds and accelerations may be beyond their limits, relative to them: rounding."""
+
+
+class Samples(NamedTuple):
+    """A motion at some times.
+
+    Attributes:
+        times: The times [s], ascending, shape (m,).
+        values: Shape (m, n).
+        velocities: What the trajectory says, shape (m, n); None: nothing.
+        accelerations: What the trajectory says, shape (m, n); None: nothing.
+        has_jumps: Whether velocities may jump between samples, as those of straight lines do.
+    """
+
+    times: Floats
+    values: Floats
+    velocities: Floats | None
+    accelerations: Floats | None
+    has_jumps: bool
+
+
+def flaw(samples: Samples, limits: Limits, allowed: Allowed) -> str | None:
+    """Return what is wrong with a motion, or None.
+
+    Speeds are those that the motion has between two samples, and those that the trajectory says; accelerations are
+    compared likewise where velocities do not jump.
+
+    Args:
+        samples: The motion.
+        limits: What it may do.
+        allowed: Whether a configuration is without collisions.
+    """
+    return (
+        _outside(samples, limits)
+        or _too_much(samples.times, _speeds(samples, limits), limits.velocity, "speed")
+        or _too_much(samples.times, _accelerations(samples), limits.acceleration, "acceleration")
+        or _not_allowed(samples, allowed)
+    )
+
+
+def _outside(samples: Samples, limits: Limits) -> str | None:
+    values = samples.values
+    slack = EXACT * np.maximum(1.0, np.abs(values))
+    wrong = ~np.isfinite(values) | (values < limits.lower - slack) | (values > limits.upper + slack)
+    wrong[:, limits.coordinates.circular] = ~np.isfinite(values[:, limits.coordinates.circular])
+    for row, column in np.argwhere(wrong):
+        bounds = f"[{limits.lower[column]:g}, {limits.upper[column]:g}]"
+        return f"value {column} is {values[row, column]:.9g} at {samples.times[row]:.6g} s, outside its limits {bounds}"
+    return None
+
+
+def _speeds(samples: Samples, limits: Limits) -> list[Floats]:
+    elapsed = np.diff(samples.times)
+    moved = limits.coordinates.difference(samples.values[1:], samples.values[:-1])
+    passed = elapsed > 0
+    speeds = np.zeros_like(samples.values)
+    speeds[1:][passed] = moved[passed] / elapsed[passed][:, None]
+    speeds[1:][~passed] = np.where(np.abs(moved[~passed]) > EXACT, np.inf, 0.0)  # a jump
+    return [speeds] if samples.velocities is None else [speeds, samples.velocities]
+
+
+def _accelerations(samples: Samples) -> list[Floats]:
+    if samples.has_jumps or samples.velocities is None:
+        return []
+    elapsed = np.diff(samples.times)
+    passed = elapsed > 1e-6  # rounding of velocities over less is no acceleration
+    rates = np.zeros_like(samples.values)
+    rates[1:][passed] = np.diff(samples.velocities, axis=0)[passed] / elapsed[passed][:, None]
+    return [rates] if samples.accelerations is None else [rates, samples.accelerations]
+
+
+def _too_much(times: Floats, candidates: list[Floats], bound: Floats, name: str) -> str | None:
+    for numbers in candidates:
+        wrong = ~(np.abs(numbers) <= bound + EXACT * np.maximum(1.0, bound))
+        for row, column in np.argwhere(wrong):
+            found, most = abs(numbers[row, column]), bound[column]
+            return f"the {name} of value {column} is {found:.9g} at {times[row]:.6g} s, and should be {most:g} at most"
+    return None
+
+
+def _not_allowed(samples: Samples, allowed: Allowed) -> str | None:
+    for time, values in zip(samples.times, samples.values, strict=True):
+        if not allowed(values):
+            return f"at {time:.6g} s it collides, or breaks a constraint"
+    return None

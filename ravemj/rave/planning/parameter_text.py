@@ -1,0 +1,141 @@
+"""Parameters of planners as OpenRAVE's XML, both ways."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError, SourceError
+from ravemj.trajectories.groups import Group
+from ravemj.trajectories.text import groups_of, layout_text
+
+if TYPE_CHECKING:
+    from ravemj.formats.openrave_xml.tree import Element
+
+VECTORS = (
+    "_vinitialconfig",
+    "_vinitialconfigvelocities",
+    "_vgoalconfig",
+    "_vgoalconfigvelocities",
+    "_vconfiglowerlimit",
+    "_vconfigupperlimit",
+    "_vconfigvelocitylimit",
+    "_vconfigaccelerationlimit",
+    "_vconfigjerklimit",
+    "_vconfigresolution",
+)
+NUMBERS = ("_nmaxiterations", "_nmaxplanningtime", "_fsteplength", "_nrandomgeneratorseed")
+
+CHAIN = (
+    "linearsmoother",
+    "<_nmaxiterations>20</_nmaxiterations>"
+    '<_postprocessing planner="parabolicsmoother"><_nmaxiterations>100</_nmaxiterations>'
+    "<verifyinitialpath>0</verifyinitialpath></_postprocessing>",
+)
+"""What processes paths unless something else is said: planner and parameters."""
+
+_ROOT = "plannerparameters"
+_POSTPROCESSING = "_postprocessing"
+
+
+class Tags(NamedTuple):
+    """What a text says.
+
+    Attributes:
+        numbers: By the names of ``NUMBERS``.
+        vectors: By the names of ``VECTORS``.
+        groups: What a configuration is, or None.
+        postprocessing: Planner and parameters, or None.
+        others: The texts of all other elements, by their names.
+    """
+
+    numbers: dict[str, float]
+    vectors: dict[str, Floats]
+    groups: list[Group] | None
+    postprocessing: tuple[str, str] | None
+    others: dict[str, str]
+
+
+def parameters_text(
+    groups: Sequence[Group],
+    vectors: Mapping[str, Floats],
+    numbers: Mapping[str, float],
+    postprocessing: tuple[str, str],
+    extra: str,
+) -> str:
+    """Return parameters as text."""
+    planner, inner = postprocessing
+    lines = [f"<{name}>{' '.join(repr(float(value)) for value in vectors[name])}</{name}>" for name in VECTORS]
+    lines += [f"<{name}>{_number_text(numbers[name])}</{name}>" for name in NUMBERS]
+    chain = f'<{_POSTPROCESSING} planner="{planner}">{inner}</{_POSTPROCESSING}>'
+    return "\n".join([f"<{_ROOT}>", layout_text(groups).rstrip(), *lines, chain, extra, f"</{_ROOT}>", ""])
+
+
+def _number_text(number: float) -> str:
+    return str(int(number)) if number == int(number) else repr(float(number))
+
+
+def read_tags(text: str) -> Tags:
+    """Return what a text says; what is no XML says nothing, as in OpenRAVE.
+
+    Args:
+        text: Elements, or a whole ``<plannerparameters>``.
+
+    Raises:
+        ArgumentError: a number is none.
+    """
+    found = Tags({}, {}, None, None, {})
+    root = _parsed(text)
+    for element in root.children if root is not None else ():
+        found = _with(found, element, text)
+    return found
+
+
+def _parsed(text: str) -> "Element | None":
+    from ravemj.formats.openrave_xml.tree import parse  # noqa: PLC0415 - slow to import
+
+    stripped = text.strip()
+    if "<" not in stripped:
+        return None
+    try:
+        root = parse(f"<all>{stripped}</all>".encode(), "planner parameters").root
+    except SourceError:
+        return None
+    inner = [child for child in root.children if child.tag == _ROOT]
+    return inner[0] if inner else root
+
+
+def _with(found: Tags, element: "Element", text: str) -> Tags:
+    name, content = element.tag, (element.text or "").strip()
+    if name in NUMBERS:
+        return found._replace(numbers={**found.numbers, name: _numbers(name, content, 1)[0]})
+    if name in VECTORS:
+        return found._replace(vectors={**found.vectors, name: np.array(_numbers(name, content))})
+    if name == "configuration":
+        return found._replace(groups=groups_of(element))
+    if name == _POSTPROCESSING:
+        return found._replace(postprocessing=(element.attributes.get("planner", ""), _inner(element)))
+    return found._replace(others={**found.others, name: content})
+
+
+def _inner(element: "Element") -> str:
+    """Return what is in an element as text again."""
+    from xml.sax.saxutils import escape, quoteattr  # noqa: PLC0415 - imports urllib, which is slow
+
+    parts = [escape((element.text or "").strip())]
+    for child in element.children:
+        attributes = "".join(f" {name}={quoteattr(value)}" for name, value in child.attributes.items())
+        parts.append(f"<{child.tag}{attributes}>{_inner(child)}</{child.tag}>")
+    return "".join(parts)
+
+
+def _numbers(name: str, content: str, count: int = 0) -> list[float]:
+    try:
+        numbers = [float(word) for word in content.split()]
+    except ValueError:
+        raise ArgumentError(f"<{name}>: '{content}' should be numbers") from None
+    if (count and len(numbers) != count) or any(math.isnan(number) for number in numbers):
+        raise ArgumentError(f"<{name}>: '{content}' should be {count or 'any number of'} numbers")
+    return numbers

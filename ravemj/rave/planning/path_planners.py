@@ -1,0 +1,233 @@
+"""Planners that find paths."""
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.planning.edges import Edges
+from ravemj.planning.rrt import Budget, End, MoreGoals, Search, connect, explore, single
+from ravemj.rave.enums import ConstraintFilterOptions, PlannerAction, PlannerStatusCode
+from ravemj.rave.planning.bodies import USER
+from ravemj.rave.planning.parameters import Values
+from ravemj.rave.planning.planner import Planner
+from ravemj.rave.planning.status import PlannerStatus
+from ravemj.rave.report import CollisionReport
+from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.rave.trajectory import Trajectory
+
+_ITERATIONS = 10000
+"""Where nothing else is said: OpenRAVE's number."""
+
+_SPACING = 10
+"""Points of paths that nothing processes are this many step lengths apart at most."""
+
+
+class PathPlanner(Planner):
+    """Finds a path without collisions from starts to goals."""
+
+    def __init__(self, *arguments: Any) -> None:  # noqa: ANN401 - passed on
+        super().__init__(*arguments)
+        self._goal_index = self._start_index = -1
+
+    def _prepare(self, values: Values) -> PlannerStatus | None:
+        if values.bodies is None:
+            return self._failed("nothing moves; call SetRobotActiveJoints(robot) of the parameters")
+        try:
+            starts, goals = self._starts_and_goals(values)
+        except ArgumentError as error:
+            return self._failed(str(error))
+        with values.bodies.kept():
+            for name, candidates in (("start", starts), ("goal", goals)):
+                wrong = [self._wrong(values, name, one) for one in candidates]
+                if all(wrong) and (wrong or name == "start" or self._needs_goal(values)):
+                    return wrong[0] if wrong else self._failed(f"there is no {name}")
+        return None
+
+    def _starts_and_goals(self, values: Values) -> tuple[Floats, Floats]:
+        return values.configurations("_vinitialconfig"), values.configurations("_vgoalconfig")
+
+    def _needs_goal(self, values: Values) -> bool:
+        return values.goal_sampler is None
+
+    def _wrong(self, values: Values, name: str, configuration: Floats) -> PlannerStatus | None:
+        """Return what is wrong with a start or a goal, or None. The bodies are moved."""
+        space, report = values.space(), CollisionReport()
+        if not np.isfinite(configuration).all():
+            status = self._failed(f"{name}: {configuration.tolist()} should be finite numbers")
+        elif (outside := space.outside(configuration)) is not None:
+            limits = f"[{space.lower[outside]:g}, {space.upper[outside]:g}]"
+            described = f"{_described(values, outside)} is {configuration[outside]:.6g}, outside its limits {limits}"
+            status = self._failed(f"{name}: {described}")
+        else:
+            found = values.problem(configuration, int(ConstraintFilterOptions.RecommendedOptions))
+            if not found:
+                return None
+            if found == USER:
+                status = self._failed(f"{name}: a constraint does not allow it")
+            else:
+                values.problem(configuration, int(ConstraintFilterOptions.RecommendedOptions), report)
+                status = self._failed(f"{name}: it collides: {report}")
+                status.report = report
+        status.jointValues = configuration
+        return status
+
+    def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
+        """Find a path, and process it."""
+        problem = self._prepare(values)
+        if problem is not None:
+            return problem
+        assert values.bodies is not None
+        self._action = 0
+        with values.bodies.kept():
+            starts, goals = (
+                [one for one in candidates if self._wrong(values, "", one) is None]
+                for candidates in self._starts_and_goals(values)
+            )
+            edges, numbers = Edges(values.space(), values.allowed()), values.numbers
+            iterations = int(numbers["_nmaxiterations"]) or _ITERATIONS
+            budget = Budget(iterations, numbers["_nmaxplanningtime"] / 1000, self._proceed)
+            random = np.random.default_rng(int(numbers["_nrandomgeneratorseed"]))
+            search = self._search(edges, starts, goals, budget, random, values)
+        self._goal_index, self._start_index = search.goal, search.start
+        if search.path is None:
+            return self._ended(search)
+        spaced = search.path if values.postprocessing[0] else _spaced(edges, search.path, numbers["_fsteplength"])
+        spec = ConfigurationSpecification.of(values.groups)
+        traj.Init(spec)
+        traj.Insert(0, spaced.ravel())
+        return self._processed(values, traj, search)
+
+    @abstractmethod
+    def _search(
+        self,
+        edges: Edges,
+        starts: Sequence[Floats],
+        goals: Sequence[Floats],
+        budget: Budget,
+        random: np.random.Generator,
+        values: Values,
+    ) -> Search: ...
+
+    def _ended(self, search: Search) -> PlannerStatus:
+        tested = f"after {search.iterations} iterations, with {sum(tree.count for tree in search.trees)} configurations"
+        status = self._failed(f"{search.end.value} {tested}")
+        if search.end is End.interrupted:
+            status.statusCode = PlannerStatusCode.Interrupted
+        return status
+
+    def _processed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:
+        """Let the chain of smoothers and retimers work on a path."""
+        from ravemj.rave.planning.names import post_process  # noqa: PLC0415 - that names this planner, too
+
+        problem = post_process(self._env, values, traj)
+        if problem is not None:
+            return problem
+        if self._action == PlannerAction.ReturnWithAnySolution:
+            return PlannerStatus("a callback asked for any path", PlannerStatusCode.InterruptedWithSolution)
+        return self._solved(f"found after {search.iterations} iterations")
+
+    def _get_goal_index(self, arguments: str) -> str:
+        del arguments
+        return str(self._goal_index)
+
+    def _get_start_index(self, arguments: str) -> str:
+        del arguments
+        return str(self._start_index)
+
+    def _get_both_indices(self, arguments: str) -> str:
+        del arguments
+        return f"{self._start_index} {self._goal_index}"
+
+    _commands: ClassVar = {
+        "GetGoalIndex": _get_goal_index,
+        "GetInitGoalIndices": _get_both_indices,
+        "GetInitIndex": _get_start_index,
+    }
+
+
+class BiRrt(PathPlanner):
+    """``birrt``: trees from all starts and goals grow towards each other."""
+
+    def _search(
+        self,
+        edges: Edges,
+        starts: Sequence[Floats],
+        goals: Sequence[Floats],
+        budget: Budget,
+        random: np.random.Generator,
+        values: Values,
+    ) -> Search:
+        more = None
+        if values.goal_sampler is not None:
+            sample, probability = values.goal_sampler
+
+            def next_goal() -> Floats | None:
+                goal = sample()
+                return None if goal is None or self._wrong(values, "goal", goal) else goal
+
+            more = MoreGoals(next_goal, probability)
+        return connect(edges, starts, goals, budget, random, more)
+
+
+class BasicRrt(PathPlanner):
+    """``BasicRRT``: one tree grows from the starts, now and then towards a goal."""
+
+    def _needs_goal(self, values: Values) -> bool:
+        return True
+
+    def _search(
+        self,
+        edges: Edges,
+        starts: Sequence[Floats],
+        goals: Sequence[Floats],
+        budget: Budget,
+        random: np.random.Generator,
+        values: Values,
+    ) -> Search:
+        return single(edges, starts, goals, budget, random, float(values.tags.get("goalbias") or 0.05))
+
+
+class ExplorationRrt(PathPlanner):
+    """``ExplorationRRT``: one tree explores what the starts reach; the result is all its configurations."""
+
+    def _needs_goal(self, values: Values) -> bool:
+        return False
+
+    def _search(
+        self,
+        edges: Edges,
+        starts: Sequence[Floats],
+        goals: Sequence[Floats],
+        budget: Budget,
+        random: np.random.Generator,
+        values: Values,
+    ) -> Search:
+        tree = explore(edges, starts, int(values.tags.get("expectedsize") or 100), budget, random)
+        return Search(End.found, tree.nodes(), 0, -1, tree.count, (tree,))
+
+    def _processed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:
+        """Leave the configurations as they are: they are no path."""
+        return self._solved(f"{traj.GetNumWaypoints()} configurations")
+
+
+def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
+    """Return a path with more points on its lines."""
+    space = edges.space
+    rows = [path[:1]]
+    for start, end in zip(path[:-1], path[1:], strict=True):
+        far = space.distance(end, start)
+        count = max(1, int(np.ceil(far / (_SPACING * step_length)))) if step_length > 0 else 1
+        parts = np.arange(1, count)[:, None] / count
+        rows += [start + parts * space.difference(end, start), end[None]]
+    return np.concatenate(rows)
+
+
+def _described(values: Values, index: int) -> str:
+    """Return what a value of a configuration is."""
+    group = next(group for group in values.groups if group.offset <= index < group.offset + group.dof)
+    assert values.bodies is not None
+    return values.bodies.described(group, index - group.offset)

@@ -1,0 +1,114 @@
+"""Retimers: times for the waypoints of a trajectory."""
+
+from collections.abc import Callable
+from typing import ClassVar
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.planning.retiming.jerk_limited import JerkLimited
+from ravemj.planning.retiming.linear import Linear
+from ravemj.planning.retiming.parabolic import Parabolic
+from ravemj.planning.retiming.polynomials import Cubic, Quintic
+from ravemj.planning.retiming.segments import OutsideLimitsError, Profile, RetimingError, Timed, retime
+from ravemj.rave.planning.parameters import Values
+from ravemj.rave.planning.planner import Planner
+from ravemj.rave.planning.status import PlannerStatus
+from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.groups import DELTATIME
+
+
+def _parabolic(values: Values) -> Parabolic:
+    return Parabolic(with_changes=flag(values, "outputaccelchanges", default=True))
+
+
+RETIMERS: dict[str, Callable[[Values], Profile]] = {
+    "lineartrajectoryretimer": lambda values: Linear(),
+    "parabolictrajectoryretimer": _parabolic,
+    "parabolictrajectoryretimer2": _parabolic,
+    "cubictrajectoryretimer": lambda values: Cubic(),
+    "cubictrajectoryretimer2": lambda values: JerkLimited(),
+    "quintictrajectoryretimer": lambda values: Quintic(),
+}
+"""What retimes, by the names of planners in lower case."""
+
+
+class Retimer(Planner):
+    """Gives the waypoints of a trajectory times that respect the limits; it looks at no collisions."""
+
+    _takes_text: ClassVar[bool] = True
+
+    def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
+        """Retime a trajectory in place."""
+        profile = RETIMERS[self._xmlid.lower()](values)
+        wanted = values.tags.get("interpolation", "")
+        if wanted not in {"", profile.interpolation}:
+            return self._failed(f"the interpolation is '{profile.interpolation}', and should be '{wanted}'")
+        coordinates = values.coordinates()
+        if (coordinates.translation or coordinates.rotation) and profile.interpolation != "linear":
+            return self._failed("poses of bodies can be retimed by the LinearTrajectoryRetimer only")
+        spec = ConfigurationSpecification.of(values.groups)
+        source = traj.GetConfigurationSpecification()
+        deltas = None
+        if flag(values, "hastimestamps"):
+            group = source.FindCompatibleGroup(DELTATIME, True)
+            if group is None:
+                return self._failed("the times should be kept, and there are none")
+            deltas = traj.GetAllWaypoints2D()[:, group.offset]
+        velocities = _given_velocities(traj, spec) if flag(values, "hasvelocities") else None
+        step = values.numbers["_fsteplength"]
+        points = traj.GetAllWaypoints2D(spec)
+        try:
+            timed = retime(profile, points, values.limits(), deltas=deltas, velocities=velocities, time_step=step)
+        except OutsideLimitsError as error:
+            raise ArgumentError(f"{self._xmlid}: {error}", ErrorCode.InconsistentConstraints) from None
+        except RetimingError as error:
+            return self._failed(str(error))
+        fill(traj, spec, profile, timed)
+        return self._solved(f"{len(timed.deltas)} waypoints in {timed.deltas.sum():.6g} s")
+
+
+def _given_velocities(traj: Trajectory, spec: ConfigurationSpecification) -> Floats:
+    return traj.GetAllWaypoints2D(spec.ConvertToDerivativeSpecification(1))
+
+
+def fill(
+    traj: Trajectory, spec: ConfigurationSpecification, profile: Profile, timed: Timed, *, mark: bool = False
+) -> None:
+    """Make a trajectory of a path with times.
+
+    Args:
+        traj: What is filled.
+        spec: What the values are.
+        profile: How they change.
+        timed: The path.
+        mark: Whether to add a group ``iswaypoint``.
+    """
+    groups = spec.GetGroups()
+    for group in groups:
+        group.interpolation = profile.interpolation
+    result = ConfigurationSpecification.of(groups)
+    for order in range(1, profile.order + 1):
+        result.AddDerivativeGroups(order)
+    time = result.AddDeltaTimeGroup()
+    marks = result.AddGroup("iswaypoint", 1, "next") if mark else None
+    rows = np.zeros((len(timed.deltas), result.GetDOF()))
+    rows[:, time] = timed.deltas
+    if marks is not None:
+        rows[:, marks] = timed.is_point
+    for group in groups:
+        target = group
+        for numbers in timed.orders:
+            assert target is not None, "each group has its derivatives"
+            rows[:, target.columns] = numbers[:, group.columns]
+            target = result.FindTimeDerivativeGroup(target, True)
+    traj.Init(result)
+    traj.Insert(0, rows.ravel())
+
+
+def flag(values: Values, name: str, *, default: bool = False) -> bool:
+    """Return whether a tag is on."""
+    text = values.tags.get(name, "").strip().lower()
+    return default if not text else text not in {"0", "false"}
