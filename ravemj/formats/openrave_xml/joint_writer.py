@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from ravemj.core.transforms import ZERO, Pose, Vec3, conjugate, rotate
+from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose, conjugate, rotate
 from ravemj.formats import settled
 from ravemj.formats.openrave_xml.part_names import PartNames
 from ravemj.formats.xml_text import XmlText
@@ -70,11 +70,11 @@ class JointWriter:
         """Write anchor and directions, in the frame of the parent; of a slider OpenRAVE takes that frame's origin."""
         frame = self._slider_frame(joint) if joint.kind == "slider" else joint.parent
         self._out.element("offsetfrom", self._names.links[frame])
-        if joint.kind != "slider":
+        turns_with_child = joint.static and len(body.joints) > 0  # OpenRAVE moves the frame of a weld to its child
+        if joint.kind != "slider" and not turns_with_child:
             self._out.element("anchor", settled.position(joint.anchor))
         T_frame_parent = self._poses[frame].inverse() @ self._poses[joint.parent]
-        # OpenRAVE turns the axes of a weld with its child.
-        turn = conjugate(joint.T_parent_child.wxyz) if joint.static and body.joints else Pose().wxyz
+        turn = conjugate(joint.T_parent_child.wxyz) if turns_with_child else UNIT_WXYZ
         for tag, axis in zip(_AXIS_TAGS[joint.kind], joint.axes, strict=False):
             if axis.direction != ZERO:
                 in_frame = rotate(T_frame_parent.wxyz, rotate(turn, axis.direction))
