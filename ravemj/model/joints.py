@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.graphs import topological_order
 from ravemj.core.transforms import (
     Floats,
     Pose,
@@ -19,7 +20,7 @@ from ravemj.core.transforms import (
     scale,
     wxyz_from_axis_angle,
 )
-from ravemj.model.scene import Axis, Joint
+from ravemj.model.scene import Axis, Joint, KinBody
 
 ROUNDING = 1e-12
 """A measured joint value [rad or m] below this is rounding of the poses, not a displacement."""
@@ -35,6 +36,20 @@ def place_links(poses: list[Pose], joints: Sequence[Joint], values: Sequence[Seq
     """
     for joint, joint_values in zip(joints, values, strict=True):
         poses[joint.child] = poses[joint.parent] @ relative_pose(joint, joint_values)
+
+
+def poses_at(body: KinBody, values: Sequence[Sequence[float]]) -> list[Pose]:
+    """Return the poses of all links at given joint values, with the root links where they are.
+
+    Args:
+        body: The body.
+        values: The values of each joint's axes [rad or m], active joints and then passive ones.
+    """
+    poses = [link.T_world_link for link in body.links]
+    placing = {joint.child: (joint, given) for joint, given in zip(body.all_joints, values, strict=True) if joint.places_child}
+    order = topological_order(placing, lambda link: [placing[link][0].parent] if placing[link][0].parent in placing else [])
+    place_links(poses, [placing[link][0] for link in order], [placing[link][1] for link in order])
+    return poses
 
 
 def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:

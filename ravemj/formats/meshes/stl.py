@@ -1,4 +1,4 @@
-"""The reader of STL, binary and text."""
+"""The reader of STL, binary and text, and a writer of binary STL."""
 
 import re
 
@@ -7,7 +7,17 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import SourceError
 from ravemj.formats.meshes.files import FileContent
-from ravemj.formats.meshes.parts import WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
+from ravemj.formats.meshes.parts import (
+    WHITE,
+    MeshPart,
+    check_finite,
+    check_size,
+    corners_of,
+    rgb,
+    weld,
+    without_degenerate,
+)
+from ravemj.model.scene import Mesh
 
 AMBIENT = rgb((0.05, 0.05, 0.05))
 """What OpenRAVE's importer gives to every STL file."""
@@ -53,3 +63,10 @@ def _text_corners(file: FileContent) -> Floats:
         return np.array([[float(word) for word in vertex] for vertex in words]).reshape(-1, 3, 3)
     except ValueError as error:
         raise SourceError(f"a coordinate that is no number: {error}", file.source) from error
+
+
+def write_stl(mesh: Mesh) -> bytes:
+    """Return a mesh as a binary STL file, with coordinates in single precision and without normals."""
+    facets = np.zeros(len(mesh.triangles), _FACET)
+    facets["corners"] = corners_of(mesh)
+    return bytes(80) + len(facets).to_bytes(4, "little") + facets.tobytes()

@@ -34,7 +34,7 @@ from ravemj.model.scene import (
     TriMesh,
 )
 
-_CYLINDER_TURN = Pose(ZERO, wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi / 2))
+CYLINDER_TURN = Pose(ZERO, wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi / 2))
 """In XML a cylinder lies along y, in memory along z."""
 
 _NO_PART = MeshPart(Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)))
@@ -153,6 +153,9 @@ GEOM_ATTRIBUTES = {
     "group": "geometries of other groups than `self` are left out",
 }
 
+SIZE_TAGS = {"half_extents": "extents", "cross_section": "crosssection"}
+"""Tags of the sizes that are not called like their tag."""
+
 _SHAPES = {one.xml: one.shape for one in SHAPE_TYPES}
 _NO_SIZES: dict[str, object] = {
     **dict.fromkeys(("half_extents", "outer_extents", "inner_extents", "bottom_cross", "bottom"), ZERO),
@@ -209,7 +212,7 @@ def _geometry(
 ) -> Geometry:
     pose = geom.placement.pose
     if isinstance(shape, Cylinder):
-        pose = pose @ _CYLINDER_TURN
+        pose = pose @ CYLINDER_TURN
     elif isinstance(shape, TriMesh):
         pose = pose._replace(position=hadamard(scope.scale, pose.position))
     return Geometry(

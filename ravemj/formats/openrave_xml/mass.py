@@ -82,13 +82,17 @@ class MassReader:
                 "write the mass as type custom",
             )
 
+    def precise_total(self, element: Element) -> None:
+        """Read a total mass in double precision."""
+        self._said.update(total=number(element, self._context.diagnostics), density=None)
+
     def density(self, element: Element) -> None:
         """Read a ``<density>``."""
-        self._said.update(density=_single(number(element, self._context.diagnostics)), total=None)
+        self._said.update(density=single(number(element, self._context.diagnostics)), total=None)
 
     def total(self, element: Element) -> None:
         """Read a ``<total>`` mass."""
-        self._said.update(total=_single(number(element, self._context.diagnostics)), density=None)
+        self._said.update(total=single(number(element, self._context.diagnostics)), density=None)
 
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
@@ -113,6 +117,9 @@ MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box, custom"}
 MASS_TAGS: dict[str, Tag[MassReader]] = {
     "density": Tag(MassReader.density, "[kg/m³]"),
     "total": Tag(MassReader.total, "[kg]"),
+    "precisetotal": Tag(
+        MassReader.precise_total, "[kg] of which OpenRAVE, which does not know it, has single precision; ravemj writes it"
+    ),
     "radius": Tag(MassReader.radius, "of a sphere [m]"),
     "extents": Tag(MassReader.extents, "no effect, as in OpenRAVE; a warning says so"),
     "com": Tag(MassReader.com, "centre of a custom mass [m]"),
@@ -157,11 +164,11 @@ class DefaultMassReader:
 
     def density(self, element: Element) -> None:
         """Read a ``<density>``."""
-        self._number, self._is_total = _single(number(element, self._context.diagnostics)), False
+        self._number, self._is_total = single(number(element, self._context.diagnostics)), False
 
     def total(self, element: Element) -> None:
         """Read a ``<total>``; it lands in the same place as a density."""
-        self._number, self._is_total = _single(number(element, self._context.diagnostics)), True
+        self._number, self._is_total = single(number(element, self._context.diagnostics)), True
 
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
@@ -258,7 +265,7 @@ def _add_rows(*matrices: Rows) -> Rows:
     return first, second, third
 
 
-def _single(value: float) -> float:
+def single(value: float) -> float:
     """Round to single precision."""
     try:
         return struct.unpack("f", struct.pack("f", value))[0]

@@ -16,6 +16,12 @@ _KNOWN_TYPES = {
 }
 
 
+def known_type(kind: str) -> str | None:
+    """Return OpenRAVE's name of a kind of sensor in XML, also where COLLADA spells it another way; None for others."""
+    plain = kind.lower().replace("_", "").replace("pinhole", "")
+    return _KNOWN_TYPES.get(plain)
+
+
 class Device(NamedTuple):
     """The device of an attached sensor.
 

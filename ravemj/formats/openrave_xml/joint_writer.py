@@ -1,0 +1,110 @@
+"""The writer of ``<Joint>``, and of the poses of links that joints are measured from."""
+
+import math
+from collections.abc import Sequence
+
+from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose, conjugate, rotate
+from ravemj.formats import settled
+from ravemj.formats.openrave_xml.part_names import PartNames
+from ravemj.formats.xml_text import XmlText
+from ravemj.model.joints import poses_at
+from ravemj.model.limits import clamp
+from ravemj.model.scene import Axis, Joint, KinBody, Mimic
+
+_NEAR = 1e-9  # of points [m]
+_AXIS_TAGS = {"hinge": ("axis",), "slider": ("axis",), "hinge2": ("axis1", "axis2"), "spherical": ()}
+
+
+def listed_poses(body: KinBody) -> list[Pose]:
+    """Return the poses of the links as a document lists them: every joint that moves has its ``<initial>`` value."""
+    if not body.joints:
+        return [link.T_world_link for link in body.links]
+    joints = enumerate(body.all_joints)
+    return poses_at(body, [[_initial(body, index, axis) for axis in joint.axes] for index, joint in joints])
+
+
+def needs_values(body: KinBody) -> bool:
+    """Tell whether joints are elsewhere than their ``<initial>`` values and limits say."""
+    axes = (axis for joint in body.joints if not joint.static for axis in joint.axes)
+    return any(axis.value != clamp(axis, axis.reference) for axis in axes)
+
+
+def _initial(body: KinBody, index: int, axis: Axis) -> float:
+    """Return the value at the listed poses; a joint that neither has DOFs nor follows others stays where it is."""
+    joint = body.all_joints[index]
+    rests = index >= len(body.joints) and (joint.mimic is None or joint.mimic.expression is None)
+    return axis.value if rests else axis.reference
+
+
+class JointWriter:
+    """Writes the joints of a body."""
+
+    def __init__(self, out: XmlText, names: PartNames, poses: Sequence[Pose]) -> None:
+        self._out = out
+        self._names = names
+        self._poses = poses
+
+    def write(self, body: KinBody, index: int) -> None:
+        """Write a joint, given by its index among the active joints and then the passive ones."""
+        joint = body.all_joints[index]
+        rest = body.all_joints[index:]
+        # Followers come behind the disabled joints, unless they are disabled themselves.
+        disabled = index >= len(body.joints) and any(other.mimic is None for other in rest)
+        attributes = {
+            "name": self._names.joints[index],
+            "type": joint.kind,
+            "enable": False if disabled else None,
+            "circular": True if joint.axes[0].circular else None,
+            **_equations(joint.mimic),
+        }
+        with self._out.inside("Joint", **attributes):
+            self._out.element("Body", self._names.links[joint.parent])
+            self._out.element("Body", self._names.links[joint.child])
+            self._write_frame(body, joint)
+            initial = [_initial(body, index, axis) for axis in joint.axes]
+            if any(initial):
+                self._out.element("initial", initial)
+            self._write_numbers(joint)
+
+    def _write_frame(self, body: KinBody, joint: Joint) -> None:
+        """Write anchor and directions, in the frame of the parent; of a slider OpenRAVE takes that frame's origin."""
+        frame = self._slider_frame(joint) if joint.kind == "slider" else joint.parent
+        self._out.element("offsetfrom", self._names.links[frame])
+        turns_with_child = joint.static and len(body.joints) > 0  # OpenRAVE moves the frame of a weld to its child
+        if joint.kind != "slider" and not turns_with_child:
+            self._out.element("anchor", settled.position(joint.anchor))
+        T_frame_parent = self._poses[frame].inverse() @ self._poses[joint.parent]
+        turn = conjugate(joint.T_parent_child.wxyz) if turns_with_child else UNIT_WXYZ
+        for tag, axis in zip(_AXIS_TAGS[joint.kind], joint.axes, strict=False):
+            if axis.direction != ZERO:
+                in_frame = rotate(T_frame_parent.wxyz, rotate(turn, axis.direction))
+                self._out.element(tag, settled.direction(in_frame))
+
+    def _slider_frame(self, joint: Joint) -> int:
+        """Return the link whose origin is the anchor of a slider, its parent where neither is."""
+        anchor = self._poses[joint.parent].apply(joint.anchor)
+        is_child = math.dist(self._poses[joint.child].position, anchor) < _NEAR
+        return joint.child if is_child else joint.parent
+
+    def _write_numbers(self, joint: Joint) -> None:
+        axes = joint.axes
+        if not axes[0].circular:
+            self._out.element("limitsrad", [limit for axis in axes for limit in (axis.lower, axis.upper)])
+        factor = 1.0 if joint.kind == "slider" else 180 / math.pi
+        self._out.element("weight", [axis.weight for axis in axes])
+        self._out.element("resolution", [settled.number(axis.resolution * factor) for axis in axes])
+        self._out.element("maxvel", [axis.max_velocity for axis in axes])
+        self._out.element("maxaccel", [axis.max_acceleration for axis in axes])
+        if any(axis.max_torque for axis in axes):
+            self._out.element("maxtorque", [axis.max_torque for axis in axes])
+        if axes[0].armature:
+            with self._out.inside("actuator", type="electric_motor"):
+                self._out.element("gear_ratio", 1.0)
+                self._out.element("rotor_inertia", axes[0].armature)
+
+
+def _equations(mimic: Mimic | None) -> dict[str, str]:
+    if mimic is None:
+        return {}
+    texts = {"mimic_pos": mimic.position, "mimic_vel": mimic.velocity, "mimic_accel": mimic.acceleration}
+    return {name: text for name, text in texts.items() if text}

@@ -1,0 +1,50 @@
+"""Names of links and joints by which a written document refers to them."""
+
+from collections.abc import Collection
+
+from ravemj.errors import Diagnostics
+from ravemj.model.scene import KinBody
+
+
+class PartNames:
+    """The names in the document: the parts' own, unless the reader would take one part for another.
+
+    It finds links by a word, in any letter case, and goes on with a link of a name that it has met; joints with DOFs
+    need names of their own.
+
+    Attributes:
+        links: The name of each link.
+        joints: The name of each joint, active ones and then passive ones.
+    """
+
+    def __init__(self, body: KinBody, diagnostics: Diagnostics) -> None:
+        referred = {link for joint in body.all_joints for link in (joint.parent, joint.child)}
+        referred |= {link for pair in body.adjacent for link in pair}
+        referred |= {link for one in body.manipulators for link in (one.base, one.effector) if link is not None}
+        referred |= {sensor.link for sensor in body.sensors if sensor.link is not None}
+        links = [link.name for link in body.links]
+        known = {name.lower() for name in links}
+        self.links: list[str] = []
+        for index, name in enumerate(links):
+            before = self.links
+            in_any_case = any(name.lower() == other.lower() for other in before)
+            is_word = len(name.split()) == 1 or not name
+            if (name and name in before) or (index in referred and (in_any_case or not is_word)):
+                name = _unused("_".join(name.split()) or "link", known)
+                message = f"the link '{links[index]}' of '{body.name}' is called '{name}' in the file"
+                diagnostics.warn("renamed", message, body.links[index].source)
+            self.links.append(name)
+        joints = [joint.name for joint in body.all_joints]
+        self.joints: list[str] = []
+        for index, name in enumerate(joints):
+            if joints.count(name) > 1 and name in joints[: len(body.joints)] and name in self.joints:
+                name = _unused(name or "joint", {*joints, *self.joints})
+                message = f"the joint '{joints[index]}' of '{body.name}' is called '{name}' in the file"
+                diagnostics.warn("renamed", message, body.all_joints[index].source)
+            self.joints.append(name)
+
+
+def _unused(name: str, known: Collection[str]) -> str:
+    """Return a name with a number behind it that no known name, in lower case, has."""
+    numbered = (f"{name}_{count}" for count in range(1, len(known) + 2))
+    return next(other for other in numbered if other.lower() not in known)

@@ -1,0 +1,161 @@
+"""The writer of OpenRAVE XML: a scene as a document, with the files of its meshes.
+
+The reader's rules decide what stands where: links are placed as if every joint had its ``<initial>`` value, joints are
+given in the frame of their parent, and ``<jointvalues>`` moves them from there. What OpenRAVE's reader cannot take in is
+reported.
+"""
+
+from dataclasses import dataclass
+
+from ravemj.core.transforms import ZERO, Pose
+from ravemj.errors import Diagnostics, OutputError
+from ravemj.formats import settled
+from ravemj.formats.openrave_xml.geom_writer import GeomWriter, MeshFormat, write_pose
+from ravemj.formats.openrave_xml.joint_writer import JointWriter, listed_poses, needs_values
+from ravemj.formats.openrave_xml.mass import single
+from ravemj.formats.openrave_xml.part_names import PartNames
+from ravemj.formats.openrave_xml.sensor import known_type
+from ravemj.formats.xml_text import XmlText
+from ravemj.model.scene import AttachedSensor, Inertial, KinBody, Link, Manipulator, Scene, View
+
+
+@dataclass(frozen=True)
+class Document:
+    """A written scene.
+
+    Attributes:
+        text: The document.
+        meshes: The content of the mesh files, by their names in the folder ``geom_writer.FOLDER``.
+    """
+
+    text: str
+    meshes: dict[str, bytes]
+
+
+def write(scene: Scene, diagnostics: Diagnostics, meshes: MeshFormat = "stl") -> Document:
+    """Write a scene: an ``<Environment>``, or the one body of a scene without a view as the root.
+
+    Args:
+        scene: What to write.
+        diagnostics: Takes a warning for everything that the format cannot say.
+        meshes: The kind of the mesh files.
+
+    Raises:
+        OutputError: A name or a number cannot be written.
+    """
+    writer = _Writer(diagnostics, meshes)
+    out = writer.out
+    if scene.view is None and scene.gravity is None and len(scene.bodies) == 1:
+        writer.write_body(scene.bodies[0])
+    else:
+        with out.inside("Environment"):
+            writer.write_view(scene.view or View())
+            if scene.gravity is not None:
+                with out.inside("PhysicsEngine", type="GenericPhysicsEngine"), out.inside("odeproperties"):
+                    out.element("gravity", scene.gravity)
+            for body in scene.bodies:
+                writer.write_body(body)
+    return Document(str(out), writer.geoms.files)
+
+
+class _Writer:
+    def __init__(self, diagnostics: Diagnostics, meshes: MeshFormat) -> None:
+        self.diagnostics = diagnostics
+        self.out = XmlText()
+        self.geoms = GeomWriter(self.out, diagnostics, meshes)
+
+    def write_view(self, view: View) -> None:
+        if view.background != View().background:
+            self.out.element("bkgndColor", view.background)
+        if view.T_world_camera is not None:
+            camera = settled.pose(view.T_world_camera)
+            self.out.element("camtrans", camera.position)
+            self.out.element("camrotationaxis", settled.axis_angle(camera.wxyz))
+
+    def write_body(self, body: KinBody) -> None:
+        """Write a robot or another body."""
+        if not body.name or " " in body.name or not body.name.isprintable():
+            raise OutputError(f"OpenRAVE reads no body with the name {body.name!r}; give it one without spaces")
+        joined = None if body.joined_links_adjacent else 0
+        names = PartNames(body, self.diagnostics)
+        if not body.is_robot:
+            if body.manipulators or body.sensors:
+                message = f"'{body.name}' is no robot; its manipulators and sensors are left out"
+                self.diagnostics.warn("not-written", message, body.source)
+            with self.out.inside("KinBody", name=body.name, makeJoinedLinksAdjacent=joined):
+                self._write_parts(body, names)
+                self._write_values(body)
+            return
+        with self.out.inside("Robot", name=body.name, makeJoinedLinksAdjacent=joined):
+            with self.out.inside("KinBody"):
+                self._write_parts(body, names)
+            for manipulator in body.manipulators:
+                self._write_manipulator(manipulator, names)
+            for sensor in body.sensors:
+                self._write_sensor(sensor, names)
+            self._write_values(body)
+
+    def _write_parts(self, body: KinBody, names: PartNames) -> None:
+        """Write links, joints and pairs of links."""
+        poses = [settled.pose(pose) for pose in listed_poses(body)]
+        for link, name, pose in zip(body.links, names.links, poses, strict=True):
+            self._write_link(link, name, pose)
+        joints = JointWriter(self.out, names, poses)
+        for index in range(len(body.all_joints)):
+            joints.write(body, index)
+        for first, second in body.adjacent:
+            self.out.element("adjacent", f"{names.links[first]} {names.links[second]}")
+
+    def _write_values(self, body: KinBody) -> None:
+        if needs_values(body):
+            self.out.element("jointvalues", [axis.value for axis in body.dof_axes])
+
+    def _write_link(self, link: Link, name: str, pose: Pose) -> None:
+        attributes = {"name": name or None, "type": "static" if link.static else "dynamic"}
+        if link.groups or link.self_collision_ignored:
+            message = f"other sets of shapes of link '{link.name}', and what it is not tested against, are left out"
+            self.diagnostics.warn("not-written", message, link.source)
+        with self.out.inside("Body", **attributes, enable=None if link.enabled else False):
+            write_pose(self.out, pose)
+            self._write_mass(link.inertial)
+            for geometry in link.geometries:
+                self.geoms.write(geometry)
+
+    def _write_mass(self, inertial: Inertial) -> None:
+        with self.out.inside("Mass", type="custom"):
+            self.out.element("total", inertial.mass)
+            if single(inertial.mass) != inertial.mass:
+                self.out.element("precisetotal", inertial.mass)
+            if inertial.com != ZERO:
+                self.out.element("com", inertial.com)
+            self.out.element("inertia", [part for row in inertial.inertia for part in row])
+
+    def _write_manipulator(self, manipulator: Manipulator, names: PartNames) -> None:
+        with self.out.inside("Manipulator", name=manipulator.name):
+            if manipulator.base is not None:
+                self.out.element("base", names.links[manipulator.base])
+            if manipulator.effector is not None:
+                self.out.element("effector", names.links[manipulator.effector])
+            if manipulator.gripper_joints:
+                self.out.element("gripperjoints", " ".join(names.joints[joint] for joint in manipulator.gripper_joints))
+                self.out.element("closingdirection", manipulator.chucking_direction)
+            self.out.element("direction", settled.direction(manipulator.direction))
+            write_pose(self.out, settled.pose(manipulator.T_effector_tool))
+
+    def _write_sensor(self, sensor: AttachedSensor, names: PartNames) -> None:
+        kind = None if sensor.type is None else known_type(sensor.type)
+        if kind is None and sensor.type is not None:
+            message = f"OpenRAVE XML knows no sensor of type '{sensor.type}'; of '{sensor.name}' only the frame is kept"
+            self.diagnostics.warn("not-written", message, sensor.source)
+        with self.out.inside("AttachedSensor", name=sensor.name):
+            if sensor.link is not None:
+                self.out.element("link", names.links[sensor.link])
+            write_pose(self.out, settled.pose(sensor.T_link_sensor))
+            if kind is not None and sensor.camera is None:
+                self.out.element("Sensor", type=kind)
+            elif kind is not None and sensor.camera is not None:
+                camera = sensor.camera
+                with self.out.inside("Sensor", type=kind):
+                    self.out.element("KK", (camera.fx, camera.fy, camera.cx, camera.cy))
+                    self.out.element("width", camera.width)
+                    self.out.element("height", camera.height)

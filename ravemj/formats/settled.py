@@ -1,0 +1,87 @@
+"""Numbers of files: rounded so that what was read is written with the same digits again.
+
+Readers compose transforms, normalize quaternions and turn degrees into radians, which moves numbers by their last
+digits. Writers round what such numbers come to; what is read back then lies so near the rounded number, and so far from
+the next one, that it is rounded to the same. An error of 1e-13 is a thousandth of what any test can see.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import cast
+
+from ravemj.core.transforms import Pose, Vec3, Wxyz
+
+_UNIT_DECIMALS = 13
+_LENGTH_DECIMALS = 12
+_DIGITS = 13
+
+_SQRT_HALF = math.sqrt(0.5)
+_TIE = 1e-9  # numbers this near to each other count as equally large
+
+
+def number(value: float, largest: float | None = None) -> float:
+    """Return a number with thirteen significant digits, or with as many decimals as another number with as many has."""
+    largest = abs(value if largest is None else largest)
+    if not math.isfinite(largest) or largest == 0.0:
+        return value
+    return round(value, _DIGITS - 1 - math.floor(math.log10(largest)))
+
+
+def numbers(values: Sequence[float]) -> list[float]:
+    """Return numbers with thirteen digits for the largest of them, and as many decimals for the others."""
+    largest = max(map(abs, values), default=0.0)
+    return [number(value, largest) for value in values]
+
+
+def position(point: Vec3) -> Vec3:
+    """Return a point with twelve decimals, fewer far from the origin [m]."""
+    largest = max(1.0, *map(abs, point))
+    if not math.isfinite(largest):
+        return point
+    decimals = _LENGTH_DECIMALS - math.floor(math.log10(largest))
+    return cast(Vec3, tuple(round(part, decimals) for part in point))
+
+
+def direction(vector: Vec3) -> Vec3:
+    """Return a unit vector whose parts are rounded, but for the largest, which makes its length 1."""
+    return cast(Vec3, _unit(vector))
+
+
+def pose(T: Pose) -> Pose:
+    """Return a pose with rounded position and rotation, the quaternion's largest part positive."""
+    wxyz = T.wxyz if T.wxyz[_largest(T.wxyz)] > 0 else tuple(-part for part in T.wxyz)
+    return Pose(position(T.position), cast(Wxyz, _unit(wxyz)))
+
+
+def axis_angle(wxyz: Wxyz) -> tuple[float, ...]:
+    """Return the axis and the angle [deg] of a settled quaternion: x y z angle."""
+    w, x, y, z = wxyz
+    sine = math.hypot(x, y, z)
+    if sine == 0.0:
+        return (1.0, 0.0, 0.0, 0.0)
+    return (x / sine, y / sine, z / sine, math.degrees(2 * math.atan2(sine, w)))
+
+
+def degrees(angle: float) -> float:
+    """Return an angle [rad] in degrees."""
+    return number(math.degrees(angle))
+
+
+def _largest(parts: Sequence[float]) -> int:
+    """Return the index of the largest part; of several that are as large but for rounding, the first."""
+    largest = max(map(abs, parts))
+    return next(index for index, part in enumerate(parts) if abs(part) >= largest - _TIE)
+
+
+def _unit(parts: Sequence[float]) -> tuple[float, ...]:
+    """Round the parts of a unit vector; the largest follows from the others, so that normalizing changes nothing."""
+    rounded = [_snapped(round(part, _UNIT_DECIMALS)) for part in parts]
+    index = _largest(parts)
+    rest = sum(part * part for place, part in enumerate(rounded) if place != index)
+    rounded[index] = _snapped(math.copysign(math.sqrt(max(0.0, 1.0 - rest)), parts[index]))
+    return tuple(part + 0.0 for part in rounded)
+
+
+def _snapped(part: float) -> float:
+    """Return the exact sine or cosine of an eighth of a turn in place of one that is nearly so: models are full of them."""
+    return math.copysign(_SQRT_HALF, part) if abs(abs(part) - _SQRT_HALF) < 1e-12 else part

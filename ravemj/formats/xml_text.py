@@ -1,0 +1,64 @@
+"""XML documents under construction, shared by the writers of OpenRAVE XML and COLLADA."""
+
+import re
+from collections.abc import Generator, Iterable
+from contextlib import contextmanager
+from xml.sax.saxutils import escape
+
+from ravemj.errors import OutputError
+
+Content = str | float | bool | Iterable[float]
+"""What an element or attribute holds: a text, a truth value, or numbers."""
+
+_FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters that no XML document can hold, not even as references."""
+
+_QUOTED = {'"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+
+
+class XmlText:
+    """An XML document, one element a line, with two blanks for each level."""
+
+    def __init__(self) -> None:
+        self._lines = ['<?xml version="1.0" encoding="utf-8"?>']
+        self._indent = ""
+
+    def __str__(self) -> str:
+        return "\n".join(self._lines) + "\n"
+
+    @contextmanager
+    def inside(self, tag: str, /, **attributes: Content | None) -> Generator[None]:
+        """Write an element around what the block writes; attributes that are None are left out."""
+        self._lines.append(f"{self._indent}<{tag}{_attributes(attributes)}>")
+        self._indent += "  "
+        yield
+        self._indent = self._indent[:-2]
+        self._lines.append(f"{self._indent}</{tag}>")
+
+    def element(self, tag: str, content: Content | None = None, /, **attributes: Content | None) -> None:
+        """Write an element that holds a text, or nothing."""
+        start = f"{self._indent}<{tag}{_attributes(attributes)}"
+        text = "" if content is None else text_of(content)
+        self._lines.append(f"{start}>{escape(text, {chr(13): '&#13;'})}</{tag}>" if text else f"{start}/>")
+
+
+def text_of(content: Content) -> str:
+    """Return the text of a content: numbers with all their digits, whole ones without a point.
+
+    Raises:
+        OutputError: XML cannot hold one of its characters.
+    """
+    if isinstance(content, str):
+        found = _FORBIDDEN.search(content)
+        if found is not None:
+            raise OutputError(f"no XML file can hold the character {found[0]!r} of {content!r}; choose another name")
+        return content
+    if isinstance(content, bool):
+        return "true" if content else "false"
+    numbers = (content,) if isinstance(content, float | int) else content
+    return " ".join([repr(float(number) + 0.0).removesuffix(".0") for number in numbers])  # + 0.0: -0 becomes 0
+
+
+def _attributes(attributes: dict[str, Content | None]) -> str:
+    given = ((name.rstrip("_"), content) for name, content in attributes.items() if content is not None)
+    return "".join([f' {name}="{escape(text_of(content), _QUOTED)}"' for name, content in given])

@@ -1,0 +1,234 @@
+"""Comparison of bodies by their numbers: names, order, poses, masses, joints, shapes, manipulators."""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.transforms import Floats, Pose
+from ravemj.model.adjacency import adjacent_pairs
+from ravemj.model.joints import poses_at
+from ravemj.model.mimic import MimicJoints
+from ravemj.model.scene import AttachedSensor, Axis, Geometry, Joint, KinBody, Link, Manipulator, Mesh, Scene
+
+TOLERANCE = 1e-9
+"""Of numbers, relative to those above 1."""
+MESH_TOLERANCE = 1e-6
+"""Of the corners of triangles, which files keep in single precision."""
+CONFIGURATIONS = 5
+"""How many random configurations are compared."""
+
+_FARTHEST = 10.0  # [rad or m], of random values of joints without limits
+_AXIS_FIELDS = (
+    "direction", "lower", "upper", "circular", "value", "weight", "resolution", "max_velocity", "max_acceleration",
+    "max_torque", "armature",
+)  # fmt: skip
+
+
+class Difference(NamedTuple):
+    """A difference between two models.
+
+    Attributes:
+        part: The body, link, joint or shape, in words.
+        quantity: What differs about it.
+        first: What the first model has.
+        second: What the second model has.
+        error: The largest difference of two numbers, relative to those above 1; None where it is no matter of numbers.
+    """
+
+    part: str
+    quantity: str
+    first: object
+    second: object
+    error: float | None = None
+
+
+def compare(first: Scene, second: Scene, tolerance: float = TOLERANCE) -> list[Difference]:
+    """Compare two scenes body by body, in their order.
+
+    Args:
+        first: A scene.
+        second: Another one.
+        tolerance: Of all numbers but those of meshes, relative to numbers above 1.
+    """
+    return list(_Comparison(tolerance).scenes(first, second))
+
+
+@dataclass(frozen=True, slots=True)
+class _Comparison:
+    tolerance: float
+
+    def scenes(self, first: Scene, second: Scene) -> Iterator[Difference]:
+        """Compare the bodies, and gravity where both scenes have one."""
+        yield from self._same("the scene", "bodies", _names(first.bodies), _names(second.bodies))
+        if first.gravity is not None and second.gravity is not None:
+            yield from self._near("the scene", "gravity", first.gravity, second.gravity)
+        for one, other in zip(first.bodies, second.bodies, strict=False):
+            yield from self._bodies(one, other)
+
+    def _bodies(self, first: KinBody, second: KinBody) -> Iterator[Difference]:
+        part = f"'{first.name}'"
+        yield from self._same(part, "is a robot", first.is_robot, second.is_robot)
+        pairs = [sorted(adjacent_pairs(body)) for body in (first, second)]
+        structure = [
+            *self._same(part, "links", _names(first.links), _names(second.links)),
+            *self._same(part, "joints", _names(first.joints), _names(second.joints)),
+            *self._same(part, "passive joints", _names(first.passive_joints), _names(second.passive_joints)),
+        ]
+        yield from structure
+        yield from self._same(part, "manipulators", _names(first.manipulators), _names(second.manipulators))
+        yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))
+        if len(first.links) == len(second.links):
+            yield from self._same(part, "adjacent links", *pairs)
+        for one, other in zip(first.links, second.links, strict=False):
+            yield from self._links(f"{part} link '{one.name}'", one, other)
+        for one, other in zip(first.all_joints, second.all_joints, strict=False):
+            yield from self._joints(f"{part} joint '{one.name}'", one, other)
+        for one, other in zip(first.manipulators, second.manipulators, strict=False):
+            yield from self._manipulators(f"{part} manipulator '{one.name}'", one, other)
+        for one, other in zip(first.sensors, second.sensors, strict=False):
+            yield from self._sensors(f"{part} sensor '{one.name}'", one, other)
+        if not structure:
+            yield from self._configurations(part, first, second)
+
+    def _links(self, part: str, first: Link, second: Link) -> Iterator[Difference]:
+        yield from self._poses(part, "pose", first.T_world_link, second.T_world_link)
+        yield from self._near(part, "mass", first.inertial.mass, second.inertial.mass)
+        yield from self._near(part, "centre of mass", first.inertial.com, second.inertial.com)
+        yield from self._near(part, "inertia", first.inertial.inertia, second.inertial.inertia)
+        yield from self._same(part, "static", first.static, second.static)
+        yield from self._same(part, "enabled", first.enabled, second.enabled)
+        yield from self._same(part, "shapes", _types(first.geometries), _types(second.geometries))
+        for index, (one, other) in enumerate(zip(first.geometries, second.geometries, strict=False)):
+            yield from self._geometries(f"{part} shape {index}", one, other)
+
+    def _joints(self, part: str, first: Joint, second: Joint) -> Iterator[Difference]:
+        for name in ("kind", "parent", "child", "places_child"):
+            yield from self._same(part, name.replace("_", " "), getattr(first, name), getattr(second, name))
+        if first.kind != "slider":  # every point is as good there
+            yield from self._near(part, "anchor", first.anchor, second.anchor)
+        for one, other in zip(first.axes, second.axes, strict=False):
+            for name in _AXIS_FIELDS:
+                yield from self._near(part, name.replace("_", " "), getattr(one, name), getattr(other, name))
+        mimics = [None if joint.mimic is None else joint.mimic.dofs for joint in (first, second)]
+        yield from self._same(part, "follows DOFs", *mimics)
+
+    def _manipulators(self, part: str, first: Manipulator, second: Manipulator) -> Iterator[Difference]:
+        for name in ("base", "effector", "arm_dofs", "gripper_dofs", "chucking_direction"):
+            yield from self._same(part, name.replace("_", " "), getattr(first, name), getattr(second, name))
+        yield from self._poses(part, "tool", first.T_effector_tool, second.T_effector_tool)
+        yield from self._near(part, "direction", first.direction, second.direction)
+
+    def _sensors(self, part: str, first: AttachedSensor, second: AttachedSensor) -> Iterator[Difference]:
+        yield from self._same(part, "link", first.link, second.link)
+        yield from self._same(part, "camera", first.camera, second.camera)
+        yield from self._poses(part, "pose", first.T_link_sensor, second.T_link_sensor)
+
+    def _geometries(self, part: str, first: Geometry, second: Geometry) -> Iterator[Difference]:
+        for name in ("name", "visible"):
+            yield from self._same(part, name, getattr(first, name), getattr(second, name))
+        yield from self._poses(part, "pose", first.T_link_geometry, second.T_link_geometry)
+        for name in ("diffuse", "ambient", "transparency"):
+            yield from self._near(part, name, getattr(first, name), getattr(second, name))
+        if type(first.shape) is type(second.shape):
+            for size in first.shape.sizes():
+                values = getattr(first.shape, size.name), getattr(second.shape, size.name)
+                yield from self._sizes(part, size.name.replace("_", " "), *values)
+        yield from self._meshes(part, "drawn triangles", _drawn(first), _drawn(second))
+
+    def _sizes(self, part: str, quantity: str, first: Mesh | ArrayLike, second: Mesh | ArrayLike) -> Iterator[Difference]:
+        if isinstance(first, Mesh) and isinstance(second, Mesh):
+            yield from self._meshes(part, "triangles", first, second)
+        elif not isinstance(first, Mesh) and not isinstance(second, Mesh):
+            yield from self._near(part, quantity, first, second)
+
+    def _configurations(self, part: str, first: KinBody, second: KinBody) -> Iterator[Difference]:
+        """Compare the poses of all links in random configurations; report the one that is farthest off."""
+        random = np.random.default_rng(0)
+        found: list[Difference] = []
+        for _ in range(CONFIGURATIONS if first.joints else 0):
+            values = [_random_value(axis, random) for axis in first.dof_axes]
+            poses = [poses_in(body, values) for body in (first, second)]
+            for link, one, other in zip(first.links, *poses, strict=True):
+                place = f"{part} link '{link.name}' at the values {' '.join(f'{value:.3g}' for value in values)}"
+                found += self._poses(place, "pose", one, other)
+        if found:
+            yield max(found, key=lambda difference: difference.error or math.inf)
+
+    def _poses(self, part: str, quantity: str, first: Pose, second: Pose) -> Iterator[Difference]:
+        if first != second:
+            yield from self._near(part, quantity, first.matrix(), second.matrix())
+
+    def _meshes(self, part: str, quantity: str, first: Mesh, second: Mesh) -> Iterator[Difference]:
+        if first is second or first == second:
+            return
+        corners = [_corners(mesh) for mesh in (first, second)]
+        yield from self._same(part, f"number of {quantity}", *map(len, corners))
+        if len(corners[0]) == len(corners[1]):
+            error = float(np.abs(corners[0] - corners[1]).max(initial=0.0) / max(1.0, np.abs(corners[0]).max(initial=0.0)))
+            if not error <= MESH_TOLERANCE:
+                yield Difference(part, quantity, "", "", error)
+
+    def _near(self, part: str, quantity: str, first: ArrayLike, second: ArrayLike) -> Iterator[Difference]:
+        if first is second:
+            return
+        one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
+        if one.shape != other.shape:
+            yield Difference(part, quantity, one.tolist(), other.tolist())
+            return
+        with np.errstate(invalid="ignore"):
+            errors = np.abs(one - other) / np.maximum(1.0, np.abs(one))
+        is_same = (one == other) | (np.isnan(one) & np.isnan(other))
+        error = float(np.where(is_same, 0.0, errors).max(initial=0.0))
+        if not error <= self.tolerance:
+            yield Difference(part, quantity, one.tolist(), other.tolist(), error)
+
+    def _same(self, part: str, quantity: str, first: object, second: object) -> Iterator[Difference]:
+        if first != second:
+            yield Difference(part, quantity, first, second)
+
+
+def poses_in(body: KinBody, dof_values: Sequence[float]) -> list[Pose]:
+    """Return the poses of the links of a body in a configuration, its root links being where they are.
+
+    Args:
+        body: The body.
+        dof_values: Its joint values [rad or m].
+    """
+    rest = iter(dof_values)
+    values = [[next(rest) for _ in joint.axes] for joint in body.joints]
+    values += [[axis.value for axis in joint.axes] for joint in body.passive_joints]
+    firsts = [joint_values[0] for joint_values in values]
+    MimicJoints(body.all_joints).evaluate(firsts)
+    return poses_at(body, [[first, *joint_values[1:]] for first, joint_values in zip(firsts, values, strict=True)])
+
+
+def _random_value(axis: Axis, random: np.random.Generator) -> float:
+    return float(random.uniform(max(axis.lower, -_FARTHEST), min(axis.upper, _FARTHEST)))
+
+
+def _names(parts: Iterable[Link | Joint | KinBody | Manipulator | AttachedSensor]) -> list[str]:
+    return [part.name for part in parts]
+
+
+def _types(geometries: Sequence[Geometry]) -> list[str]:
+    return [type(geometry.shape).__name__ for geometry in geometries]
+
+
+def _drawn(geometry: Geometry) -> Mesh:
+    if geometry.display is None:
+        return _NOTHING
+    return Mesh.merged(surface.mesh for surface in geometry.display)
+
+
+def _corners(mesh: Mesh) -> Floats:
+    """Return the corners of the triangles of a mesh that have an area in single precision, shape (n, 3, 3)."""
+    corners = mesh.vertices[mesh.triangles]
+    a, b, c = (corners[:, i].astype(np.float32) for i in range(3))
+    return corners[~((a == b).all(1) | (b == c).all(1) | (c == a).all(1))]
+
+
+_NOTHING = Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int_))
