@@ -60,7 +60,7 @@ def test_no_search_finds_what_the_closed_form_misses(kind):
 
 @pytest.mark.parametrize(
     ("chain", "free", "family"),
-    [(PUMA, (), "wrist"), (UR5, (), "parallel"), (PANDA, (6,), "wrist"), (WAM, (6,), "wrist")],
+    [(PUMA, (), "wrist"), (UR5, (), "parallel"), (PANDA, (6,), "wrist"), (WAM, (2,), "wrist")],
 )
 def test_known_arms(chain, free, family):
     solver = make_solver(chain)

@@ -6,8 +6,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ravemj.ik.chain import Chain
+from ravemj.ik.families.blocks import common_point
+from ravemj.ik.families.snapping import TOLERANCE, nominal
 from ravemj.ik.tasks import Task
-from ravemj.ik.vectors import Floats
+from ravemj.ik.vectors import Floats, Screw, constant
 
 SINGULAR_STEP = np.pi / 8
 """Where two joints turn about one line, the first of them is shown at every such angle."""
@@ -26,13 +28,25 @@ def rank(chain: Chain, task: Task) -> int:
 def choices(chain: Chain, task: Task) -> Iterator[tuple[int, ...]]:
     """Return sets of joints that can be left free, so many that the others are not too many.
 
-    The last joint comes first and the first one second: with these locked, the geometry of the rest does not depend on
+    Between a spherical shoulder and a spherical wrist, the third of seven joints comes first, as in OpenRAVE. Else the
+    last joint comes first and the first one second: with these locked, the geometry of the rest does not depend on
     their value. The others follow from the tool to the base.
     """
     count = chain.dof - rank(chain, task)
     order = [chain.dof - 1, 0, *range(chain.dof - 2, 0, -1)][: chain.dof]
+    if task is Task.TRANSFORM and _is_like_a_human_arm(chain):
+        order.insert(0, order.pop(order.index(2)))
     for chosen in itertools.combinations(order, count):
         yield tuple(sorted(chosen))
+
+
+def _is_like_a_human_arm(chain: Chain) -> bool:
+    """Return whether there are seven joints, and the axes of the first three and of the last three meet in a point."""
+    if chain.dof != 7 or chain.prismatic.any():
+        return False
+    exact = nominal(chain)
+    screws = [Screw(constant(axis), constant(point)) for axis, point in zip(exact.axes, exact.points, strict=True)]
+    return all(common_point(ends, TOLERANCE) is not None for ends in (screws[:3], screws[4:]))
 
 
 def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Floats | None = None) -> Floats:

@@ -230,7 +230,7 @@ def make_solver(
     Args:
         chain: The arm.
         task: What is asked for.
-        free: Joints to sample; None: as few as are too many, the last or the first one if a family fits then.
+        free: Joints to sample; None: as few as are too many, in the order of ``redundancy.choices``.
         steps: A step for each free joint [rad or m]; 0.1 rad and a hundredth of the reach if None.
         kinematics: Makes what computes poses and Jacobians for the search.
 
