@@ -5,7 +5,7 @@ objects is ravemj's own.
 """
 
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.geometry_functions.ik_parameterization import IkParameterizationType
+from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.rave.body.grabbing import GrabbedInfo
 from ravemj.rave.body.saving import StateSaver
 from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
@@ -50,6 +50,8 @@ from ravemj.rave.environment import (
 )
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.graph_handle import GraphHandle
+from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
+from ravemj.rave.iksolver import IkSolver, RaveCreateIkSolver
 from ravemj.rave.infos import ElectricMotorActuatorInfo, ExtractInfoOptions
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
@@ -78,7 +80,6 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.planning import Planner, PlanningError
 from ravemj.rave.plugins import (
-    RaveCreateIkSolver,
     RaveCreateModule,
     RaveCreatePlanner,
     RaveCreateProblem,
@@ -127,10 +128,13 @@ __all__ = [
     "GrabbedInfo",
     "GraphHandle",
     "IdealController",
+    "IkFailureInfo",
     "IkFilterOptions",
     "IkParameterization",
     "IkParameterizationType",
+    "IkReturn",
     "IkReturnAction",
+    "IkSolver",
     "InterfaceAddMode",
     "InterfaceType",
     "Joint",
