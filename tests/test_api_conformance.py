@@ -18,6 +18,7 @@ import tempfile
 import time
 import traceback
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -58,7 +59,7 @@ MISTAKES = {
 """Other answers that are OpenRAVE's mistakes or accidents: the places in ``result`` that may differ, and why."""
 
 
-def run_case(name: str, folder: Path) -> dict[str, object]:
+def run_case(name: str, folder: Path, cases: Path = CASES) -> dict[str, object]:
     """Run a script in a process of its own; return its ``result`` or ``error``."""
     reader, writer = os.pipe()
     with warnings.catch_warnings():
@@ -66,7 +67,7 @@ def run_case(name: str, folder: Path) -> dict[str, object]:
         child = os.fork()
     if child == 0:
         os.close(reader)
-        _be_the_script(name, folder, writer)
+        _be_the_script(cases / f"{name}.py", folder, writer)
     os.close(writer)
     try:
         text = _read(reader, time.monotonic() + PATIENCE)
@@ -89,7 +90,7 @@ def _read(reader: int, deadline: float) -> bytes:
     raise TimeoutError
 
 
-def _be_the_script(name: str, folder: Path, writer: int) -> None:
+def _be_the_script(script: Path, folder: Path, writer: int) -> None:
     """Never returns."""
     try:
         warnings.simplefilter("ignore")
@@ -100,9 +101,9 @@ def _be_the_script(name: str, folder: Path, writer: int) -> None:
         for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
             os.environ.pop(variable, None)
         alias.install_finder()
-        space = {"__name__": "__main__", "__file__": f"{name}.py", "raises": raises}
+        space = {"__name__": "__main__", "__file__": script.name, "raises": raises}
         try:
-            exec(compile((CASES / f"{name}.py").read_text(), f"{name}.py", "exec"), space)
+            exec(compile(script.read_text(), script.name, "exec"), space)
             answer = {"result": plain(space["result"])}
         except BaseException as error:
             answer = {"error": "".join(traceback.format_exception(error))}
@@ -174,18 +175,20 @@ def _agree(expected, got, tolerance):
     return type(expected) is type(got) and expected == got
 
 
-def compared(name: str, folder: Path) -> list[str]:
+def compared(
+    name: str, folder: Path, cases: Path = CASES, mistakes: Mapping[str, tuple[str, str]] = MISTAKES
+) -> list[str]:
     """Run a script and return what is wrong with its answer."""
-    answer = run_case(name, folder)
+    answer = run_case(name, folder, cases)
     if "error" in answer:
         return [str(answer["error"])]
-    tolerance = re.search(r"^TOLERANCE = (\S+)", (CASES / f"{name}.py").read_text(), re.MULTILINE)
-    expected = json.loads((CASES / f"{name}.json").read_text())
+    tolerance = re.search(r"^TOLERANCE = (\S+)", (cases / f"{name}.py").read_text(), re.MULTILINE)
+    expected = json.loads((cases / f"{name}.json").read_text())
     if name in SLIDER_FORCES:
         expected = scaled(expected, SLIDER_FORCES[name], 2 * math.pi)
     found = differences(expected, answer["result"], float(tolerance[1]) if tolerance else 1e-9)
-    if name in MISTAKES:
-        found = (text for text in found if not re.search(MISTAKES[name][0], text.partition(": ")[0]))
+    if name in mistakes:
+        found = (text for text in found if not re.search(mistakes[name][0], text.partition(": ")[0]))
     return list(found)
 
 

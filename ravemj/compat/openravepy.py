@@ -7,7 +7,9 @@ names such as ``numpy.load``.
 
 import builtins
 import importlib
+import itertools
 import logging
+import os
 import pickle
 import sys
 
@@ -22,7 +24,15 @@ __version__ = "0.9.0"
 """That of OpenRAVE's last release, for scripts that compare."""
 
 _OWN = {"load", "read_motion", "record"}
-_LEAKS = {"numpy": numpy, "sys": sys, "pickle": pickle, "logging": logging, "log": log}
+_LEAKS = {
+    "numpy": numpy,
+    "os": os,
+    "sys": sys,
+    "itertools": itertools,
+    "pickle": pickle,
+    "logging": logging,
+    "log": log,
+}
 _NAMES: list[str] = [name for name in dir(ravemj) if name not in _OWN and not name.startswith("_")]
 
 builtins.__dict__["__openravepy_build_doc__"] = False

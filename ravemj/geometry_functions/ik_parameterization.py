@@ -4,133 +4,123 @@ The numbers are, by type: of ``Transform6D`` the pose [w, x, y, z, tx, ty, tz]; 
 ``Translation3D`` and ``Lookat3D`` the point; of ``Direction3D`` the direction; of ``Ray4D`` and
 ``TranslationDirection5D`` direction and point; of ``TranslationXY2D`` x and y, of ``TranslationXYOrientation3D`` the
 angle behind them; of ``TranslationLocalGlobal6D`` a point of the tool and where it shall be; of the types with
-``AxisAngle`` angle and point.
+``AxisAngle`` angle and point. That angle is one in the frame of the arm's base, and stays as it is when goals move.
 """
 
 import math
-from enum import IntEnum
 from typing import Any
 
 import numpy as np
 
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Pose, Wxyz, multiply, normalize, pose_of
-from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions.boxes import Ray
-from ravemj.geometry_functions.rotations import quatFromRotationMatrix, quatRotateDirection, rotationMatrixFromQuat
-
-
-class IkParameterizationType(IntEnum):
-    """What of a pose the end of an arm shall reach: the numbers hold DOF, count of values, and a unique number."""
-
-    None_ = 0
-    Transform6D = 0x67000001
-    Rotation3D = 0x34000002
-    Translation3D = 0x33000003
-    Direction3D = 0x23000004
-    Ray4D = 0x46000005
-    Lookat3D = 0x23000006
-    TranslationDirection5D = 0x56000007
-    TranslationXY2D = 0x22000008
-    TranslationXYOrientation3D = 0x33000009
-    TranslationLocalGlobal6D = 0x3600000A
-    TranslationXAxisAngle4D = 0x4400000B
-    TranslationYAxisAngle4D = 0x4400000C
-    TranslationZAxisAngle4D = 0x4400000D
-    TranslationXAxisAngleZNorm4D = 0x4400000E
-    TranslationYAxisAngleXNorm4D = 0x4400000F
-    TranslationZAxisAngleYNorm4D = 0x44000010
-
-
-INVERSE_KINEMATICS = "inverse kinematics"
-"""What is not there yet, in errors."""
+from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType, goal_size
+from ravemj.geometry_functions.rotations import quatRotateDirection, rotationMatrixFromQuat
 
 _Type = IkParameterizationType
 _RAYS = {_Type.Ray4D, _Type.TranslationDirection5D}
-_POINTS = {_Type.Translation3D, _Type.Lookat3D}
+_PLACES = {_Type.Translation3D, _Type.Lookat3D}
+_PLANAR = {_Type.TranslationXY2D, _Type.TranslationXYOrientation3D}
+_WITH_ANGLE = frozenset(kind for kind in GOAL_TYPES if "AxisAngle" in kind.name)
+"""Types whose first number is an angle to an axis of the frame of the arm's base, or about one."""
+_ABOUT_AXIS = frozenset(kind for kind in _WITH_ANGLE if "Norm" in kind.name)
 _WITH_DIRECTION = {_Type.Direction3D, *_RAYS}
 """Types whose first three numbers are a direction."""
-_WITH_POINT = {*_POINTS, *_RAYS, _Type.TranslationLocalGlobal6D}
+_WITH_POINT = {*_PLACES, *_RAYS, *_WITH_ANGLE, _Type.TranslationLocalGlobal6D}
 """Types whose last three numbers are a point that moves."""
-_PLANAR = {_Type.TranslationXY2D, _Type.TranslationXYOrientation3D}
-_ANGLES = {kind for kind in _Type if "AxisAngle" in kind.name}
 _ANGLE_WEIGHT = 0.4
 """OpenRAVE's weight of a squared angle [1/rad^2] beside a squared distance [1/m^2]."""
-
-
-def goal_dof(kind: int) -> int:
-    """Return how many degrees of freedom a goal of a type takes away."""
-    return int(kind) >> 28 & 0xF
-
-
-def goal_size(kind: int) -> int:
-    """Return how many numbers a goal of a type has."""
-    return int(kind) >> 24 & 0xF
+_UNIT = 0.01
+"""How far the squared length of a direction may be from 1."""
 
 
 def checked_goal(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: ANN401 - as the type asks for
-    """Return the numbers of a goal that a user gave as a matrix, a ray or a vector, shape (n,)."""
+    """Return the numbers of a goal that a user gave as a matrix, a ray or a vector, shape (n,).
+
+    Raises:
+        ArgumentError: they are not what the type asks for; with the code ``Assert``, a direction is no unit vector.
+    """
+    if kind not in GOAL_TYPES:
+        known = ", ".join(sorted(one.name for one in GOAL_TYPES))
+        raise ArgumentError(f"type: is {kind.name}, and should be one of {known}")
     if kind == _Type.Transform6D:
         return pose_of(checked_transform(value, "value")).numbers()
     if kind in _RAYS:
         if not isinstance(value, Ray):
             raise ArgumentError(f"value: is a {type(value).__name__}, and should be a Ray")
-        direction = value.dir()
-        return np.concatenate([direction / (np.linalg.norm(direction) or 1.0), value.pos()])
+        return np.concatenate([_checked_direction(value.dir()), value.pos()])
     if kind == _Type.TranslationLocalGlobal6D:
         value = np.ravel(checked_numbers(value, "value"))
     match value:
-        case [point, angle] if kind in _ANGLES:
+        case [point, angle] if kind in _WITH_ANGLE:
             return checked_vector([angle, *checked_vector(point, 3, "value: point")], goal_size(kind), "value")
         case _:
-            return checked_vector(value, goal_size(kind), "value")
+            values = checked_vector(value, goal_size(kind), "value")
+            return _checked_direction(values) if kind == _Type.Direction3D else values
 
 
-def goal_of_tool(kind: IkParameterizationType, T_frame_tool: Floats, direction: Floats) -> object:
-    """Return what a type of goal takes of a tool's pose, as ``checked_goal`` takes it.
+def _checked_direction(direction: Floats) -> Floats:
+    square = float(direction @ direction)
+    if not abs(square - 1) < _UNIT:
+        message = f"value: the direction {direction.tolist()} has the length {math.sqrt(square):g}, and should have 1"
+        raise ArgumentError(message, ErrorCode.Assert)
+    return direction / math.sqrt(square)
+
+
+def goal_of_tool(
+    kind: IkParameterizationType, T_frame_tool: Floats, direction: Floats, like: Floats | None = None
+) -> Floats:
+    """Return the numbers of the goal that a tool reaches where it is, shape (n,).
 
     Args:
         kind: The type of goal.
         T_frame_tool: The tool's pose, shape (4, 4).
         direction: Where the tool points in its own frame, shape (3,).
-
-    Raises:
-        UnsupportedError: a pose does not say what goals of that type need.
+        like: A goal of that type: its point of the tool is taken, or the point that is looked at.
     """
     position, pointing = T_frame_tool[:3, 3], T_frame_tool[:3, :3] @ direction
-    angle = np.arctan2(T_frame_tool[1, 0], T_frame_tool[0, 0])
-    parts: dict[IkParameterizationType, object] = {
-        _Type.Transform6D: T_frame_tool,
-        _Type.Rotation3D: quatFromRotationMatrix(T_frame_tool),
-        _Type.Translation3D: position,
-        _Type.Lookat3D: position,
-        _Type.Direction3D: pointing,
-        _Type.Ray4D: Ray(position, pointing),
-        _Type.TranslationDirection5D: Ray(position, pointing),
-        _Type.TranslationXY2D: position[:2],
-        _Type.TranslationXYOrientation3D: np.array([*position[:2], angle]),
-    }
-    if kind not in parts:
-        raise UnsupportedError(f"GetIkParameterization of {kind.name}", f"{INVERSE_KINEMATICS} of that type")
-    return parts[kind]
+    x, y, z = pointing.tolist()
+    if kind in {_Type.Transform6D, _Type.Rotation3D}:
+        return pose_of(T_frame_tool).numbers()[: goal_size(kind)]
+    if kind == _Type.Lookat3D:
+        distance = 1.0 if like is None else float(pointing @ (like - position))
+        return position + distance * pointing
+    if kind == _Type.TranslationLocalGlobal6D:
+        local = np.zeros(3) if like is None else like[:3]
+        return np.append(local, T_frame_tool[:3, :3] @ local + position)
+    if kind in _WITH_ANGLE:
+        angle = {
+            _Type.TranslationXAxisAngle4D: math.acos(max(-1.0, min(1.0, x))),
+            _Type.TranslationYAxisAngle4D: math.acos(max(-1.0, min(1.0, y))),
+            _Type.TranslationZAxisAngle4D: math.acos(max(-1.0, min(1.0, z))),
+            _Type.TranslationXAxisAngleZNorm4D: math.atan2(y, x),
+            _Type.TranslationYAxisAngleXNorm4D: math.atan2(z, y),
+            _Type.TranslationZAxisAngleYNorm4D: math.atan2(x, z),
+        }
+        return np.append(angle[kind], position)
+    if kind in _PLANAR:
+        return np.append(position[:2], math.atan2(y, x))[: goal_size(kind)]
+    parts = [pointing] * (kind in _WITH_DIRECTION) + [position] * (kind in _WITH_POINT)
+    return np.concatenate(parts)
 
 
 def moved_goal(kind: IkParameterizationType, values: Floats, pose: Pose) -> Floats:
     """Return the numbers of a goal that is moved by a pose, as ``pose * goal``."""
-    rotation, translation = pose.matrix()[:3, :3], np.array(pose.position)
     if kind == _Type.Transform6D:
         return (pose @ goal_pose(values)).numbers()
     if kind == _Type.Rotation3D:
         return np.array(multiply(pose.wxyz, _wxyz(values)))
+    T = pose.matrix()
     if kind in _PLANAR:
-        return np.append(rotation[:2, :2] @ values[:2] + translation[:2], values[2:] + _angle_about_z(pose))
-    if kind not in _WITH_DIRECTION | _WITH_POINT:
-        raise UnsupportedError(f"moving a goal of type {kind.name}", f"{INVERSE_KINEMATICS} of that type")
+        place = (T @ [*values[:2], 0.0, 1.0])[:2]
+        return np.append(place, values[2:] + _angle_about_z(pose))
     moved = values.copy()
     if kind in _WITH_DIRECTION:
-        moved[:3] = rotation @ values[:3]
+        moved[:3] = T[:3, :3] @ values[:3]
     if kind in _WITH_POINT:
-        moved[-3:] = rotation @ values[-3:] + translation
+        moved[-3:] = T[:3, :3] @ values[-3:] + T[:3, 3]
     return moved
 
 
@@ -143,8 +133,8 @@ def goal_moved_in_its_frame(kind: IkParameterizationType, values: Floats, pose: 
         return np.array(multiply(_wxyz(values), pose.wxyz))
     if kind in _PLANAR:
         return np.append(values[:2] + translation[:2], values[2:] + _angle_about_z(pose))
-    if kind not in (_WITH_DIRECTION | _WITH_POINT) - {_Type.Ray4D}:
-        raise RavemjError(f"a goal of type {kind.name} cannot be moved in its own frame")
+    if kind == _Type.Ray4D:
+        raise RavemjError("a goal of type Ray4D cannot be moved in its own frame")
     moved, frame = values.copy(), np.eye(3)
     if kind in _WITH_DIRECTION:
         frame = rotationMatrixFromQuat(quatRotateDirection([0, 0, 1], values[:3]))
@@ -154,21 +144,55 @@ def goal_moved_in_its_frame(kind: IkParameterizationType, values: Floats, pose: 
     return moved
 
 
+_FOLLOW = "_transform="
+
+
+def moved_custom_values(name: str, values: Floats, pose: Pose) -> Floats:
+    """Return numbers that a user attached to a goal, after the goal is moved by a pose; their name says what they are.
+
+    Raises:
+        ArgumentError: the name has a word behind ``_transform=`` that is none of ``point``, ``direction``, ``quat`` and
+            ``ikparam`` (``InvalidState``), or there are too few numbers.
+    """
+    if _FOLLOW not in name:
+        return values
+    word = name.partition(_FOLLOW)[2].partition("_")[0]
+    kind = {"point": _Type.Translation3D, "direction": _Type.Direction3D, "quat": _Type.Rotation3D}.get(word)
+    first = 0
+    if word == "ikparam" and len(values):
+        kind, first = _Type(int(values[0])), 1
+    if kind is None and word != "ikparam":
+        message = f"custom values '{name}': '{word}' should be point, direction, quat or ikparam"
+        raise ArgumentError(message, ErrorCode.InvalidState)
+    size = first + 1 if kind is None else first + goal_size(kind)
+    if kind is None or len(values) < size:
+        raise ArgumentError(f"custom values '{name}' are {len(values)} numbers, and should be at least {size}")
+    return np.concatenate([values[:first], moved_goal(kind, values[first:size], pose), values[size:]])
+
+
 def goal_distance_squared(kind: IkParameterizationType, first: Floats, second: Floats) -> float:
-    """Return the squared distance between two goals of one type [m^2 and rad^2]; angles count less for poses."""
-    if kind == _Type.Transform6D:
-        angle = _angle_of_quaternions(first[:4], second[:4])
-        return _squared_length(first[4:] - second[4:]) + _ANGLE_WEIGHT * angle**2
-    if kind == _Type.Rotation3D:
-        return _angle_of_quaternions(first, second) ** 2
+    """Return the squared distance between two goals of one type [m^2 and rad^2]; angles count less beside places."""
+    if kind in {_Type.Transform6D, _Type.Rotation3D}:
+        square = _half_turn(first, second) ** 2
+        return _squared_length(first[4:] - second[4:]) + _ANGLE_WEIGHT * square if len(first) > 4 else square
     if kind == _Type.Direction3D:
         return _angle(first, second) ** 2
-    if kind in _POINTS:
-        return _squared_length(first - second)
     if kind in _RAYS:
         a, b = (_nearest_point(ray) if kind == _Type.Ray4D else ray[3:] for ray in (first, second))
-        return _squared_length(a - b) + _angle(first[:3], second[:3]) ** 2
-    raise UnsupportedError(f"ComputeDistanceSqr of {kind.name}", f"{INVERSE_KINEMATICS} of that type")
+        return _squared_length(a - b) + _ANGLE_WEIGHT * _angle(first[:3], second[:3]) ** 2
+    if kind == _Type.TranslationXYOrientation3D:
+        turn = _wrapped(float(first[2] - second[2]))
+        return _squared_length(first[:2] - second[:2]) + _ANGLE_WEIGHT * turn**2
+    if kind in _WITH_ANGLE:
+        a, b = float(first[0]), float(second[0])
+        turn = _wrapped(a - b) if kind in _ABOUT_AXIS else abs(a) - abs(b)
+        return _squared_length(first[1:] - second[1:]) + turn**2
+    return _squared_length(first - second)
+
+
+def has_point(kind: IkParameterizationType) -> bool:
+    """Return whether the last three numbers of a goal of a type are a point."""
+    return kind == _Type.Transform6D or kind in _WITH_POINT
 
 
 def goal_pose(values: Floats) -> Pose:
@@ -192,6 +216,11 @@ def _angle_about_z(pose: Pose) -> float:
     return 2 * math.atan2(pose.wxyz[3], pose.wxyz[0])
 
 
+def _wrapped(angle: float) -> float:
+    """Return an angle in [-pi, pi]."""
+    return math.remainder(angle, 2 * math.pi)
+
+
 def _nearest_point(ray: Floats) -> Floats:
     """Return the point of a ray, given by direction and point, that is nearest to the origin."""
     direction, point = ray[:3], ray[3:]
@@ -203,10 +232,10 @@ def _squared_length(vector: Floats) -> float:
 
 
 def _angle(a: Floats, b: Floats) -> float:
-    """Return the angle between two unit vectors [rad]."""
-    return math.acos(min(1.0, max(-1.0, float(a @ b))))
+    """Return the angle between two unit vectors [rad] (W. Kahan's formula, exact for small angles)."""
+    return 2 * math.atan2(float(np.linalg.norm(a - b)), float(np.linalg.norm(a + b)))
 
 
-def _angle_of_quaternions(a: Floats, b: Floats) -> float:
-    """Return the angle between two unit quaternions, of which each stands for the same as its negative [rad]."""
-    return min(_angle(a, b), _angle(a, -b))
+def _half_turn(a: Floats, b: Floats) -> float:
+    """Return half the angle between the rotations of two unit quaternions, shape (4,) or more [rad]."""
+    return _angle(a[:4], b[:4] if a[:4] @ b[:4] >= 0 else -b[:4])

@@ -1,9 +1,17 @@
 """From a manipulator of a scene to a chain: the only module here that knows scenes."""
 
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
+
 import numpy as np
 
 from ravemj.core.transforms import Pose, Vec3, rotate
 from ravemj.ik.chain import Chain
+from ravemj.ik.free_joints import default_free, default_steps
+from ravemj.ik.numeric import NumericSolver
+from ravemj.ik.solver import IKSolver, make_solver
+from ravemj.ik.tasks import Task
 from ravemj.model.joints import directions_at, relative_pose
 from ravemj.model.manipulators import chain as joints_between
 from ravemj.model.scene import Axis, Joint, KinBody, Manipulator
@@ -59,3 +67,50 @@ def _axes(name: str, joint: Joint, T_base_parent: Pose) -> list[tuple[Joint, Axi
         (joint, axis, rotate(T_base_parent.wxyz, direction), point)
         for axis, direction in zip(joint.axes, directions, strict=True)
     ]
+
+
+class ArmSolver:
+    """The solver of an arm, which is derived when it is first asked for, and again when the arm has changed.
+
+    Attributes:
+        task: What is asked for.
+        free: Joints of the chain to sample; None: as few as have to be.
+    """
+
+    def __init__(self, task: Task, free: Sequence[int] | None = None) -> None:
+        self.task, self.free = task, free
+        self._of: tuple[object, ...] = ()
+        self._solver: IKSolver | None = None
+
+    def of(self, body: KinBody, manipulator: Manipulator) -> IKSolver:
+        """Return the solver, up to date; a change of limits needs no new one.
+
+        Raises:
+            ValueError: the arm is none that can be solved; the message says why.
+        """
+        now = body.joints, body.passive_joints, manipulator
+        if self._solver is None or any(old is not new for old, new in zip(self._of, now, strict=True)):
+            chain = chain_of(body, manipulator)
+            self._solver = _with_limits(self._solver, chain) or self._derived(chain)
+            self._of = now
+        return self._solver
+
+    def _derived(self, chain: Chain) -> IKSolver:
+        free = self.free
+        if free is None and self.task is not Task.TRANSFORM:
+            free = default_free(chain, self.task.value, self.task.dof)
+        solver = make_solver(chain, self.task, free=free)
+        return replace(solver, steps=default_steps(chain, solver.free))
+
+
+def _with_limits(solver: IKSolver | None, chain: Chain) -> IKSolver | None:
+    """Return a solver with the limits of a chain; None if the chain differs in more than these."""
+    if solver is None or solver.chain.reach != chain.reach or solver.chain.dof != chain.dof:
+        return None
+    for part in ("axes", "points", "prismatic", "T_base_tool", "direction"):
+        if not np.array_equal(getattr(solver.chain, part), getattr(chain, part)):
+            return None
+    closed = copy(solver.closed)
+    if closed is not None:
+        closed.chain = chain
+    return replace(solver, chain=chain, closed=closed, numeric=NumericSolver(chain, solver.task))

@@ -6,6 +6,7 @@ from typing import cast
 
 from ravemj.core.transforms import Pose
 from ravemj.model.joints import directions_at, relative_pose
+from ravemj.model.manipulators import chain
 from ravemj.model.scene import Geometry, Joint, KinBody, Manipulator, Mesh
 
 DIGITS = 8
@@ -25,13 +26,34 @@ def of_robot(body: KinBody) -> str:
 
 def of_arm(body: KinBody, arm: Manipulator) -> str:
     """Return the hash of the joints between base and effector, and of the tool."""
-    joints = [joint for joint in body.joints for _ in joint.axes]
-    return _digest([_joint(joints[dof]) for dof in arm.arm_dofs], _tool(arm))
+    return _digest(_way(body, arm), _tool(arm))
+
+
+def of_inverse_kinematics(body: KinBody, arm: Manipulator, kind: str, *, tool: bool, direction: bool) -> str:
+    """Return the hash of what a solver of inverse kinematics depends on.
+
+    Args:
+        body: The robot.
+        arm: The manipulator.
+        kind: The type of goal.
+        tool: Whether the tool in the effector counts.
+        direction: Whether the direction of the tool counts.
+    """
+    placed = (arm.T_effector_tool,) if tool else ()
+    return _digest(kind, _way(body, arm), placed, (arm.direction,) if direction else ())
 
 
 def of_manipulator(body: KinBody, arm: Manipulator) -> str:
-    """Return the hash of a manipulator with its robot, gripper included."""
-    return _digest(of_body(body), _tool(arm), arm.gripper_dofs, arm.chucking_direction)
+    """Return the hash of a manipulator, gripper included."""
+    return _digest(of_arm(body, arm), [body.joints[index].kind for index in arm.gripper_joints], arm.chucking_direction)
+
+
+def _way(body: KinBody, arm: Manipulator) -> list[object]:
+    """Return the joints between base and effector."""
+    if arm.base is None or arm.effector is None:
+        return []
+    joints = (*body.joints, *body.passive_joints)
+    return [_joint(joints[index]) for index in chain(body, arm.base, arm.effector) or []]
 
 
 def _tool(arm: Manipulator) -> tuple[object, ...]:

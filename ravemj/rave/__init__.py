@@ -5,7 +5,7 @@ objects is ravemj's own.
 """
 
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.geometry_functions.ik_parameterization import IkParameterizationType
+from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.rave.body.grabbing import GrabbedInfo
 from ravemj.rave.body.saving import StateSaver
 from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
@@ -52,6 +52,8 @@ from ravemj.rave.environment import (
 )
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.graph_handle import GraphHandle
+from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
+from ravemj.rave.iksolver import IkSolver, RaveCreateIkSolver
 from ravemj.rave.infos import ElectricMotorActuatorInfo, ExtractInfoOptions
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
@@ -86,7 +88,6 @@ from ravemj.rave.planning import (
     RaveCreatePlanner,
 )
 from ravemj.rave.plugins import (
-    RaveCreateIkSolver,
     RaveCreateModule,
     RaveCreateProblem,
     RaveCreateSensor,
@@ -135,10 +136,13 @@ __all__ = [
     "GrabbedInfo",
     "GraphHandle",
     "IdealController",
+    "IkFailureInfo",
     "IkFilterOptions",
     "IkParameterization",
     "IkParameterizationType",
+    "IkReturn",
     "IkReturnAction",
+    "IkSolver",
     "InterfaceAddMode",
     "InterfaceType",
     "Interval",

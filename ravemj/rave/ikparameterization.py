@@ -5,36 +5,31 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, pose_of
-from ravemj.errors import ArgumentError
-from ravemj.geometry_functions import Ray
+from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions.ik_parameterization import (
-    IkParameterizationType,
-    checked_goal,
     goal_distance_squared,
-    goal_dof,
     goal_moved_in_its_frame,
-    goal_pose,
-    goal_ray,
-    goal_size,
+    moved_custom_values,
     moved_goal,
 )
+from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType, goal_dof, goal_size
+from ravemj.rave.goal_values import GoalValues
 
 _Type = IkParameterizationType
 _CUSTOM_DATA = 0x10000
 """Bit of the type's number in the text of a goal that has data of users."""
 
 
-class IkParameterizationData(ApiObject):
+class IkParameterizationData(GoalValues):
     """The part of ``IkParameterization`` that works on its numbers and the data of users."""
 
     Type = IkParameterizationType
     __array_ufunc__ = None  # so that ``matrix * goal`` is ours
 
     def __init__(self, value: Any = None, type: IkParameterizationType | int | None = None) -> None:  # noqa: ANN401 - as the type asks for
-        self._type = _Type.None_
+        self._type = _Type.none
         self._values = np.zeros(0)
         self._custom: dict[str, Floats] = {}
         if isinstance(value, IkParameterizationData):
@@ -44,10 +39,6 @@ class IkParameterizationData(ApiObject):
             self._read(value.split())
         elif type is not None:
             self._set(_Type(type), value)
-
-    def _set(self, kind: IkParameterizationType, value: Any) -> None:  # noqa: ANN401 - as the type asks for
-        self._values = checked_goal(kind, value)
-        self._type = kind
 
     def GetType(self) -> IkParameterizationType:
         """Return the type."""
@@ -72,7 +63,13 @@ class IkParameterizationData(ApiObject):
         return goal_size(type)
 
     def GetValues(self) -> Floats:
-        """Return the numbers of the goal, shape (n,)."""
+        """Return the numbers of the goal, shape (n,).
+
+        Raises:
+            ArgumentError: the goal is empty.
+        """
+        if self._type not in GOAL_TYPES:
+            raise ArgumentError("the goal is empty, and has no values; give it a value and a type first")
         return self._values.copy()
 
     def SetValues(self, values: ArrayLike, type: int) -> None:
@@ -86,85 +83,6 @@ class IkParameterizationData(ApiObject):
         self._values = checked_vector(values, self.GetNumberOfValuesFromType(kind), "values")
         self._type = kind
 
-    # One pair of methods for each type
-
-    def SetTransform6D(self, transform: ArrayLike) -> None:
-        """Set the goal to a pose: 4x4 or [w, x, y, z, tx, ty, tz].
-
-        Args:
-            transform: A matrix 4x4 or 3x4, or [w, x, y, z, tx, ty, tz].
-        """
-        self._set(_Type.Transform6D, transform)
-
-    def GetTransform6D(self) -> Floats:
-        """Return the pose, shape (4, 4)."""
-        return goal_pose(self._of(_Type.Transform6D)).matrix()
-
-    def GetTransform6DPose(self) -> Floats:
-        """Return the pose [w, x, y, z, tx, ty, tz], shape (7,)."""
-        return self._of(_Type.Transform6D)
-
-    def SetRotation3D(self, quat: ArrayLike) -> None:
-        """Set the goal to a rotation: a quaternion [w, x, y, z].
-
-        Args:
-            quat: [w, x, y, z], shape (4,).
-        """
-        self._set(_Type.Rotation3D, quat)
-
-    def GetRotation3D(self) -> Floats:
-        """Return the quaternion [w, x, y, z], shape (4,)."""
-        return self._of(_Type.Rotation3D)
-
-    def SetTranslation3D(self, point: ArrayLike) -> None:
-        """Set the goal to a point [m]."""
-        self._set(_Type.Translation3D, point)
-
-    def GetTranslation3D(self) -> Floats:
-        """Return the point [m], shape (3,)."""
-        return self._of(_Type.Translation3D)
-
-    def SetDirection3D(self, direction: ArrayLike) -> None:
-        """Set the goal to a direction."""
-        self._set(_Type.Direction3D, direction)
-
-    def GetDirection3D(self) -> Floats:
-        """Return the direction, shape (3,)."""
-        return self._of(_Type.Direction3D)
-
-    def SetLookat3D(self, point: ArrayLike) -> None:
-        """Set the goal to a point [m] to look at."""
-        self._set(_Type.Lookat3D, point)
-
-    def GetLookat3D(self) -> Floats:
-        """Return the point [m] to look at, shape (3,)."""
-        return self._of(_Type.Lookat3D)
-
-    def SetRay4D(self, ray: Ray) -> None:
-        """Set the goal to a ray that the tool lies on, anywhere."""
-        self._set(_Type.Ray4D, ray)
-
-    def GetRay4D(self) -> Ray:
-        """Return the ray."""
-        return goal_ray(self._of(_Type.Ray4D))
-
-    def SetTranslationDirection5D(self, ray: Ray) -> None:
-        """Set the goal to a point and a direction.
-
-        Args:
-            ray: The tool's position and direction.
-        """
-        self._set(_Type.TranslationDirection5D, ray)
-
-    def GetTranslationDirection5D(self) -> Ray:
-        """Return point and direction."""
-        return goal_ray(self._of(_Type.TranslationDirection5D))
-
-    def _of(self, kind: IkParameterizationType) -> Floats:
-        if self._type != kind:
-            raise ArgumentError(f"the goal is of type {self._type.name}, and not {kind.name}")
-        return self._values.copy()
-
     # Transforms and distances
 
     def MultiplyTransform(self, transform: ArrayLike) -> None:
@@ -174,7 +92,9 @@ class IkParameterizationData(ApiObject):
             transform: 4x4, or [w, x, y, z, tx, ty, tz].
         """
         pose = pose_of(checked_transform(transform, "transform"))
+        custom = {name: moved_custom_values(name, numbers, pose) for name, numbers in self._custom.items()}
         self._values = moved_goal(self._type, self._values, pose)
+        self._custom = custom
 
     def Transform(self, transform: ArrayLike) -> Self:
         """Return ``transform * goal``."""
@@ -211,7 +131,10 @@ class IkParameterizationData(ApiObject):
         Args:
             other: Another goal of the same type.
         """
-        return goal_distance_squared(self._type, self._values, other._of(self._type))
+        if self._type != other._type:
+            message = f"ComputeDistanceSqr: other is of type {other._type.name}, and should be {self._type.name}"
+            raise ArgumentError(message, ErrorCode.Assert)
+        return goal_distance_squared(self._type, self._values, other._values)
 
     # Data of users
 
@@ -219,12 +142,22 @@ class IkParameterizationData(ApiObject):
         """Attach numbers under a name without spaces.
 
         Args:
-            name: The name.
+            name: The name. Numbers of a name that ends in ``_transform=point``, or goes on behind it with ``_``, move
+                with the goal; so do those with ``direction``, ``quat`` or ``ikparam`` in place of ``point``.
             values: The numbers, shape (n,).
         """
         if not name or name.split() != [name]:
             raise ArgumentError(f"name: is '{name}', and should be a word")
         self._custom[name] = checked_numbers(values, "values")
+
+    def SetCustomValue(self, name: str, value: float) -> None:
+        """Attach one number under a name; see ``SetCustomValues``.
+
+        Args:
+            name: The name.
+            value: The number.
+        """
+        self.SetCustomValues(name, [value])
 
     def GetCustomValues(self, name: str) -> Floats | None:
         """Return the numbers under a name, shape (n,), or None."""

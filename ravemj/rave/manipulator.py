@@ -8,23 +8,32 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_transform, checked_vector
-from ravemj.core.transforms import Floats, Ints, inverse, pose_of, wxyz_from_rows
+from ravemj.core.transforms import Floats, Ints, pose_of, wxyz_from_rows
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
-from ravemj.geometry_functions.ik_parameterization import INVERSE_KINEMATICS, IkParameterizationType, goal_of_tool
+from ravemj.errors import ArgumentError, RavemjError
+from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.model import chains, hashes, scene
 from ravemj.model.manipulators import joint_dofs
 from ravemj.rave.arm_collision import ArmCollision
+from ravemj.rave.arm_ik import ArmIk
 from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
-from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
+from ravemj.rave.specification import ConfigurationSpecification
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
+_SAME = 1e-12
+"""Tools that differ less are the same."""
+_WITH_DIRECTION = {
+    IkParameterizationType.Direction3D,
+    IkParameterizationType.Ray4D,
+    IkParameterizationType.TranslationDirection5D,
+}
 
-class Manipulator(ArmCollision, ApiObject):
+
+class Manipulator(ArmCollision, ArmIk, ApiObject):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
     def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
@@ -126,20 +135,30 @@ class Manipulator(ArmCollision, ApiObject):
     GetDirection = GetPalmDirection = GetLocalToolDirection
 
     def SetLocalToolTransform(self, transform: ArrayLike) -> None:
-        """Set the pose of the tool in the effector.
+        """Set the pose of the tool in the effector. A new one takes the solver of inverse kinematics away.
 
         Args:
             transform: ``T_effector_tool``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
         """
-        self._edit(T_effector_tool=pose_of(checked_transform(transform, "SetLocalToolTransform: transform")))
+        matrix = checked_transform(transform, "SetLocalToolTransform: transform")
+        if not np.allclose(matrix, self.GetLocalToolTransform(), rtol=0, atol=_SAME):
+            self.SetIkSolver(None)
+        self._edit(T_effector_tool=pose_of(matrix))
 
     def SetLocalToolDirection(self, direction: ArrayLike) -> None:
-        """Set the direction that the tool points along, in its own frame, shape (3,); it is normalised."""
+        """Set the direction that the tool points along, in its own frame, shape (3,); it is normalised.
+
+        Another one than before takes the solver away whose goals have a direction.
+        """
         given = checked_vector(direction, 3, "SetLocalToolDirection: direction")
         length = float(np.linalg.norm(given))
         if not length:
             raise ArgumentError("SetLocalToolDirection: direction is zero, and should point somewhere")
-        self._edit(direction=tuple((given / length).tolist()))
+        solver, unit = self.GetIkSolver(), given / length
+        turned = not np.allclose(unit, self._scene.direction, rtol=0, atol=_SAME)
+        if turned and solver is not None and solver.kind in _WITH_DIRECTION:
+            self.SetIkSolver(None)
+        self._edit(direction=tuple(unit.tolist()))
 
     def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Manipulator
         with self._state.simulation.lock:
@@ -239,55 +258,6 @@ class Manipulator(ArmCollision, ApiObject):
             interpolation: How they change between waypoints, for instance ``linear``.
         """
         return self._robot.GetConfigurationSpecificationIndices(self.GetArmIndices(), interpolation)
-
-    def GetIkParameterization(
-        self, iktype: IkParameterizationType | IkParameterization | int, inworld: bool = True
-    ) -> IkParameterization:
-        """Return where the tool is now, as a goal.
-
-        Args:
-            iktype: The type of goal, or a goal of that type.
-            inworld: True: in the world. False: in the base link of the arm.
-        """
-        kind = IkParameterizationType(iktype.GetType() if isinstance(iktype, IkParameterization) else iktype)
-        base = self.GetBase()
-        T_world_tool = self.GetTransform()
-        T_base_world = np.eye(4) if inworld or base is None else inverse(base.GetTransform())
-        return IkParameterization(goal_of_tool(kind, T_base_world @ T_world_tool, self.GetLocalToolDirection()), kind)
-
-    def GetIkSolver(self) -> None:
-        """Return the solver of inverse kinematics: None, there is none."""
-
-    def SetIkSolver(self, solver: object) -> bool:
-        """Refuse a solver of inverse kinematics; return whether it was taken."""
-        del solver
-        return False
-
-    def FindIKSolution(self, param: ArrayLike | IkParameterization, *arguments: Any, **options: Any) -> Floats | None:  # noqa: ANN401 - OpenRAVE's overloads
-        """Return joint values that take the tool to a goal, in the order of ``GetArmIndices()``, shape (n,).
-
-        Args:
-            param: ``T_world_tool``, or an ``IkParameterization``.
-            arguments: ``IkFilterOptions``, and what OpenRAVE's other overloads take.
-            options: The same by name.
-
-        Raises:
-            UnsupportedError: always; there is no solver.
-        """
-        raise UnsupportedError("FindIKSolution", INVERSE_KINEMATICS, ErrorCode.Failed)
-
-    def FindIKSolutions(self, param: ArrayLike | IkParameterization, *arguments: Any, **options: Any) -> Floats:  # noqa: ANN401 - OpenRAVE's overloads
-        """Return joint values that take the tool to a goal, each way in a row, shape (k, n).
-
-        Args:
-            param: ``T_world_tool``, or an ``IkParameterization``.
-            arguments: ``IkFilterOptions``, and what OpenRAVE's other overloads take.
-            options: The same by name.
-
-        Raises:
-            UnsupportedError: always; there is no solver.
-        """
-        raise UnsupportedError("FindIKSolutions", INVERSE_KINEMATICS, ErrorCode.Failed)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Manipulator) and self._state is other._state and self._index == other._index

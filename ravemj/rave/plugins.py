@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from ravemj.core.arguments import checked_kind
 from ravemj.errors import UnsupportedError
-from ravemj.geometry_functions.ik_parameterization import INVERSE_KINEMATICS
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
 from ravemj.rave.interface import checked_environment
@@ -28,14 +27,10 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
         InterfaceType.module: {
             "basemanipulation": PLANNING,
             "grasper": _GRASPING,
-            "ikfast": INVERSE_KINEMATICS,
+            "ikfast": "compiling of solvers of inverse kinematics",
             "taskcaging": PLANNING,
             "taskmanipulation": PLANNING,
             "visualfeedback": "visual feedback",
-        },
-        InterfaceType.iksolver: {
-            "genericiksolver": INVERSE_KINEMATICS,
-            "ikfast": INVERSE_KINEMATICS,
         },
         InterfaceType.sensor: {
             "basecamera": SENSING,
@@ -75,19 +70,6 @@ def RaveCreateModule(env: Environment, name: str) -> None:
 
 
 RaveCreateProblem = RaveCreateModule
-
-
-def RaveCreateIkSolver(env: Environment, name: str) -> None:
-    """Refuse to make a solver of inverse kinematics; return None where OpenRAVE does not know the name either.
-
-    Args:
-        env: The environment.
-        name: The name.
-
-    Raises:
-        UnsupportedError: the solver is one of OpenRAVE's own.
-    """
-    return _refuse(env, InterfaceType.iksolver, name)
 
 
 def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
@@ -140,6 +122,7 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
     made: dict[InterfaceType, list[str]] = {
         InterfaceType.collisionchecker: ["ode"],
         InterfaceType.controller: ["IdealController", "IdealVelocityController", "odevelocity"],
+        InterfaceType.iksolver: ["ikfast"],
         InterfaceType.kinbody: [""],
         InterfaceType.physicsengine: ["GenericPhysicsEngine", "ode", "bullet", "mujoco"],
         InterfaceType.planner: list(PLANNERS),

@@ -16,12 +16,15 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import DOFAffine
+from ravemj.geometry_functions.ik_types import IkParameterizationType
+from ravemj.ik.arms import ArmSolver
 from ravemj.rave.body.active import ActiveChoice, ActiveDofs
 from ravemj.rave.body.affine import default_kinds
 from ravemj.rave.body.manipulators import Manipulators
 from ravemj.rave.body.saving import Restorer, StateSaver
 from ravemj.rave.controllers import Controller, IdealController
 from ravemj.rave.enums import InterfaceType, SaveParameters
+from ravemj.rave.iksolver import IkSolver
 from ravemj.rave.infos import (
     AttachedSensorInfo,
     ExtractInfoOptions,
@@ -56,7 +59,15 @@ class Robot(ActiveDofs, Manipulators, KinBody):
 
     _interface_type = InterfaceType.robot
     _controller: "Controller | EllipsisType | None" = ...
-    _internal = ("active_choice", "affine_kinds", "powered_sensors", "step_controller", "take_choices")
+    _internal = (
+        "active_choice",
+        "affine_kinds",
+        "arm_solvers",
+        "ik_solvers",
+        "powered_sensors",
+        "step_controller",
+        "take_choices",
+    )
     default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
@@ -65,6 +76,8 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         self.affine_kinds = default_kinds()
         self._active_manipulator = None
         self.powered_sensors: set[str] = set()
+        self.ik_solvers: dict[str, IkSolver] = {}
+        self.arm_solvers: dict[tuple[str, IkParameterizationType], ArmSolver] = {}
 
     def GetXMLId(self) -> str:
         """Return OpenRAVE's name of the kind of robot."""
@@ -266,10 +279,11 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         )
 
     def take_choices(self, other: "Robot") -> None:
-        """Take over the active DOFs and the active manipulator of another robot like this."""
+        """Take over the active DOFs, the active manipulator and the solvers of another robot like this."""
         self.active_choice = other.active_choice
         self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
         self._active_manipulator = other._active_manipulator
+        self.ik_solvers = {name: solver.copy_for(self) for name, solver in other.ik_solvers.items()}
 
     def restorers(self, options: SaveParameters) -> list[Restorer]:
         """Return what gives this robot, or one like it, its present state back."""

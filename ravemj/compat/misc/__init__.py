@@ -1,5 +1,6 @@
 """``openravepy.misc``: what scripts need beside the API."""
 
+from ravemj.compat.misc.arms import MultiManipIKSolver
 from ravemj.compat.misc.drawing import DrawAxes, DrawCircle, DrawIkparam, DrawIkparam2
 from ravemj.compat.misc.sampling import SpaceSamplerExtra
 from ravemj.compat.misc.scripts import (
@@ -23,6 +24,7 @@ __all__ = [
     "DrawIkparam2",
     "InitOpenRAVELogging",
     "LoadTrajectoryFromFile",
+    "MultiManipIKSolver",
     "OpenRAVEGlobalArguments",
     "SetViewerUserThread",
     "SpaceSamplerExtra",

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_numbers, checked_transform
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
-from ravemj.geometry_functions.ik_parameterization import IkParameterizationType
+from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.rave.specification import IkParameterization
 
 _FRAMES = {

@@ -3,12 +3,12 @@
 from collections.abc import Iterable
 
 from ravemj.core.graphs import ordered_pair
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.pairs import Pairs
-from ravemj.engine.collision.questions import LinkOf, body_and_others, held_with, itself
+from ravemj.engine.collision.questions import LinkOf, body_and_others, held_with, itself, moved_apart
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
-from ravemj.model.chains import independent_links, links_beyond
+from ravemj.model.chains import dofs_moving, independent_links, links_beyond
 from ravemj.model.scene import Manipulator
 
 
@@ -34,6 +34,51 @@ def end_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
     end = set(links_beyond(body.scene, arm))
     others = independent_links(body.scene, arm) if without_arm else range(len(body.scene.links))
     return itself(world, body, frozenset(ordered_pair(a, b) for a in end for b in others if b not in end))
+
+
+def arm_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_end: bool) -> Pairs:
+    """Return the pairs of the links that an arm moves, with what they hold, and all other bodies.
+
+    Args:
+        world: Where the robot is.
+        body: The robot.
+        arm: One of its manipulators.
+        without_end: Whether the links beyond the arm, and what they hold, are left out.
+    """
+
+    def find() -> tuple[Ints, Ints]:
+        left_out = set(links_beyond(body.scene, arm)) if without_end else set[int]()
+        pairs = body_and_others(world, body, frozenset(_moved(body, arm) - left_out))
+        return pairs.first, pairs.second
+
+    return world.pairs(("arm and others", body, arm, without_end), find)
+
+
+def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, without_end: bool) -> Pairs:
+    """Return the pairs of links of a robot, with what they hold, that an arm moves against each other.
+
+    Args:
+        world: Where the robot is.
+        body: The robot.
+        arm: One of its manipulators.
+        without_end: Whether the pairs of links beyond the arm and links that the arm does not move are left out.
+    """
+
+    def find() -> tuple[Ints, Ints]:
+        end, moved = set(links_beyond(body.scene, arm)), _moved(body, arm)
+        apart = moved_apart(body.scene, arm.arm_dofs)
+        if without_end:
+            apart = frozenset((a, b) for a, b in apart if not ({a, b} & end and {a, b} - moved))
+        pairs = itself(world, body, apart)
+        return pairs.first, pairs.second
+
+    return world.pairs(("arm and rest", body, arm, without_end), find)
+
+
+def _moved(body: BodyState, arm: Manipulator) -> set[int]:
+    """Return the links that the joints of an arm move."""
+    dofs = set(arm.arm_dofs)
+    return {link for link in range(len(body.scene.links)) if dofs & dofs_moving(body.scene, link)}
 
 
 def motions_of_end(body: BodyState, arm: Manipulator, motion: Floats) -> dict[LinkOf, Floats]:

@@ -11,6 +11,7 @@ from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.manipulator import Manipulator
 
 if TYPE_CHECKING:
+    from ravemj.rave.iksolver import IkSolver
     from ravemj.rave.robot import Robot
 
 
@@ -19,6 +20,8 @@ class Manipulators(BodyPart):
 
     _active_manipulator: str | None
     """Name of the active one; None: the first."""
+    ik_solvers: "dict[str, IkSolver]"
+    """Solvers of inverse kinematics, by the names of their arms."""
 
     def GetManipulators(self, name: str | None = None) -> list[Manipulator]:
         """Return the manipulators, in the order of the file.
@@ -80,6 +83,7 @@ class Manipulators(BodyPart):
         if index < len(names) and not removeduplicate:
             raise ArgumentError(f"AddManipulator: '{self.GetName()}' has a manipulator '{made.name}' already")
         with self._simulation.lock:
+            self.ik_solvers.pop(made.name, None)
             self._state.edit(manipulators=(*arms[:index], made, *arms[index + 1 :]))
         send_warnings(diagnostics)
         return self.GetManipulators()[index]
@@ -99,6 +103,7 @@ class Manipulators(BodyPart):
             name, active = manip.GetName(), self.GetActiveManipulator()
             if active is not None:
                 self._active_manipulator = "" if active == manip else active.GetName()
+            self.ik_solvers.pop(name, None)
             kept = tuple(arm for arm in self._state.scene.manipulators if arm.name != name)
             self._state.edit(manipulators=kept)
         return True

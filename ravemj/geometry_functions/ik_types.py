@@ -1,0 +1,64 @@
+"""What of a tool's pose a goal of inverse kinematics asks for."""
+
+from enum import IntEnum
+
+
+class IkParameterizationType(IntEnum):
+    """What of a pose the end of an arm shall reach: the numbers hold DOF, count of values, and a unique number.
+
+    Those that end in ``Velocity`` stand for velocities in trajectories; no goal is of such a type.
+    """
+
+    none = 0
+    Transform6D = 0x67000001
+    Rotation3D = 0x34000002
+    Translation3D = 0x33000003
+    Direction3D = 0x23000004
+    Ray4D = 0x46000005
+    Lookat3D = 0x23000006
+    TranslationDirection5D = 0x56000007
+    TranslationXY2D = 0x22000008
+    TranslationXYOrientation3D = 0x33000009
+    TranslationLocalGlobal6D = 0x3600000A
+    TranslationXAxisAngle4D = 0x4400000B
+    TranslationYAxisAngle4D = 0x4400000C
+    TranslationZAxisAngle4D = 0x4400000D
+    TranslationXAxisAngleZNorm4D = 0x4400000E
+    TranslationYAxisAngleXNorm4D = 0x4400000F
+    TranslationZAxisAngleYNorm4D = 0x44000010
+    Transform6DVelocity = 0x67008001
+    Rotation3DVelocity = 0x34008002
+    Translation3DVelocity = 0x33008003
+    Direction3DVelocity = 0x23008004
+    Ray4DVelocity = 0x46008005
+    Lookat3DVelocity = 0x23008006
+    TranslationDirection5DVelocity = 0x56008007
+    TranslationXY2DVelocity = 0x22008008
+    TranslationXYOrientation3DVelocity = 0x33008009
+    TranslationLocalGlobal6DVelocity = 0x3600800A
+    TranslationXAxisAngle4DVelocity = 0x4400800B
+    TranslationYAxisAngle4DVelocity = 0x4400800C
+    TranslationZAxisAngle4DVelocity = 0x4400800D
+    TranslationXAxisAngleZNorm4DVelocity = 0x4400800E
+    TranslationYAxisAngleXNorm4DVelocity = 0x4400800F
+    TranslationZAxisAngleYNorm4DVelocity = 0x44008010
+    VelocityDataBit = 0x8000
+    UniqueIdMask = 0xFFFF
+    CustomDataBit = 0x10000
+
+    def __str__(self) -> str:
+        return f"{type(self).__name__}.{self.name}"  # as OpenRAVE writes it into names of files and solvers
+
+
+GOAL_TYPES = frozenset(kind for kind in IkParameterizationType if kind >> 24 and not kind & 0x8000)
+"""The types that goals have."""
+
+
+def goal_dof(kind: int) -> int:
+    """Return how many degrees of freedom a goal of a type takes away."""
+    return int(kind) >> 28 & 0xF
+
+
+def goal_size(kind: int) -> int:
+    """Return how many numbers a goal of a type has."""
+    return int(kind) >> 24 & 0xF

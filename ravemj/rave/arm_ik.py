@@ -1,0 +1,293 @@
+"""Inverse kinematics of an arm."""
+
+import logging
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_transform
+from ravemj.core.transforms import Floats, inverse, pose_of
+from ravemj.errors import ArgumentError, RavemjError
+from ravemj.geometry_functions.ik_parameterization import moved_goal
+from ravemj.geometry_functions.ik_types import IkParameterizationType, goal_size
+from ravemj.ik import IKSolver
+from ravemj.ik.arms import ArmSolver
+from ravemj.rave.arm_goals import ArmGoals
+from ravemj.rave.ik_search import task_of
+from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
+from ravemj.rave.iksolver import IkSolver, split_options
+from ravemj.rave.specification import IkParameterization
+
+if TYPE_CHECKING:
+    from ravemj.rave.robot import Robot
+
+_LOG = logging.getLogger("ravemj")
+_Type = IkParameterizationType
+
+
+class IkBatch(NamedTuple):
+    """Joint values for many goals.
+
+    Attributes:
+        solutions: Joint values [rad or m], shape (N, B, n); rows that are no solutions have any numbers.
+        valid: Which rows are solutions, shape (N, B).
+        branches: A name for each of the B ways to reach a goal.
+    """
+
+    solutions: Floats
+    valid: NDArray[np.bool_]
+    branches: list[str]
+
+
+class ArmIk(ArmGoals):
+    """Joint values that take the tool to goals."""
+
+    # Solvers
+
+    @property
+    def _owner(self) -> "Robot":
+        return cast("Robot", self._robot)
+
+    def GetIkSolver(self) -> IkSolver | None:
+        """Return the solver of inverse kinematics, or None as long as there is none."""
+        return self._owner.ik_solvers.get(self._scene.name)
+
+    def SetIkSolver(self, iksolver: IkSolver | None) -> bool:
+        """Give the arm a solver in place of the one before.
+
+        Args:
+            iksolver: What ``RaveCreateIkSolver`` made; None: none.
+
+        Returns:
+            Whether it fits the arm; if not, the log says why.
+        """
+        if iksolver is None:
+            self._owner.ik_solvers.pop(self._scene.name, None)
+            return True
+        solver = checked_kind(iksolver, IkSolver, "SetIkSolver: iksolver")
+        try:
+            solver.attach(self._owner, self._scene.name)
+        except ValueError as error:
+            _LOG.warning("%s", error)
+            return False
+        self._owner.ik_solvers[self._scene.name] = solver
+        return True
+
+    SetIKSolver = SetIkSolver
+
+    def _solver(self, caller: str) -> IkSolver:
+        solver = self.GetIkSolver()
+        if solver is None:
+            message = f"{caller}: manipulator '{self._scene.name}' has no solver of inverse kinematics"
+            raise RavemjError(f"{message}; databases.inversekinematics.InverseKinematicsModel(...).load() makes it")
+        return solver
+
+    def GetNumFreeParameters(self) -> int:
+        """Return how many joints of the arm are sampled, since it has more than the goals need."""
+        return self._solver("GetNumFreeParameters").GetNumFreeParameters()
+
+    def GetFreeParameters(self) -> Floats:
+        """Return where the free joints are in their ranges now, from 0 to 1, shape (k,)."""
+        return self._solver("GetFreeParameters").GetFreeParameters()
+
+    @overload
+    def FindIKSolution(
+        self,
+        param: ArrayLike | IkParameterization,
+        *arguments: object,
+        ikreturn: Literal[False] = ...,
+        **named: Any,  # noqa: ANN401 - those of the implementation
+    ) -> Floats | None: ...
+    @overload
+    def FindIKSolution(
+        self,
+        param: ArrayLike | IkParameterization,
+        *arguments: object,
+        ikreturn: bool,
+        **named: Any,  # noqa: ANN401 - those of the implementation
+    ) -> Floats | IkReturn | None: ...
+
+    def FindIKSolution(
+        self,
+        param: ArrayLike | IkParameterization,
+        *arguments: object,
+        ikreturn: bool = False,
+        releasegil: bool = False,
+        ikFailureAccumulator: list[IkFailureInfo] | None = None,
+        **named: object,
+    ) -> Floats | IkReturn | None:
+        """Return the joint values nearest to the present ones that take the tool to a goal.
+
+        ``FindIKSolution(param, filteroptions)`` or ``FindIKSolution(param, freevalues, filteroptions)``. The robot
+        stays where it is.
+
+        Args:
+            param: ``T_world_tool``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]; or an ``IkParameterization`` in the world.
+            arguments: Values of the free joints as shares of their ranges, shape (k,), or nothing; then
+                ``IkFilterOptions`` combined with ``|``. 0: within the limits, without self collisions, and approved by
+                the filters.
+            ikreturn: Whether to return an ``IkReturn`` in any case, which also says why there is no solution.
+            releasegil: Not used.
+            ikFailureAccumulator: A list that gets an ``IkFailureInfo`` for each solution that was rejected.
+            named: The same as ``arguments``, by name.
+
+        Returns:
+            Joint values [rad or m] in the order of ``GetArmIndices()``, shape (n,); None where there are none.
+
+        Raises:
+            openrave_exception: the arm has no solver; the goal is of another type than the solver's, or none at all.
+
+        Example:
+            >>> model = databases.inversekinematics.InverseKinematicsModel(robot, IkParameterization.Type.Transform6D)
+            >>> model.load()
+            True
+            >>> values = manip.FindIKSolution(T_world_tool, IkFilterOptions.CheckEnvCollisions)
+            >>> robot.SetDOFValues(values, manip.GetArmIndices())
+        """
+        del releasegil
+        arguments, ikreturn = _without_flag(arguments, ikreturn)
+        shares, options = split_options("FindIKSolution", arguments, named, "freevalues")
+        solver = self._solver("FindIKSolution")
+        with self._state.simulation.lock:
+            goal = self._in_base(param)
+            if ikreturn or ikFailureAccumulator is not None:
+                answer = solver.find_one(goal, shares, options, failures=ikFailureAccumulator)
+                return answer if ikreturn else None if answer.GetAction() else answer.GetSolution()
+            return solver.find_row(goal, shares, options)
+
+    @overload
+    def FindIKSolutions(
+        self,
+        param: ArrayLike | IkParameterization,
+        *arguments: object,
+        ikreturn: Literal[False] = ...,
+        **named: Any,  # noqa: ANN401 - those of the implementation
+    ) -> Floats: ...
+    @overload
+    def FindIKSolutions(
+        self,
+        param: ArrayLike | IkParameterization,
+        *arguments: object,
+        ikreturn: bool,
+        **named: Any,  # noqa: ANN401 - those of the implementation
+    ) -> Floats | list[IkReturn]: ...
+
+    def FindIKSolutions(
+        self,
+        param: ArrayLike | IkParameterization,
+        *arguments: object,
+        ikreturn: bool = False,
+        releasegil: bool = False,
+        ikFailureAccumulator: list[IkFailureInfo] | None = None,
+        **named: object,
+    ) -> Floats | list[IkReturn]:
+        """Return all joint values that take the tool to a goal.
+
+        Free joints are sampled from 0 to their limits. A joint with a range of more than a turn gives all turns.
+
+        Args:
+            param: The goal, as for ``FindIKSolution``; so are the other arguments.
+            arguments: Values of the free joints, or nothing; then ``IkFilterOptions``.
+            ikreturn: Whether to return a list of ``IkReturn``.
+            releasegil: Not used.
+            ikFailureAccumulator: A list that gets an ``IkFailureInfo`` for each solution that was rejected.
+            named: The same as ``arguments``, by name.
+
+        Returns:
+            Joint values [rad or m], a solution in each row, shape (K, n); shape (0,) where there is none. With
+            ``ikreturn`` a list.
+        """
+        del releasegil
+        arguments, ikreturn = _without_flag(arguments, ikreturn)
+        shares, options = split_options("FindIKSolutions", arguments, named, "freevalues")
+        solver = self._solver("FindIKSolutions")
+        with self._state.simulation.lock:
+            goal = self._in_base(param)
+            if ikreturn or ikFailureAccumulator is not None:
+                answers = solver.find_all(goal, shares, options, ikFailureAccumulator)
+                if ikreturn:
+                    return answers
+                rows = np.array([answer.GetSolution() for answer in answers])
+            else:
+                rows = solver.find_rows(goal, shares, options)
+            return rows if len(rows) else np.zeros(0)
+
+    def _in_base(self, param: ArrayLike | IkParameterization) -> IkParameterization | Floats:
+        """Return a goal in the frame of the arm's base; a pose (4, 4) as it is."""
+        T_base_world = inverse(self._T_world_base())
+        if isinstance(param, IkParameterization):
+            return param.Transform(T_base_world)
+        return T_base_world @ checked_transform(param, "param")
+
+    # Many goals at once
+
+    def ik_solver(self, iktype: IkParameterizationType = _Type.Transform6D) -> IKSolver:
+        """Return what computes inverse kinematics of the arm; it is derived when first asked for.
+
+        Args:
+            iktype: The type of goal.
+
+        Raises:
+            openrave_exception: the arm is none that can be solved, or no solver answers goals of that type.
+
+        Example:
+            >>> print(manip.ik_solver().describe())
+        """
+        solver = self.GetIkSolver()
+        try:
+            if solver is not None and solver.kind == iktype:
+                return solver.derived()
+            kept = self._owner.arm_solvers
+            own = kept.setdefault((self._scene.name, _Type(iktype)), ArmSolver(task_of(_Type(iktype))))
+            return own.of(self._state.scene, self._scene)
+        except ValueError as error:
+            raise ArgumentError(f"inverse kinematics of {error}") from error
+
+    def ik(
+        self, goals: ArrayLike, iktype: IkParameterizationType = _Type.Transform6D, *, limits: bool = True
+    ) -> IkBatch:
+        """Return all joint values that take the tool to many goals, one turn of each; nothing is tested for collision.
+
+        Args:
+            goals: ``T_world_tool``, shape (N, 4, 4) or (4, 4); for other types the numbers of goals, shape (N, k).
+            iktype: The type of goal.
+            limits: Whether only solutions within the limits are valid; else angles are in [-pi, pi].
+
+        Example:
+            >>> found = manip.ik(T_world_tools)
+            >>> found.solutions[0][found.valid[0]]  # all ways to the first one
+        """
+        solver = self.ik_solver(iktype)
+        T_base_world = inverse(self._T_world_base())
+        given = np.asarray(goals, dtype=float)
+        if iktype == _Type.Transform6D:
+            local = T_base_world @ given.reshape(-1, *given.shape[-2:])
+        else:
+            rows = given.reshape(-1, goal_size(iktype))
+            local = np.array([moved_goal(iktype, row, pose_of(T_base_world)) for row in rows]).reshape(rows.shape)
+        try:
+            found = solver.solve(local, limits=limits)
+        except ValueError as error:
+            raise ArgumentError(f"goals: {error}") from error
+        return IkBatch(found.values, found.valid, _branch_names(solver, found.values.shape[1]))
+
+
+def _without_flag(arguments: tuple[object, ...], ikreturn: bool) -> tuple[tuple[object, ...], bool]:
+    """Return the arguments without ``ikreturn``, which may stand behind the options without its name."""
+    if len(arguments) > 1 and isinstance(arguments[-1], bool) and isinstance(arguments[-2], int | np.integer):
+        return arguments[:-1], arguments[-1]
+    return arguments, ikreturn
+
+
+def _branch_names(solver: IKSolver, count: int) -> list[str]:
+    """Return a name for each solution of a goal: the values of free joints, and the choices of the closed form."""
+    if solver.closed is None:
+        return [f"found {number + 1}" for number in range(count)]
+    names = solver.closed.branch_names
+    free = [
+        " ".join(f"j{joint + 1}={value:.4g}" for joint, value in zip(solver.free, row, strict=True))
+        for row in solver.free_samples()
+    ]
+    return [f"{values} {name}".strip() for values in free for name in names]

@@ -1,0 +1,238 @@
+"""One pair of setter and getter for each type of goal of inverse kinematics."""
+
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from ravemj.core.api_object import ApiObject
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.geometry_functions import Ray
+from ravemj.geometry_functions.ik_parameterization import checked_goal, goal_pose, goal_ray, has_point
+from ravemj.geometry_functions.ik_types import IkParameterizationType
+
+_Type = IkParameterizationType
+
+
+class GoalValues(ApiObject):
+    """The type of a goal and its numbers, of which there are as many as the type has."""
+
+    _type: IkParameterizationType
+    _values: Floats
+
+    def _set(self, kind: IkParameterizationType, value: Any) -> None:  # noqa: ANN401 - as the type asks for
+        self._values = checked_goal(kind, value)
+        self._type = kind
+
+    def _of(self, kind: IkParameterizationType) -> Floats:
+        if self._type != kind:
+            raise ArgumentError(f"the goal is of type {self._type.name}, and not {kind.name}")
+        return self._values.copy()
+
+    def _point_and_angle(self, kind: IkParameterizationType) -> tuple[Floats, float]:
+        values = self._of(kind)
+        return values[1:], float(values[0])
+
+    def SetTransform6D(self, transform: ArrayLike) -> None:
+        """Set the goal to a pose.
+
+        Args:
+            transform: A matrix 4x4 or 3x4, or [w, x, y, z, tx, ty, tz].
+        """
+        self._set(_Type.Transform6D, transform)
+
+    def GetTransform6D(self) -> Floats:
+        """Return the pose, shape (4, 4)."""
+        return goal_pose(self._of(_Type.Transform6D)).matrix()
+
+    def GetTransform6DPose(self) -> Floats:
+        """Return the pose [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return self._of(_Type.Transform6D)
+
+    def SetRotation3D(self, quat: ArrayLike) -> None:
+        """Set the goal to a rotation.
+
+        Args:
+            quat: [w, x, y, z], shape (4,); kept as it is.
+        """
+        self._set(_Type.Rotation3D, quat)
+
+    def GetRotation3D(self) -> Floats:
+        """Return the quaternion [w, x, y, z], shape (4,)."""
+        return self._of(_Type.Rotation3D)
+
+    def SetTranslation3D(self, pos: ArrayLike) -> None:
+        """Set the goal to a point.
+
+        Args:
+            pos: The point [m], shape (3,).
+        """
+        self._set(_Type.Translation3D, pos)
+
+    def GetTranslation3D(self) -> Floats:
+        """Return the point [m] of a goal that has one, of this type or of another, shape (3,)."""
+        return self._values[-3:].copy() if has_point(self._type) else self._of(_Type.Translation3D)
+
+    def SetDirection3D(self, dir: ArrayLike) -> None:
+        """Set the goal to a direction.
+
+        Args:
+            dir: A unit vector, shape (3,).
+        """
+        self._set(_Type.Direction3D, dir)
+
+    def GetDirection3D(self) -> Floats:
+        """Return the direction, shape (3,)."""
+        return self._of(_Type.Direction3D)
+
+    def SetLookat3D(self, pos: ArrayLike) -> None:
+        """Set the goal to a point to look at.
+
+        Args:
+            pos: The point [m], shape (3,).
+        """
+        self._set(_Type.Lookat3D, pos)
+
+    def GetLookat3D(self) -> Floats:
+        """Return the point [m] to look at, shape (3,)."""
+        return self._of(_Type.Lookat3D)
+
+    def SetRay4D(self, quat: Ray) -> None:
+        """Set the goal to a ray that the tool lies on, anywhere.
+
+        Args:
+            quat: The ray; its direction is a unit vector.
+        """
+        self._set(_Type.Ray4D, quat)
+
+    def GetRay4D(self) -> Ray:
+        """Return the ray."""
+        return goal_ray(self._of(_Type.Ray4D))
+
+    def SetTranslationDirection5D(self, quat: Ray) -> None:
+        """Set the goal to a point and a direction.
+
+        Args:
+            quat: The tool's position and direction, a unit vector.
+        """
+        self._set(_Type.TranslationDirection5D, quat)
+
+    def GetTranslationDirection5D(self) -> Ray:
+        """Return point and direction."""
+        return goal_ray(self._of(_Type.TranslationDirection5D))
+
+    def SetTranslationXY2D(self, pos: ArrayLike) -> None:
+        """Set the goal to a place in the plane of x and y.
+
+        Args:
+            pos: x and y [m], shape (2,).
+        """
+        self._set(_Type.TranslationXY2D, pos)
+
+    def GetTranslationXY2D(self) -> Floats:
+        """Return x and y [m], shape (2,)."""
+        return self._of(_Type.TranslationXY2D)
+
+    def SetTranslationXYOrientation3D(self, posangle: ArrayLike) -> None:
+        """Set the goal to a place in the plane of x and y, and a heading of the tool's direction there.
+
+        Args:
+            posangle: x, y [m] and heading [rad], shape (3,).
+        """
+        self._set(_Type.TranslationXYOrientation3D, posangle)
+
+    def GetTranslationXYOrientation3D(self) -> Floats:
+        """Return x, y [m] and heading [rad], shape (3,)."""
+        return self._of(_Type.TranslationXYOrientation3D)
+
+    def SetTranslationLocalGlobal6D(self, localpos: ArrayLike, pos: ArrayLike) -> None:
+        """Set the goal to a point of the tool and where it shall be.
+
+        Args:
+            localpos: The point in the frame of the tool [m], shape (3,).
+            pos: Where it shall be [m], shape (3,).
+        """
+        self._set(_Type.TranslationLocalGlobal6D, [localpos, pos])
+
+    def GetTranslationLocalGlobal6D(self) -> tuple[Floats, Floats]:
+        """Return the point of the tool and where it shall be [m], shape (3,) each."""
+        values = self._of(_Type.TranslationLocalGlobal6D)
+        return values[:3], values[3:]
+
+    def SetTranslationXAxisAngle4D(self, translation: ArrayLike, angle: float) -> None:
+        """Set the goal to a point and the angle between the direction and the x axis.
+
+        Args:
+            translation: The point [m], shape (3,).
+            angle: The angle [rad], in the frame of the arm's base.
+        """
+        self._set(_Type.TranslationXAxisAngle4D, [translation, angle])
+
+    def GetTranslationXAxisAngle4D(self) -> tuple[Floats, float]:
+        """Return the point [m], shape (3,), and the angle [rad]."""
+        return self._point_and_angle(_Type.TranslationXAxisAngle4D)
+
+    def SetTranslationYAxisAngle4D(self, translation: ArrayLike, angle: float) -> None:
+        """Set the goal to a point and the angle between the direction and the y axis.
+
+        Args:
+            translation: The point [m], shape (3,).
+            angle: The angle [rad], in the frame of the arm's base.
+        """
+        self._set(_Type.TranslationYAxisAngle4D, [translation, angle])
+
+    def GetTranslationYAxisAngle4D(self) -> tuple[Floats, float]:
+        """Return the point [m], shape (3,), and the angle [rad]."""
+        return self._point_and_angle(_Type.TranslationYAxisAngle4D)
+
+    def SetTranslationZAxisAngle4D(self, translation: ArrayLike, angle: float) -> None:
+        """Set the goal to a point and the angle between the direction and the z axis.
+
+        Args:
+            translation: The point [m], shape (3,).
+            angle: The angle [rad], in the frame of the arm's base.
+        """
+        self._set(_Type.TranslationZAxisAngle4D, [translation, angle])
+
+    def GetTranslationZAxisAngle4D(self) -> tuple[Floats, float]:
+        """Return the point [m], shape (3,), and the angle [rad]."""
+        return self._point_and_angle(_Type.TranslationZAxisAngle4D)
+
+    def SetTranslationXAxisAngleZNorm4D(self, translation: ArrayLike, angle: float) -> None:
+        """Set the goal to a point and the heading of the direction about z, from x.
+
+        Args:
+            translation: The point [m], shape (3,).
+            angle: The angle [rad], in the frame of the arm's base.
+        """
+        self._set(_Type.TranslationXAxisAngleZNorm4D, [translation, angle])
+
+    def GetTranslationXAxisAngleZNorm4D(self) -> tuple[Floats, float]:
+        """Return the point [m], shape (3,), and the angle [rad]."""
+        return self._point_and_angle(_Type.TranslationXAxisAngleZNorm4D)
+
+    def SetTranslationYAxisAngleXNorm4D(self, translation: ArrayLike, angle: float) -> None:
+        """Set the goal to a point and the heading of the direction about x, from y.
+
+        Args:
+            translation: The point [m], shape (3,).
+            angle: The angle [rad], in the frame of the arm's base.
+        """
+        self._set(_Type.TranslationYAxisAngleXNorm4D, [translation, angle])
+
+    def GetTranslationYAxisAngleXNorm4D(self) -> tuple[Floats, float]:
+        """Return the point [m], shape (3,), and the angle [rad]."""
+        return self._point_and_angle(_Type.TranslationYAxisAngleXNorm4D)
+
+    def SetTranslationZAxisAngleYNorm4D(self, translation: ArrayLike, angle: float) -> None:
+        """Set the goal to a point and the heading of the direction about y, from z.
+
+        Args:
+            translation: The point [m], shape (3,).
+            angle: The angle [rad], in the frame of the arm's base.
+        """
+        self._set(_Type.TranslationZAxisAngleYNorm4D, [translation, angle])
+
+    def GetTranslationZAxisAngleYNorm4D(self) -> tuple[Floats, float]:
+        """Return the point [m], shape (3,), and the angle [rad]."""
+        return self._point_and_angle(_Type.TranslationZAxisAngleYNorm4D)

@@ -1,0 +1,233 @@
+"""Which solutions of inverse kinematics are good: filters of users, and collisions, in the posture of the solution."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.engine.collision import arms
+from ravemj.engine.collision.world import CollisionWorld, Pairs
+from ravemj.errors import ErrorCode, RavemjError
+from ravemj.model import scene
+from ravemj.rave.body.active import ActiveChoice
+from ravemj.rave.enums import IkFilterOptions, IkReturnAction
+from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
+from ravemj.rave.report import CollisionReport
+from ravemj.rave.specification import IkParameterization
+
+if TYPE_CHECKING:
+    from ravemj.rave.manipulator import Manipulator
+    from ravemj.rave.robot import Robot
+
+# Plain numbers: operators of flags take longer than tests of collision.
+CHECK_ENV = int(IkFilterOptions.CheckEnvCollisions)
+IGNORE_SELF = int(IkFilterOptions.IgnoreSelfCollisions)
+IGNORE_LIMITS = int(IkFilterOptions.IgnoreJointLimits)
+IGNORE_FILTERS = int(IkFilterOptions.IgnoreCustomFilters)
+_IGNORE_END = int(IkFilterOptions.IgnoreEndEffectorEnvCollisions)
+_IGNORE_END_SELF = int(IkFilterOptions.IgnoreEndEffectorSelfCollisions)
+_REJECT, _QUIT = int(IkReturnAction.Reject), int(IkReturnAction.Quit)
+
+FilterAnswer = IkReturnAction | IkReturn | None
+FilterFunction = Callable[[Floats, "Manipulator", IkParameterization], FilterAnswer]
+
+
+@dataclass(frozen=True, eq=False)
+class Filter:
+    """A function of a user's that is asked about each solution.
+
+    Attributes:
+        priority: Higher ones are asked first; those above 0 before collisions are tested.
+        function: The function.
+    """
+
+    priority: int
+    function: FilterFunction
+
+
+class Question(NamedTuple):
+    """What solutions are judged by.
+
+    Attributes:
+        robot: The robot.
+        arm: The manipulator.
+        description: Its description.
+        goal: The goal in the frame of the arm's base.
+        options: ``IkFilterOptions`` combined with ``|``.
+        filters: The filters of users.
+        failures: Gets what is rejected; None: nothing does.
+    """
+
+    robot: "Robot"
+    arm: "Manipulator"
+    description: scene.Manipulator
+    goal: IkParameterization
+    options: int
+    filters: Sequence[Filter]
+    failures: list[IkFailureInfo] | None = None
+
+
+class Judge:
+    """Judges solutions inside its ``with``, after which the robot is as before.
+
+    Attributes:
+        filters: The filters, those of high priority first.
+        action: All that happened to the solutions that were rejected.
+        quit: Whether the search is over.
+    """
+
+    def __init__(self, question: Question) -> None:
+        self._question = question
+        self._state = question.robot.simulation_state
+        self.filters = sorted(question.filters, key=lambda one: -one.priority)
+        self._options = question.options
+        self._tests = bool(question.options & CHECK_ENV or not question.options & IGNORE_SELF)
+        self._end_is_free = False
+        self._started = 0 if question.failures is None else len(question.failures)
+        self.action = 0
+        self.quit = False
+
+    def __enter__(self) -> Self:
+        self._state.simulation.lock.acquire()
+        self._saved = self._state.configuration()
+        self._chosen = self._question.robot.active_choice
+        self._question.robot.active_choice = ActiveChoice(self._question.description.arm_dofs)
+        self._values = self._state.kinematics.values()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        """Bring the robot back to where it was."""
+        self._question.robot.active_choice = self._chosen
+        self._state.restore(self._saved)
+        self._state.simulation.lock.release()
+
+    def first(self, rows: Iterable[Floats]) -> IkReturn | None:
+        """Return the answer for the first good one of solutions, or None."""
+        for row in rows:
+            answer = self.ask(row)
+            if answer is not None or self.quit:
+                return answer
+        return None
+
+    def all(self, rows: Iterable[Floats]) -> list[IkReturn]:
+        """Return the answers for all good ones of solutions; none if a filter ends the search."""
+        answers: list[IkReturn] = []
+        for row in rows:
+            answer = self.ask(row)
+            if self.quit:
+                return []
+            if answer is not None:
+                answers.append(answer)
+        return answers
+
+    def ask(self, row: Floats) -> IkReturn | None:
+        """Return the answer for one solution, shape (n,), or None where it is rejected."""
+        answer = solution(row)
+        if not (self.filters or self._tests):
+            return answer
+        values = self._values.copy()
+        values[list(self._question.description.arm_dofs)] = row
+        self._state.set_values(values)
+        before = [one for one in self.filters if one.priority > 0]
+        if not self.passes(before, row, answer) or self._collides(row):
+            return None
+        return answer if self.passes(self.filters[len(before) :], row, answer) else None
+
+    def passes(self, filters: Iterable[Filter], row: Floats, answer: IkReturn) -> bool:
+        """Ask filters about a solution, and put what they attach into its answer."""
+        for one in filters:
+            said = self._asked(one, row)
+            action = IkReturnAction.Reject if said is None else said.GetAction()
+            if action:
+                self._reject(row, int(action) | int(IkReturnAction.RejectCustomFilter), f"filter of {one.priority}")
+                self.quit = bool(action & _QUIT)
+                return False
+            if said is not None:
+                answer.take(said, [])
+                if len(said.GetSolution()):
+                    answer.SetSolution(said.GetSolution())
+        return True
+
+    def _asked(self, one: Filter, row: Floats) -> IkReturn | None:
+        """Return what a filter says.
+
+        Raises:
+            RavemjError: with the code ``Assert``, it raises something, or says something that means nothing.
+        """
+        question = self._question
+        try:
+            said: Any = one.function(row.copy(), question.arm, IkParameterization(question.goal))
+        except Exception as error:
+            message = f"a filter of inverse kinematics raised {type(error).__name__}: {error}"
+            raise RavemjError(message, ErrorCode.Assert) from error
+        if isinstance(said, IkReturnAction):
+            return IkReturn(said)
+        if said is not None and not isinstance(said, IkReturn):
+            message = (
+                f"a filter of inverse kinematics returned {said!r}; it should return an IkReturnAction or IkReturn"
+            )
+            raise RavemjError(message, ErrorCode.Assert)
+        return said
+
+    def _collides(self, row: Floats) -> bool:
+        """Return whether the posture of a solution, which the robot has, collides."""
+        options, state, arm = self._options, self._state, self._question.description
+        if not self._tests:
+            return False
+        check_env, check_self = options & CHECK_ENV, not options & IGNORE_SELF
+        world = state.simulation.collisions()
+        without_end = bool(options & _IGNORE_END)
+        if check_env and not without_end and self._question.goal.GetType() == IkParameterization.Type.Transform6D:
+            # All solutions have the end at the same place.
+            if not self._end_is_free and self._hits(world, arms.end_and_others(world, state, arm), row, 0x83):
+                self.quit = True
+                return True
+            self._end_is_free = without_end = True
+        if check_self:
+            pairs = arms.arm_and_rest(world, state, arm, without_end=bool(options & _IGNORE_END_SELF))
+            if self._hits(world, pairs, row, IkReturnAction.RejectSelfCollision):
+                return True
+        if not check_env:
+            return False
+        pairs = arms.arm_and_others(world, state, arm, without_end=without_end)
+        return self._hits(world, pairs, row, IkReturnAction.RejectEnvCollision)
+
+    def _hits(self, world: CollisionWorld, pairs: Pairs, row: Floats, action: int) -> bool:
+        """Test pairs; where there is a collision, reject the solution."""
+        report = None if self._question.failures is None else CollisionReport()
+        hit = self._question.robot.GetEnv().GetCollisionChecker().answer(world, pairs, report)
+        if hit:
+            self._reject(row, action, "collision", report)
+        return hit
+
+    def _reject(self, row: Floats, action: int, why: str, report: CollisionReport | None = None) -> None:
+        self.action |= int(action)
+        if self._question.failures is not None:
+            info = IkFailureInfo(IkReturnAction(action), row.copy(), self._question.goal, report, why)
+            self._question.failures.append(info)
+
+    def fall_short(self, unreached: bool, limited: bool, *, limits: bool) -> None:
+        """Take note that the goal is out of reach, or, where limits count, that solutions are beyond them."""
+        if unreached:
+            self._reject(np.zeros(0), int(IkReturnAction.RejectKinematics), "out of reach")
+        if limited and limits:
+            self._reject(np.zeros(0), int(IkReturnAction.RejectJointLimits), "beyond the limits")
+
+    def failure(self) -> IkReturn:
+        """Return the answer where no solution is good."""
+        answer = IkReturn(self.action | _REJECT)
+        failures = self._question.failures
+        answer.take(answer, [] if failures is None else list(range(self._started, len(failures))))
+        return answer
+
+
+def solution(row: Floats) -> IkReturn:
+    """Return the answer with a solution, shape (n,)."""
+    answer = IkReturn(IkReturnAction.Success)
+    answer.SetSolution(row)
+    return answer

@@ -1,0 +1,259 @@
+"""The search for joint values of one arm, in which filters and tests of collision may have a say."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.arrays import checked_vector
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
+from ravemj.geometry_functions.ik_parameterization import goal_of_tool
+from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType
+from ravemj.ik import IKSolver, Task
+from ravemj.ik.arms import ArmSolver
+from ravemj.ik.candidates import nearest_first, shortfall
+from ravemj.ik.limits import distances
+from ravemj.rave.ik_judge import CHECK_ENV, IGNORE_FILTERS, IGNORE_LIMITS, IGNORE_SELF, Filter, Judge, Question
+from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
+from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.specification import IkParameterization
+
+if TYPE_CHECKING:
+    from ravemj.model import scene
+    from ravemj.rave.environment import Environment
+    from ravemj.rave.manipulator import Manipulator
+    from ravemj.rave.robot import Robot
+
+_Type = IkParameterizationType
+_OF_POSES = {
+    _Type.TranslationDirection5D,
+    _Type.TranslationXAxisAngleZNorm4D,
+    _Type.TranslationYAxisAngleXNorm4D,
+    _Type.TranslationZAxisAngleYNorm4D,
+}
+"""Types whose solvers also take a pose, for the part of it that they ask for."""
+
+
+def task_of(kind: IkParameterizationType) -> Task:
+    """Return what a type of goal asks for.
+
+    Raises:
+        UnsupportedError: no solver answers such goals.
+    """
+    try:
+        return Task(kind.name)
+    except ValueError:
+        known = ", ".join(task.value for task in Task)
+        raise UnsupportedError(f"{kind.name}: of these types only {known} are solved", "inverse kinematics") from None
+
+
+class IkSearch(Interface):
+    """Finds joint values for goals of one type in the frame of an arm's base; ``IkSolver`` is what users see of it.
+
+    Attributes:
+        kind: The type of goal.
+        arm_solver: What computes.
+    """
+
+    _internal = (
+        "arm_solver",
+        "attach",
+        "derived",
+        "find_all",
+        "find_one",
+        "find_row",
+        "find_rows",
+        "kind",
+        "set_steps",
+    )
+
+    def __init__(
+        self,
+        env: "Environment",
+        name: str,
+        kind: IkParameterizationType,
+        free: Sequence[int] | None = None,
+        steps: Sequence[float] | None = None,
+    ) -> None:
+        self._env = env
+        self._annotations = Annotations()
+        self._name = name
+        self.kind = kind
+        self.arm_solver = ArmSolver(task_of(kind), free)
+        self._steps = None if steps is None else tuple(steps)
+        self._filters: list[Filter] = []
+        self._robot: Robot | None = None
+        self._arm_name = ""
+
+    # What it belongs to
+
+    def attach(self, robot: "Robot", arm: str) -> None:
+        """Let it answer for an arm.
+
+        Raises:
+            ValueError: the arm is none that can be solved; the message says why.
+        """
+        description = next(one for one in robot.simulation_state.scene.manipulators if one.name == arm)
+        self.arm_solver.of(robot.simulation_state.scene, description)
+        self._robot, self._arm_name = robot, arm
+
+    def set_steps(self, steps: Sequence[float] | None) -> None:
+        """Set how finely free joints are sampled; None: as by default."""
+        self._steps = None if steps is None else tuple(steps)
+
+    def _owner(self) -> "Robot":
+        if self._robot is None:
+            raise RavemjError(f"the solver '{self._name}' has no arm; manip.SetIkSolver(solver) gives it one")
+        return self._robot
+
+    @property
+    def _arm(self) -> "Manipulator":
+        arm = self._owner().GetManipulator(self._arm_name)
+        assert arm is not None
+        return arm
+
+    def _description(self) -> "scene.Manipulator":
+        arms = self._owner().simulation_state.scene.manipulators
+        return next(arm for arm in arms if arm.name == self._arm_name)
+
+    def derived(self) -> IKSolver:
+        """Return what computes, for the arm as it is now."""
+        solver = self.arm_solver.of(self._owner().simulation_state.scene, self._description())
+        return solver if self._steps is None else replace(solver, steps=self._steps)
+
+    def _free_values(self, solver: IKSolver, shares: ArrayLike | None) -> Floats | None:
+        """Return the values of free joints, shape (k,), that are given as shares of their ranges; None: any."""
+        if shares is None or not len(given := np.atleast_1d(np.asarray(shares, dtype=float))):
+            return None
+        count, free = len(solver.free), list(solver.free)
+        if given.shape != (count,):
+            joints = "no free joint" if not count else "one free joint" if count == 1 else f"{count} free joints"
+            raise ArgumentError(f"freevalues have shape {given.shape}, and '{self._arm_name}' has {joints}")
+        lower, upper = solver.chain.lower[free], solver.chain.upper[free]
+        return lower + checked_vector(given, count, "freevalues") * (upper - lower)
+
+    def _posture(self) -> Floats:
+        return self._owner().simulation_state.kinematics.values()[list(self._description().arm_dofs)]
+
+    # Search
+
+    def find_row(self, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int) -> Floats | None:
+        """Return the joint values of ``find_one``, shape (n,), or None; fast where every solution is good."""
+        if not self._takes_all(options):
+            answer = self.find_one(goal, shares, options, explain=False)
+            return None if answer.GetAction() else answer.GetSolution()
+        solver = self.derived()
+        numbers, free = self._numbers(goal), self._free_values(solver, shares)
+        if options & IGNORE_LIMITS or free is not None:
+            return next(self._nearest_first(solver, numbers, free, options), None)
+        return solver.nearest(numbers, self._posture(), weights=self._weights())
+
+    def find_rows(self, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int) -> Floats:
+        """Return the joint values of ``find_all``, shape (K, n), fast where every solution is good."""
+        if not self._takes_all(options):
+            rows = [answer.GetSolution() for answer in self.find_all(goal, shares, options)]
+            return np.array(rows)
+        return self._all_rows(self.derived(), goal, shares, options)
+
+    def find_one(
+        self,
+        goal: IkParameterization | Floats,
+        shares: ArrayLike | None,
+        options: int,
+        *,
+        seed: Floats | None = None,
+        failures: list[IkFailureInfo] | None = None,
+        explain: bool = True,
+    ) -> IkReturn:
+        """Return the good solution that is nearest to a posture.
+
+        Args:
+            goal: The goal in the frame of the arm's base; an array is a pose of the tool (4, 4).
+            shares: Where the free joints are in their ranges, shape (k,); None: anywhere.
+            options: ``IkFilterOptions`` combined with ``|``.
+            seed: The posture, shape (n,); None: the present one.
+            failures: Gets what is rejected.
+            explain: Whether the answer says why there is no solution.
+        """
+        solver = self.derived()
+        numbers, free = self._numbers(goal), self._free_values(solver, shares)
+        start = self._posture() if seed is None else seed
+        with self._judge(goal, options, failures) as judge:
+            answer = judge.first(self._nearest_first(solver, numbers, free, options, start))
+            if answer is None:
+                if explain and not judge.quit:
+                    judge.fall_short(*shortfall(solver, numbers, free), limits=not options & IGNORE_LIMITS)
+                return judge.failure()
+        away = distances(solver.chain, answer.GetSolution(), start, self._weights())
+        answer.SetMapKeyValue("__distancetosol__", away)
+        return answer
+
+    def find_all(
+        self,
+        goal: IkParameterization | Floats,
+        shares: ArrayLike | None,
+        options: int,
+        failures: list[IkFailureInfo] | None = None,
+    ) -> list[IkReturn]:
+        """Return all good solutions; none if a filter ends the search. The arguments are those of ``find_one``."""
+        solver = self.derived()
+        rows = self._all_rows(solver, goal, shares, options)
+        with self._judge(goal, options, failures) as judge:
+            answers = judge.all(rows)
+            if not answers and failures is not None and not judge.quit:
+                free = self._free_values(solver, shares)
+                judge.fall_short(*shortfall(solver, self._numbers(goal), free), limits=not options & IGNORE_LIMITS)
+        return answers
+
+    def _all_rows(
+        self, solver: IKSolver, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int
+    ) -> Floats:
+        free = self._free_values(solver, shares)
+        samples = None if free is None else free[None]
+        return solver.solve_one(self._numbers(goal), free=samples, limits=not options & IGNORE_LIMITS)
+
+    def _nearest_first(
+        self, solver: IKSolver, numbers: Floats, free: Floats | None, options: int, start: Floats | None = None
+    ) -> Iterator[Floats]:
+        seed, limits = self._posture() if start is None else start, not options & IGNORE_LIMITS
+        return nearest_first(solver, numbers, seed, weights=self._weights(), free=free, limits=limits)
+
+    def _weights(self) -> Floats:
+        axes = self._owner().simulation_state.scene.dof_axes
+        return np.array([axes[dof].weight for dof in self._description().arm_dofs])
+
+    def _numbers(self, goal: IkParameterization | Floats) -> Floats:
+        """Return a goal as the solver takes it: a pose (4, 4), or the numbers of its type.
+
+        Raises:
+            RavemjError: it is empty.
+            ArgumentError: it is of another type.
+        """
+        kind = _Type.Transform6D if isinstance(goal, np.ndarray) else goal.GetType()
+        if kind not in GOAL_TYPES:
+            raise RavemjError("the goal is empty; give it a value and a type first")
+        if kind == _Type.Transform6D:
+            T_base_tool = goal if isinstance(goal, np.ndarray) else goal.GetTransform6D()
+            if self.kind == kind:
+                return T_base_tool
+            if self.kind in _OF_POSES:
+                return goal_of_tool(self.kind, T_base_tool, np.array(self._description().direction))
+        if kind != self.kind or isinstance(goal, np.ndarray):
+            message = f"the goal is of type {kind.name}, and the solver of '{self._arm_name}' takes {self.kind.name}"
+            raise ArgumentError(f"{message}; load an InverseKinematicsModel of that type first")
+        return goal.GetValues()
+
+    def _takes_all(self, options: int) -> bool:
+        """Return whether every solution is good: nothing is tested."""
+        tests = options & CHECK_ENV or not options & IGNORE_SELF
+        return not tests and (bool(options & IGNORE_FILTERS) or not self._filters)
+
+    def _judge(self, goal: IkParameterization | Floats, options: int, failures: list[IkFailureInfo] | None) -> Judge:
+        if isinstance(goal, np.ndarray):
+            goal = IkParameterization(goal, _Type.Transform6D)
+        filters = [] if options & IGNORE_FILTERS else self._filters
+        question = Question(self._owner(), self._arm, self._description(), goal, options, filters, failures)
+        return Judge(question)

@@ -1,0 +1,139 @@
+"""What a search for joint values answers, and why it rejected others."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.api_object import ApiObject
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats
+from ravemj.rave.enums import IkReturnAction
+from ravemj.rave.report import CollisionReport
+from ravemj.rave.specification import IkParameterization
+
+
+class IkReturn(ApiObject):
+    """An answer of inverse kinematics: joint values, or why there are none. Filters return it, too.
+
+    Args:
+        action: Whether there is a solution; if not, all that happened to those that were tried.
+
+    Example:
+        >>> answer = manip.FindIKSolution(T_world_tool, 0, ikreturn=True)
+        >>> if answer.GetAction() == IkReturnAction.Success:
+        ...     robot.SetDOFValues(answer.GetSolution(), manip.GetArmIndices())
+    """
+
+    def __init__(self, action: IkReturnAction | int) -> None:
+        self._action = IkReturnAction(action)
+        self._solution = np.zeros(0)
+        self._map: dict[str, Floats] = {}
+        self._user_data: Any = None
+        self._failures: list[int] = []
+
+    _internal = ("take",)
+
+    def GetAction(self) -> IkReturnAction:
+        """Return ``Success``, or the bits of all that happened to what was tried."""
+        return self._action
+
+    def GetSolution(self) -> Floats:
+        """Return the joint values [rad or m] in the order of ``GetArmIndices()``, shape (n,); (0,) without solution."""
+        return self._solution.copy()
+
+    def SetSolution(self, solution: ArrayLike) -> None:
+        """Set the joint values; what a filter sets replaces the solution that it was asked about, unchecked.
+
+        Args:
+            solution: Joint values [rad or m], shape (n,).
+        """
+        self._solution = checked_numbers(solution, "SetSolution: solution")
+
+    def GetMapData(self, key: str) -> Floats | None:
+        """Return the numbers under a name, shape (k,), or None.
+
+        Args:
+            key: The name.
+        """
+        return self._map[key].copy() if key in self._map else None
+
+    def GetMapDataDict(self) -> dict[str, Floats]:
+        """Return all numbers by their names."""
+        return {key: numbers.copy() for key, numbers in self._map.items()}
+
+    def SetMapKeyValue(self, key: str, value: ArrayLike) -> None:
+        """Attach numbers under a name.
+
+        Args:
+            key: The name.
+            value: The numbers, shape (k,).
+        """
+        self._map[key] = checked_numbers(value, "SetMapKeyValue: value")
+
+    def GetUserData(self) -> Any:  # noqa: ANN401 - any object of the user's
+        """Return what ``SetUserData`` attached, or None."""
+        return self._user_data
+
+    def SetUserData(self, data: Any) -> None:  # noqa: ANN401 - any object of the user's
+        """Attach an object of your own.
+
+        Args:
+            data: The object.
+        """
+        self._user_data = data
+
+    def GetIkFailureInfoIndices(self) -> list[int]:
+        """Return where the failures of this search are in the list that was given as ``ikFailureAccumulator``."""
+        return list(self._failures)
+
+    def take(self, other: "IkReturn", failures: list[int]) -> None:
+        """Take over the data that a filter attached to its answer, and where the failures are."""
+        self._map.update(other.GetMapDataDict())
+        self._failures += failures
+        if other.GetUserData() is not None:
+            self._user_data = other.GetUserData()
+
+
+class IkFailureInfo(ApiObject):
+    """Why a solution was rejected; a list that is given as ``ikFailureAccumulator`` gets them.
+
+    Args:
+        action: What happened.
+        configuration: The joint values that were rejected, shape (n,); none where the goal is out of reach.
+        ikparam: The goal, in the frame of the arm's base.
+        report: The collision, if it was one.
+        description: Why, in words.
+    """
+
+    def __init__(
+        self,
+        action: IkReturnAction,
+        configuration: Floats,
+        ikparam: IkParameterization,
+        report: CollisionReport | None = None,
+        description: str = "",
+    ) -> None:
+        self._action, self._configuration, self._goal = action, configuration, ikparam
+        self._report = CollisionReport() if report is None else report
+        self._description = description
+
+    def GetAction(self) -> IkReturnAction:
+        """Return what happened."""
+        return self._action
+
+    def GetConfiguration(self) -> Floats:
+        """Return the joint values [rad or m] that were rejected, shape (n,)."""
+        return self._configuration.copy()
+
+    def GetIkParam(self) -> IkParameterization:
+        """Return the goal, in the frame of the arm's base."""
+        return IkParameterization(self._goal)
+
+    def GetCollisionReport(self) -> CollisionReport:
+        """Return the collision; empty if it was none."""
+        return self._report
+
+    def GetDescription(self) -> str:
+        """Return why, in words."""
+        return self._description

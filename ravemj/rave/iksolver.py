@@ -1,0 +1,218 @@
+"""Solvers of inverse kinematics as objects of an environment."""
+
+import logging
+import operator
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, cast
+
+from numpy.typing import ArrayLike
+
+from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_vector
+from ravemj.core.handles import Handle
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType
+from ravemj.rave.enums import InterfaceType
+from ravemj.rave.ik_judge import Filter, FilterFunction, solution
+from ravemj.rave.ik_search import IkSearch
+from ravemj.rave.ikreturn import IkReturn
+from ravemj.rave.interface import checked_environment
+from ravemj.rave.specification import IkParameterization
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+    from ravemj.rave.robot import Robot
+
+_LOG = logging.getLogger("ravemj")
+_NEAR = 1e-4
+"""Squared distance from the goal of a posture that ``CallFilters`` takes."""
+
+
+class IkSolver(IkSearch):
+    """Finds joint values that take the tool of one arm to goals of one type; ``manip.GetIkSolver()`` returns it.
+
+    Goals of its own methods are in the frame of the arm's base.
+    """
+
+    _interface_type = InterfaceType.iksolver
+    _internal = ("copy_for",)
+
+    def GetXMLId(self) -> str:
+        """Return the name that the solver was made by."""
+        return self._name
+
+    def Supports(self, iktype: IkParameterizationType) -> bool:
+        """Return whether the solver answers goals of a type.
+
+        Args:
+            iktype: The type.
+        """
+        return iktype == self.kind
+
+    def copy_for(self, robot: "Robot") -> "IkSolver":
+        """Return a solver for the same arm of another robot like this, with the default steps of free joints."""
+        copy = IkSolver(robot.GetEnv(), self._name, self.kind, self.arm_solver.free)
+        copy.arm_solver = self.arm_solver
+        copy.attach(robot, self._arm_name)
+        return copy
+
+    # Free joints
+
+    def GetNumFreeParameters(self) -> int:
+        """Return how many joints are sampled, since the arm has more than the goal needs."""
+        return len(self.derived().free)
+
+    def GetFreeParameters(self) -> Floats:
+        """Return where the free joints of the robot are in their ranges, from 0 to 1, shape (k,)."""
+        solver, values = self.derived(), self._posture()
+        free = list(solver.free)
+        lower, upper = solver.chain.lower[free], solver.chain.upper[free]
+        return (values[free] - lower) / (upper - lower)
+
+    # Filters
+
+    def RegisterCustomFilter(self, priority: int, callback: FilterFunction) -> Handle:
+        """Let a function of yours judge solutions.
+
+        Args:
+            priority: Functions of higher priority are asked first; those above 0 before collisions are tested.
+            callback: ``callback(values, manipulator, ikparam)`` returns an ``IkReturnAction`` (``Success`` keeps the
+                solution, ``Reject`` goes on to the next, ``Quit`` ends the search), an ``IkReturn`` whose solution
+                takes the place of this one, or None, which rejects. ``ikparam`` is in the frame of the arm's base; the
+                robot stands in the solution, and its active DOFs are those of the arm.
+
+        Returns:
+            A handle; the function is asked until it is closed or gone.
+
+        Example:
+            >>> def elbow_up(values, manipulator, ikparam):
+            ...     return IkReturnAction.Success if values[2] > 0 else IkReturnAction.Reject
+            >>> handle = manip.GetIkSolver().RegisterCustomFilter(0, elbow_up)
+        """
+        if not callable(callback):
+            raise ArgumentError(f"RegisterCustomFilter: callback is {callback!r}, and should be a function")
+        entry = Filter(int(priority), callback)
+        self._filters.append(entry)
+        return Handle(_remove, self._filters, entry)
+
+    def CallFilters(self, ikparam: IkParameterization) -> IkReturn:
+        """Ask all filters about the posture in which the robot is.
+
+        Args:
+            ikparam: The goal, in the frame of the arm's base, where the tool is within 0.01 (m or rad).
+
+        Returns:
+            The posture as a solution, with what the filters attach; or that they reject it.
+
+        Raises:
+            ArgumentError: the tool is elsewhere.
+        """
+        goal = checked_kind(ikparam, IkParameterization, "CallFilters: ikparam")
+        here = self._arm.GetIkParameterization(goal, False)
+        if here.ComputeDistanceSqr(goal) > _NEAR:
+            raise ArgumentError("CallFilters: ikparam is not where the tool is; it is relative to the arm's base")
+        row = self._posture()
+        answer = solution(row)
+        with self._judge(goal, 0, None) as judge:
+            return answer if judge.passes(judge.filters, row, answer) else judge.failure()
+
+    # Search
+
+    def Solve(self, ikparam: IkParameterization, q0: ArrayLike | None, *arguments: object, **named: object) -> IkReturn:
+        """Return the solution nearest to a posture: ``Solve(ikparam, q0, [freeparameters,] filteroptions)``.
+
+        Args:
+            ikparam: The goal, in the frame of the arm's base.
+            q0: The posture, shape (n,); None: the present one.
+            arguments: Values of the free joints as shares of their ranges, then ``IkFilterOptions``.
+            named: The same by name.
+        """
+        goal = checked_kind(ikparam, IkParameterization, "Solve: ikparam")
+        free, options = split_options("Solve", arguments, named)
+        seed = None if q0 is None else checked_vector(q0, self.derived().chain.dof, "Solve: q0")
+        return self.find_one(goal, free, options, seed=seed)
+
+    def SolveAll(self, ikparam: IkParameterization, *arguments: object, **named: object) -> list[IkReturn]:
+        """Return all solutions: ``SolveAll(ikparam, [freeparameters,] filteroptions)``.
+
+        Args:
+            ikparam: The goal, in the frame of the arm's base.
+            arguments: Values of the free joints as shares of their ranges, then ``IkFilterOptions``.
+            named: The same by name.
+        """
+        goal = checked_kind(ikparam, IkParameterization, "SolveAll: ikparam")
+        return self.find_all(goal, *split_options("SolveAll", arguments, named))
+
+    def __repr__(self) -> str:
+        return f"RaveCreateIkSolver({self._env!r}, {self._name!r})"
+
+
+def _remove(filters: list[Filter], entry: Filter) -> None:
+    filters.remove(entry)  # in one step, since garbage collection may call it
+
+
+_OPTIONS = "filteroptions"
+
+
+def split_options(
+    caller: str, arguments: Sequence[object], named: Mapping[str, object], free_name: str = "freeparameters"
+) -> tuple[ArrayLike | None, int]:
+    """Return values of free joints, or None, and ``IkFilterOptions`` of a call.
+
+    Args:
+        caller: The name of the method.
+        arguments: ``filteroptions``, or values of free joints and these.
+        named: The same by name.
+        free_name: What the values of free joints are called.
+
+    Raises:
+        TypeError: the options are missing, or there is something else.
+    """
+    names = [free_name, _OPTIONS] if len(arguments) > 1 or free_name in named else [_OPTIONS]
+    given = dict(zip([name for name in names if name not in named], arguments, strict=False)) | dict(named)
+    if _OPTIONS not in given or given.keys() - {free_name, _OPTIONS} or len(given) != len(arguments) + len(named):
+        raise TypeError(f"{caller}: takes a goal, [{free_name},] {_OPTIONS}; see IkFilterOptions")
+    options = given[_OPTIONS]
+    try:
+        number = operator.index(cast("int", options))
+    except TypeError:
+        raise TypeError(f"{caller}: {_OPTIONS} are {options!r}, and should be IkFilterOptions or 0") from None
+    return cast("ArrayLike | None", given.get(free_name)), number
+
+
+def RaveCreateIkSolver(env: "Environment", name: str) -> IkSolver | None:
+    """Make a solver of inverse kinematics; ``manip.SetIkSolver`` gives it an arm.
+
+    Args:
+        env: The environment.
+        name: ``ikfast`` and a word in which the type of goal stands, as ``InverseKinematicsModel.getikname`` returns
+            it; what follows are the steps of free joints [rad or m]. ``ikfast Transform6D 0.05``
+
+    Returns:
+        The solver; None, and a warning is logged, where the name says no type of goal.
+
+    Raises:
+        UnsupportedError: no solver answers goals of that type.
+
+    Example:
+        >>> solver = RaveCreateIkSolver(env, "ikfast Translation3D")
+        >>> manip.SetIkSolver(solver)
+        True
+    """
+    checked_environment(env, "RaveCreateIkSolver")
+    words = checked_kind(name, str, "RaveCreateIkSolver: name", "a text").split()
+    if len(words) > 1 and words[0].lower() == "ikfast":
+        kind = next((one for one in GOAL_TYPES if one.name in words[1].split(".")), None)
+        steps = _numbers_in(words[2:])
+        if kind is not None and steps is not None:
+            return IkSolver(env, name, kind, steps=steps or None)
+    _LOG.warning("there is no solver '%s': its name should be 'ikfast' and a type of goal, then steps", name)
+    return None
+
+
+def _numbers_in(words: Sequence[str]) -> list[float] | None:
+    try:
+        return [float(word) for word in words]
+    except ValueError:
+        return None
