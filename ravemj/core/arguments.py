@@ -1,12 +1,43 @@
 """Arguments that users hand in and that are no arrays, checked once."""
 
-from typing import TypeVar
+from collections.abc import Callable
+from functools import wraps
+from inspect import Parameter, cleandoc, signature
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 
 from ravemj.errors import ArgumentError
 
 Kind = TypeVar("Kind")
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+
+def also_named(**names: str) -> Callable[[Callable[Arguments, Result]], Callable[Arguments, Result]]:
+    """Let arguments be given by further names, where OpenRAVE's overloads call them differently.
+
+    Args:
+        names: By each further name the argument that it stands for.
+    """
+
+    def decorate(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+        @wraps(function)
+        def renamed(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
+            for name in names.keys() & kwargs.keys():
+                kwargs[names[name]] = kwargs.pop(name)
+            return function(*args, **kwargs)
+
+        original = signature(function)
+        further = [Parameter(name, Parameter.KEYWORD_ONLY, default=...) for name in names]
+        parameters = [*original.parameters.values(), *further]
+        parameters.sort(key=lambda one: one.kind)
+        vars(renamed)["__signature__"] = original.replace(parameters=parameters)
+        pairs = ", ".join(f"``{name}`` for ``{argument}``" for name, argument in names.items())
+        renamed.__doc__ = f"{cleandoc(function.__doc__ or '')}\n\nNote:\n    Also taken by name: {pairs}."
+        return renamed
+
+    return decorate
 
 
 def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name: str, wanted: str = "") -> Kind:

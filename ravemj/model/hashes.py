@@ -15,7 +15,16 @@ DIGITS = 8
 
 def of_body(body: KinBody) -> str:
     """Return the hash of the links, their shapes and the joints: 32 hexadecimal digits."""
-    return _digest(_links(body), [_joint(joint) for joint in body.all_joints])
+    return _digest(*_structure(body))
+
+
+def text_of_body(body: KinBody) -> str:
+    """Return the text that ``of_body`` is the hash of."""
+    return repr(_plain(_structure(body)))
+
+
+def _structure(body: KinBody) -> tuple[object, ...]:
+    return _links(body), [_joint(joint) for joint in body.all_joints]
 
 
 def of_robot(body: KinBody) -> str:

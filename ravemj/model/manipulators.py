@@ -20,6 +20,7 @@ class ManipulatorBuilder:
     direction: Vec3 = (0.0, 0.0, 1.0)
     gripper_joints: list[str] = field(default_factory=list[str])
     closing_direction: list[float] = field(default_factory=list[float])
+    gripper_name: str = ""
 
 
 def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnostics: Diagnostics) -> scene.Manipulator:
@@ -46,6 +47,7 @@ def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnosti
         gripper_dofs=gripper_dofs,
         chucking_direction=tuple((signs + [0.0] * len(gripper_dofs))[: len(gripper_dofs)]),
         source=built.source,
+        gripper_name=built.gripper_name,
     )
 
 

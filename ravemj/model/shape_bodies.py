@@ -1,6 +1,7 @@
 """Bodies of one link, made of boxes, spheres or other shapes by a script instead of a file."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from ravemj.core.transforms import ZERO, Floats, Pose, wxyz_from_rows
 from ravemj.errors import Source
@@ -59,6 +60,11 @@ def sphere_geometries(spheres: Floats, *, visible: bool) -> list[Geometry]:
     return [shape_geometry(Sphere(radius), Pose((x, y, z)), visible=visible) for x, y, z, radius in spheres.tolist()]
 
 
+def empty_body(body: KinBody) -> KinBody:
+    """Return a body of the same name and kind without links."""
+    return KinBody(name=body.name, is_robot=body.is_robot, links=(), joints=(), passive_joints=(), source=FROM_SCRIPT)
+
+
 def body_of_geometries(body: KinBody, geometries: Iterable[Geometry]) -> KinBody:
     """Return a body of the same name and kind that is one static link with these shapes."""
     base = Link(
@@ -70,6 +76,4 @@ def body_of_geometries(body: KinBody, geometries: Iterable[Geometry]) -> KinBody
         enabled=True,
         source=FROM_SCRIPT,
     )
-    return KinBody(
-        name=body.name, is_robot=body.is_robot, links=(base,), joints=(), passive_joints=(), source=FROM_SCRIPT
-    )
+    return replace(empty_body(body), links=(base,))

@@ -1,13 +1,11 @@
 """OpenRAVE's functions that make bodies."""
 
-from ravemj.errors import Source
 from ravemj.model.scene import KinBody as SceneBody
+from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.environment import Environment
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
-
-_NOWHERE = Source("made by the script")
 
 
 def RaveCreateKinBody(env: Environment, name: str = "") -> KinBody | None:
@@ -46,5 +44,5 @@ def RaveCreateRobot(env: Environment, name: str = "") -> Robot | None:
 
 def _empty(env: Environment, *, is_robot: bool) -> KinBody:
     checked_environment(env, "RaveCreateRobot" if is_robot else "RaveCreateKinBody")
-    scene = SceneBody(name="", is_robot=is_robot, links=(), joints=(), passive_joints=(), source=_NOWHERE)
+    scene = SceneBody(name="", is_robot=is_robot, links=(), joints=(), passive_joints=(), source=FROM_SCRIPT)
     return env.wrap(env.simulation.create(scene))

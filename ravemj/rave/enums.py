@@ -84,12 +84,16 @@ class InterfaceType(IntEnum):
 
 
 class InterfaceAddMode(IntEnum):
-    """What ``env.Add`` does when the name is taken."""
+    """What ``env.Add`` does when the name is taken; True and False in its place are OpenRAVE 0.9's ``anonymous``."""
 
-    StrictNameChecking = 0
-    """Raise."""
-    AllowRenaming = 1
+    AllowRenaming = 0
     """Add it under a name of its own."""
+    StrictNameChecking = 1
+    """Raise."""
+    StrictIdChecking = 2
+    """Add it under a name of its own; ids are never changed here."""
+    StrictNameIdChecking = 3
+    """Raise."""
 
 
 class SaveParameters(IntFlag):
@@ -109,6 +113,8 @@ class SaveParameters(IntFlag):
     GrabbedBodies = 0x40000
     ActiveManipulatorToolTransform = 0x80000
     ManipulatorsToolTransform = 0x100000
+    ConnectedBodies = 0x200000
+    """Which connected bodies are active."""
 
 
 class CloningOptions(IntFlag):
@@ -121,6 +127,35 @@ class CloningOptions(IntFlag):
     Sensors = 16
     Modules = 32
     PassOnMissingBodyReferences = 0x8000
+    IgnoreGrabbedBodies = 0x10000
+    """Copies hold nothing."""
+
+
+class UpdateFromInfoMode(IntEnum):
+    """What ``env.UpdateFromInfo`` does with bodies that the info does not name."""
+
+    Exact = 0
+    """Remove them."""
+    OnlySpecifiedBodiesExact = 1
+    """Leave them."""
+
+
+class UpdateFromInfoResult(IntEnum):
+    """How an object took over an info."""
+
+    NoChange = 0
+    Success = 1
+    RequireRemoveFromEnvironment = 2
+    RequireReinitialize = 3
+
+
+class GrabbedInfoCheckResult(IntEnum):
+    """What ``body.CheckGrabbedInfo`` finds."""
+
+    Identical = 0
+    BodyNotGrabbed = 1
+    GrabbingLinkNotMatch = 2
+    IgnoredLinksNotMatch = 3
 
 
 class DebugLevel(IntEnum):

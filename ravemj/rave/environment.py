@@ -8,15 +8,17 @@ from typing import Self
 
 import mujoco
 
+from ravemj.core.arguments import also_named
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ErrorCode, RavemjError, SourceError
 from ravemj.rave.body.base import both_locks
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.collision import Collision
 from ravemj.rave.env.contents import Contents
+from ravemj.rave.env.description import Description
 from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
-from ravemj.rave.env.simulation import Simulating
+from ravemj.rave.env.publishing import Publishing
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
@@ -26,7 +28,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Contents, Loading, Collision, Simulating, Drawing, Viewing):
+class Environment(Contents, Loading, Collision, Publishing, Drawing, Viewing, Description):
     """A world with robots and other bodies.
 
     Example:
@@ -41,14 +43,24 @@ class Environment(Contents, Loading, Collision, Simulating, Drawing, Viewing):
 
     _internal = ("simulation",)
 
-    def __init__(self, options: int = 1) -> None:
-        """Make an empty environment.
+    def __new__(cls, name: "str | int | Environment" = "", options: int = 1) -> Self:
+        """Return a new object, or the environment that stands in the place of a name."""
+        return name if isinstance(name, cls) else super().__new__(cls)
+
+    @also_named(penv="name")
+    def __init__(self, name: "str | int | Environment" = "", options: int = 1) -> None:
+        """Make an empty environment: ``Environment()`` or ``Environment(name)``.
 
         Args:
-            options: OpenRAVE's; ignored.
+            name: What ``GetName`` returns. ``Environment(env)`` is that environment itself. A number is OpenRAVE's
+                ``options``.
+            options: ``EnvironmentCreateOptions``, without meaning: time begins to pass once it is wanted.
         """
         del options
+        if name is self:
+            return
         super().__init__()
+        self._name = name if isinstance(name, str) else ""
         self._number = next(_numbers)
         _environments[self._number] = self
 
@@ -81,6 +93,8 @@ class Environment(Contents, Loading, Collision, Simulating, Drawing, Viewing):
             self._simulation.lock.acquire()
             return None
         return self._simulation.lock.acquire(timeout=max(0.0, timeout))
+
+    LockPhysics = Lock
 
     def TryLock(self) -> bool:
         """Take the lock if it is free, without waiting; return whether it was taken."""

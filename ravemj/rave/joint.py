@@ -6,18 +6,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_indices, checked_vector
-from ravemj.core.transforms import Floats, Ints, Pose, pose_of
+from ravemj.core.transforms import Floats, Ints, Pose, conjugate, pose_of, rotate
 from ravemj.errors import ErrorCode, RavemjError
+from ravemj.geometry_functions import quatRotateDirection
 from ravemj.model.joints import directions_at, measured_values, relative_pose, reported_anchor, wrapped_angle
 from ravemj.model.manipulators import joint_dofs
 from ravemj.model.mimic import Equations, leaders, with_equations
+from ravemj.model.scene import Parameters
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
 from ravemj.rave.joint_limits import JointLimits
 from ravemj.rave.link import Link
+from ravemj.rave.parameters import Parametrized
 
 
-class Joint(JointLimits):
+class Joint(JointLimits, Parametrized):
     """A joint between two links; ``body.GetJoints()`` makes it."""
 
     Type = JointType
@@ -249,11 +252,15 @@ class Joint(JointLimits):
     GetSecondAttached = GetHierarchyChildLink
 
     def GetInternalHierarchyAxis(self, axis: int = 0) -> Floats:
-        """Return the direction of an axis in the joint's frame, which is parallel to the parent link, shape (3,)."""
-        return np.array(self._scene.axes[axis].direction)
+        """Return the direction of an axis in the frame of ``GetInternalHierarchyLeftTransform``, shape (3,).
+
+        Args:
+            axis: Which axis of the joint.
+        """
+        return np.array(rotate(conjugate(self._left().wxyz), self._scene.axes[axis].direction))
 
     def GetInternalHierarchyLeftTransform(self) -> Floats:
-        """Return the joint's frame in the parent link: parallel to it, at the anchor.
+        """Return the joint's frame in the parent link: at the anchor; z of a hinge's is its axis, others are parallel.
 
         The child is at ``left @ motion @ right``, where ``motion`` turns about or slides along the axis by the joint's
         value.
@@ -271,8 +278,22 @@ class Joint(JointLimits):
         """
         return (self._left().inverse() @ relative_pose(self._scene, [0.0] * self.GetDOF())).matrix()
 
+    def GetInternalHierarchyLeftTransformPose(self) -> Floats:
+        """Return ``GetInternalHierarchyLeftTransform`` as [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return self._left().numbers()
+
+    def GetInternalHierarchyRightTransformPose(self) -> Floats:
+        """Return ``GetInternalHierarchyRightTransform`` as [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return pose_of(self.GetInternalHierarchyRightTransform()).numbers()
+
     def _left(self) -> Pose:
-        return Pose(self._scene.anchor)
+        if self._scene.kind != "hinge":
+            return Pose(self._scene.anchor)
+        w, x, y, z = quatRotateDirection((0.0, 0.0, 1.0), self._scene.axes[0].direction).tolist()
+        return Pose(self._scene.anchor, (w, x, y, z))
+
+    def _set_parameters(self, parameters: Parameters) -> None:
+        self._state.edit_joint(self._index, parameters=parameters)
 
     def GetInfo(self) -> JointInfo:
         """Return the description of the joint at its present value, a copy."""

@@ -61,6 +61,54 @@ class JointLimits(Member):
         """
         self._set_axes("SetAccelerationLimits", max_acceleration=maxlimits)
 
+    def GetJerkLimits(self) -> Floats:
+        """Return the jerk limits, the same in both directions [rad/s^3 or m/s^3], shape (axes,)."""
+        return self._of_axes("max_jerk")
+
+    def SetJerkLimits(self, maxlimits: ArrayLike) -> None:
+        """Set the jerk limits, the same in both directions.
+
+        Args:
+            maxlimits: Limits [rad/s^3 or m/s^3], shape (axes,).
+        """
+        self._set_axes("SetJerkLimits", max_jerk=maxlimits)
+
+    def GetHardVelocityLimits(self) -> Floats:
+        """Return the velocities that planners never exceed [rad/s or m/s], shape (axes,); 0 where nobody says."""
+        return self._of_axes("hard_max_velocity")
+
+    def SetHardVelocityLimits(self, maxlimits: ArrayLike) -> None:
+        """Set the velocities that planners never exceed.
+
+        Args:
+            maxlimits: Limits [rad/s or m/s], shape (axes,); 0: none.
+        """
+        self._set_axes("SetHardVelocityLimits", hard_max_velocity=maxlimits)
+
+    def GetHardAccelerationLimits(self) -> Floats:
+        """Return the accelerations never to exceed [rad/s^2 or m/s^2], shape (axes,); 0 where nobody says."""
+        return self._of_axes("hard_max_acceleration")
+
+    def SetHardAccelerationLimits(self, maxlimits: ArrayLike) -> None:
+        """Set the accelerations that planners never exceed.
+
+        Args:
+            maxlimits: Limits [rad/s^2 or m/s^2], shape (axes,); 0: none.
+        """
+        self._set_axes("SetHardAccelerationLimits", hard_max_acceleration=maxlimits)
+
+    def GetHardJerkLimits(self) -> Floats:
+        """Return the jerks that planners never exceed [rad/s^3 or m/s^3], shape (axes,); 0 where nobody says."""
+        return self._of_axes("hard_max_jerk")
+
+    def SetHardJerkLimits(self, maxlimits: ArrayLike) -> None:
+        """Set the jerks that planners never exceed.
+
+        Args:
+            maxlimits: Limits [rad/s^3 or m/s^3], shape (axes,); 0: none.
+        """
+        self._set_axes("SetHardJerkLimits", hard_max_jerk=maxlimits)
+
     def GetTorqueLimits(self) -> Floats:
         """Return the torque or force limits [N m or N], shape (axes,); 0 where the file says nothing."""
         return self._of_axes("max_torque")
@@ -88,6 +136,46 @@ class JointLimits(Member):
             axis: Which axis of the joint.
         """
         return self._scene.axes[axis].max_acceleration
+
+    def GetMaxJerk(self, axis: int = 0) -> float:
+        """Return the jerk limit [rad/s^3 or m/s^3].
+
+        Args:
+            axis: Which axis of the joint.
+        """
+        return self._scene.axes[axis].max_jerk
+
+    def GetMaxInertia(self, axis: int = 0) -> float:
+        """Return the limit of the inertia that the joint moves [kg m^2 or kg].
+
+        Args:
+            axis: Which axis of the joint.
+        """
+        return self._scene.axes[axis].max_inertia
+
+    def GetHardMaxVel(self, axis: int = 0) -> float:
+        """Return the velocity that planners never exceed [rad/s or m/s]; 0 where nobody says.
+
+        Args:
+            axis: Which axis of the joint.
+        """
+        return self._scene.axes[axis].hard_max_velocity
+
+    def GetHardMaxAccel(self, axis: int = 0) -> float:
+        """Return the acceleration that planners never exceed [rad/s^2 or m/s^2]; 0 where nobody says.
+
+        Args:
+            axis: Which axis of the joint.
+        """
+        return self._scene.axes[axis].hard_max_acceleration
+
+    def GetHardMaxJerk(self, axis: int = 0) -> float:
+        """Return the jerk that planners never exceed [rad/s^3 or m/s^3]; 0 where nobody says.
+
+        Args:
+            axis: Which axis of the joint.
+        """
+        return self._scene.axes[axis].hard_max_jerk
 
     def GetMaxTorque(self, axis: int = 0) -> float:
         """Return the torque or force limit [N m or N]; 0 where the file says nothing.

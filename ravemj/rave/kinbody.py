@@ -5,11 +5,13 @@ from typing import TYPE_CHECKING, Self
 
 from ravemj.core.arguments import checked_kind
 from ravemj.engine.simulation import BodyState
+from ravemj.model.shape_bodies import empty_body
 from ravemj.rave.body.base import both_locks
 from ravemj.rave.body.building import Building
 from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.body.configuration import Configuration
 from ravemj.rave.body.dynamics import Dynamics
+from ravemj.rave.body.geometry_groups import GeometryGroups
 from ravemj.rave.body.grabbing import Grabbing
 from ravemj.rave.body.limits import Limits
 from ravemj.rave.body.saving import Restorer, StateSaver, body_restorers
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class KinBody(Building, Grabbing, BodyCollision, Velocities, Dynamics, Limits, Configuration):
+class KinBody(Building, GeometryGroups, Grabbing, BodyCollision, Velocities, Dynamics, Limits, Configuration):
     """A body: links connected by joints. ``env.GetBodies()`` makes it.
 
     Example:
@@ -94,6 +96,15 @@ class KinBody(Building, Grabbing, BodyCollision, Velocities, Dynamics, Limits, C
         with both_locks(self._simulation, original.simulation):
             self._state.copy(original)
 
+    def Destroy(self) -> None:
+        """Take the body out of the environment, and leave nothing of it but its name."""
+        with self._simulation.lock:
+            self._env.Remove(self)
+            self._state.rebuild(empty_body(self._state.scene))
+
+    SetJointValues = Configuration.SetDOFValues
+    GetBodyTransformations = Configuration.GetLinkTransformations
+    SetBodyTransformations = Configuration.SetLinkTransformations
     GetEnvironmentId = GetEnvironmentBodyIndex
 
     def CreateKinBodyStateSaver(self, options: int | None = None) -> StateSaver:

@@ -1,6 +1,7 @@
 """Geometries of a link: shapes, groups of them, collision checking and bounding boxes."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +21,8 @@ from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 class LinkGeometries(Member):
     """The geometries of a link, groups that can replace them, collision checking and bounding boxes."""
+
+    _internal = ("scene_with_group",)
 
     @property
     def _scene(self) -> scene.Link:
@@ -55,7 +58,7 @@ class LinkGeometries(Member):
         Raises:
             openrave_exception: one describes nothing that can be. Nothing has changed then.
         """
-        self._set_geometries(geometries_of(geometryinfos))
+        self._set_own_geometries(geometries_of(geometryinfos))
 
     def AddGeometry(self, geometryinfo: GeometryInfo, addToGroups: bool = False) -> None:
         """Add a shape.
@@ -71,7 +74,7 @@ class LinkGeometries(Member):
         added = geometries_of([geometryinfo])
         if any(one.name == added[0].name for one in self._scene.geometries if one.name):
             raise ArgumentError(f"AddGeometry: link '{self._scene.name}' has a geometry '{added[0].name}' already")
-        self._set_geometries((*self._scene.geometries, *added))
+        self._set_own_geometries((*self._scene.geometries, *added))
         if addToGroups:
             self._set_groups({name: (*group, *added) for name, group in self._scene.groups})
 
@@ -92,7 +95,7 @@ class LinkGeometries(Member):
         kept = without(self._scene.geometries)
         removed = kept != self._scene.geometries
         if removed:
-            self._set_geometries(kept)
+            self._set_own_geometries(kept)
         if removeFromAllGroups:
             self._set_groups({name: without(group) for name, group in self._scene.groups})
         return removed
@@ -110,9 +113,9 @@ class LinkGeometries(Member):
         """Return the number of shapes in a group, or -1 where there is no such group.
 
         Args:
-            name: Name of the set.
+            name: Name of the group; ``self`` is that of the link's own shapes.
         """
-        groups = dict(self._scene.groups)
+        groups = self._groups
         return len(groups[name]) if name in groups else -1
 
     def GetGeometriesFromGroup(self, name: str) -> list[Geometry]:
@@ -124,7 +127,9 @@ class LinkGeometries(Member):
         Raises:
             openrave_exception: there is no such group.
         """
-        return [Geometry(self, self._state, self._index, index, name) for index in range(len(self._group(name)))]
+        shapes, kept = self._group(name), dict(self._scene.groups)
+        group = name if name in kept else None  # the group "self" is what the link has, until another one replaces it
+        return [Geometry(self, self._state, self._index, index, group) for index in range(len(shapes))]
 
     GetGroupGeometries = GetGeometriesFromGroup
 
@@ -132,15 +137,28 @@ class LinkGeometries(Member):
         """Give the link the shapes of a group in place of its own.
 
         Args:
-            name: Name of the set.
+            name: Name of the group; ``self`` brings the link's own shapes back.
 
         Raises:
             openrave_exception: there is no such group. Nothing has changed then.
         """
-        self._set_geometries(self._group(name))
+        shapes, groups = self._group(name), self._groups
+        if name == scene.OWN_SHAPES:
+            del groups[scene.OWN_SHAPES]
+        self._set_groups(groups)
+        self._set_geometries(shapes)
+
+    def scene_with_group(self, name: str) -> scene.Link:
+        """Return the link as it would be with the shapes of a group."""
+        return replace(self._scene, geometries=self._group(name))
+
+    @property
+    def _groups(self) -> dict[str, tuple[scene.Geometry, ...]]:
+        """All groups, the link's own shapes among them."""
+        return {scene.OWN_SHAPES: self._scene.geometries} | dict(self._scene.groups)
 
     def _group(self, name: str) -> tuple[scene.Geometry, ...]:
-        groups = dict(self._scene.groups)
+        groups = self._groups
         if name not in groups:
             known = ", ".join(groups) or "none"
             raise ArgumentError(f"link '{self._scene.name}' has no group of geometries '{name}'; it has {known}")
@@ -149,6 +167,11 @@ class LinkGeometries(Member):
     def _set_groups(self, groups: dict[str, tuple[scene.Geometry, ...]]) -> None:
         with self._state.simulation.lock:
             self._state.edit_link(self._index, groups=tuple(groups.items()))
+
+    def _set_own_geometries(self, geometries: Sequence[scene.Geometry]) -> None:
+        """Set what the link has, and what the group ``self`` brings back."""
+        self._set_groups({name: group for name, group in self._scene.groups if name != scene.OWN_SHAPES})
+        self._set_geometries(geometries)
 
     def _set_geometries(self, geometries: Sequence[scene.Geometry]) -> None:
         with self._state.simulation.lock:
@@ -215,6 +238,34 @@ class LinkGeometries(Member):
         """
         T_a_link = checked_transform(transform, "ComputeAABBFromTransform: transform")
         return enclosing_box(link_bounds(self._scene, T_a_link), T_a_link)
+
+    def ComputeAABBForGeometryGroup(self, geomgroupname: str) -> AABB:
+        """Return the box of ``ComputeAABB`` around the shapes of a group.
+
+        Args:
+            geomgroupname: The name of the group; ``self``: the link's own shapes.
+        """
+        with self._state.simulation.lock:
+            transform = self._state.link_transform(self._index)
+        return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, transform)
+
+    def ComputeAABBForGeometryGroupFromTransform(self, geomgroupname: str, transform: ArrayLike) -> AABB:
+        """Return the box of ``ComputeAABBForGeometryGroup`` for the link standing at a pose.
+
+        Args:
+            geomgroupname: The name of the group.
+            transform: ``T_world_link``: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
+        """
+        T_a_link = checked_transform(transform, "ComputeAABBForGeometryGroupFromTransform: transform")
+        return enclosing_box(link_bounds(self.scene_with_group(geomgroupname), T_a_link), T_a_link)
+
+    def ComputeLocalAABBForGeometryGroup(self, geomgroupname: str) -> AABB:
+        """Return the box of ``ComputeAABBForGeometryGroup`` along the link's axes and in its frame.
+
+        Args:
+            geomgroupname: The name of the group.
+        """
+        return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, np.eye(4))
 
     def ComputeLocalAABB(self) -> AABB:
         """Return the smallest box along the link's axes that holds its geometries, in the link's frame."""

@@ -15,6 +15,7 @@ from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.model import chains, hashes, scene
 from ravemj.model.manipulators import joint_dofs
 from ravemj.rave.arm_collision import ArmCollision
+from ravemj.rave.arm_gripper import ArmGripper
 from ravemj.rave.arm_ik import ArmIk
 from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.joint import Joint
@@ -33,7 +34,7 @@ _WITH_DIRECTION = {
 }
 
 
-class Manipulator(ArmCollision, ArmIk, ApiObject):
+class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
     def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
@@ -49,6 +50,24 @@ class Manipulator(ArmCollision, ArmIk, ApiObject):
         """Return the manipulator's name."""
         return self._scene.name
 
+    def SetName(self, name: str) -> None:
+        """Give the manipulator another name.
+
+        Args:
+            name: The name.
+
+        Raises:
+            openrave_exception: it is empty, or another manipulator of the robot has it. Nothing has changed then.
+        """
+        taken = {arm.name for arm in self._state.scene.manipulators} - {self.GetName()}
+        if not name or name in taken:
+            raise ArgumentError(f"SetName: the manipulator cannot be called '{name}': that is empty, or taken")
+        self._edit(name=str(name))
+
+    def GetId(self) -> str:
+        """Return the id of the manipulator in OpenRAVE's JSON: empty."""
+        return ""
+
     def GetRobot(self) -> "KinBody":
         """Return the robot that the manipulator belongs to."""
         return self._robot
@@ -60,6 +79,10 @@ class Manipulator(ArmCollision, ArmIk, ApiObject):
     def GetEndEffector(self) -> Link | None:
         """Return the link that carries the tool."""
         return self._link(self._scene.effector)
+
+    def GetIkChainEndLink(self) -> Link | None:
+        """Return the link that solvers of inverse kinematics count the arm up to: None, the end effector."""
+        return None
 
     def _link(self, index: int | None) -> Link | None:
         return None if index is None else Link(self._robot, self._state, index)
@@ -75,7 +98,7 @@ class Manipulator(ArmCollision, ArmIk, ApiObject):
         """
         return self._effector().GetTransform() @ self.GetLocalToolTransform()
 
-    GetEndEffectorTransform = GetTransform
+    GetEndEffectorTransform = GetGraspTransform = GetTransform
 
     def _effector(self) -> Link:
         effector = self.GetEndEffector()
@@ -127,6 +150,10 @@ class Manipulator(ArmCollision, ArmIk, ApiObject):
             ``T_effector_tool``, shape (4, 4).
         """
         return self._scene.T_effector_tool.matrix()
+
+    def GetLocalToolTransformPose(self) -> Floats:
+        """Return ``GetLocalToolTransform`` as [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return self._scene.T_effector_tool.numbers()
 
     def GetLocalToolDirection(self) -> Floats:
         """Return the unit vector that the tool points along, in its own frame, shape (3,)."""
@@ -183,38 +210,6 @@ class Manipulator(ArmCollision, ArmIk, ApiObject):
     def GetArmDOFValues(self) -> Floats:
         """Return the joint values of the arm [rad or m], in the order of ``GetArmIndices()``, shape (n,)."""
         return self._robot.GetDOFValues(self.GetArmIndices())
-
-    def GetGripperIndices(self) -> Ints:
-        """Return the DOF indices of the gripper's joints."""
-        return np.array(self._scene.gripper_dofs, dtype=np.int_)
-
-    GetGripperJoints = GetGripperIndices
-
-    def GetGripperDOF(self) -> int:
-        """Return the number of DOFs of the gripper."""
-        return len(self._scene.gripper_dofs)
-
-    def GetGripperDOFValues(self) -> Floats:
-        """Return the joint values of the gripper [rad or m], in the order of ``GetGripperIndices()``, shape (n,)."""
-        return self._robot.GetDOFValues(self.GetGripperIndices())
-
-    def GetChuckingDirection(self) -> Ints:
-        """Return for each DOF of the gripper the sign of closing: 1, 0 or -1."""
-        return np.array(self._scene.chucking_direction, dtype=np.int_)
-
-    GetClosingDirection = GetChuckingDirection
-
-    def SetChuckingDirection(self, chuckingdirection: ArrayLike) -> None:
-        """Set for each DOF of the gripper the sign of closing.
-
-        Args:
-            chuckingdirection: -1, 0 or 1 for each of the gripper's DOFs.
-        """
-        count = len(self._scene.gripper_dofs)
-        signs = checked_vector(chuckingdirection, count, "SetChuckingDirection: chuckingdirection")
-        self._edit(chucking_direction=tuple(signs.tolist()))
-
-    SetClosingDirection = SetChuckingDirection
 
     def GetChildJoints(self) -> list[Joint]:
         """Return the joints beyond the arm, for instance those of fingers."""

@@ -40,6 +40,7 @@ from ravemj.rave.sensors import AttachedSensor
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
+    from ravemj.rave.report import CollisionReport
 
 _LOG = logging.getLogger("ravemj")
 
@@ -88,6 +89,7 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         body: KinBody,
         grablink: "Link | Iterable[Link | int | str] | None" = None,
         linkstoignore: "Iterable[Link | int | str]" = (),
+        grabbedUserData: object = None,
     ) -> bool:
         """Hold a body: ``Grab(body)``, ``Grab(body, grablink)``, ``Grab(body, linkstoignore)`` or with both.
 
@@ -95,6 +97,7 @@ class Robot(ActiveDofs, Manipulators, KinBody):
             body: What to hold. See ``KinBody.Grab``.
             grablink: The link of this robot that holds it; left out: the active manipulator's end effector.
             linkstoignore: Further links of this robot that it should not collide with.
+            grabbedUserData: Not used.
 
         Returns:
             False if there is neither a link nor an active manipulator with an end effector.
@@ -104,6 +107,7 @@ class Robot(ActiveDofs, Manipulators, KinBody):
             True
             >>> robot.SetDOFValues([0.3], [0])  # the mug moves along
         """
+        del grabbedUserData
         if grablink is not None and not isinstance(grablink, Link):
             grablink, linkstoignore = None, grablink
         active = self.GetActiveManipulator()
@@ -127,9 +131,76 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         """Return the sensors on the robot's links, in the order of the file."""
         return [AttachedSensor(self, self._state, index) for index in range(len(self._state.scene.sensors))]
 
-    def GetAttachedSensor(self, name: str) -> AttachedSensor | None:
-        """Return the attached sensor of that name, or None."""
-        return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == name), None)
+    def GetAttachedSensor(self, sensorname: str) -> AttachedSensor | None:
+        """Return an attached sensor, or None where there is none of that name.
+
+        Args:
+            sensorname: Its name.
+        """
+        return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == sensorname), None)
+
+    GetSensors = GetAttachedSensors
+    GetSensor = GetAttachedSensor
+
+    def AddAttachedSensor(
+        self, attachedsensorinfo: AttachedSensorInfo, removeduplicate: bool = False
+    ) -> AttachedSensor:
+        """Attach a sensor to a link.
+
+        Args:
+            attachedsensorinfo: Its description.
+            removeduplicate: Whether it replaces one of the same name.
+
+        Returns:
+            The new attached sensor.
+
+        Raises:
+            openrave_exception: there is one of that name, or no such link. Nothing has changed then.
+        """
+        body = self._state.scene
+        info = checked_kind(attachedsensorinfo, AttachedSensorInfo, "AddAttachedSensor: attachedsensorinfo")
+        made = info.sensor([link.name for link in body.links])
+        if made.link is None:
+            message = f"'{self.GetName()}' has no such link as {info!r} names"
+            raise ArgumentError(f"AddAttachedSensor: {message}")
+        sensors, names = list(body.sensors), [sensor.name for sensor in body.sensors]
+        index = names.index(made.name) if made.name in names else len(names)
+        if index < len(names) and not removeduplicate:
+            raise ArgumentError(f"AddAttachedSensor: '{self.GetName()}' has a sensor '{made.name}' already")
+        with self._simulation.lock:
+            self._state.edit(sensors=(*sensors[:index], made, *sensors[index + 1 :]))
+        return self.GetAttachedSensors()[index]
+
+    def RemoveAttachedSensor(self, attsensor: AttachedSensor) -> bool:
+        """Take a sensor off; those behind it move up.
+
+        Args:
+            attsensor: The attached sensor.
+
+        Returns:
+            Whether it was there.
+        """
+        if attsensor not in self.GetAttachedSensors():
+            return False
+        with self._simulation.lock:
+            name = attsensor.GetName()
+            self._state.edit(sensors=tuple(one for one in self._state.scene.sensors if one.name != name))
+        return True
+
+    def CheckLinkSelfCollision(
+        self, linkindex: int, linktrans: ArrayLike, report: "CollisionReport | None" = None
+    ) -> bool:
+        """Return whether one link, standing elsewhere, collides with the others and with what the robot holds.
+
+        Args:
+            linkindex: Index of the link.
+            linktrans: ``T_world_link``: 4x4, 3x4 or 7 numbers. The other links stay, those behind it too.
+            report: Filled with what is found.
+        """
+        link = self.GetLinks()[self._checked_link(linkindex)]
+        with self._simulation.lock, self.CreateKinBodyStateSaver(SaveParameters.LinkTransformation):
+            link.SetTransform(linktrans)
+            return (self._self_checker or self._env.GetCollisionChecker()).CheckSelfCollision(link, report)
 
     def GetController(self) -> Controller | None:
         """Return the robot's controller: an ``IdealController`` from the start; None after ``SetController(None)``.

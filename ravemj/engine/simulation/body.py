@@ -12,6 +12,7 @@ from ravemj.engine.kinematics.displacement import place_links
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.inertia import Inertias
 from ravemj.model.scene import Axis, Geometry, Inertial, Joint, KinBody, Link
+from ravemj.model.zero import rezeroed
 
 if TYPE_CHECKING:
     from ravemj.engine.batch import Batch
@@ -322,6 +323,15 @@ class BodyState:
         self._forget_kinematics()
         self.scene = replace(self.scene, passive_joints=passive_joints)
         self.restore(saved)
+
+    def rezero(self) -> None:
+        """Call the present values of the DOFs zero; the links stay where they are, until values are next set."""
+        T_world_links = self.link_transforms()
+        scene = rezeroed(self.scene, T_world_links, self.kinematics.values().tolist())
+        self.simulation.forget_model()
+        self._forget_kinematics()
+        self.scene = scene
+        self.place_links(T_world_links)
 
     def edit_link(self, index: int, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Link
         """Change the description of a link: its masses, its names; shapes by ``set_geometries``."""

@@ -7,6 +7,7 @@ angles radians, masses kilograms. Links are referred to by their index in ``KinB
 from ravemj.model.scene.body import AttachedSensor, Intrinsics, KinBody, Manipulator
 from ravemj.model.scene.mechanism import (
     NO_PARAMETERS,
+    OWN_SHAPES,
     UNLIMITED,
     Axis,
     Inertial,
@@ -41,6 +42,7 @@ from ravemj.model.scene.world import Scene, View
 
 __all__ = [
     "NO_PARAMETERS",
+    "OWN_SHAPES",
     "SHAPE_TYPES",
     "UNLIMITED",
     "AttachedSensor",

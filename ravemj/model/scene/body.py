@@ -23,6 +23,7 @@ class Manipulator(Record):
         gripper_dofs: Their DOFs.
         chucking_direction: For each of these DOFs the sign of closing: 1, 0 or -1.
         source: The element that it comes from.
+        gripper_name: Name of what describes the gripper; empty where nobody says.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Manipulator(Record):
     gripper_dofs: tuple[int, ...]
     chucking_direction: tuple[float, ...]
     source: Source
+    gripper_name: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

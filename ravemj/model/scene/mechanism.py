@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 JointKind = Literal["hinge", "slider", "hinge2", "spherical"]
 
+OWN_SHAPES = "self"
+"""Name of the group of a link's own shapes, which is kept while another group replaces them."""
+
 UNLIMITED = 10000.0
 """The limit [rad] that OpenRAVE reports for a circular joint."""
 
@@ -90,7 +93,12 @@ class Axis(Record):
         resolution: Step of planners [rad or m].
         max_velocity: Velocity limit [rad/s or m/s].
         max_acceleration: Acceleration limit [rad/s^2 or m/s^2].
+        max_jerk: Jerk limit [rad/s^3 or m/s^3].
         max_torque: Torque or force limit [N m or N]; 0 where the file says nothing.
+        max_inertia: Limit of the inertia that it moves [kg m^2 or kg]; 0 where nobody says.
+        hard_max_velocity: Velocity that planners never exceed [rad/s or m/s]; 0 where nobody says.
+        hard_max_acceleration: Acceleration that they never exceed.
+        hard_max_jerk: Jerk that they never exceed.
         armature: Inertia of a motor behind its gear [kg m^2].
         wrap_offset: The value about which scripts chose the turn that the value is in [rad].
     """
@@ -105,7 +113,12 @@ class Axis(Record):
     resolution: float = 0.02
     max_velocity: float = 10.0
     max_acceleration: float = 50.0
+    max_jerk: float = 50000.0
     max_torque: float = 0.0
+    max_inertia: float = 0.0
+    hard_max_velocity: float = 0.0
+    hard_max_acceleration: float = 0.0
+    hard_max_jerk: float = 0.0
     armature: float = 0.0
     wrap_offset: float = 0.0
 

@@ -80,6 +80,8 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
         """Return the active joints' DOFs in the order of their values; affine ones are not among them."""
         return np.array(self._active_dofs(), dtype=np.int_)
 
+    GetActiveJointIndices = GetActiveDOFIndices
+
     def _active_dofs(self) -> list[int]:
         chosen = self.active_choice.dofs
         return list(range(self.GetDOF())) if chosen is None else list(chosen)
@@ -191,6 +193,24 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
         return self._with_affine(self.GetDOFAccelerationLimits(self._active_dofs()), "max_velocity")
 
     GetActiveDOFAccelerationLimits = GetActiveDOFMaxAccel
+
+    def GetActiveDOFMaxJerk(self) -> Floats:
+        """Return the jerk limits of the active values, shape (n,); for the base its velocity limits."""
+        return self._with_affine(self.GetDOFJerkLimits(self._active_dofs()), "max_velocity")
+
+    GetActiveDOFJerkLimits = GetActiveDOFMaxJerk
+
+    def GetActiveDOFHardMaxVel(self) -> Floats:
+        """Return the velocities that planners never exceed, shape (n,); for the base its velocity limits."""
+        return self._with_affine(self.GetDOFHardVelocityLimits(self._active_dofs()), "max_velocity")
+
+    def GetActiveDOFHardMaxAccel(self) -> Floats:
+        """Return the accelerations that planners never exceed, shape (n,); for the base its velocity limits."""
+        return self._with_affine(self.GetDOFHardAccelerationLimits(self._active_dofs()), "max_velocity")
+
+    def GetActiveDOFHardMaxJerk(self) -> Floats:
+        """Return the jerks that planners never exceed, shape (n,); for the base its velocity limits."""
+        return self._with_affine(self.GetDOFHardJerkLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFResolutions(self) -> Floats:
         """Return the steps of planners for the active values [rad or m], shape (n,)."""

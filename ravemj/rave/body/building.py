@@ -1,24 +1,29 @@
 """Bodies made in code."""
 
+# The fields of infos have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers, checked_transform
 from ravemj.core.transforms import Floats, Pose
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.scene import Geometry, KinBody
 from ravemj.model.scene import TriMesh as Triangles
 from ravemj.model.shape_bodies import body_of_geometries, box_geometries, shape_geometry, sphere_geometries
+from ravemj.rave.body.identity import Identity
 from ravemj.rave.body.structure import Structure
+from ravemj.rave.enums import UpdateFromInfoResult
 from ravemj.rave.infos import ExtractInfoOptions, GeometryInfo, JointInfo, KinBodyInfo, LinkInfo, body_of
 from ravemj.rave.infos.link import geometries_of
 from ravemj.rave.trimesh import TriMesh, checked_mesh
 
 
-class Building(Structure):
+class Building(Structure, Identity):
     """Makes the body anew; it must not be in an environment meanwhile."""
 
     _internal = ("extracted",)
@@ -30,7 +35,7 @@ class Building(Structure):
             boxes: A row for each box: centre x y z and half extents x y z [m], shape (n, 6). Or, for turned boxes,
                 centre, the unit vectors along the box's x, y and z axis, and half extents, shape (n, 15).
             draw: False: the boxes collide, and are not drawn.
-            uri: Not used.
+            uri: What ``GetURI`` returns from then on.
 
         Returns:
             True.
@@ -46,8 +51,7 @@ class Building(Structure):
             >>> body.SetName("table")
             >>> env.Add(body)
         """
-        del uri
-        return self._become(box_geometries(_rows(boxes, (6, 15), "InitFromBoxes: boxes"), visible=bool(draw)))
+        return self._become(box_geometries(_rows(boxes, (6, 15), "InitFromBoxes: boxes"), visible=bool(draw)), uri)
 
     def InitFromSpheres(self, spherex: ArrayLike, draw: bool = True, uri: str = "") -> bool:
         """Make the body one static link of spheres.
@@ -55,7 +59,7 @@ class Building(Structure):
         Args:
             spherex: A row for each sphere: centre x y z and radius [m], shape (n, 4); the spelling is OpenRAVE's.
             draw: False: the spheres collide, and are not drawn.
-            uri: Not used.
+            uri: What ``GetURI`` returns from then on.
 
         Returns:
             True.
@@ -64,8 +68,9 @@ class Building(Structure):
             openrave_exception: the body is in an environment, or the rows are of another length.
             TypeError: this is no array of rows.
         """
-        del uri
-        return self._become(sphere_geometries(_rows(spherex, (4,), "InitFromSpheres: spherex"), visible=bool(draw)))
+        return self._become(
+            sphere_geometries(_rows(spherex, (4,), "InitFromSpheres: spherex"), visible=bool(draw)), uri
+        )
 
     def InitFromTrimesh(self, trimesh: TriMesh, draw: bool = True, uri: str = "") -> bool:
         """Make the body one static link with the triangles of a mesh; they stay as they are.
@@ -73,7 +78,7 @@ class Building(Structure):
         Args:
             trimesh: The triangles.
             draw: False: the triangles collide, and are not drawn.
-            uri: Not used.
+            uri: What ``GetURI`` returns from then on.
 
         Returns:
             True.
@@ -81,16 +86,15 @@ class Building(Structure):
         Raises:
             openrave_exception: the body is in an environment, or a triangle has a corner that is not there.
         """
-        del uri
         mesh = checked_mesh(trimesh, "InitFromTrimesh: trimesh")
-        return self._become([shape_geometry(Triangles(mesh), Pose(), visible=bool(draw))])
+        return self._become([shape_geometry(Triangles(mesh), Pose(), visible=bool(draw))], uri)
 
     def InitFromGeometries(self, geometries: Sequence[GeometryInfo], uri: str = "") -> bool:
         """Make the body one static link of shapes.
 
         Args:
             geometries: Their descriptions.
-            uri: Not used.
+            uri: What ``GetURI`` returns from then on.
 
         Returns:
             True.
@@ -99,8 +103,7 @@ class Building(Structure):
             openrave_exception: the body is in an environment, or an info describes nothing that can be. Nothing has
                 changed then.
         """
-        del uri
-        return self._become(geometries_of(geometries))
+        return self._become(geometries_of(geometries), uri)
 
     def Init(self, linkinfos: Sequence[LinkInfo], jointinfos: Sequence[JointInfo], uri: str = "") -> bool:
         """Make the body of links and joints.
@@ -108,7 +111,7 @@ class Building(Structure):
         Args:
             linkinfos: The descriptions of the links; the first one is the root.
             jointinfos: The descriptions of the joints; those with DOFs in DOF order.
-            uri: Not used.
+            uri: What ``GetURI`` returns from then on.
 
         Returns:
             True.
@@ -117,20 +120,21 @@ class Building(Structure):
             openrave_exception: the body is in an environment, or an info describes nothing that can be. Nothing has
                 changed then.
         """
-        del uri
-        return self.InitFromKinBodyInfo(KinBodyInfo(_vLinkInfos=linkinfos, _vJointInfos=jointinfos))
+        return self.InitFromKinBodyInfo(KinBodyInfo(_vLinkInfos=linkinfos, _vJointInfos=jointinfos, _uri=uri))
 
     def InitFromLinks(self, linkinfos: Sequence[LinkInfo], uri: str = "") -> bool:
         """Make the body of links without joints.
 
         Args:
             linkinfos: The descriptions of the links.
-            uri: Not used.
+            uri: What ``GetURI`` returns from then on.
 
         Returns:
             True.
         """
         return self.Init(linkinfos, [], uri)
+
+    InitFromLinkInfos = InitFromLinks
 
     def InitFromKinBodyInfo(self, info: KinBodyInfo) -> bool:
         """Make the body, its name included, of a description.
@@ -152,9 +156,41 @@ class Building(Structure):
         """
         T_world_link0 = info.transform()
         self._rebuild(body_of(info, self._state.scene))
+        self._uri, self._id = info._uri, info._id
         if T_world_link0 is not None:
             self._state.set_transform(T_world_link0)
         return True
+
+    def UpdateFromKinBodyInfo(self, info: KinBodyInfo) -> UpdateFromInfoResult:
+        """Become what an info describes, as far as a body in an environment can: its pose and joint values.
+
+        Args:
+            info: The description, for instance of ``ExtractInfo`` of a body like this.
+
+        Returns:
+            ``NoChange`` or ``Success``; ``RequireReinitialize`` where links, joints or the name differ, and nothing has
+            changed then: take the body out of the environment and call ``InitFromKinBodyInfo``.
+        """
+        with self._simulation.lock:
+            before = self.ExtractInfo()
+            if not info.same_structure(before):
+                return UpdateFromInfoResult.RequireReinitialize
+            values, T_world_link0 = info.values_by_axis(), checked_transform(info._transform, "KinBodyInfo._transform")
+            present = before.values_by_axis()
+            if values == present and np.array_equal(T_world_link0, before._transform):
+                return UpdateFromInfoResult.NoChange
+            self._state.set_transform(T_world_link0)
+            if present:
+                self._state.set_values(np.array([values.get(place, value) for place, value in present.items()]))
+            return UpdateFromInfoResult.Success
+
+    def SetZeroConfiguration(self) -> None:
+        """Call the present configuration zero: all joint values become 0, and nothing moves.
+
+        Limits keep their numbers, and so mean other places than before, as in OpenRAVE.
+        """
+        with self._simulation.lock:
+            self._state.rezero()
 
     def ExtractInfo(self, options: int = ExtractInfoOptions.Everything) -> KinBodyInfo:
         """Return the description of the body as it stands, a copy.
@@ -185,7 +221,8 @@ class Building(Structure):
                 "_isRobot": self._state.scene.is_robot,
             }
 
-    def _become(self, geometries: Iterable[Geometry]) -> bool:
+    def _become(self, geometries: Iterable[Geometry], uri: str) -> bool:
+        self._uri = str(uri)
         return self._rebuild(body_of_geometries(self._state.scene, geometries))
 
     def _rebuild(self, body: KinBody) -> bool:

@@ -12,7 +12,7 @@ from ravemj.engine.collision.batch import batch_collides
 from ravemj.engine.collision.questions import moved_apart
 from ravemj.engine.collision.resting import tested_pairs
 from ravemj.errors import ArgumentError
-from ravemj.geometry_functions import AABB
+from ravemj.geometry_functions import AABB, OrientedBox, OrientedBoxFromAABB
 from ravemj.model.bounds import enclosing_box, links_bounds
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import AdjacentOptions
@@ -237,6 +237,18 @@ class BodyCollision(BodyPart, Interface):
             enabledOnlyLinks: Whether to leave out links that are not enabled.
         """
         return self.ComputeAABBFromTransform(np.eye(4), enabledOnlyLinks)
+
+    def ComputeOBBOnAxes(self, transform: ArrayLike, enabledOnlyLinks: bool = False) -> OrientedBox:
+        """Return the smallest box along the axes of a frame that holds all geometries, where the body stands.
+
+        Args:
+            transform: ``T_world_frame``, whose axes the box has: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
+            enabledOnlyLinks: Whether disabled links are left out.
+        """
+        T_world_frame = checked_transform(transform, "ComputeOBBOnAxes: transform")
+        with self._simulation.lock:
+            local = self._bounds(inverse(T_world_frame) @ self._state.link_transforms(), enabledOnlyLinks)
+        return OrientedBoxFromAABB(local, T_world_frame)
 
     def _bounds(self, poses: Floats, enabled_only: bool) -> AABB:
         enabled = self._state.link_enabled

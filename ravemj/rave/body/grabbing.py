@@ -16,6 +16,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
+from ravemj.rave.enums import GrabbedInfoCheckResult
 from ravemj.rave.infos.base import Info
 from ravemj.rave.interface import Interface
 from ravemj.rave.link import Link
@@ -51,6 +52,7 @@ class Grabbing(BodyPart, Interface):
         body: "KinBody",
         grablink: Link,
         linkstoignore: Iterable[Link | int | str] = (),
+        grabbedUserData: object = None,
     ) -> bool:
         """Hold a body by a link, in the pose that both have now.
 
@@ -61,6 +63,7 @@ class Grabbing(BodyPart, Interface):
             body: What to hold; it is in the same environment.
             grablink: The link of this body that holds it.
             linkstoignore: Further links of this body that it should not collide with.
+            grabbedUserData: Kept in ``GrabbedInfo._grabbedUserData`` by OpenRAVE; not used.
 
         Returns:
             True.
@@ -69,12 +72,11 @@ class Grabbing(BodyPart, Interface):
             openrave_exception: the body is in no environment or in another one, is this body itself, or holds this
                 body.
         """
+        del grabbedUserData
         with self._simulation.lock:
             self._check_holdable(body)
-            if checked_kind(grablink, Link, "Grab: grablink").GetParent() != self:
-                raise ArgumentError(f"Grab: grablink is {grablink!r}, and should be a link of '{self.GetName()}'")
+            link = self._own_link(grablink, "Grab")
             held = body.simulation_state
-            link = grablink.GetIndex()
             ignored = [self._link_index(one) for one in linkstoignore]
             self._state.grab(grab_as_it_stands(self._state, held, link, ignored))
             return True
@@ -112,6 +114,48 @@ class Grabbing(BodyPart, Interface):
         """Let go of all held bodies."""
         with self._simulation.lock:
             self._state.grabs = []
+
+    def ReleaseAllGrabbedWithLink(self, grablink: Link) -> None:
+        """Let go of all bodies that one link holds.
+
+        Args:
+            grablink: The link.
+        """
+        index = self._own_link(grablink, "ReleaseAllGrabbedWithLink")
+        with self._simulation.lock:
+            self._state.grabs = [grab for grab in self._state.grabs if grab.link != index]
+
+    def _own_link(self, link: Link, caller: str) -> int:
+        if checked_kind(link, Link, f"{caller}: grablink").GetParent() != self:
+            raise ArgumentError(f"{caller}: grablink is {link!r}, and should be a link of '{self.GetName()}'")
+        return link.GetIndex()
+
+    def CheckGrabbedInfo(
+        self,
+        body: "KinBody",
+        grablink: Link,
+        linkstoignore: "Iterable[Link | int | str] | None" = None,
+        grabbedUserData: object = None,
+    ) -> GrabbedInfoCheckResult:
+        """Return whether a body is held in a way, as ``Grab`` would hold it.
+
+        Args:
+            body: The body.
+            grablink: The link of this body that should hold it.
+            linkstoignore: The links that it should not collide with; None: they are not compared.
+            grabbedUserData: Not used.
+        """
+        del grabbedUserData
+        held = checked_kind(body, BodyPart, "CheckGrabbedInfo: body", "a KinBody").simulation_state
+        index = self._own_link(grablink, "CheckGrabbedInfo")
+        grab = next((one for one in self._state.grabs if one.body is held), None)
+        if grab is None:
+            return GrabbedInfoCheckResult.BodyNotGrabbed
+        if grab.link != index:
+            return GrabbedInfoCheckResult.GrabbingLinkNotMatch
+        if linkstoignore is not None and not {self._link_index(one) for one in linkstoignore} <= grab.ignored:
+            return GrabbedInfoCheckResult.IgnoredLinksNotMatch
+        return GrabbedInfoCheckResult.Identical
 
     def RegrabAll(self) -> None:
         """Put all held bodies back where they were grabbed, relative to their links."""
@@ -174,6 +218,14 @@ class Grabbing(BodyPart, Interface):
     def GetAttached(self) -> "list[KinBody]":
         """Return this body, those that it holds, those that hold it, and so on."""
         return [self._env.wrap(state) for state in attached_bodies(self._state)]
+
+    def HasAttached(self) -> bool:
+        """Return whether the body holds others or is held."""
+        return len(attached_bodies(self._state)) > 1
+
+    def GetAttachedEnvironmentBodyIndices(self) -> list[int]:
+        """Return ``GetEnvironmentBodyIndex()`` of all bodies of ``GetAttached()``, in ascending order."""
+        return sorted(state.index for state in attached_bodies(self._state))
 
     def IsAttached(self, body: "KinBody") -> bool:
         """Return whether a body is among ``GetAttached()``."""

@@ -5,7 +5,7 @@ from types import EllipsisType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_indices, checked_numbers
+from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.model.joints import value_differences
@@ -75,6 +75,85 @@ class Limits(BodyPart):
     def SetDOFAccelerationLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
         """Set the acceleration limits [rad/s^2 or m/s^2], as many as there are DOFs, or as there are indices."""
         self._set_axes("SetDOFAccelerationLimits", {"max_acceleration": limits}, indices)
+
+    def GetDOFJerkLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the jerk limits, the same in both directions [rad/s^3 or m/s^3], shape (dof,).
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+        """
+        return self._of_axes("max_jerk", indices)
+
+    def SetDOFJerkLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+        """Set the jerk limits [rad/s^3 or m/s^3], as many as there are DOFs, or as there are indices."""
+        self._set_axes("SetDOFJerkLimits", {"max_jerk": limits}, indices)
+
+    def GetDOFHardVelocityLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the velocities that planners never exceed [rad/s or m/s], shape (dof,); 0 where nobody says.
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+        """
+        return self._of_axes("hard_max_velocity", indices)
+
+    def SetDOFHardVelocityLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+        """Set the velocities that planners never exceed.
+
+        Args:
+            limits: Limits [rad/s or m/s], shape (dof,), or one for each index; 0: none.
+            indices: Which DOFs, in which order; None: all.
+        """
+        self._set_axes("SetDOFHardVelocityLimits", {"hard_max_velocity": limits}, indices)
+
+    def GetDOFHardAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the accelerations that planners never exceed [rad/s^2 or m/s^2], shape (dof,); 0 where nobody says.
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+        """
+        return self._of_axes("hard_max_acceleration", indices)
+
+    def SetDOFHardAccelerationLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+        """Set the accelerations that planners never exceed.
+
+        Args:
+            limits: Limits [rad/s^2 or m/s^2], shape (dof,), or one for each index; 0: none.
+            indices: Which DOFs, in which order; None: all.
+        """
+        self._set_axes("SetDOFHardAccelerationLimits", {"hard_max_acceleration": limits}, indices)
+
+    def GetDOFHardJerkLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the jerks that planners never exceed [rad/s^3 or m/s^3], shape (dof,); 0 where nobody says.
+
+        Args:
+            indices: Which DOFs, in which order; left out: all.
+        """
+        return self._of_axes("hard_max_jerk", indices)
+
+    def SetDOFHardJerkLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+        """Set the jerks that planners never exceed.
+
+        Args:
+            limits: Limits [rad/s^3 or m/s^3], shape (dof,), or one for each index; 0: none.
+            indices: Which DOFs, in which order; None: all.
+        """
+        self._set_axes("SetDOFHardJerkLimits", {"hard_max_jerk": limits}, indices)
+
+    def GetDOFDynamicAccelerationJerkLimits(
+        self, dofPositions: ArrayLike, dofVelocities: ArrayLike
+    ) -> tuple[Floats, Floats]:
+        """Return limits that depend on the configuration, which no body here has.
+
+        Args:
+            dofPositions: Joint values [rad or m], shape (dof,).
+            dofVelocities: Joint velocities [rad/s or m/s], shape (dof,).
+
+        Returns:
+            Two empty arrays: the limits of ``GetDOFAccelerationLimits`` and ``GetDOFJerkLimits`` hold everywhere.
+        """
+        for values, name in ((dofPositions, "dofPositions"), (dofVelocities, "dofVelocities")):
+            checked_vector(values, self.GetDOF(), f"GetDOFDynamicAccelerationJerkLimits: {name}")
+        return np.zeros(0), np.zeros(0)
 
     def GetDOFTorqueLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the torque limits [N m, for sliders N], shape (dof,); 0 where the file says nothing.

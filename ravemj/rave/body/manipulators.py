@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, cast
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.model import hashes
 from ravemj.model.manipulators import freeze_manipulator
@@ -23,19 +23,23 @@ class Manipulators(BodyPart):
     ik_solvers: "dict[str, IkSolver]"
     """Solvers of inverse kinematics, by the names of their arms."""
 
-    def GetManipulators(self, name: str | None = None) -> list[Manipulator]:
+    def GetManipulators(self, manipname: str | None = None) -> list[Manipulator]:
         """Return the manipulators, in the order of the file.
 
         Args:
-            name: Return the one of that name only.
+            manipname: Return the one of that name only.
         """
         robot = cast("Robot", self)
         found = [Manipulator(robot, self._state, index) for index in range(len(self._state.scene.manipulators))]
-        return found if name is None else [one for one in found if one.GetName() == name]
+        return found if manipname is None else [one for one in found if one.GetName() == manipname]
 
-    def GetManipulator(self, name: str) -> Manipulator | None:
-        """Return the manipulator of that name, or None."""
-        return next(iter(self.GetManipulators(name)), None)
+    def GetManipulator(self, manipname: str) -> Manipulator | None:
+        """Return a manipulator, or None where there is none of that name.
+
+        Args:
+            manipname: Its name.
+        """
+        return next(iter(self.GetManipulators(manipname)), None)
 
     def GetActiveManipulator(self) -> Manipulator | None:
         """Return the manipulator that calls without one refer to, or None.
@@ -108,11 +112,12 @@ class Manipulators(BodyPart):
             self._state.edit(manipulators=kept)
         return True
 
-    def SetActiveManipulator(self, manip: Manipulator | str | int | None) -> Manipulator | None:
+    @also_named(manip="manipname")
+    def SetActiveManipulator(self, manipname: Manipulator | str | int | None) -> Manipulator | None:
         """Choose the manipulator that calls without one refer to. The active DOFs stay as they are.
 
         Args:
-            manip: Its name, the manipulator, or its place in ``GetManipulators()``; '' or None: none.
+            manipname: Its name, the manipulator, or its place in ``GetManipulators()``; '' or None: none.
 
         Returns:
             The active manipulator, or None.
@@ -125,10 +130,10 @@ class Manipulators(BodyPart):
             >>> robot.SetActiveDOFs(manipulator.GetArmIndices())
         """
         names = [one.name for one in self._state.scene.manipulators]
-        name = manip.GetName() if isinstance(manip, Manipulator) else manip
+        name = manipname.GetName() if isinstance(manipname, Manipulator) else manipname
         if isinstance(name, int):
             name = names[name] if 0 <= name < len(names) else None if name == -1 else f"number {name}"
-        foreign = isinstance(manip, Manipulator) and manip.GetRobot() != self
+        foreign = isinstance(manipname, Manipulator) and manipname.GetRobot() != self
         if foreign or (name and name not in names):
             known = ", ".join(names) or "none"
             raise ArgumentError(f"SetActiveManipulator: '{self.GetName()}' has no manipulator {name}; it has {known}")

@@ -1,8 +1,10 @@
 """Base class of the parts of ``Environment``."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, cast
 from weakref import WeakValueDictionary
 
+from ravemj.core.handles import Handle
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import Diagnostic, ErrorCode, RavemjError
 from ravemj.graphics.simulation_renderer import SimulationRenderer
@@ -13,6 +15,14 @@ from ravemj.rave.robot import Robot
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
     from ravemj.rave.environment import Environment
+
+
+BodyCallback = Callable[[KinBody, int], object]
+"""A function of a body, and 1 when it was added or 0 when it was removed."""
+
+
+class BodyCallbackHandle(Handle):
+    """Keeps a function registered; it is not called any more once this is closed or gone."""
 
 
 class EnvironmentPart(UserData):
@@ -29,6 +39,7 @@ class EnvironmentPart(UserData):
         self._found: dict[Diagnostic, None] = {}  # as ordered sets, which loading a file again does not let grow
         self._files: dict[str, None] = {}
         self._annotations = Annotations()
+        self._body_callbacks: list[BodyCallback] = []
         self._is_destroyed = False
 
     def _check_alive(self) -> None:
@@ -62,5 +73,13 @@ class EnvironmentPart(UserData):
 
     def _remove_all(self) -> None:
         """Take all bodies out of the environment."""
+        gone = [self.wrap(state) for state in self._simulation.bodies] if self._body_callbacks else []
         self._simulation.clear()
         self._kept_objects.clear()
+        for body in gone:
+            self._tell_of_body(body, 0)
+
+    def _tell_of_body(self, body: KinBody, action: int) -> None:
+        """Call the functions of ``RegisterBodyCallback``: 1, a body was added; 0, it was removed."""
+        for callback in tuple(self._body_callbacks):
+            callback(body, action)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.handles import Handle
 from ravemj.core.transforms import Floats
@@ -120,15 +120,20 @@ class Collision(EnvironmentPart):
             targets = self.GetCollisionChecker().ray_targets(world, ... if body is None else body)
             return world.rays(rows, targets, front_facing_only=front_facing_only)
 
-    def RegisterCollisionCallback(self, fncallback: CollisionCallback) -> CollisionCallbackHandle:
+    @also_named(fncallback="callback")
+    def RegisterCollisionCallback(self, callback: CollisionCallback) -> CollisionCallbackHandle:
         """Register a function that decides about each collision.
 
         Args:
-            fncallback: Takes a report with one pair, and False; returns a ``CollisionAction``. What it ignores does not
+            callback: Takes a report with one pair, and False; returns a ``CollisionAction``. What it ignores does not
                 count.
 
         Returns:
             A handle: keep it as long as the function should be called.
         """
-        self.collision_callbacks.append(fncallback)
-        return CollisionCallbackHandle(self.collision_callbacks.remove, fncallback)
+        self.collision_callbacks.append(callback)
+        return CollisionCallbackHandle(self.collision_callbacks.remove, callback)
+
+    def HasRegisteredCollisionCallbacks(self) -> bool:
+        """Return whether there are functions of ``RegisterCollisionCallback``."""
+        return bool(self.collision_callbacks)

@@ -1,34 +1,44 @@
 """Bodies, sensors and modules of an environment."""
 
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError
+from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.model import scene
 from ravemj.model.triangles import links_triangles
 from ravemj.rave.enums import InterfaceAddMode, TriangulateOptions
-from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.env.base import BodyCallback, BodyCallbackHandle, EnvironmentPart
 from ravemj.rave.interface import Interface
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor
 from ravemj.rave.trimesh import TriMesh, trimesh_of
 
+if TYPE_CHECKING:
+    from ravemj.gui.viewers import Viewer
+
 
 class Contents(EnvironmentPart):
     """The bodies of an environment, as objects and as triangles; and modules, of which there are none."""
 
     TriangulateOptions = TriangulateOptions
+    SelectionOptions = TriangulateOptions
+    NoRobots = TriangulateOptions.NoRobots
+    Robots = TriangulateOptions.Robots
+    Everything = TriangulateOptions.Everything
+    Body = TriangulateOptions.Body
+    AllExceptBody = TriangulateOptions.AllExceptBody
 
-    def Add(self, interface: Interface, addMode: Any = False, cmdargs: str = "") -> None:  # noqa: ANN401 - OpenRAVE's
+    @also_named(anonymous="addMode")
+    def Add(self, interface: Interface, addMode: Any = None, cmdargs: str = "") -> None:  # noqa: ANN401 - OpenRAVE's
         """Add a body or robot to the environment, in the pose that it has.
 
         Args:
             interface: What to add; it was made for this environment.
-            addMode: What to do if the name is taken: False or ``InterfaceAddMode.StrictNameChecking`` raises, True or
-                ``AllowRenaming`` gives it a name of its own. OpenRAVE 0.9 calls the argument ``anonymous``.
+            addMode: What to do if the name is taken: None, False or ``InterfaceAddMode.StrictNameChecking`` raises,
+                True or ``AllowRenaming`` gives it a name of its own. OpenRAVE 0.9 calls the argument ``anonymous``.
             cmdargs: Arguments of modules; not used.
 
         Raises:
@@ -55,7 +65,8 @@ class Contents(EnvironmentPart):
         kind = "None" if interface is None else type(interface).__name__
         raise ArgumentError(f"Add: takes a body or robot, not {kind}")
 
-    def AddKinBody(self, body: KinBody, addMode: Any = False) -> None:  # noqa: ANN401 - a number or an enumeration
+    @also_named(anonymous="addMode", robot="body")
+    def AddKinBody(self, body: KinBody, addMode: Any = None) -> None:  # noqa: ANN401 - a number or an enumeration
         """Add a body to the environment; see ``Add``.
 
         Args:
@@ -68,23 +79,46 @@ class Contents(EnvironmentPart):
         with self._simulation.lock:
             if self._simulation.holds(state):
                 return
-            if int(addMode) & InterfaceAddMode.AllowRenaming:
+            if _renames(addMode):
                 self._simulation.rename(state, self._simulation.free_name(state.scene.name))
             self._simulation.insert(state)
             self._kept_objects[state] = body
+        self._tell_of_body(body, 1)
         for viewer in self._viewers:
             viewer.take_over()
 
     AddRobot = AddKinBody
-    AddViewer = Add
 
-    def Remove(self, obj: object) -> bool:
+    def AddViewer(self, sensor: "Viewer", anonymous: bool = False) -> None:  # the argument's name is OpenRAVE's
+        """Accept a viewer of this environment, which is attached from the start; see ``RaveCreateViewer``.
+
+        Args:
+            sensor: The viewer.
+            anonymous: Without meaning.
+        """
+        del anonymous
+        self._add_other(sensor)
+
+    def AddSensor(self, sensor: object, anonymous: bool = False) -> None:
+        """Refuse a sensor that no robot carries.
+
+        Args:
+            sensor: The sensor.
+            anonymous: Without meaning.
+
+        Raises:
+            UnsupportedError: always; ``robot.AddAttachedSensor`` attaches cameras to links.
+        """
+        raise UnsupportedError("AddSensor", "sensors without a robot")
+
+    @also_named(obj="interface", body="interface", prob="interface")
+    def Remove(self, interface: object) -> bool:
         """Take a body or robot out of the environment.
 
         It stays usable as a body that is not added, and can be added again. What it held, and what held it, let go.
 
         Args:
-            obj: A body, a robot or a viewer.
+            interface: A body, a robot or a viewer.
 
         Returns:
             False if it was not there.
@@ -95,12 +129,32 @@ class Contents(EnvironmentPart):
             >>> env.GetBodies()
             []
         """
-        if not isinstance(obj, KinBody):
-            return self._remove_other(obj)
-        self._kept_objects.pop(obj.simulation_state, None)
-        return self._simulation.remove(obj.simulation_state)
+        if not isinstance(interface, KinBody):
+            return self._remove_other(interface)
+        state = interface.simulation_state
+        if state.simulation is not self._simulation:
+            raise ArgumentError(
+                f"Remove: '{interface.GetName()}' was made for {interface.GetEnv()!r}, not for {self!r}"
+            )
+        self._kept_objects.pop(state, None)
+        was_there = self._simulation.remove(state)
+        if was_there:
+            self._tell_of_body(interface, 0)
+        return was_there
 
-    RemoveKinBody = Remove
+    RemoveKinBody = RemoveProblem = Remove
+
+    def RemoveKinBodyByName(self, name: str) -> bool:
+        """Take a body or robot out of the environment; see ``Remove``.
+
+        Args:
+            name: Its name.
+
+        Returns:
+            False if there is none of that name.
+        """
+        body = self.GetKinBody(name)
+        return body is not None and self.Remove(body)
 
     def _remove_other(self, interface: object) -> bool:
         """Close and remove a viewer; return whether it was there."""
@@ -189,6 +243,18 @@ class Contents(EnvironmentPart):
 
     GetBodyFromEnvironmentId = GetBodyFromEnvironmentBodyIndex
 
+    def GetBodiesFromEnvironmentBodyIndices(self, bodyIndex: Iterable[int]) -> list[KinBody | None]:
+        """Return the bodies with several numbers, None where there is none.
+
+        Args:
+            bodyIndex: The numbers, as of ``GetBodyFromEnvironmentBodyIndex``.
+        """
+        return [self.GetBodyFromEnvironmentBodyIndex(int(index)) for index in bodyIndex]
+
+    def GetMaxEnvironmentBodyIndex(self) -> int:
+        """Return the largest number of a body; 0 without bodies."""
+        return max((body.index for body in self._simulation.bodies), default=0)
+
     def Triangulate(self, body: KinBody) -> TriMesh:
         """Return all shapes of a body as triangles, in the world as the body stands now.
 
@@ -235,17 +301,17 @@ class Contents(EnvironmentPart):
 
     GetLoadedProblems = GetModules
 
-    def RemoveProblem(self, module: object) -> bool:
-        """Remove a module; the older name of ``Remove``.
+    def RegisterBodyCallback(self, callback: BodyCallback) -> BodyCallbackHandle:
+        """Have a function called when bodies come and go.
+
+        Args:
+            callback: Takes the body, and 1 when it was added or 0 when it was removed.
 
         Returns:
-            False: it was not there.
+            A handle: keep it as long as the function should be called.
         """
-        return self.Remove(module)
-
-    def GetUnit(self) -> tuple[str, float]:
-        """Return the unit of length and how many metres it is: always the metre."""
-        return ("m", 1.0)
+        self._body_callbacks.append(callback)
+        return BodyCallbackHandle(self._body_callbacks.remove, callback)
 
 
 _CHOICES: dict[TriangulateOptions, Callable[[scene.KinBody, str], bool]] = {
@@ -255,6 +321,13 @@ _CHOICES: dict[TriangulateOptions, Callable[[scene.KinBody, str], bool]] = {
     TriangulateOptions.Body: lambda body, name: body.name == name,
     TriangulateOptions.AllExceptBody: lambda body, name: body.name != name,
 }
+
+
+def _renames(mode: object) -> bool:
+    """Return whether a taken name is changed: True, or a mode without strict checking of names."""
+    if mode is None or isinstance(mode, bool):
+        return bool(mode)
+    return not InterfaceAddMode(int(cast("int", mode))) & InterfaceAddMode.StrictNameChecking
 
 
 def _triangles(bodies: Iterable[BodyState]) -> TriMesh:

@@ -97,7 +97,9 @@ class Loading(EnvironmentPart):
         with self._simulation.lock:
             for body in reading.scene.bodies:
                 name = self._simulation.free_name(body.name) if reading.renames else body.name
-                self._simulation.add(body if name == body.name else replace(body, name=name))
+                state = self._simulation.add(body if name == body.name else replace(body, name=name))
+                if self._body_callbacks:
+                    self._tell_of_body(self.wrap(state), 1)
             if reading.scene.view is not None:
                 self._simulation.view = reading.scene.view
             if reading.scene.gravity is not None:

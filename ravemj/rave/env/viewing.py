@@ -124,14 +124,6 @@ class Viewing(EnvironmentPart):
         """
         return next((viewer for viewer in self._viewers if not name or name == viewer.GetXMLId()), None)
 
-    def UpdatePublishedBodies(self, timeout: float = 0.0) -> None:
-        """Do nothing: viewers show every change at once. OpenRAVE's publish the state of the bodies here.
-
-        Args:
-            timeout: Without meaning.
-        """
-        del timeout
-
     def render(
         self,
         width: int = 640,

@@ -4,7 +4,7 @@
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntFlag
 from typing import TYPE_CHECKING, TypeVar
 
@@ -65,6 +65,16 @@ class KinBodyInfo(Info):
         """Return ``T_world_link0``, or None where the links stay as they are described."""
         T_world_link0 = checked_transform(self._transform, "KinBodyInfo._transform")
         return None if np.array_equal(T_world_link0, np.eye(4)) else T_world_link0
+
+    def same_structure(self, other: "KinBodyInfo") -> bool:
+        """Return whether two infos describe the same links and joints, wherever these stand."""
+        return self._standing() == other._standing()
+
+    def _standing(self) -> "KinBodyInfo":
+        """Return the info without pose and joint values."""
+        links = [replace(link, _t=np.eye(4)) for link in self._vLinkInfos]
+        joints = [replace(joint, _vcurrentvalues=None) for joint in self._vJointInfos]
+        return replace(self, _vLinkInfos=links, _vJointInfos=joints, _transform=np.eye(4), _dofValues=[])
 
     def values_by_axis(self) -> dict[tuple[str, int], float]:
         """Return the joint values that are asked for, by the joint's name and the axis."""

@@ -34,8 +34,13 @@ _AXES: dict[scene.JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "sphe
 _AXIS_FIELDS = (
     ("_vresolution", "resolution", 0.02),
     ("_vmaxvel", "max_velocity", 10.0),
+    ("_vhardmaxvel", "hard_max_velocity", 0.0),
     ("_vmaxaccel", "max_acceleration", 50.0),
+    ("_vhardmaxaccel", "hard_max_acceleration", 0.0),
+    ("_vmaxjerk", "max_jerk", 50000.0),
+    ("_vhardmaxjerk", "hard_max_jerk", 0.0),
     ("_vmaxtorque", "max_torque", 0.0),
+    ("_vmaxinertia", "max_inertia", 0.0),
     ("_vweights", "weight", 1.0),
     ("_voffsets", "wrap_offset", 0.0),
     ("_vlowerlimit", "lower", 0.0),
@@ -101,7 +106,8 @@ class JointInfo(ParameterFields):
         _vcurrentvalues: The values at which the links stand where their infos say [rad or m]; None: 0.
         _vlowerlimit: Lower limits [rad or m]; where they equal the upper ones, the joint is a weld.
         _vupperlimit: Upper limits.
-        _vmaxvel: Velocity limits; _vmaxaccel, _vmaxtorque, _vweights and _vresolution likewise.
+        _vmaxvel: Velocity limits; _vmaxaccel, _vmaxjerk, _vmaxtorque, _vweights and _vresolution likewise.
+        _vhardmaxvel: Velocities that are never exceeded, 0 for none; _vhardmaxaccel and _vhardmaxjerk likewise.
         _voffsets: See ``Joint.SetWrapOffset``.
         _bIsCircular: Whether the axis turns without end; limits do not count then.
         _bIsActive: Whether it has DOFs.

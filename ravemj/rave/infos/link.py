@@ -68,7 +68,9 @@ class LinkInfo(ParameterFields):
             _tMassFrame=principal_frame(link.inertial).matrix(),
             _vinertiamoments=principal_moments(link.inertial),
             _vgeometryinfos=[GeometryInfo.of(geometry) for geometry in link.geometries],
-            _mapExtraGeometries={name: [GeometryInfo.of(one) for one in group] for name, group in link.groups},
+            _mapExtraGeometries={
+                name: [GeometryInfo.of(one) for one in group] for name, group in link.groups if name != scene.OWN_SHAPES
+            },
             _vForcedAdjacentLinks=[body.links[other].name for _, other in pairs],
             _bStatic=link.static,
             _bIsEnabled=enabled,

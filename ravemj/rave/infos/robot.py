@@ -37,6 +37,7 @@ class ManipulatorInfo(Info):
         _vGripperJointNames: Names of the gripper's joints.
         _vChuckingDirection: For each of their DOFs the sign of closing; OpenRAVE 0.9 calls it ``_vClosingDirection``.
         _sIkSolverXMLId: Name of an IK solver; not used.
+        _grippername: Name of the ``GripperInfo`` that describes the gripper.
     """
 
     _called = "Robot.ManipulatorInfo"
@@ -71,6 +72,7 @@ class ManipulatorInfo(Info):
             _vChuckingDirection=np.array(arm.chucking_direction),
             _vdirection=np.array(arm.direction),
             _vGripperJointNames=[body.joints[joint].name for joint in arm.gripper_joints],
+            _grippername=arm.gripper_name,
         )
 
     def manipulator(self) -> "ManipulatorBuilder":
@@ -92,6 +94,7 @@ class ManipulatorInfo(Info):
             direction=vector(self._vdirection, "ManipulatorInfo._vdirection"),
             gripper_joints=list(self._vGripperJointNames),
             closing_direction=checked_numbers(self._vChuckingDirection, "_vChuckingDirection").ravel().tolist(),
+            gripper_name=self._grippername or "",
         )
 
 

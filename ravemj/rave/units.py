@@ -1,0 +1,257 @@
+"""Units of length, mass, angle and time, with OpenRAVE's numbers for them.
+
+ravemj computes in metres, kilograms, radians and seconds; the units here convert numbers of scripts.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any, ClassVar, TypeVar
+
+from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_kind
+from ravemj.errors import ArgumentError
+
+
+class LengthUnit(IntEnum):
+    """Units of length."""
+
+    m = 0
+    dm = -1
+    cm = -2
+    mm = -3
+    dmm = -4
+    """A tenth of a millimetre, written ``0.1mm``."""
+    um = -6
+    nm = -9
+    vars()["in"] = 16  # OpenRAVE's name, which Python keeps for itself
+    ft = 17
+
+
+class MassUnit(IntEnum):
+    """Units of mass."""
+
+    g = 0
+    kg = 3
+    mg = -3
+    lb = 16
+
+
+class AngleUnit(IntEnum):
+    """Units of angles."""
+
+    rad = 0
+    deg = 1
+    cdeg = -2
+
+
+class TimeDurationUnit(IntEnum):
+    """Units of durations."""
+
+    s = 0
+    ms = -3
+    us = -6
+    ns = -9
+    ps = -12
+
+
+class TimeStampUnit(IntEnum):
+    """Units of points in time."""
+
+    s = 0
+    ms = -3
+    us = -6
+    iso8601 = 16
+
+
+Unit = TypeVar("Unit", LengthUnit, MassUnit, AngleUnit, TimeDurationUnit, TimeStampUnit)
+
+_PER_STANDARD: dict[type[IntEnum], dict[IntEnum, float]] = {
+    LengthUnit: {
+        LengthUnit.m: 1.0,
+        LengthUnit.dm: 1e1,
+        LengthUnit.cm: 1e2,
+        LengthUnit.mm: 1e3,
+        LengthUnit.dmm: 1e4,
+        LengthUnit.um: 1e6,
+        LengthUnit.nm: 1e9,
+        LengthUnit["in"]: 1 / 0.0254,
+        LengthUnit.ft: 1 / 0.3048,
+    },
+    MassUnit: {MassUnit.g: 1.0, MassUnit.mg: 1e3, MassUnit.kg: 1e-3, MassUnit.lb: 1 / 453.59237},
+    AngleUnit: {AngleUnit.rad: 1.0, AngleUnit.deg: 57.29577951308232, AngleUnit.cdeg: 5729.577951308232},
+    TimeDurationUnit: {
+        TimeDurationUnit.s: 1.0,
+        TimeDurationUnit.ms: 1e3,
+        TimeDurationUnit.us: 1e6,
+        TimeDurationUnit.ns: 1e9,
+        TimeDurationUnit.ps: 1e12,
+    },
+}
+"""How many of each unit are a metre, a gram, a radian, a second; inch, foot and pound by their legal definitions."""
+
+_OTHER_WORDS: dict[type[IntEnum], dict[str, str]] = {
+    LengthUnit: {
+        "0.1mm": "dmm",
+        "meter": "m",
+        "millimeter": "mm",
+        "micrometer": "um",
+        "inch": "in",
+        "foot": "ft",
+        "feet": "ft",
+    }
+}
+
+
+_WRITTEN: dict[IntEnum, str] = {LengthUnit.dmm: "0.1mm"}
+
+
+def _written(unit: IntEnum) -> str:
+    return _WRITTEN.get(unit, unit.name)
+
+
+def _read(kind: type[Unit], text: str, default: Unit) -> Unit:
+    """Return the unit that a text names; the default for an empty one."""
+    if not checked_kind(text, str, f"{kind.__name__}: the unit", "a text"):
+        return default
+    name = _OTHER_WORDS.get(kind, {}).get(text, text)
+    if name not in kind.__members__ or text == "dmm":
+        known = ", ".join(_written(unit) for unit in kind)
+        raise ArgumentError(f"{kind.__name__}: there is no unit '{text}'; there are {known}")
+    return kind[name]
+
+
+def _per_standard(kind: type[Unit], unit: Unit | str) -> float:
+    """Return how many of a unit, or of what a text names, are the standard one."""
+    chosen = _read(kind, unit, next(iter(kind))) if isinstance(unit, str) else kind(unit)
+    return _PER_STANDARD[kind][chosen]
+
+
+def GetLengthUnitString(unit: LengthUnit) -> str:
+    """Return how a unit of length is written."""
+    return _written(LengthUnit(unit))
+
+
+def GetMassUnitString(unit: MassUnit) -> str:
+    """Return how a unit of mass is written."""
+    return _written(MassUnit(unit))
+
+
+def GetAngleUnitString(unit: AngleUnit) -> str:
+    """Return how a unit of angles is written."""
+    return _written(AngleUnit(unit))
+
+
+def GetTimeDurationUnitString(unit: TimeDurationUnit) -> str:
+    """Return how a unit of durations is written."""
+    return _written(TimeDurationUnit(unit))
+
+
+def GetTimeStampUnitString(unit: TimeStampUnit) -> str:
+    """Return how a unit of points in time is written."""
+    return _written(TimeStampUnit(unit))
+
+
+def GetLengthUnitFromString(text: str, default: LengthUnit) -> LengthUnit:
+    """Return the unit of length that a text names; the default for an empty one."""
+    return _read(LengthUnit, text, default)
+
+
+def GetMassUnitFromString(text: str, default: MassUnit) -> MassUnit:
+    """Return the unit of mass that a text names; the default for an empty one."""
+    return _read(MassUnit, text, default)
+
+
+def GetAngleUnitFromString(text: str, default: AngleUnit) -> AngleUnit:
+    """Return the unit of angles that a text names; the default for an empty one."""
+    return _read(AngleUnit, text, default)
+
+
+def GetTimeDurationUnitFromString(text: str, default: TimeDurationUnit) -> TimeDurationUnit:
+    """Return the unit of durations that a text names; the default for an empty one."""
+    return _read(TimeDurationUnit, text, default)
+
+
+def GetLengthUnitStandardValue(unit: LengthUnit | str) -> float:
+    """Return how many of a unit are a metre."""
+    return _per_standard(LengthUnit, unit)
+
+
+def GetMassUnitStandardValue(unit: MassUnit | str) -> float:
+    """Return how many of a unit are a gram."""
+    return _per_standard(MassUnit, unit)
+
+
+def GetAngleUnitStandardValue(unit: AngleUnit | str) -> float:
+    """Return how many of a unit are a radian."""
+    return _per_standard(AngleUnit, unit)
+
+
+def GetTimeDurationUnitStandardValue(unit: TimeDurationUnit | str) -> float:
+    """Return how many of a unit are a second."""
+    return _per_standard(TimeDurationUnit, unit)
+
+
+def GetLengthUnitConversionScale(source: LengthUnit | str, target: LengthUnit | str) -> float:
+    """Return the factor from a length in one unit to the same length in another.
+
+    Example:
+        >>> GetLengthUnitConversionScale(LengthUnit.m, LengthUnit.mm)
+        1000.0
+    """
+    return _per_standard(LengthUnit, target) / _per_standard(LengthUnit, source)
+
+
+def GetMassUnitConversionScale(source: MassUnit | str, target: MassUnit | str) -> float:
+    """Return the factor from a mass in one unit to the same mass in another."""
+    return _per_standard(MassUnit, target) / _per_standard(MassUnit, source)
+
+
+def GetAngleUnitConversionScale(source: AngleUnit | str, target: AngleUnit | str) -> float:
+    """Return the factor from an angle in one unit to the same angle in another."""
+    return _per_standard(AngleUnit, target) / _per_standard(AngleUnit, source)
+
+
+def GetTimeDurationUnitConversionScale(source: TimeDurationUnit | str, target: TimeDurationUnit | str) -> float:
+    """Return the factor from a duration in one unit to the same duration in another."""
+    return _per_standard(TimeDurationUnit, target) / _per_standard(TimeDurationUnit, source)
+
+
+@dataclass
+class UnitInfo(ApiObject):
+    """The units of a file or an environment.
+
+    Attributes:
+        lengthUnit: Of lengths.
+        massUnit: Of masses.
+        timeDurationUnit: Of durations.
+        angleUnit: Of angles.
+        timeStampUnit: Of points in time.
+    """
+
+    lengthUnit: LengthUnit = LengthUnit.m
+    massUnit: MassUnit = MassUnit.kg
+    timeDurationUnit: TimeDurationUnit = TimeDurationUnit.s
+    angleUnit: AngleUnit = AngleUnit.rad
+    timeStampUnit: TimeStampUnit = TimeStampUnit.us
+
+    _kinds: ClassVar[dict[str, type[IntEnum]]] = {
+        "lengthUnit": LengthUnit,
+        "massUnit": MassUnit,
+        "timeDurationUnit": TimeDurationUnit,
+        "angleUnit": AngleUnit,
+        "timeStampUnit": TimeStampUnit,
+    }
+
+    def SerializeJSON(self) -> dict[str, str]:
+        """Return the units as OpenRAVE's JSON has them."""
+        return {name: _written(getattr(self, name)) for name in self._kinds}
+
+    def DeserializeJSON(self, obj: dict[str, Any]) -> None:
+        """Take over the units that ``obj`` names; the others stay.
+
+        Args:
+            obj: What ``SerializeJSON`` returns, or a part of it.
+        """
+        for name, kind in self._kinds.items():
+            if name in obj:
+                setattr(self, name, _read(kind, obj[name], getattr(self, name)))  # pyright: ignore[reportArgumentType]
