@@ -14,7 +14,7 @@ from ravemj.formats.meshes.collada.materials import bindings, read_material
 from ravemj.formats.meshes.collada.triangles import triangle_meshes
 from ravemj.formats.meshes.obj import transparency
 from ravemj.formats.meshes.parts import check_finite, check_size
-from ravemj.model.scene import SHAPE_TYPES, Geometry, Mesh, Rgb, Shape, TriMesh
+from ravemj.model.scene import SHAPE_TYPES, CrossSection, Geometry, Mesh, Rgb, Shape, TriMesh
 
 _DIFFUSE: Rgb = (1.0, 0.5, 0.5)
 _AMBIENT: Rgb = (float(np.float32(0.1)), 0.0, 0.0)
@@ -61,7 +61,8 @@ class GeometryReader:
             visible = words(child(info, "visible", "bool"))[:1] != ["false"]
         primitive = None if info is None else self._primitive(info)
         groups = self._groups(geometry)
-        for symbol, mesh in [("", _NO_MESH)] if primitive is not None and not groups else groups:
+        is_empty = primitive is not None or child(info, "trimesh") is not None
+        for symbol, mesh in [("", _NO_MESH)] if is_empty and not groups else groups:
             diffuse, ambient, opacity = self._colours(instance, symbol)
             shape, T = primitive or (self._mesh(mesh, scaling, T_link_frame, geometry), Pose())
             yield Geometry(
@@ -140,14 +141,16 @@ def _shape(element: Element, metres: float) -> Shape | None:
     kind = _PRIMITIVES[local_name(element)]
     sizes: dict[str, object] = {}
     for name, form, optional in kind.sizes():
-        count = 1 if form is float else 3
-        values = (numbers(child(element, name))[:count] * metres).tolist()
+        found = numbers(child(element, name))
+        count = 1 if form is float else len(found) // 2 * 2 if form is CrossSection else 3
+        values = (found[:count] * metres).tolist()
         if len(values) == count and all(map(math.isfinite, values)):
-            sizes[name] = values[0] if form is float else tuple(values)
+            corners = tuple(zip(values[::2], values[1::2], strict=True)) if form is CrossSection else tuple(values)
+            sizes[name] = values[0] if form is float else corners
         elif not optional:
             return None
     return kind.of_sizes(sizes)
 
 
-_PRIMITIVES = {tag: one.shape for one in SHAPE_TYPES for tag in one.collada}
+_PRIMITIVES = {tag: one.shape for one in SHAPE_TYPES for tag in one.collada if one.shape is not TriMesh}
 _KNOWN = {*_PRIMITIVES, "translate", "rotate", "matrix", "scale", "lookat", "visible", "trimesh"}
