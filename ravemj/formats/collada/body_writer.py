@@ -8,6 +8,7 @@ from ravemj.formats import settled
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.mathml_writer import TooDeepError, math_of
 from ravemj.formats.collada.sections import Sections
+from ravemj.formats.collada.supplement import PROFILE
 from ravemj.formats.collada.system_writer import SystemWriter
 from ravemj.formats.collada.trees import Tree, trees_of
 from ravemj.formats.xml_text import XmlText
@@ -107,8 +108,8 @@ class BodyWriter:
                     direction = rotate(turn, axis.direction)
                     out.element("axis", direction if direction == ZERO else settled.direction(direction))
             if joint.kind == "spherical":
-                with out.inside("extra", type="ravemj"), out.inside("technique", profile="ravemj"):
-                    out.element("spherical")
+                with out.inside("extra", type=PROFILE):
+                    out.element("technique", profile=PROFILE)
 
     def _write_link(self, tree: Tree, index: int, joint: int | None, depth: int) -> None:
         """Write a link and its node, with what its joints carry."""
@@ -150,6 +151,8 @@ class BodyWriter:
                 if joint.parent == link:
                     with out.inside("attachment_start", joint=f"{tree.model}/joint{index}"):
                         write_pose(out, Pose(anchor))
+                        with out.inside("extra", type=PROFILE):
+                            out.element("technique", profile=PROFILE)
                 if joint.child == link:
                     with out.inside("attachment_end", joint=f"{tree.model}/joint{index}"):
                         write_pose(out, settled.pose(T_frame_child.inverse()))

@@ -5,6 +5,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, Pose
 from ravemj.errors import Diagnostics
 from ravemj.formats import settled
+from ravemj.formats.collada.supplement import PROFILE
 from ravemj.formats.meshes.parts import weld
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.scene import SHAPE_TYPES, Cylinder, Geometry, Mesh, Rgb, TriMesh
@@ -44,7 +45,7 @@ class GeometryWriter:
             with out.inside("extra", type="geometry_info"), out.inside("technique", profile="OpenRAVE"):
                 _write_info(out, geometry, T_link_geometry)
             if geometry.display is not None or not geometry.modifiable:
-                with out.inside("extra", type="ravemj"), out.inside("technique", profile="ravemj"):
+                with out.inside("extra", type=PROFILE), out.inside("technique", profile=PROFILE):
                     out.element("modifiable", geometry.modifiable)
                     if geometry.display is not None:
                         out.element("render", url=f"#{name}_render")

@@ -7,6 +7,7 @@ from ravemj.errors import Diagnostics
 from ravemj.formats import settled
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.sections import Sections
+from ravemj.formats.collada.supplement import PROFILE
 from ravemj.formats.collada.trees import Tree
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.scene import AttachedSensor, Axis, Joint, KinBody, Manipulator
@@ -136,7 +137,7 @@ class SystemWriter:
             for index, link in enumerate(body.links):
                 with out.inside("link_collision_state", link=self._link_path(index)):
                     out.element("bool", link.enabled)
-        with out.inside("extra", type="ravemj"), out.inside("technique", profile="ravemj"):
+        with out.inside("extra", type=PROFILE), out.inside("technique", profile=PROFILE):
             self._write_supplement()
 
     def _write_manipulator(self, manipulator: Manipulator) -> None:
@@ -185,6 +186,7 @@ class SystemWriter:
     def _write_supplement(self) -> None:
         """Write what only ``supplement`` reads: the order of the parts, and names that COLLADA's readers change."""
         out, body = self._sections.systems, self._body
+        out.element("name", body.name)
         if not body.joined_links_adjacent:
             out.element("joined_links_adjacent", False)
         for index, link in enumerate(body.links):
