@@ -16,15 +16,23 @@ _FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff
 _QUOTED = {'"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 
 
+_HEAD = '<?xml version="1.0" encoding="utf-8"?>'
+
+
 class XmlText:
-    """An XML document, one element a line, with two blanks for each level."""
+    """Lines of XML, one element a line, with two blanks for each level."""
 
-    def __init__(self) -> None:
-        self._lines = ['<?xml version="1.0" encoding="utf-8"?>']
-        self._indent = ""
+    def __init__(self, level: int = 0) -> None:
+        self._lines: list[str] = []
+        self._indent = "  " * level
 
-    def __str__(self) -> str:
-        return "\n".join(self._lines) + "\n"
+    def document(self) -> str:
+        """Return the lines as a document."""
+        return "\n".join([_HEAD, *self._lines, ""])
+
+    def append(self, other: "XmlText") -> None:
+        """Append lines that were made apart."""
+        self._lines += other._lines
 
     @contextmanager
     def inside(self, tag: str, /, **attributes: Content | None) -> Generator[None]:

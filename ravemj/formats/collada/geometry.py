@@ -8,13 +8,13 @@ import numpy as np
 from ravemj.core.transforms import Floats, Pose, wxyz_from_axis_angle
 from ravemj.formats.collada.library import Library
 from ravemj.formats.collada.polar import polar_decomposition, rigid_part
+from ravemj.formats.collada.supplement import own_techniques
 from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
 from ravemj.formats.meshes.collada.materials import bindings, read_material
 from ravemj.formats.meshes.collada.triangles import triangle_meshes
-from ravemj.formats.meshes.obj import transparency
 from ravemj.formats.meshes.parts import check_finite, check_size
-from ravemj.model.scene import SHAPE_TYPES, Geometry, Mesh, Rgb, Shape, TriMesh
+from ravemj.model.scene import SHAPE_TYPES, CrossSection, Geometry, Mesh, Rgb, Shape, Surface, TriMesh
 
 _DIFFUSE: Rgb = (1.0, 0.5, 0.5)
 _AMBIENT: Rgb = (float(np.float32(0.1)), 0.0, 0.0)
@@ -61,9 +61,11 @@ class GeometryReader:
             visible = words(child(info, "visible", "bool"))[:1] != ["false"]
         primitive = None if info is None else self._primitive(info)
         groups = self._groups(geometry)
-        for symbol, mesh in [("", _NO_MESH)] if primitive is not None and not groups else groups:
+        is_empty = primitive is not None or child(info, "trimesh") is not None
+        for symbol, mesh in [("", _NO_MESH)] if is_empty and not groups else groups:
             diffuse, ambient, opacity = self._colours(instance, symbol)
             shape, T = primitive or (self._mesh(mesh, scaling, T_link_frame, geometry), Pose())
+            display, modifiable = self._own(geometry, T_link_frame)
             yield Geometry(
                 shape=shape,
                 T_link_geometry=T_link_frame @ T,
@@ -72,10 +74,23 @@ class GeometryReader:
                 ambient=ambient,
                 transparency=opacity,
                 visible=visible,
+                modifiable=modifiable,
+                display=None if display is None else (Surface(display, diffuse, opacity),),
                 source=source,
             )
             if primitive is not None:
                 return
+
+    def _own(self, geometry: Element, T_link_frame: Pose) -> tuple[Mesh | None, bool]:
+        """Return what is drawn in place of a shape, and whether planners may change it, as our own extra says it."""
+        technique = next(own_techniques(geometry), None)
+        render = child(technique, "render")
+        target = None if render is None else self._library.follow(render, "geometry")
+        modifiable = words(child(technique, "modifiable"))[:1] != ["false"]
+        if target is None:
+            return None, modifiable
+        drawn = Mesh.merged(mesh for _, mesh in self._groups(target))
+        return self._mesh(drawn, None, T_link_frame, target).mesh, modifiable
 
     def _mesh(self, mesh: Mesh, scaling: Floats | None, T_link_frame: Pose, geometry: Element) -> TriMesh:
         """Return triangles in the frame of their geometry; OpenRAVE takes the file's for those of the link."""
@@ -109,8 +124,9 @@ class GeometryReader:
             if url:
                 self._library.warn("broken-reference", f"there is no material '{url}' with an effect", instance)
             return _DIFFUSE, _AMBIENT, 0.0
-        opacity = 1.0 if material.transparency is None else material.transparency
-        return material.diffuse or _DIFFUSE, material.ambient or _AMBIENT, transparency(opacity)
+        opacity = material.transparency
+        transparency = 1.0 - opacity if opacity is not None and 0.0 < opacity <= 1.0 else 0.0  # 0 counts as 1
+        return material.diffuse or _DIFFUSE, material.ambient or _AMBIENT, transparency
 
     def _primitive(self, info: Element) -> tuple[Shape, Pose] | None:
         """Return the shape that replaces the triangles, and its pose in the geometry's frame."""
@@ -140,14 +156,16 @@ def _shape(element: Element, metres: float) -> Shape | None:
     kind = _PRIMITIVES[local_name(element)]
     sizes: dict[str, object] = {}
     for name, form, optional in kind.sizes():
-        count = 1 if form is float else 3
-        values = (numbers(child(element, name))[:count] * metres).tolist()
+        found = numbers(child(element, name))
+        count = 1 if form is float else len(found) // 2 * 2 if form is CrossSection else 3
+        values = (found[:count] * metres).tolist()
         if len(values) == count and all(map(math.isfinite, values)):
-            sizes[name] = values[0] if form is float else tuple(values)
+            corners = tuple(zip(values[::2], values[1::2], strict=True)) if form is CrossSection else tuple(values)
+            sizes[name] = values[0] if form is float else corners
         elif not optional:
             return None
     return kind.of_sizes(sizes)
 
 
-_PRIMITIVES = {tag: one.shape for one in SHAPE_TYPES for tag in one.collada}
+_PRIMITIVES = {tag: one.shape for one in SHAPE_TYPES for tag in one.collada if one.shape is not TriMesh}
 _KNOWN = {*_PRIMITIVES, "translate", "rotate", "matrix", "scale", "lookat", "visible", "trimesh"}

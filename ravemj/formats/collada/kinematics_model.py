@@ -27,6 +27,7 @@ from ravemj.formats.collada.library import Library
 from ravemj.formats.collada.physics import NO_MASS, Physics
 from ravemj.formats.collada.polar import rigid_part
 from ravemj.formats.collada.references import References
+from ravemj.formats.collada.supplement import own_techniques
 from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers
 from ravemj.model.builder import BodyBuilder, JointBuilder, LinkBuilder
@@ -34,6 +35,7 @@ from ravemj.model.scene import Axis, JointKind
 
 _MAX_LINKS = 20_000
 _SHIFT = 1e-6  # of nodes, below which nobody sees it
+_AXES: dict[JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "spherical": 3}
 _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.:/-]")
 
 
@@ -128,6 +130,7 @@ class ModelReader:
         self.joints: dict[Element, int] = {}
         self.values: dict[int, list[float]] = {}
         self._found: list[_FoundJoint] = []
+        self._ends: dict[str, list[tuple[Element, int]]] = {}
         self._link_names = _Names(link.name for link in body.links)
         self._joint_names = _Names(joint.name for joint in body.joints)
 
@@ -139,8 +142,21 @@ class ModelReader:
             T_world_parent = Pose() if parent is None else rigid_part(parent.world, self._library.source(link))
             self._T_world_root = T_world_parent @ self._pose(link)
             self._read_link(link, self._root, self._T_world_root)
+        self._close_loops()
         self._settle_joints()
         read_formulas(self._library, self._scene.references, self.model, self.joints, self.body)
+
+    def _close_loops(self) -> None:
+        """Read the joints that close loops; OpenRAVE's reader, and so that of its files, leaves them out."""
+        for ends in self._ends.values():
+            start, end = ends[0][0], ends[-1][0]
+            if len(ends) != 2 or next(own_techniques(start), None) is None:
+                message = "OpenRAVE does not close the loop of this attachment, and neither does ravemj"
+                for attachment, _ in ends:
+                    self._library.warn("ignored-tag", message, attachment)
+                continue
+            T_parent_frame = self._pose(start)
+            self._add_joint(start, (ends[0][1], ends[1][1]), T_parent_frame, T_parent_frame @ self._pose(end).inverse())
 
     def _settle_joints(self) -> None:
         """Give the joints to the body, those with an index of OpenRAVE's in its order."""
@@ -171,8 +187,7 @@ class ModelReader:
             if local_name(attachment) == "attachment_full":
                 self._read_attachment(attachment, index, T_world_link)
             else:
-                message = "OpenRAVE does not close the loop of this attachment, and neither does ravemj"
-                self._library.warn("ignored-tag", message, attachment)
+                self._ends.setdefault(attachment.get("joint") or "", []).append((attachment, index))
 
     def _link_name(self, name: str | None) -> str:
         return self._link_names.give(valid_name(name) or f"link{len(self.body.links)}")
@@ -208,18 +223,23 @@ class ModelReader:
             self._library.warn("no-link", "there is no link in it; it is left out", element)
             return
         T_parent_frame = self._pose(element)
-        holder, joint = self._joint(element)
+        T_parent_child = T_parent_frame @ self._pose(inner)
+        node = self._add_joint(element, (parent, len(self.body.links)), T_parent_frame, T_parent_child)
+        self._read_link(inner, node, T_world_parent @ T_parent_child)
+
+    def _add_joint(
+        self, attachment: Element, links: tuple[int, int], T_parent_frame: Pose, T_parent_child: Pose
+    ) -> Node | None:
+        """Read the joint of an attachment; return the node that it moves."""
+        holder, joint = self._joint(attachment)
         axes = [*children(joint, "revolute", "prismatic")]
         bound = [self._scene.bindings.of_axis(self._owner, self._instance, axis, holder) for axis in axes]
-        node = next((item.node for item in bound if item is not None and item.node is not None), None)
-        T_parent_child = T_parent_frame @ self._pose(inner)
-        links = (parent, len(self.body.links))
         built = self._built_joint(joint, axes, links, T_parent_frame, T_parent_child)
         written = [None if item is None else item.value for item in bound]
         values = [self._axes.value(axis, value) for axis, value in zip(axes, written, strict=True)]
         place = min(self._axes.dof_index(self._infos.get(axis, AxisInfo())) for axis in axes)
         self._found.append(_FoundJoint((holder, joint, *axes), built, values[: len(built.axes)], place))
-        self._read_link(inner, node, T_world_parent @ T_parent_child)
+        return next((item.node for item in bound if item is not None and item.node is not None), None)
 
     def _joint(self, attachment: Element) -> tuple[Element, Element]:
         """Return what an attachment names, and the ``<joint>`` behind it."""
@@ -248,7 +268,7 @@ class ModelReader:
             anchor=T_parent_frame.position,
             axes=tuple(
                 self._axis(axis, info, T_parent_frame)
-                for axis, info in zip(axes[: 2 if kind == "hinge2" else 1], infos, strict=False)
+                for axis, info in zip(axes[: _AXES[kind]], infos, strict=False)
             ),
             weld_turn=self._weld_turn(kind, axes[0], infos[0], T_parent_frame, T_parent_child),
             enabled=all(self._axes.is_active(info) for info in infos),
@@ -257,6 +277,8 @@ class ModelReader:
 
     def _kind(self, joint: Element, axes: list[Element]) -> JointKind:
         kinds = [local_name(axis) for axis in axes]
+        if len(kinds) == 3 and next(own_techniques(joint), None) is not None:
+            return "spherical"
         if kinds == ["revolute", "revolute"]:
             return "hinge2"
         if len(kinds) > 1:

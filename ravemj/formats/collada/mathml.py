@@ -4,13 +4,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, words
+from ravemj.model.expressions.functions import NAMED
 
-_BETWEEN = {
+BETWEEN = {
     "plus": "+", "minus": "-", "times": "*", "divide": "/", "eq": "=", "neq": "!=", "lt": "<", "leq": "<=",
     "gt": ">", "geq": ">=", "and": "&", "or": "|",
+    "rem": "%",
 }  # fmt: skip
-_CALLS = {
-    "power": "pow", "abs": "abs", "floor": "floor", "ceiling": "ceil", "exp": "exp", "rem": "fmod",
+CALLS = {
+    "power": "pow", "abs": "abs", "floor": "floor", "ceiling": "ceil", "exp": "exp",
     "sin": "sin", "cos": "cos", "tan": "tan", "sec": "sec", "csc": "csc", "cot": "cot",
     "sinh": "sinh", "cosh": "cosh", "tanh": "tanh",
     "arcsin": "asin", "arccos": "acos", "arctan": "atan",
@@ -18,9 +20,6 @@ _CALLS = {
     "root": "sqrt", "ln": "log", "log": "log10", "min": "min", "max": "max", "quotient": "floor",
 }  # fmt: skip
 _CONSTANTS = {"pi": "3.14159265358979323846", "exponentiale": "2.71828182845904523536", "true": "1", "false": "0"}
-_TRIANGLES = {"SSSA", "SASA", "SASS"}
-"""Functions that OpenRAVE's equations have: an angle or a side of a triangle by three others."""
-
 _QUALIFIERS = {"degree", "logbase"}
 _MAX_DEPTH = 100
 _LONGEST = 100_000
@@ -107,7 +106,7 @@ class Writer:
     def _call(self, function: Element, texts: list[str], depth: int) -> str:
         """Return the text of a function that the file defines, or that OpenRAVE knows by its name."""
         name = "".join(words(function))
-        if name in _TRIANGLES:
+        if name in NAMED:  # OpenRAVE has three of them: SSSA, SASA and SASS
             return f"{name}({','.join(texts)})"
         formula = self.function(function)
         if formula is None:
@@ -130,10 +129,10 @@ def _name(element: Element, name_of: NameOf) -> str:
 def _operation(kind: str, texts: list[str]) -> str:
     if kind == "minus" and len(texts) == 1:
         return f"(-{texts[0]})"
-    if kind in _BETWEEN:
-        return f"({_BETWEEN[kind].join(texts)})"
-    if kind in _CALLS:
-        return f"{_CALLS[kind]}({','.join(texts)})"
+    if kind in BETWEEN:
+        return f"({BETWEEN[kind].join(texts)})"
+    if kind in CALLS:
+        return f"{CALLS[kind]}({','.join(texts)})"
     raise FormulaError(f"<{kind}> is not understood")
 
 

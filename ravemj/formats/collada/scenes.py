@@ -12,6 +12,7 @@ from ravemj.formats.collada.physics import NO_MASS, Physics
 from ravemj.formats.collada.polar import rigid_part
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.robot import ExtraReader, interface_kind
+from ravemj.formats.collada.supplement import read_supplement
 from ravemj.formats.collada.visual import Node, expand
 from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children
 from ravemj.model.builder import BodyBuilder, LinkBuilder
@@ -118,6 +119,10 @@ def _filled(scene: SceneContext, body: BodyBuilder, instance: Element, parts: _S
     body.name = valid_name(instance.get("name") or readers[0].model.get("name") or readers[0].model.get("id"))
     ExtraReader(scene.library, scene.references, readers).read(parts.systems)
     values = {index: values for reader in readers for index, values in reader.values.items()}
+    links = {element: index for reader in readers for element, index in reader.links.items()}
+    joints = {element: index for reader in readers for element, index in reader.joints.items()}
+    for system in parts.systems:
+        read_supplement(system, scene.references, body, links, joints, values)
     chosen = [value for index, joint in enumerate(body.joints) if joint.active for value in values[index]]
     body.joint_values = chosen if any(chosen) else None
     return body

@@ -55,7 +55,7 @@ def write(scene: Scene, diagnostics: Diagnostics, meshes: MeshFormat = "stl") ->
                     out.element("gravity", scene.gravity)
             for body in scene.bodies:
                 writer.write_body(body)
-    return Document(str(out), writer.geoms.files)
+    return Document(out.document(), writer.geoms.files)
 
 
 class _Writer:

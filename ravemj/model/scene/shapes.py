@@ -263,7 +263,7 @@ class ShapeType(NamedTuple):
         shape: The class.
         name: Its name in ``GeometryType``.
         xml: The ``type`` of a ``<Geom>``; None where XML has none.
-        collada: Elements of a ``geometry_info`` in COLLADA.
+        collada: Elements of a ``geometry_info`` in COLLADA; those of capsules, prisms and no shape are ours.
     """
 
     shape: type[Shape]
@@ -276,12 +276,12 @@ SHAPE_TYPES = (
     ShapeType(Box, "Box", "box", ("box",)),
     ShapeType(Sphere, "Sphere", "sphere", ("sphere",)),
     ShapeType(Cylinder, "Cylinder", "cylinder", ("cylinder", "cylinderz")),
-    ShapeType(Capsule, "Capsule", "capsule"),
+    ShapeType(Capsule, "Capsule", "capsule", ("capsule",)),
     ShapeType(Container, "Container", "container", ("container",)),
-    ShapeType(Prism, "Prism", "prism"),
-    ShapeType(TriMesh, "Trimesh", "trimesh"),
+    ShapeType(Prism, "Prism", "prism", ("prism",)),
+    ShapeType(TriMesh, "Trimesh", "trimesh", ("trimesh",)),
     ShapeType(CalibrationBoard, "CalibrationBoard", collada=("calibration_board",)),
-    ShapeType(NoShape, "None_", "none"),
+    ShapeType(NoShape, "None_", "none", ("none",)),
 )
 """All types of geometry."""
 

@@ -57,8 +57,8 @@ def read_collada(file: FileContent) -> tuple[MeshPart, ...]:
 
 
 def _part(corners: Floats, material: ColladaMaterial) -> MeshPart:
-    diffuse = WHITE if material.textured else material.diffuse or GRAY
-    ambient = material.ambient or _AMBIENT
+    diffuse = WHITE if material.textured else rgb(material.diffuse or GRAY)
+    ambient = rgb(material.ambient or _AMBIENT)
     return MeshPart(weld(corners), diffuse, ambient, transparency(material.opacity))
 
 

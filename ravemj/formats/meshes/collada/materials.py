@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, numbers
-from ravemj.formats.meshes.parts import rgb
 from ravemj.model.scene import Rgb
 
 _SHADERS = ("phong", "blinn", "lambert", "constant")
@@ -74,7 +73,7 @@ def bindings(instance: Element) -> dict[str, str]:
 
 def _rgb(shader: Element, name: str) -> Rgb | None:
     colour = _rgba(child(shader, name, "color"))
-    return None if colour is None else rgb(colour)
+    return None if colour is None else (colour[0], colour[1], colour[2])
 
 
 def _rgba(element: Element | None) -> tuple[float, ...] | None:

@@ -1,0 +1,196 @@
+"""The writer of one body: its nodes, kinematics models, rigid bodies and articulated systems."""
+
+from collections.abc import Iterator, Mapping
+
+from ravemj.core.transforms import ZERO, Pose, Vec3, add, conjugate, rotate, scale
+from ravemj.errors import Diagnostics, OutputError
+from ravemj.formats import settled
+from ravemj.formats.collada.geometry_writer import write_pose
+from ravemj.formats.collada.mathml_writer import TooDeepError, math_of
+from ravemj.formats.collada.sections import Sections
+from ravemj.formats.collada.supplement import PROFILE
+from ravemj.formats.collada.system_writer import SystemWriter
+from ravemj.formats.collada.trees import Tree, trees_of
+from ravemj.formats.xml_text import XmlText
+from ravemj.model.expressions import ExpressionError, joint_variables, parse, partials, substitute
+from ravemj.model.inertia import principal_frame, principal_moments
+from ravemj.model.joints import relative_pose, reported_anchor
+from ravemj.model.limits import clamp
+from ravemj.model.scene import Joint, KinBody, Mimic
+
+DEEPEST = 140
+"""Links in a row, of which readers take a few more."""
+
+
+class BodyWriter:
+    """Writes a body into the libraries of a document."""
+
+    def __init__(self, sections: Sections, diagnostics: Diagnostics, body: KinBody, number: int) -> None:
+        self._sections = sections
+        self._diagnostics = diagnostics
+        self._body = body
+        self._number = number
+        self._trees = trees_of(body, sections.models)
+        sections.models += len(self._trees)
+        self._T_root_links: dict[int, Pose] = {}
+
+    def write(self) -> None:
+        """Write everything about the body."""
+        nodes = self._sections.nodes
+        for tree in self._trees:
+            with nodes.inside("node", id=f"visual{tree.number}", name=self._body.name):
+                write_pose(nodes, settled.pose(self._body.links[tree.root].T_world_link))
+                self._write_model(tree)
+            self._write_physics(tree)
+        SystemWriter(self._sections, self._diagnostics, self._body, self._number, self._trees).write()
+
+    def _write_model(self, tree: Tree) -> None:
+        out = self._sections.kinematics_models
+        with out.inside("kinematics_model", id=tree.model, name=self._body.name):
+            with out.inside("technique_common"):
+                for index in tree.joints:
+                    self._write_joint(index, self._body.all_joints[index])
+                self._write_link(tree, tree.root, None, 0)
+                for index in tree.joints:
+                    self._write_formula(index, self._body.all_joints[index].mimic)
+
+    def _write_formula(self, index: int, mimic: Mimic | None) -> None:
+        """Write what a joint follows."""
+        if mimic is None or mimic.expression is None:
+            return
+        out, joint = self._sections.kinematics_models, self._body.all_joints[index]
+        try:
+            position = math_of(mimic.expression, self._joint_path)
+        except TooDeepError:
+            message = f"the equation of joint '{joint.name}' is nested too deep for COLLADA; it is left out"
+            self._diagnostics.warn("not-written", message, joint.source)
+            return
+        names = joint_variables([other.name for other in self._body.all_joints])
+        with out.inside("formula", sid=f"formula{index}"):
+            with out.inside("target"):
+                out.element("param", self._joint_path(f"joint{index}"))
+            with out.inside("technique_common"):
+                out.append(position)
+            with out.inside("technique", profile="OpenRAVE"):
+                with out.inside("equation", type="position"):
+                    out.append(position)
+                for kind, text in (("first_partial", mimic.velocity), ("second_partial", mimic.acceleration)):
+                    for name, partial in self._partials(joint, text, names):
+                        with out.inside("equation", type=kind, target=self._joint_path(name)):
+                            out.append(partial)
+
+    def _partials(self, joint: Joint, text: str, names: Mapping[str, str]) -> Iterator[tuple[str, XmlText]]:
+        """Yield the variable and the equation of each partial derivative that can be written."""
+        known = set(names.values())
+        try:
+            for name, equation in partials(text).items():
+                variable = substitute(name, names)
+                if variable in known:
+                    yield variable, math_of(parse(substitute(equation, names), known), self._joint_path)
+        except (ExpressionError, TooDeepError):
+            message = f"a derivative in '{text}', of joint '{joint.name}', is left out"
+            self._diagnostics.warn("not-written", message, joint.source)
+
+    def _joint_path(self, variable: str) -> str:
+        """Return the path of a joint by the name of its variable."""
+        index = int(variable.removeprefix("joint"))
+        return next(f"{tree.model}/joint{index}" for tree in self._trees if index in tree.joints)
+
+    def _write_joint(self, index: int, joint: Joint) -> None:
+        """Write the kind of a joint and its axes in its own frame, which has the axes of its parent link."""
+        out = self._sections.kinematics_models
+        # OpenRAVE turns the axes of a weld with its child, but for those of a slider.
+        turns_with_child = joint.static and len(self._body.joints) > 0 and joint.kind != "slider"
+        turn = conjugate(joint.T_parent_child.wxyz) if turns_with_child else Pose().wxyz
+        with out.inside("joint", sid=f"joint{index}", name=joint.name):
+            for place, axis in enumerate(joint.axes):
+                with out.inside("prismatic" if joint.kind == "slider" else "revolute", sid=f"axis{place}"):
+                    direction = rotate(turn, axis.direction)
+                    out.element("axis", direction if direction == ZERO else settled.direction(direction))
+            if joint.kind == "spherical":
+                with out.inside("extra", type=PROFILE):
+                    out.element("technique", profile=PROFILE)
+
+    def _write_link(self, tree: Tree, index: int, joint: int | None, depth: int) -> None:
+        """Write a link and its node, with what its joints carry."""
+        if depth > DEEPEST:
+            raise OutputError(f"COLLADA readers take no body with more than {DEEPEST} links in a row")
+        body, links, nodes = self._body, self._sections.kinematics_models, self._sections.nodes
+        link = body.links[index]
+        anchor, T_frame_link = (ZERO, Pose()) if joint is None else self._joint_frames(body.all_joints[joint])
+        parent = None if joint is None else body.all_joints[joint].parent
+        T_root_parent = Pose() if parent is None else self._T_root_links[parent]
+        self._T_root_links[index] = T_root_parent @ Pose(anchor) @ T_frame_link
+        node = f"node{self._number}.{index}"
+        with (
+            links.inside("link", sid=f"link{index}", name=link.name),
+            nodes.inside("node", id=node, sid=f"node{index}", name=link.name or None),
+        ):
+            if joint is not None:
+                write_pose(links, T_frame_link)
+                nodes.element("translate", anchor)
+                for place, axis in enumerate(body.all_joints[joint].axes):
+                    still = ("translate", ZERO) if body.all_joints[joint].kind == "slider" else ("rotate", (*axis.direction, 0.0))
+                    nodes.element(*still, sid=f"joint{self._number}.{joint}_axis{place}")
+                write_pose(nodes, T_frame_link)
+            for place, geometry in enumerate(link.geometries):
+                self._sections.geometry.write(geometry, f"geometry{self._number}.{index}.{place}", nodes)
+            for placing in tree.placing.get(index, ()):
+                with links.inside("attachment_full", joint=f"{tree.model}/joint{placing}"):
+                    links.element("translate", self._joint_frames(body.all_joints[placing])[0])
+                    self._write_link(tree, body.all_joints[placing].child, placing, depth + 1)
+            self._write_loops(index)
+
+    def _write_loops(self, link: int) -> None:
+        """Write the two ends of joints that close loops."""
+        out = self._sections.kinematics_models
+        for tree in self._trees:
+            for index in tree.closing:
+                joint = self._body.all_joints[index]
+                anchor, T_frame_child = self._joint_frames(joint)
+                if joint.parent == link:
+                    with out.inside("attachment_start", joint=f"{tree.model}/joint{index}"):
+                        write_pose(out, Pose(anchor))
+                        with out.inside("extra", type=PROFILE):
+                            out.element("technique", profile=PROFILE)
+                if joint.child == link:
+                    with out.inside("attachment_end", joint=f"{tree.model}/joint{index}"):
+                        write_pose(out, settled.pose(T_frame_child.inverse()))
+
+    def _joint_frames(self, joint: Joint) -> tuple[Vec3, Pose]:
+        """Return a joint's frame: its origin in the parent link, and the pose of the child in it at the value 0."""
+        T_parent_child = self._rest_pose(joint)
+        anchor = settled.position(reported_anchor(joint))
+        T_frame_child = Pose(add(T_parent_child.position, scale(anchor, -1.0)), T_parent_child.wxyz)
+        return anchor, settled.pose(T_frame_child)
+
+    def _rest_pose(self, joint: Joint) -> Pose:
+        """Return the pose of a joint's child in its parent where the file has the joint at 0."""
+        if not self._body.joints:  # joints place nothing
+            parent, child = (self._body.links[index].T_world_link for index in (joint.parent, joint.child))
+            return parent.inverse() @ child
+        follows = joint.mimic is not None and joint.mimic.expression is not None
+        rests = not follows and any(joint is other for other in self._body.passive_joints)
+        if rests and all(clamp(axis, 0.0) == 0.0 for axis in joint.axes):  # it stays where it is
+            return relative_pose(joint, [axis.value for axis in joint.axes])
+        return relative_pose(joint, [0.0] * len(joint.axes))
+
+    def _write_physics(self, tree: Tree) -> None:
+        """Write a rigid body for each link; masses are given in the frame of the first link."""
+        models, scene = self._sections.physics_models, self._sections.physics_scene
+        root = f"#node{self._number}.{tree.root}"
+        with (
+            models.inside("physics_model", id=f"p{tree.model}"),
+            scene.inside("instance_physics_model", url=f"#p{tree.model}", parent=root),
+        ):
+            for index in tree.links:
+                link = self._body.links[index]
+                node = f"#node{self._number}.{index}"
+                scene.element("instance_rigid_body", body=f"rigid{index}", target=node)
+                T_root_mass = settled.pose(self._T_root_links[index] @ principal_frame(link.inertial))
+                with models.inside("rigid_body", sid=f"rigid{index}"), models.inside("technique_common"):
+                    models.element("dynamic", not link.static)
+                    models.element("mass", link.inertial.mass)
+                    with models.inside("mass_frame"):
+                        write_pose(models, T_root_mass)
+                    models.element("inertia", settled.numbers(principal_moments(link.inertial).tolist()))

@@ -1,0 +1,86 @@
+"""Translation of mimic equations into MathML: what ``mathml`` reads."""
+
+from collections.abc import Callable, Sequence
+
+from ravemj.formats.collada.mathml import BETWEEN, CALLS
+from ravemj.formats.xml_text import XmlText
+from ravemj.model.expressions import Expression
+from ravemj.model.expressions.nodes import Call, Node, Number, Variable
+
+NAMESPACE = "http://www.w3.org/1998/Math/MathML"
+MOST_NESTED = 60
+"""The reader takes a little more than that."""
+
+_OPERATORS = {
+    "add": "plus", "sub": "minus", "neg": "minus", "mul": "times", "div": "divide", "mod": "rem", "eq": "eq",
+    "ne": "neq", "lt": "lt", "le": "leq", "gt": "gt", "ge": "geq", "and": "and", "or": "or",
+}  # fmt: skip
+_FUNCTIONS = {name: tag for tag, name in reversed(CALLS.items())}
+_TESTS = ("if", "not")
+
+assert set(_OPERATORS.values()) <= BETWEEN.keys()
+
+
+class TooDeepError(Exception):
+    """An equation whose parentheses are nested too deep for readers."""
+
+
+def math_of(expression: Expression, path_of: Callable[[str], str]) -> XmlText:
+    """Return an equation as a ``<math>``.
+
+    Args:
+        expression: The equation.
+        path_of: Gives the path of a joint by the name of its variable.
+
+    Raises:
+        TooDeepError: No reader would take it.
+    """
+    writer = _Math(path_of)
+    with writer.out.inside("math", xmlns=NAMESPACE):
+        writer.write(expression.root, 0)
+    return writer.out
+
+
+class _Math:
+    def __init__(self, path_of: Callable[[str], str]) -> None:
+        self.out = XmlText(7)
+        self._path_of = path_of
+
+    def write(self, node: Node, depth: int) -> None:
+        if depth > MOST_NESTED:
+            raise TooDeepError
+        match node:
+            case Number(value):
+                self.out.element("cn", value)
+            case Variable(name):
+                self.out.element("csymbol", self._path_of(name), encoding="COLLADA")
+            case Call("if", (condition, first, second)):
+                self._choice(condition, first, second, depth + 1)
+            case Call("not", (condition,)):
+                self._choice(condition, Number(0.0), Number(1.0), depth + 1)
+            case Call(function, arguments):
+                with self.out.inside("apply"):
+                    tag = _OPERATORS.get(function, _FUNCTIONS.get(function))
+                    if tag is None:
+                        self.out.element("csymbol", function, encoding="text")
+                    else:
+                        self.out.element(tag)
+                    for argument in _operands(function, arguments):
+                        self.write(argument, depth + 1)
+
+    def _choice(self, condition: Node, first: Node, second: Node, depth: int) -> None:
+        with self.out.inside("piecewise"):
+            with self.out.inside("piece"):
+                self.write(first, depth)
+                self.write(condition, depth)
+            with self.out.inside("otherwise"):
+                self.write(second, depth)
+
+
+def _operands(function: str, arguments: Sequence[Node]) -> list[Node]:
+    """Return the operands of a sum or product of any number of terms, else the arguments themselves."""
+    rest: list[Node] = []
+    while function in {"add", "mul"} and isinstance(arguments[0], Call) and arguments[0].function == function:
+        rest.append(arguments[1])
+        arguments = arguments[0].arguments
+    return [*arguments, *reversed(rest)]

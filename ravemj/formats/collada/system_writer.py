@@ -1,0 +1,222 @@
+"""The writer of articulated systems: what the axes are like, how they follow each other, and OpenRAVE's extras."""
+
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager
+
+from ravemj.errors import Diagnostics
+from ravemj.formats import settled
+from ravemj.formats.collada.geometry_writer import write_pose
+from ravemj.formats.collada.sections import Sections
+from ravemj.formats.collada.supplement import PROFILE
+from ravemj.formats.collada.trees import Tree
+from ravemj.formats.xml_text import XmlText
+from ravemj.model.scene import AttachedSensor, Axis, Joint, KinBody, Manipulator
+
+
+class SystemWriter:
+    """Writes the articulated systems of a body, and binds them to its nodes."""
+
+    def __init__(
+        self, sections: Sections, diagnostics: Diagnostics, body: KinBody, number: int, trees: list[Tree]
+    ) -> None:
+        self._sections = sections
+        self._diagnostics = diagnostics
+        self._body = body
+        self._number = number
+        self._trees = trees
+        self._name = f"body{number}"
+        self._model_of_link = {link: tree.model for tree in trees for link in tree.links}
+        self._model_of_joint = {joint: tree.model for tree in trees for joint in tree.joints}
+
+    def write(self) -> None:
+        """Write the systems of kinematics and of motion, and the instance of the latter in the scene."""
+        out = self._sections.systems
+        with out.inside("articulated_system", id=f"{self._name}_kinematics"), out.inside("kinematics"):
+            for tree in self._trees:
+                with out.inside("instance_kinematics_model", url=f"#{tree.model}", sid=f"{tree.model}_inst"):
+                    self._write_parameters(out, f"{self._name}_kinematics", tree)
+            with out.inside("technique_common"):
+                for index, place, axis in self._axes():
+                    self._write_kinematics(index, place, axis)
+        with out.inside("articulated_system", id=f"{self._name}_motion"):
+            with out.inside("motion"):
+                with out.inside("instance_articulated_system", url=f"#{self._name}_kinematics"):
+                    for tree in self._trees:
+                        self._write_parameters(out, f"{self._name}_motion", tree, f"{self._name}_kinematics")
+                with out.inside("technique_common"):
+                    for index, place, axis in self._axes():
+                        self._write_motion(index, place, axis)
+            self._write_extras()
+        self._write_scene()
+
+    def _axes(self) -> Iterator[tuple[int, int, Axis]]:
+        """Yield all axes with the index of their joint and their place in it."""
+        for index, joint in enumerate(self._body.all_joints):
+            for place, axis in enumerate(joint.axes):
+                yield index, place, axis
+
+    def _write_parameters(self, out: XmlText, scope: str, tree: Tree, inner: str = "") -> None:
+        """Write what a model and its axes are called in a scope; there, they may have names in an inner scope."""
+        named = {f"{tree.model}_inst": f"{tree.model}_inst"}
+        for index in tree.joints:
+            for place in range(len(self._body.all_joints[index].axes)):
+                named[f"joint{index}_axis{place}"] = f"{tree.model}_inst/joint{index}/axis{place}"
+        for name, path in named.items():
+            with out.inside("newparam", sid=f"{scope}_{name}"):
+                out.element("SIDREF", f"{inner}/{inner}_{name}" if inner else f"{scope}/{path}")
+
+    def _write_kinematics(self, index: int, place: int, axis: Axis) -> None:
+        """Write DOF, limits, weight and resolution of an axis."""
+        out, joint = self._sections.systems, self._body.all_joints[index]
+        sid = f"{self._name}_axis{index}_{place}"
+        with out.inside("axis_info", sid=sid, axis=f"{self._joint_path(index)}/axis{place}"):
+            _write_parameter(out, "circular", "bool", axis.circular)
+            _write_parameter(out, "planning_weight", "float", axis.weight)
+            _write_parameter(out, "discretization_resolution", "float", axis.resolution)
+            _write_value(out, "active", "bool", index < len(self._body.joints))
+            _write_value(out, "locked", "bool", False)
+            if index < len(self._body.joints):
+                first = sum(len(other.axes) for other in self._body.joints[:index])
+                with out.inside("index", semantic="OpenRAVE"):
+                    out.element("int", first + place)
+            if not axis.circular:
+                with out.inside("limits"):
+                    _write_value(out, "min", "float", _in_file(joint, axis.lower))
+                    _write_value(out, "max", "float", _in_file(joint, axis.upper))
+
+    def _write_motion(self, index: int, place: int, axis: Axis) -> None:
+        """Write the largest velocity and acceleration of an axis."""
+        out, joint = self._sections.systems, self._body.all_joints[index]
+        with out.inside("axis_info", axis=f"{self._name}_kinematics/{self._name}_axis{index}_{place}"):
+            _write_value(out, "speed", "float", _in_file(joint, axis.max_velocity))
+            _write_value(out, "acceleration", "float", _in_file(joint, axis.max_acceleration))
+
+    def _write_scene(self) -> None:
+        """Write the instance in the kinematics scene, and the bindings to nodes and values."""
+        out, scope = self._sections.kinematics_scene, f"{self._name}_scene"
+        url = f"#{self._name}_motion"
+        with out.inside("instance_articulated_system", url=url, sid=scope, name=self._body.name):
+            for tree in self._trees:
+                self._write_parameters(out, scope, tree, f"{self._name}_motion")
+        out = self._sections.bindings
+        for tree in self._trees:
+            with out.inside("bind_kinematics_model", node=f"visual{tree.number}/node{tree.root}"):
+                out.element("param", f"{scope}_{tree.model}_inst")
+            for index in tree.joints:
+                if self._body.all_joints[index].places_child:
+                    self._bind_axes(tree, index, scope)
+
+    def _bind_axes(self, tree: Tree, index: int, scope: str) -> None:
+        out, joint = self._sections.bindings, self._body.all_joints[index]
+        for place, axis in enumerate(joint.axes):
+            name = f"joint{self._number}.{index}_axis{place}"
+            with out.inside("bind_joint_axis", target=f"visual{tree.number}/{name}"):
+                with out.inside("axis"):
+                    out.element("param", f"{scope}_joint{index}_axis{place}")
+                _write_value(out, "value", "float", _in_file(joint, axis.value))
+
+    def _write_extras(self) -> None:
+        """Write what OpenRAVE's extras say about the body, and what they cannot say."""
+        out, body = self._sections.systems, self._body
+        kind = ("robot", "GenericRobot") if body.is_robot else ("kinbody", "KinBody")
+        with _extra(out, "interface_type"):
+            out.element("interface", kind[1], type=kind[0])
+        for manipulator in body.manipulators:
+            with _extra(out, "manipulator", manipulator.name):
+                self._write_manipulator(manipulator)
+        for number, sensor in enumerate(body.sensors):
+            with _extra(out, "attach_sensor", sensor.name):
+                self._write_sensor(number, sensor)
+        for index, joint in enumerate(body.all_joints):
+            if joint.axes[0].max_torque or joint.axes[0].armature:
+                with _extra(out, "attach_actuator", f"joint{index}"):
+                    self._write_actuator(index, joint.axes[0])
+        with _extra(out, "collision"):
+            for first, second in body.adjacent:
+                out.element("ignore_link_pair", link0=self._link_path(first), link1=self._link_path(second))
+            for index, link in enumerate(body.links):
+                with out.inside("link_collision_state", link=self._link_path(index)):
+                    out.element("bool", link.enabled)
+        with out.inside("extra", type=PROFILE), out.inside("technique", profile=PROFILE):
+            self._write_supplement()
+
+    def _write_manipulator(self, manipulator: Manipulator) -> None:
+        out, body = self._sections.systems, self._body
+        if manipulator.base is None or manipulator.effector is None:
+            message = f"the manipulator '{manipulator.name}' lacks its first or last link; readers leave it out"
+            self._diagnostics.warn("not-written", message, manipulator.source)
+            return
+        out.element("frame_origin", link=self._link_path(manipulator.base))
+        with out.inside("frame_tip", link=self._link_path(manipulator.effector)):
+            write_pose(out, settled.pose(manipulator.T_effector_tool))
+            out.element("direction", settled.direction(manipulator.direction))
+        signs = iter(manipulator.chucking_direction)
+        for index in manipulator.gripper_joints:
+            closing = [next(signs) for _ in body.joints[index].axes]
+            with out.inside("gripper_joint", joint=self._joint_path(index)):
+                for place, sign in enumerate(closing):
+                    with out.inside("closing_direction", axis=f"./axis{place}"):
+                        out.element("float", sign)
+
+    def _write_sensor(self, number: int, sensor: AttachedSensor) -> None:
+        out, name = self._sections.systems, f"{self._name}_sensor{number}"
+        if sensor.link is not None:
+            with out.inside("frame_origin", link=self._link_path(sensor.link)):
+                write_pose(out, settled.pose(sensor.T_link_sensor))
+        if sensor.type is None:
+            return
+        out.element("instance_sensor", url=f"#{name}")
+        library, camera = self._sections.sensors, sensor.camera
+        with library.inside("sensor", id=name, type=sensor.type):
+            if camera is not None:
+                library.element("intrinsic", (camera.fx, 0, camera.cx, 0, camera.fy, camera.cy))
+                library.element("image_dimensions", (camera.width, camera.height, 3))
+
+    def _write_actuator(self, index: int, axis: Axis) -> None:
+        """Write a motor without a gear."""
+        out, name = self._sections.systems, f"{self._name}_actuator{index}"
+        out.element("bind_actuator", joint=self._joint_path(index))
+        out.element("instance_actuator", url=f"#{name}")
+        library = self._sections.actuators
+        with library.inside("actuator", id=name, type="electric_motor"):
+            library.element("gear_ratio", 1)
+            library.element("max_instantaneous_torque", axis.max_torque)
+            library.element("rotor_inertia", axis.armature)
+
+    def _write_supplement(self) -> None:
+        """Write what only ``supplement`` reads: the order of the parts, and names that COLLADA's readers change."""
+        out, body = self._sections.systems, self._body
+        out.element("name", body.name)
+        if not body.joined_links_adjacent:
+            out.element("joined_links_adjacent", False)
+        for index, link in enumerate(body.links):
+            out.element("link", link.name, path=self._link_path(index))
+        for index, joint in enumerate(body.all_joints):
+            out.element("joint", joint.name, path=self._joint_path(index))
+
+    def _link_path(self, index: int) -> str:
+        return f"{self._model_of_link[index]}/link{index}"
+
+    def _joint_path(self, index: int) -> str:
+        return f"{self._model_of_joint[index]}/joint{index}"
+
+
+def _in_file(joint: Joint, value: float) -> float:
+    """Return a value in degrees, that of a slider in metres."""
+    return value if joint.kind == "slider" else settled.degrees(value)
+
+
+def _write_parameter(out: XmlText, name: str, kind: str, value: float | bool) -> None:
+    with out.inside("newparam", sid=name):
+        out.element(kind, value)
+
+
+def _write_value(out: XmlText, tag: str, kind: str, value: float | bool) -> None:
+    with out.inside(tag):
+        out.element(kind, value)
+
+
+@contextmanager
+def _extra(out: XmlText, kind: str, name: str | None = None) -> Generator[None]:
+    with out.inside("extra", type=kind, name=name), out.inside("technique", profile="OpenRAVE"):
+        yield

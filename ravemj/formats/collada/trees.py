@@ -1,0 +1,50 @@
+"""The trees of links that a body consists of; each becomes a kinematics model."""
+
+from typing import NamedTuple
+
+from ravemj.model.scene import KinBody
+
+
+class Tree(NamedTuple):
+    """A link that no joint places, and those that hang on it.
+
+    Attributes:
+        number: Its number in the document.
+        root: The link that no joint places.
+        links: The links, parents before children.
+        joints: The joints, those that close loops included; they are counted as in ``KinBody.all_joints``.
+        closing: The joints that close loops.
+        placing: For each link, the joints that carry links on it.
+    """
+
+    number: int
+    root: int
+    links: tuple[int, ...]
+    joints: tuple[int, ...]
+    closing: tuple[int, ...]
+    placing: dict[int, list[int]]
+
+    @property
+    def model(self) -> str:
+        """The id of the kinematics model."""
+        return f"kmodel{self.number}"
+
+
+def trees_of(body: KinBody, first: int) -> list[Tree]:
+    """Return the trees of a body, numbered from a number on."""
+    joints = body.all_joints
+    placing: dict[int, list[int]] = {}
+    placed: set[int] = set()
+    for index, joint in enumerate(joints):
+        if joint.places_child:
+            placing.setdefault(joint.parent, []).append(index)
+            placed.add(joint.child)
+    trees: list[Tree] = []
+    for root in (link for link in range(len(body.links)) if link not in placed):
+        links = [root]
+        for link in links:  # grows meanwhile
+            links += [joints[index].child for index in placing.get(link, ())]
+        own = [index for index, joint in enumerate(joints) if joint.parent in links]
+        closing = [index for index in own if not joints[index].places_child]
+        trees.append(Tree(first + len(trees), root, tuple(links), tuple(own), tuple(closing), placing))
+    return trees

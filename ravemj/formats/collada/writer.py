@@ -1,0 +1,78 @@
+"""The writer of COLLADA 1.5 with OpenRAVE's extras: a scene as a document.
+
+It writes what ``scenes`` reads, in the arrangement of OpenRAVE's own writer: bodies are articulated systems of motion
+and kinematics, joints stand at 0 and are moved by bound values, masses are rigid bodies. What OpenRAVE's extras cannot
+say goes into extras of our own (``supplement``), which other programs skip.
+"""
+
+from ravemj.errors import Diagnostics
+from ravemj.formats.collada.body_writer import BodyWriter
+from ravemj.formats.collada.geometry_writer import GeometryWriter
+from ravemj.formats.collada.sections import Sections
+from ravemj.formats.xml_text import XmlText
+from ravemj.model.scene import Scene
+
+NAMESPACE = "http://www.collada.org/2008/03/COLLADASchema"
+
+_NO_TIME = "1970-01-01T00:00:00Z"
+"""The standard asks for a time; one that passes would make two files of one scene differ."""
+
+
+def write(scene: Scene, diagnostics: Diagnostics) -> str:
+    """Write a scene.
+
+    Args:
+        scene: What to write; its view has no place in a COLLADA file.
+        diagnostics: Takes a warning for everything that the format cannot say.
+
+    Raises:
+        OutputError: A name or a number cannot be written.
+    """
+    geometry = GeometryWriter(diagnostics)
+    sections = Sections(geometry)
+    for number, body in enumerate(scene.bodies):
+        BodyWriter(sections, diagnostics, body, number).write()
+    out = XmlText()
+    with out.inside("COLLADA", xmlns=NAMESPACE, version="1.5.0"):
+        _write_asset(out)
+        _write_library(out, "visual_scene", sections.nodes, {"id": "vscene"})
+        for kind, content in (
+            ("geometries", geometry.geometries),
+            ("effects", geometry.effects),
+            ("materials", geometry.materials),
+            ("kinematics_models", sections.kinematics_models),
+            ("articulated_systems", sections.systems),
+        ):
+            with out.inside(f"library_{kind}"):
+                out.append(content)
+        _write_library(out, "kinematics_scene", sections.kinematics_scene, {"id": "kscene"})
+        if scene.gravity is not None:
+            with sections.physics_scene.inside("technique_common"):
+                sections.physics_scene.element("gravity", scene.gravity)
+        _write_library(out, "physics_scene", sections.physics_scene, {"id": "pscene"})
+        with out.inside("library_physics_models"):
+            out.append(sections.physics_models)
+        with out.inside("scene"):
+            out.element("instance_physics_scene", url="#pscene")
+            out.element("instance_visual_scene", url="#vscene")
+            with out.inside("instance_kinematics_scene", url="#kscene"):
+                out.append(sections.bindings)
+        for kind, content in (("sensors", sections.sensors), ("actuators", sections.actuators)):
+            with out.inside("extra", id=kind, type=f"library_{kind}"), out.inside("technique", profile="OpenRAVE"):
+                out.append(content)
+    return out.document()
+
+
+def _write_asset(out: XmlText) -> None:
+    with out.inside("asset"):
+        with out.inside("contributor"):
+            out.element("authoring_tool", "ravemj")
+        out.element("created", _NO_TIME)
+        out.element("modified", _NO_TIME)
+        out.element("unit", name="meter", meter=1)
+        out.element("up_axis", "Z_UP")
+
+
+def _write_library(out: XmlText, kind: str, content: XmlText, attributes: dict[str, str]) -> None:
+    with out.inside(f"library_{kind}s"), out.inside(kind, **attributes):
+        out.append(content)
