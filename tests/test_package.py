@@ -23,6 +23,7 @@ ROOMS = [
     "engine",
     "trajectories",
     "ik",
+    "planning",
     "graphics",
     "gui",
     "rave",
@@ -33,7 +34,7 @@ ROOMS = [
 ]
 """The boxes of docs/architecture.md from the ground up: each may import the earlier ones, and itself."""
 
-WITHOUT_MUJOCO = {"errors", "core", "geometry_functions", "model", "formats", "trajectories"}
+WITHOUT_MUJOCO = {"errors", "core", "geometry_functions", "model", "formats", "trajectories", "planning"}
 
 
 def modules():

@@ -79,6 +79,7 @@ from ravemj.rave.logs import (
     RaveSetDebugLevel,
 )
 from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.modules import Module
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.planning import (
     Planner,
@@ -152,6 +153,7 @@ __all__ = [
     "KinBodyStateSaver",
     "Link",
     "Manipulator",
+    "Module",
     "MultiController",
     "OpenRAVEException",
     "PhysicsEngine",

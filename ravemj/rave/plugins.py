@@ -10,13 +10,13 @@ from ravemj.errors import UnsupportedError
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
 from ravemj.rave.interface import checked_environment
+from ravemj.rave.modules import MODULES, Module, made_module
 from ravemj.rave.planning.names import PLANNERS
 from ravemj.rave.sensors import SENSING, Sensor
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
 
-PLANNING = "motion planning"
 _GRASPING = "planning of grasps"
 _SAMPLING = "sampling of spaces"
 
@@ -25,11 +25,9 @@ _LOG = logging.getLogger("ravemj")
 MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
     {
         InterfaceType.module: {
-            "basemanipulation": PLANNING,
             "grasper": _GRASPING,
             "ikfast": "compiling of solvers of inverse kinematics",
-            "taskcaging": PLANNING,
-            "taskmanipulation": PLANNING,
+            "taskcaging": "caging of handles",
             "visualfeedback": "visual feedback",
         },
         InterfaceType.sensor: {
@@ -53,20 +51,26 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
 """Names of OpenRAVE's own plugins, in lower case, with what ravemj lacks to have them."""
 
 
-def RaveCreateModule(env: Environment, name: str) -> None:
-    """Refuse to make a module, a native program that takes commands.
+def RaveCreateModule(env: Environment, name: str) -> Module | None:
+    """Make a module, an object that takes commands; ``env.Add`` adds it.
+
+    Args:
+        env: The environment.
+        name: ``BaseManipulation`` or ``TaskManipulation``, in any letter case.
 
     Returns:
-        None, as in OpenRAVE where no plugin has a module of that name; a warning is logged.
+        The module; None, as in OpenRAVE, where no plugin has a module of that name: a warning is logged.
 
     Raises:
-        UnsupportedError: the module is one of OpenRAVE's own.
+        UnsupportedError: the module is another one of OpenRAVE's own.
 
     Example:
+        >>> module = RaveCreateModule(env, "BaseManipulation")
+        >>> env.Add(module, True, robot.GetName())
         >>> RaveCreateModule(env, "urdf") is None
         True
     """
-    return _refuse(env, InterfaceType.module, name)
+    return made_module(env, name) or _refuse(env, InterfaceType.module, name)
 
 
 RaveCreateProblem = RaveCreateModule
@@ -125,6 +129,7 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
         InterfaceType.iksolver: ["ikfast"],
         InterfaceType.kinbody: [""],
         InterfaceType.physicsengine: ["GenericPhysicsEngine", "ode", "bullet", "mujoco"],
+        InterfaceType.module: list(MODULES),
         InterfaceType.planner: list(PLANNERS),
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],

@@ -205,7 +205,8 @@ class Trajectory(Interface):
         Example:
             >>> trajectory.Sample(0.5)
         """
-        return self._as(self._known().sample(time, restamped=spec is None)[None], spec)[0]
+        find = self._env.simulation.body
+        return self._as(self._known().sample(time, restamped=spec is None, find_body=find)[None], spec)[0]
 
     def SampleFromPrevious(self, data: ArrayLike, time: float, spec: Spec) -> Floats:
         """Return the configuration at a time; what the trajectory lacks is taken from ``data``. See ``Sample``.
@@ -215,7 +216,7 @@ class Trajectory(Interface):
             time: Seconds from the start.
             spec: The layout of the data.
         """
-        source = self._known().sample(time, restamped=False)
+        source = self._known().sample(time, restamped=False, find_body=self._env.simulation.body)
         target = ConfigurationSpecification(spec)
         return self.GetConfigurationSpecification().ConvertDataFromPrevious(data, target, source, 1, self._env)
 
@@ -252,7 +253,7 @@ class Trajectory(Interface):
             deltatime: The distance [s].
             starttime: The first time [s].
             stoptime: The time [s] before which they stop.
-            ensurelastpoint: Whether to return that at ``stoptime``, too.
+            ensurelastpoint: Whether to return the end of the trajectory, too, whatever ``stoptime`` is.
             spec: As for ``Sample``.
 
         Returns:
@@ -262,7 +263,7 @@ class Trajectory(Interface):
             raise ArgumentError(f"deltatime: {deltatime} from {starttime} to {stoptime} is no range of times")
         times = starttime + deltatime * np.arange(math.ceil((stoptime - starttime) / deltatime))
         if ensurelastpoint:
-            times = np.append(times, stoptime)
+            times = np.append(times, self.GetDuration())
         return self.SamplePoints2D(times, spec)
 
     def Clone(self, ref: "Trajectory", cloningoptions: int = 0) -> None:

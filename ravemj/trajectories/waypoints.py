@@ -8,7 +8,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.trajectories.conversion import FindBody, converted, nobody
 from ravemj.trajectories.extraction import time_column
-from ravemj.trajectories.groups import DELTATIME, IK, INTERPOLATIONS, Group, derived_interpolation
+from ravemj.trajectories.groups import DELTATIME, IK, INTERPOLATIONS, JOINTS, Group, derived_interpolation, joint_indices
 from ravemj.trajectories.interpolation import DERIVATIVES, HELD, ROUNDING, Ends, curve, differentiated, held, value
 from ravemj.trajectories.layout import copied, count, equal, find_shifted
 
@@ -120,12 +120,13 @@ class Waypoints:
         self._timed()
         return len(self) if time >= self.duration() else int(np.searchsorted(self.times(), time))
 
-    def sample(self, time: float, *, restamped: bool) -> Floats:
+    def sample(self, time: float, *, restamped: bool, find_body: FindBody = nobody) -> Floats:
         """Return the configuration at a time; from the end on, the last one.
 
         Args:
             time: Time [s] since the start.
             restamped: Whether ``deltatime`` is the time since the last waypoint; else that of the next waypoint.
+            find_body: Finds the bodies of the groups, whose circular joints go the short way round.
 
         Raises:
             ArgumentError: there is no time in the layout, no waypoint, or not what the interpolation needs.
@@ -145,7 +146,7 @@ class Waypoints:
         else:
             duration = float(self.data[index, column])
             elapsed = min(max(0.0, time - float(times[index - 1])), duration)
-            configuration = self._between(index, elapsed, duration)
+            configuration = self._between(index, elapsed, duration, find_body)
         if restamped:
             configuration[column] = elapsed
         return configuration
@@ -155,20 +156,32 @@ class Waypoints:
             raise ArgumentError("the trajectory has no group 'deltatime', and so no time", ErrorCode.Assert)
         return self._time_column
 
-    def _between(self, index: int, time: float, duration: float) -> Floats:
+    def _between(self, index: int, time: float, duration: float, find_body: FindBody) -> Floats:
         configuration = np.zeros(self.data.shape[1])
         for group in self.groups:
             if group.interpolation in HELD:
                 values = held(group.interpolation, time / duration, self._ends(group, index))
             else:
-                values = value(self._curve(group, group.interpolation, index, duration), time / duration)
+                way = self._curve(group, group.interpolation, index, duration, find_body)
+                values = value(way, time / duration)
             configuration[group.columns] = values
         return configuration
 
     def _ends(self, group: Group, index: int) -> Ends:
         return self.data[index - 1, group.columns], self.data[index, group.columns]
 
-    def _curve(self, group: Group, interpolation: str, index: int, duration: float) -> Floats:
+    def _unwound_ends(self, group: Group, index: int, find_body: FindBody) -> Ends:
+        """Return the ends with circular joints at the turn of the second that is next to the first."""
+        first, second = self._ends(group, index)
+        body = find_body(group.body or "") if group.kind == JOINTS[0] else None
+        if body is None:
+            return first, second
+        axes = body.scene.dof_axes
+        circular = np.array([dof < len(axes) and axes[dof].circular for dof in joint_indices(group)])
+        turns = np.round((second - first) / (2 * np.pi))
+        return first, np.where(circular, second - 2 * np.pi * turns, second)
+
+    def _curve(self, group: Group, interpolation: str, index: int, duration: float, find_body: FindBody) -> Floats:
         """Return how a group changes on the way to a waypoint, by its derivatives, or as the derivative of another."""
         if group.kind == IK[0]:
             raise UnsupportedError(f"sampling of '{group.name}'", "inverse kinematics (IK)")
@@ -176,13 +189,13 @@ class Waypoints:
             raise ArgumentError(f"group '{group.name}': there is no interpolation '{interpolation}'")
         derivatives = [self._ends(derivative, index) for derivative in self._derivatives(group, interpolation)]
         if len(derivatives) >= DERIVATIVES[interpolation]:
-            return curve(interpolation, self._ends(group, index), derivatives, duration)
+            return curve(interpolation, self._unwound_ends(group, index, find_body), derivatives, duration)
         integral = find_shifted(self.groups, group.name, -1, exact=True)
         if integral is None or integral.dof != group.dof or interpolation == INTERPOLATIONS[-1]:
             needed = DERIVATIVES[interpolation]
             raise ArgumentError(f"group '{group.name}': {interpolation} interpolation needs {needed} derivatives of it")
         higher = INTERPOLATIONS[INTERPOLATIONS.index(interpolation) + 1]
-        return differentiated(self._curve(integral, higher, index, duration), duration)
+        return differentiated(self._curve(integral, higher, index, duration, find_body), duration)
 
     def _derivatives(self, group: Group, interpolation: str) -> list[Group]:
         """Return the groups with the derivatives of another, as far as they are interpolated as derivatives of it."""

@@ -15,6 +15,7 @@ from ravemj.planning.verification import Samples, flaw
 from ravemj.rave.enums import ConstraintFilterOptions, Interval
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.planning import PlannerParameters
+from ravemj.rave.planning.names import of_bodies
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import ConfigurationSpecification
@@ -41,8 +42,6 @@ def VerifyTrajectory(
     Example:
         >>> planningutils.VerifyTrajectory(None, trajectory, 0.01)
     """
-    from ravemj.compat.planningutils.retiming import of_bodies  # noqa: PLC0415 - imports planners
-
     del releasegil
     checked_kind(trajectory, Trajectory, "VerifyTrajectory: trajectory")
     if not samplingstep > 0:

@@ -2,18 +2,16 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.rave.planning import Planner, PlannerParameters, PlannerStatus, RaveCreatePlanner
+from ravemj.errors import ArgumentError
+from ravemj.rave.planning import PlannerParameters, PlannerStatus
+from ravemj.rave.planning.names import alone, needed_planner, of_bodies, run_planner, scaled
 from ravemj.rave.robot import Robot
-from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
-from ravemj.trajectories.groups import is_position
 
 _RETIMER = "LinearTrajectoryRetimer"
 _SMOOTHER = "ParabolicSmoother"
@@ -58,7 +56,7 @@ def RetimeActiveDOFTrajectory(
     checked_kind(trajectory, Trajectory, "RetimeActiveDOFTrajectory: trajectory")
     extra = stamped(hastimestamps, plannerparameters)
     params = _active(robot, extra, maxvelmult, maxaccelmult)
-    return _run(trajectory, params, plannername or _RETIMER)
+    return run_planner(trajectory, params, plannername or _RETIMER)
 
 
 def RetimeTrajectory(
@@ -81,7 +79,7 @@ def RetimeTrajectory(
     """
     checked_kind(trajectory, Trajectory, "RetimeTrajectory: trajectory")
     params = of_bodies(trajectory, stamped(hastimestamps, plannerparameters), maxvelmult, maxaccelmult)
-    return _run(trajectory, params, plannername or _RETIMER)
+    return run_planner(trajectory, params, plannername or _RETIMER)
 
 
 def RetimeAffineTrajectory(
@@ -109,7 +107,7 @@ def RetimeAffineTrajectory(
     """
     checked_kind(trajectory, Trajectory, "RetimeAffineTrajectory: trajectory")
     params = _affine(trajectory, maxvelocities, maxaccelerations, stamped(hastimestamps, plannerparameters))
-    return _run(trajectory, params, plannername or _RETIMER)
+    return run_planner(trajectory, params, plannername or _RETIMER)
 
 
 def SmoothActiveDOFTrajectory(
@@ -134,7 +132,7 @@ def SmoothActiveDOFTrajectory(
         How it ended; the trajectory is as it was where it failed.
     """
     checked_kind(trajectory, Trajectory, "SmoothActiveDOFTrajectory: trajectory")
-    return _run(trajectory, _active(robot, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER)
+    return run_planner(trajectory, _active(robot, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER)
 
 
 def SmoothTrajectory(
@@ -154,7 +152,7 @@ def SmoothTrajectory(
         plannerparameters: Its parameters as XML text.
     """
     checked_kind(trajectory, Trajectory, "SmoothTrajectory: trajectory")
-    return _run(trajectory, of_bodies(trajectory, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER)
+    return run_planner(trajectory, of_bodies(trajectory, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER)
 
 
 def SmoothAffineTrajectory(
@@ -175,7 +173,7 @@ def SmoothAffineTrajectory(
     """
     checked_kind(trajectory, Trajectory, "SmoothAffineTrajectory: trajectory")
     params = _affine(trajectory, maxvelocities, maxaccelerations, plannerparameters)
-    return _run(trajectory, params, plannername or "LinearSmoother")
+    return run_planner(trajectory, params, plannername or "LinearSmoother")
 
 
 class ActiveDOFTrajectoryRetimer(ApiObject):
@@ -193,7 +191,7 @@ class ActiveDOFTrajectoryRetimer(ApiObject):
     def __init__(self, robot: Robot, plannername: str, plannerparameters: str = "") -> None:
         self._robot = checked_kind(robot, Robot, "robot")
         self._spec = robot.GetActiveConfigurationSpecification()
-        self._planner = _planner(robot, plannername)
+        self._planner = needed_planner(robot.GetEnv(), plannername)
         self._extra = plannerparameters
 
     def PlanPath(self, traj: Trajectory, hastimestamps: bool = False, releasegil: bool = True) -> PlannerStatus:
@@ -210,7 +208,7 @@ class ActiveDOFTrajectoryRetimer(ApiObject):
     def _run(self, traj: Trajectory, extra: str) -> PlannerStatus:
         params = PlannerParameters()
         params.SetConfigurationSpecification(self._robot.GetEnv(), self._spec)
-        params.SetExtraParameters(_alone(extra))
+        params.SetExtraParameters(alone(extra))
         self._planner.InitPlan(self._robot, params)
         return self._planner.PlanPath(traj)
 
@@ -274,38 +272,7 @@ class AffineTrajectoryRetimer(ApiObject):
 def _active(robot: Robot, extra: str, maxvelmult: float, maxaccelmult: float) -> PlannerParameters:
     params = PlannerParameters()
     params.SetRobotActiveJoints(robot)
-    return _scaled(params, extra, maxvelmult, maxaccelmult)
-
-
-def of_bodies(
-    traj: Trajectory, extra: str = "", maxvelmult: float = 1.0, maxaccelmult: float = 1.0
-) -> PlannerParameters:
-    """Return parameters for the joints and poses that a trajectory is about.
-
-    Args:
-        traj: The trajectory.
-        extra: Further parameters as XML text.
-        maxvelmult: Factor of the velocity limits.
-        maxaccelmult: Factor of the acceleration limits.
-    """
-    spec = ConfigurationSpecification.of(traj.GetConfigurationSpecification().GetGroups())
-    for group in spec.GetGroups():
-        if not is_position(group):
-            spec.RemoveGroups(group.name)
-    spec.ResetGroupOffsets()
-    params = PlannerParameters()
-    params.SetConfigurationSpecification(traj.GetEnv(), spec)
-    return _scaled(params, extra, maxvelmult, maxaccelmult)
-
-
-def _scaled(params: PlannerParameters, extra: str, maxvelmult: float, maxaccelmult: float) -> PlannerParameters:
-    for name, factor in (("maxvelmult", maxvelmult), ("maxaccelmult", maxaccelmult)):
-        if not (np.isfinite(factor) and factor > 0):
-            raise ArgumentError(f"{name}: is {factor}, and should be above 0")
-    params.SetConfigVelocityLimit(params.GetConfigVelocityLimit() * maxvelmult)
-    params.SetConfigAccelerationLimit(params.GetConfigAccelerationLimit() * maxaccelmult)
-    params.SetExtraParameters(_alone(extra))
-    return params
+    return scaled(params, extra, maxvelmult, maxaccelmult)
 
 
 def _affine(
@@ -323,24 +290,6 @@ def _affine(
     return params
 
 
-def _alone(extra: str) -> str:
-    """Return parameters for a planner that works alone: times are no multiples of anything."""
-    return f"<_fsteplength>0</_fsteplength>{extra}"
-
-
 def stamped(hastimestamps: bool, extra: str) -> str:
     """Return parameters that say whether times are kept."""
     return f"<hastimestamps>1</hastimestamps>{extra}" if hastimestamps else extra
-
-
-def _planner(robot_or_traj: Robot | Trajectory, name: str) -> Planner:
-    planner = RaveCreatePlanner(robot_or_traj.GetEnv(), name)
-    if planner is None:
-        raise RavemjError(f"there is no planner '{name}'", ErrorCode.Assert)
-    return planner
-
-
-def _run(traj: Trajectory, params: PlannerParameters, name: str) -> PlannerStatus:
-    planner = _planner(traj, name)
-    planner.InitPlan(None, params)
-    return planner.PlanPath(traj)

@@ -45,7 +45,8 @@ class IdealController(Controller):
     Joints that move faster than their limits allow are a problem, and so are joints outside their limits; after
     ``SendCommand("SetCheckCollisions 1")`` also collisions of the robot. The first problem of each command is logged
     as a warning. After ``SendCommand("SetThrowExceptions 1")`` each raises an ``openrave_exception`` (``Assert``), out
-    of ``SetDesired`` or of the step of simulation time, and ends the command.
+    of ``SetDesired`` or of the step of simulation time, and ends the command. ``SendCommand("Pause 1")`` lets the robot
+    wait until ``Pause 0``; ``SetEnableLogging 1`` logs each path.
 
     Example:
         >>> controller = robot.GetController()
@@ -61,6 +62,8 @@ class IdealController(Controller):
     _has_problem = False
     _throws_exceptions = False
     _checks_collisions = False
+    _is_paused = False
+    _logs = False
 
     def Reset(self, options: int = 0) -> None:
         """Forget what the controller was told; the robot stays where it is, and the controller is done.
@@ -110,6 +113,8 @@ class IdealController(Controller):
             self._path, self._desired = path, None
             self._time, self._is_done = 0.0, False
             self._last_timestep, self._has_problem = 0.0, False
+        if self._logs:
+            _LOG.info("robot '%s' plays a path of %g s", self._robot.GetName(), path.trajectory.GetDuration())
         self._env.clock.wake()
         return True
 
@@ -131,6 +136,8 @@ class IdealController(Controller):
         Args:
             timestep: How long [s].
         """
+        if self._is_paused:
+            return
         if self._path is not None:
             self._play(self._path, timestep)
         elif self._desired is not None:
@@ -214,7 +221,17 @@ class IdealController(Controller):
         self._checks_collisions = checked_flag(arguments, "SetCheckCollisions")
         return ""
 
+    def _pause(self, arguments: str) -> str:
+        self._is_paused = checked_flag(arguments, "Pause")
+        return ""
+
+    def _set_enable_logging(self, arguments: str) -> str:
+        self._logs = checked_flag(arguments, "SetEnableLogging")
+        return ""
+
     _commands: ClassVar = {
+        "Pause": _pause,
+        "SetEnableLogging": _set_enable_logging,
         "SetThrowExceptions": _set_throw_exceptions,
         "SetCheckCollisions": _set_check_collisions,
     }

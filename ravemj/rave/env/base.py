@@ -15,6 +15,7 @@ from ravemj.rave.robot import Robot
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
     from ravemj.rave.environment import Environment
+    from ravemj.rave.modules.module import Module
 
 
 BodyCallback = Callable[[KinBody, int], object]
@@ -36,6 +37,7 @@ class EnvironmentPart(UserData):
         self._objects: WeakValueDictionary[BodyState, KinBody] = WeakValueDictionary()
         self._kept_objects: dict[BodyState, KinBody] = {}  # of bodies that are in the environment
         self._viewers: list[Viewer] = []
+        self._modules: list[Module] = []
         self._found: dict[Diagnostic, None] = {}  # as ordered sets, which loading a file again does not let grow
         self._files: dict[str, None] = {}
         self._annotations = Annotations()

@@ -12,6 +12,7 @@ from ravemj.rave.enums import InterfaceAddMode, TriangulateOptions
 from ravemj.rave.env.base import BodyCallback, BodyCallbackHandle, EnvironmentPart
 from ravemj.rave.interface import Interface
 from ravemj.rave.kinbody import KinBody
+from ravemj.rave.modules.module import Module
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor
 from ravemj.rave.trimesh import TriMesh, trimesh_of
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Contents(EnvironmentPart):
-    """The bodies of an environment, as objects and as triangles; and modules, of which there are none."""
+    """The bodies of an environment, as objects and as triangles; and modules."""
 
     TriangulateOptions = TriangulateOptions
     SelectionOptions = TriangulateOptions
@@ -39,7 +40,7 @@ class Contents(EnvironmentPart):
             interface: What to add; it was made for this environment.
             addMode: What to do if the name is taken: None, False or ``InterfaceAddMode.StrictNameChecking`` raises,
                 True or ``AllowRenaming`` gives it a name of its own. OpenRAVE 0.9 calls the argument ``anonymous``.
-            cmdargs: Arguments of modules; not used.
+            cmdargs: Arguments of modules, the name of a robot first.
 
         Raises:
             openrave_exception: another body has the name (``BodyNameConflict``), the name is empty, or this is no
@@ -52,14 +53,16 @@ class Contents(EnvironmentPart):
             >>> box.SetName("box")
             >>> env.Add(box)
         """
-        del cmdargs
         if not isinstance(interface, KinBody):
-            self._add_other(interface)
+            self._add_other(interface, cmdargs)
         else:
             self.AddKinBody(interface, addMode)
 
-    def _add_other(self, interface: object) -> None:
-        """Accept a viewer of this environment, which is attached already; refuse anything else that is no body."""
+    def _add_other(self, interface: object, cmdargs: str = "") -> None:
+        """Add a module; accept a viewer of this environment, which is attached already; refuse anything else."""
+        if isinstance(interface, Module):
+            self.AddModule(interface, cmdargs)
+            return
         if any(interface is viewer for viewer in self._viewers):
             return
         kind = "None" if interface is None else type(interface).__name__
@@ -157,7 +160,10 @@ class Contents(EnvironmentPart):
         return body is not None and self.Remove(body)
 
     def _remove_other(self, interface: object) -> bool:
-        """Close and remove a viewer; return whether it was there."""
+        """Close and remove a viewer, or remove a module; return whether it was there."""
+        if isinstance(interface, Module) and interface in self._modules:
+            self._modules.remove(interface)
+            return True
         if interface is None:
             raise ArgumentError("Remove: takes a body or robot, not None")
         for viewer in self._viewers:
@@ -277,27 +283,41 @@ class Contents(EnvironmentPart):
             return _triangles(state for state in self._simulation.bodies if takes(state.scene, name))
 
     def AddModule(self, module: object, args: str = "") -> int:
-        """Refuse any module, since ``RaveCreateModule`` makes none; it never returns.
+        """Add a module.
 
         Args:
             module: What ``RaveCreateModule`` returned.
-            args: What the module starts with.
+            args: What the module starts with, the name of a robot first.
+
+        Returns:
+            0.
 
         Raises:
-            openrave_exception: always.
+            openrave_exception: it is None, or something else.
+
+        Example:
+            >>> module = RaveCreateModule(env, "BaseManipulation")
+            >>> env.AddModule(module, robot.GetName())
+            0
         """
-        del args
-        if module is None:
-            message = "module is None, as RaveCreateModule returns for names that no plugin has"
-        else:
-            message = f"module is a {type(module).__name__}, and should be what RaveCreateModule returned"
-        raise ArgumentError(f"AddModule: {message}")
+        if not isinstance(module, Module):
+            if module is None:
+                message = "module is None, as RaveCreateModule returns for names that no plugin has"
+            else:
+                message = f"module is a {type(module).__name__}, and should be what RaveCreateModule returned"
+            raise ArgumentError(f"AddModule: {message}")
+        if module.GetEnv() is not self:
+            raise ArgumentError("AddModule: module was made for another environment")
+        if module not in self._modules:
+            self._modules.append(module)
+        module.start(args)
+        return 0
 
     LoadProblem = AddModule
 
-    def GetModules(self) -> list[object]:
-        """Return the modules that were added: none."""
-        return []
+    def GetModules(self) -> list[Module]:
+        """Return the modules that were added."""
+        return list(self._modules)
 
     GetLoadedProblems = GetModules
 

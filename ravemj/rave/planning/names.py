@@ -5,16 +5,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.rave.interface import checked_environment
-from ravemj.rave.planning.parameters import Values
+from ravemj.rave.planning.parameters import PlannerParameters, Values
 from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.retimers import RETIMERS, Retimer
 from ravemj.rave.planning.smoothers import SMOOTHERS, Smoother
 from ravemj.rave.planning.status import PlannerStatus
+from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.groups import is_position
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -83,6 +87,8 @@ def post_process(env: "Environment", values: Values, traj: Trajectory) -> Planne
         How a planner failed, or None.
     """
     name, text = values.postprocessing
+    if name and traj.GetNumWaypoints() == 1:
+        name, text = "LinearTrajectoryRetimer", ""  # nothing to smooth
     numbers = {**values.numbers, "_nmaxiterations": 0.0, "_fsteplength": 0.0}
     while name:
         planner = RaveCreatePlanner(env, name)
@@ -94,3 +100,75 @@ def post_process(env: "Environment", values: Values, traj: Trajectory) -> Planne
             return status
         name, text = own.postprocessing
     return None
+
+
+def needed_planner(env: "Environment", name: str) -> Planner:
+    """Return a planner.
+
+    Raises:
+        RavemjError: there is none of that name.
+    """
+    planner = RaveCreatePlanner(env, name)
+    if planner is None:
+        raise RavemjError(f"there is no planner '{name}'", ErrorCode.Assert)
+    return planner
+
+
+def run_planner(traj: Trajectory, params: PlannerParameters, name: str) -> PlannerStatus:
+    """Let a planner work on a trajectory.
+
+    Raises:
+        RavemjError: there is none of that name.
+    """
+    planner = needed_planner(traj.GetEnv(), name)
+    planner.InitPlan(None, params)
+    return planner.PlanPath(traj)
+
+
+def retimed(traj: Trajectory, name: str, factors: tuple[float, float] = (1.0, 1.0), extra: str = "") -> PlannerStatus:
+    """Let a retimer or smoother work on a trajectory of any bodies.
+
+    Args:
+        traj: Changed in place.
+        name: Which one.
+        factors: Of the velocity and of the acceleration limits.
+        extra: Its parameters as XML text.
+    """
+    return run_planner(traj, of_bodies(traj, extra, *factors), name)
+
+
+def of_bodies(
+    traj: Trajectory, extra: str = "", maxvelmult: float = 1.0, maxaccelmult: float = 1.0
+) -> PlannerParameters:
+    """Return parameters for the joints and poses that a trajectory is about.
+
+    Args:
+        traj: The trajectory.
+        extra: Further parameters as XML text.
+        maxvelmult: Factor of the velocity limits.
+        maxaccelmult: Factor of the acceleration limits.
+    """
+    spec = ConfigurationSpecification.of(traj.GetConfigurationSpecification().GetGroups())
+    for group in spec.GetGroups():
+        if not is_position(group):
+            spec.RemoveGroups(group.name)
+    spec.ResetGroupOffsets()
+    params = PlannerParameters()
+    params.SetConfigurationSpecification(traj.GetEnv(), spec)
+    return scaled(params, extra, maxvelmult, maxaccelmult)
+
+
+def scaled(params: PlannerParameters, extra: str, maxvelmult: float, maxaccelmult: float) -> PlannerParameters:
+    """Give parameters for a planner that works alone further text and factors of the limits; return them."""
+    for name, factor in (("maxvelmult", maxvelmult), ("maxaccelmult", maxaccelmult)):
+        if not (np.isfinite(factor) and factor > 0):
+            raise ArgumentError(f"{name}: is {factor}, and should be above 0")
+    params.SetConfigVelocityLimit(params.GetConfigVelocityLimit() * maxvelmult)
+    params.SetConfigAccelerationLimit(params.GetConfigAccelerationLimit() * maxaccelmult)
+    params.SetExtraParameters(alone(extra))
+    return params
+
+
+def alone(extra: str) -> str:
+    """Return parameters for a planner that works alone: times are no multiples of anything."""
+    return f"<_fsteplength>0</_fsteplength>{extra}"

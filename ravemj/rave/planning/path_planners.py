@@ -42,9 +42,11 @@ class PathPlanner(Planner):
             return self._failed(str(error))
         with values.bodies.kept():
             for name, candidates in (("start", starts), ("goal", goals)):
+                if not len(candidates) and (name == "start" or self._needs_goal(values)):
+                    return self._failed(f"there is no {name}")
                 wrong = [self._wrong(values, name, one) for one in candidates]
-                if all(wrong) and (wrong or name == "start" or self._needs_goal(values)):
-                    return wrong[0] if wrong else self._failed(f"there is no {name}")
+                if wrong and None not in wrong:
+                    return wrong[0]
         return None
 
     def _starts_and_goals(self, values: Values) -> tuple[Floats, Floats]:
@@ -167,7 +169,8 @@ class BiRrt(PathPlanner):
 
             def next_goal() -> Floats | None:
                 goal = sample()
-                return None if goal is None or self._wrong(values, "goal", goal) else goal
+                allowed = goal is not None and self._wrong(values, "goal", goal) is None
+                return goal if allowed else None
 
             more = MoreGoals(next_goal, probability)
         return connect(edges, starts, goals, budget, random, more)

@@ -1,0 +1,365 @@
+"""Motions of joints and of the tool."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.compat.interfaces.helper import Helper, given
+from ravemj.core.arrays import checked_transform, checked_vector
+from ravemj.core.transforms import Floats
+from ravemj.errors import UnsupportedError
+from ravemj.rave.modules import base_module
+from ravemj.rave.modules.base_manipulation import HAND_EFFORT, Effort
+from ravemj.rave.modules.commands import effort_of, straight, unsync
+from ravemj.rave.planning import PlanningError
+from ravemj.rave.robot import Robot
+from ravemj.rave.specification import IkParameterization
+from ravemj.rave.trajectory import Trajectory
+
+Answer = Trajectory | str | None
+
+
+class BaseManipulation(Helper):
+    """Plans and executes motions of the active DOFs, of an arm, or of its tool.
+
+    Each method gives the robot's controller the motion, and returns before it is over; ``execute=False`` leaves the
+    robot alone. It returns the ``Trajectory`` with ``outputtrajobj=True``, its text with ``outputtraj=True``, else
+    None. Where there is no motion it raises ``PlanningError``, whose text says why; the robot stays as it is.
+
+    Args:
+        robot: The robot.
+        plannername: The planner of paths; None, or an unknown name: ``birrt``.
+        maxvelmult: Factor of the velocity limits, for straight motions.
+
+    Example:
+        >>> basemanip = interfaces.BaseManipulation(robot)
+        >>> basemanip.MoveActiveJoints(goal=[0.5, 0.3])
+        >>> robot.WaitForController(0)
+        True
+    """
+
+    def __init__(self, robot: Robot, plannername: str | None = None, maxvelmult: float | None = None) -> None:
+        module, self._base = base_module(robot.GetEnv())
+        super().__init__(robot, plannername, maxvelmult, module, self._base)
+
+    def MoveActiveJoints(
+        self,
+        goal: ArrayLike | None = None,
+        steplength: float | None = None,
+        maxiter: int | None = None,
+        maxtries: int | None = None,
+        execute: bool | None = None,
+        outputtraj: bool | None = None,
+        goals: Sequence[ArrayLike] | None = None,
+        outputtrajobj: bool | None = None,
+        jitter: float | None = None,
+        releasegil: bool = False,
+        postprocessingplanner: str | None = None,
+        postprocessingparameters: str | None = None,
+        usedynamicsconstraints: bool | None = None,
+        initialconfigs: Sequence[ArrayLike] | None = None,
+    ) -> Answer:
+        """Move the active DOFs to a goal without collisions.
+
+        Args:
+            goal: Active values.
+            steplength: Not used; resolutions of the joints say how finely lines are tested.
+            maxiter: Iterations of the planner; None: 4000.
+            maxtries: How often it is asked; None: 2.
+            execute: False leaves the robot alone.
+            outputtraj: Whether to return the motion's text.
+            goals: Several goals in place of one; any will do.
+            outputtrajobj: Whether to return the motion.
+            jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.04.
+            releasegil: Not used.
+            postprocessingplanner: The smoother; None: OpenRAVE's.
+            postprocessingparameters: Its parameters as XML text.
+            usedynamicsconstraints: Not used.
+            initialconfigs: Where the motion may start; None: where the robot is.
+
+        Raises:
+            PlanningError: there is no such motion.
+            AssertionError: a goal has not as many values as are active.
+
+        Example:
+            >>> traj = basemanip.MoveActiveJoints(goal=[0.5, 0.3], execute=False, outputtrajobj=True)
+        """
+        del steplength, releasegil, usedynamicsconstraints
+        dof = self.robot.GetActiveDOF()
+        wanted, starts = _rows(goal, goals, dof), _rows(None, initialconfigs, dof)
+        post = None if postprocessingplanner is None else (postprocessingplanner, postprocessingparameters or "")
+        effort = effort_of(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), Effort())
+        traj = self._base.move_active_joints(wanted, effort, starts=starts, postprocessing=post)
+        return self._done(traj, execute, outputtraj, outputtrajobj)
+
+    def MoveManipulator(
+        self,
+        goal: ArrayLike | None = None,
+        maxiter: int | None = None,
+        execute: bool | None = None,
+        outputtraj: bool | None = None,
+        maxtries: int | None = None,
+        goals: Sequence[ArrayLike] | None = None,
+        steplength: float | None = None,
+        outputtrajobj: bool | None = None,
+        jitter: float | None = None,
+        releasegil: bool = False,
+    ) -> Answer:
+        """Move the arm of the active manipulator to a goal without collisions, whatever is active.
+
+        Args:
+            goal: Values of the arm's joints.
+            maxiter: Iterations of the planner; None: 4000.
+            execute: False leaves the robot alone.
+            outputtraj: Whether to return the motion's text.
+            maxtries: How often the planner is asked; None: 2.
+            goals: Several goals in place of one; any will do.
+            steplength: Not used.
+            outputtrajobj: Whether to return the motion.
+            jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.04.
+            releasegil: Not used.
+
+        Raises:
+            PlanningError: there is no such motion.
+            AssertionError: a goal has not as many values as the arm has joints.
+        """
+        del steplength, releasegil
+        wanted = _rows(goal, goals, self._base.arm().GetArmDOF())
+        effort = effort_of(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), Effort())
+        return self._done(self._base.move_manipulator(wanted, effort), execute, outputtraj, outputtrajobj)
+
+    def MoveToHandPosition(
+        self,
+        matrices: Sequence[ArrayLike] | None = None,
+        affinedofs: int | None = None,
+        maxiter: int | None = None,
+        maxtries: int | None = None,
+        translation: ArrayLike | None = None,
+        rotation: ArrayLike | None = None,
+        seedik: int | None = None,
+        constraintfreedoms: ArrayLike | None = None,
+        constraintmatrix: ArrayLike | None = None,
+        constrainterrorthresh: float | None = None,
+        execute: bool | None = None,
+        outputtraj: bool | None = None,
+        steplength: float | None = None,
+        goalsamples: int | None = None,
+        ikparam: IkParameterization | None = None,
+        ikparams: Sequence[IkParameterization] | None = None,
+        jitter: float | None = None,
+        minimumgoalpaths: int | None = None,
+        outputtrajobj: bool | None = None,
+        postprocessing: tuple[str, str] | None = None,
+        jittergoal: float | None = None,
+        constrainttaskmatrix: ArrayLike | None = None,
+        constrainttaskpose: ArrayLike | None = None,
+        goalsampleprob: float | None = None,
+        goalmaxsamples: int | None = None,
+        goalmaxtries: int | None = None,
+        releasegil: bool = False,
+        initialconfigs: Sequence[ArrayLike] | None = None,
+        freevalues: ArrayLike | None = None,
+    ) -> Answer:
+        """Move the arm of the active manipulator so that its tool reaches a goal, without collisions.
+
+        Args:
+            matrices: Poses ``T_world_tool``, any of which will do: 4x4, 3x4 or 7 numbers each.
+            affinedofs: Not used.
+            maxiter: Iterations of the planner; None: 4000.
+            maxtries: How often it is asked; None: 3.
+            translation: A point for the tool, in place of a pose.
+            rotation: A quaternion for the tool, in place of a pose.
+            seedik: Not used.
+            constraintfreedoms: Not possible here.
+            constraintmatrix: Not possible here.
+            constrainterrorthresh: Not possible here.
+            execute: False leaves the robot alone.
+            outputtraj: Whether to return the motion's text.
+            steplength: Not used.
+            goalsamples: How many solutions of inverse kinematics are goals at most; None: 40.
+            ikparam: A goal of any type.
+            ikparams: Several of them.
+            jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.03.
+            minimumgoalpaths: Not used.
+            outputtrajobj: Whether to return the motion.
+            postprocessing: The smoother and its parameters; None: OpenRAVE's.
+            jittergoal: Not used.
+            constrainttaskmatrix: Not possible here.
+            constrainttaskpose: Not possible here.
+            goalsampleprob: Not used.
+            goalmaxsamples: As ``goalsamples``.
+            goalmaxtries: Not used.
+            releasegil: Not used.
+            initialconfigs: Where the arm may start; None: where it is.
+            freevalues: Not used.
+
+        Raises:
+            PlanningError: there is no such motion, or no solver of inverse kinematics.
+            UnsupportedError: constraints of the tool's way are given.
+
+        Example:
+            >>> basemanip.MoveToHandPosition(matrices=[T_world_tool])
+        """
+        del affinedofs, seedik, steplength, minimumgoalpaths, jittergoal, goalsampleprob, goalmaxtries, releasegil
+        del freevalues, constrainterrorthresh
+        if any(one is not None for one in (constraintfreedoms, constraintmatrix, constrainttaskmatrix, constrainttaskpose)):
+            raise UnsupportedError("MoveToHandPosition with constraints", "planning with constraints of the tool")
+        kind = IkParameterization.Type
+        goals = [IkParameterization(checked_transform(one, "matrices"), kind.Transform6D) for one in matrices or ()]
+        if translation is not None:
+            goals.append(IkParameterization(checked_vector(translation, 3, "translation"), kind.Translation3D))
+        if rotation is not None:
+            goals.append(IkParameterization(checked_vector(rotation, 4, "rotation"), kind.Rotation3D))
+        goals += [*([ikparam] if ikparam is not None else []), *(ikparams or ())]
+        if not goals:
+            raise PlanningError("there is no goal")
+        traj = self._base.move_to_hand_position(
+            goals,
+            effort_of(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), HAND_EFFORT),
+            samples=goalsamples or goalmaxsamples or 40,
+            starts=_rows(None, initialconfigs, self._base.arm().GetArmDOF()),
+            postprocessing=postprocessing,
+        )
+        return self._done(traj, execute, outputtraj, outputtrajobj)
+
+    def MoveHandStraight(
+        self,
+        direction: ArrayLike,
+        minsteps: int | None = None,
+        maxsteps: int | None = None,
+        stepsize: float | None = None,
+        ignorefirstcollision: float | None = None,
+        starteematrix: ArrayLike | None = None,
+        greedysearch: bool | None = None,
+        execute: bool | None = None,
+        outputtraj: bool | None = None,
+        maxdeviationangle: float | None = None,
+        steplength: float | None = None,
+        planner: str | None = None,
+        outputtrajobj: bool | None = None,
+    ) -> Answer:
+        """Move the tool of the active manipulator along a straight line, with its orientation, as far as it goes.
+
+        Args:
+            direction: Where to, in the world; its length does not count.
+            minsteps: How many steps it has to go; None: 0.
+            maxsteps: How many it goes at most; None: 10000.
+            stepsize: How far a step is [m]; None: 0.01.
+            ignorefirstcollision: Way at the start in which collisions do not count [m]; None: 0.1.
+            starteematrix: ``T_world_tool`` where it starts; None: where it is.
+            greedysearch: Not used.
+            execute: False leaves the robot alone.
+            outputtraj: Whether to return the motion's text.
+            maxdeviationangle: Not used; the tool does not turn.
+            steplength: Not used.
+            planner: Not used.
+            outputtrajobj: Whether to return the motion.
+
+        Raises:
+            PlanningError: it does not get that far, or there is no solver of inverse kinematics.
+
+        Example:
+            >>> basemanip.MoveHandStraight([0, 0, 1], stepsize=0.01, minsteps=5, maxsteps=10)
+        """
+        del greedysearch, maxdeviationangle, steplength, planner
+        start = None if starteematrix is None else checked_transform(starteematrix, "starteematrix")
+        options = given(minsteps=minsteps, maxsteps=maxsteps, stepsize=stepsize, starteematrix=start)
+        options |= given(ignorefirstcollision=ignorefirstcollision)
+        options["direction"] = checked_vector(direction, 3, "direction")
+        return self._done(straight(self._base, options), execute, outputtraj, outputtrajobj)
+
+    def MoveUnsyncJoints(
+        self,
+        jointvalues: ArrayLike,
+        jointinds: Sequence[int],
+        maxtries: int | None = None,
+        planner: str | None = None,
+        maxdivision: int | None = None,
+        execute: bool | None = None,
+        outputtraj: bool | None = None,
+        outputtrajobj: bool | None = None,
+    ) -> Answer:
+        """Move the active DOFs to where other joints can move to values without collisions.
+
+        The other joints, those of a hand for instance, are not moved.
+
+        Args:
+            jointvalues: The values of the other joints.
+            jointinds: Their DOF indices.
+            maxtries: How often a place is looked for; None: once.
+            planner: The planner of the motion; None: ``BasicRRT``.
+            maxdivision: In how many steps the motion of the other joints is tested; None: 10.
+            execute: False leaves the robot alone.
+            outputtraj: Whether to return the motion's text.
+            outputtrajobj: Whether to return the motion.
+
+        Raises:
+            PlanningError: there is no such place.
+            AssertionError: there are not as many values as indices, or none.
+        """
+        values = np.atleast_1d(np.asarray(jointvalues, dtype=float))
+        indices = [int(index) for index in jointinds]
+        if not len(values) == len(indices) > 0:
+            raise AssertionError(f"jointvalues: are {len(values)}, and there are {len(indices)} jointinds")
+        options = given(maxtries=maxtries, maxdivision=maxdivision, planner=planner)
+        return self._done(unsync(self._base, values, indices, options), execute, outputtraj, outputtrajobj)
+
+    def JitterActive(
+        self,
+        maxiter: int | None = None,
+        jitter: float | None = None,
+        execute: bool | None = None,
+        outputtraj: bool | None = None,
+        outputfinal: bool | None = None,
+        outputtrajobj: bool | None = None,
+    ) -> tuple[Floats | None, Answer]:
+        """Move the active DOFs a little, out of collision.
+
+        Args:
+            maxiter: How many configurations are tried; None: 5000.
+            jitter: How far each value may move [rad or m]; None: 0.03.
+            execute: False leaves the robot alone.
+            outputtraj: Whether to return the motion's text.
+            outputfinal: Whether to return where it leads.
+            outputtrajobj: Whether to return the motion.
+
+        Returns:
+            Where the motion leads, and the motion; None for what was not asked for.
+
+        Raises:
+            PlanningError: there is no such configuration.
+        """
+        found = self._base.jitter_active(**given(tries=maxiter, jitter=jitter))
+        return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
+
+    def FindIKWithFilters(
+        self,
+        ikparam: IkParameterization,
+        cone: ArrayLike | None = None,
+        solveall: bool | None = None,
+        filteroptions: int | None = None,
+    ) -> None:
+        """Refuse to search solutions of inverse kinematics by filters, as OpenRAVE 0.149 does.
+
+        Args:
+            ikparam: The goal.
+            cone: A cone of directions.
+            solveall: Whether to return all.
+            filteroptions: ``IkFilterOptions``.
+
+        Raises:
+            UnsupportedError: always.
+        """
+        raise UnsupportedError("FindIKWithFilters", "inverse kinematics (IK) with filters of its own")
+
+
+def _rows(one: ArrayLike | None, several: Sequence[ArrayLike] | None, dof: int) -> list[Floats]:
+    """Return goals or starts."""
+    rows = [np.atleast_1d(np.asarray(row, dtype=float)) for row in (() if several is None else several)]
+    if one is not None:
+        rows.append(np.atleast_1d(np.asarray(one, dtype=float)))
+    for row in rows:
+        if row.shape != (dof,) or not dof:
+            raise AssertionError(f"a goal has {row.size} values, and should have {dof}")
+    return rows

@@ -1,0 +1,83 @@
+"""What the helpers have in common."""
+
+import weakref
+from typing import Any
+
+from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_kind
+from ravemj.core.transforms import Floats
+from ravemj.rave.environment import Environment
+from ravemj.rave.modules import Module
+from ravemj.rave.modules.motions import Mover
+from ravemj.rave.robot import Robot
+from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.serialization import AS_TEXT
+
+
+class Helper(ApiObject):
+    """Plans for one robot; its module is in the environment as long as it exists.
+
+    Attributes:
+        prob: The module, which takes the same as commands.
+        robot: The robot.
+        args: With what the module was added.
+    """
+
+    def __init__(
+        self, robot: Robot, plannername: str | None, maxvelmult: float | None, module: Module, mover: Mover
+    ) -> None:
+        self.robot = checked_kind(robot, Robot, "robot")
+        self.prob, self._mover = module, mover
+        words = [robot.GetName(), *(["planner", plannername] if plannername else [])]
+        self.args = " ".join([*words, *(["maxvelmult", f"{maxvelmult:.15e}"] if maxvelmult is not None else [])])
+        env: Environment = robot.GetEnv()
+        env.Add(module, True, self.args)
+        mover.choose(robot.GetName())
+        weakref.finalize(self, env.Remove, module).atexit = False
+
+    def SetRobot(self, robot: Robot) -> bool:
+        """Plan for another robot.
+
+        Args:
+            robot: The robot.
+        """
+        self.robot = checked_kind(robot, Robot, "robot")
+        return self._mover.choose(robot.GetName())
+
+    def clone(self, envother: Environment) -> Any:  # noqa: ANN401 - of the same class
+        """Return such a helper for the robot of the same name in another environment.
+
+        Args:
+            envother: The environment.
+        """
+        robot = envother.GetRobot(self.robot.GetName())
+        return type(self)(robot)  # pyright: ignore - the classes take a robot
+
+    Clone = clone
+
+    def _done(
+        self, traj: Trajectory, execute: bool | None, outputtraj: bool | None, outputtrajobj: bool | None
+    ) -> Trajectory | str | None:
+        """Execute a motion unless ``execute`` is False, and return it in the form that is asked for."""
+        if execute is None or execute:
+            self._mover.execute(traj)
+        if outputtrajobj:
+            return traj
+        return str(traj.serialize(AS_TEXT)) if outputtraj else None
+
+    def _pair(
+        self,
+        found: tuple[Floats, Trajectory],
+        execute: bool | None,
+        outputtraj: bool | None,
+        outputfinal: bool | None,
+        outputtrajobj: bool | None,
+    ) -> tuple[Floats | None, Trajectory | str | None]:
+        """Execute a motion unless ``execute`` is False; return where it leads and itself, as far as they are asked."""
+        final, traj = found
+        return final if outputfinal else None, self._done(traj, execute, outputtraj, outputtrajobj)
+
+
+def given(**options: Any) -> dict[str, Any]:  # noqa: ANN401 - options of any kind
+    """Return the options that are not None."""
+    return {name: value for name, value in options.items() if value is not None}

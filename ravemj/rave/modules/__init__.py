@@ -1,0 +1,63 @@
+"""Modules, under OpenRAVE's names: what plans and executes motions.
+
+``motions`` plans and executes, ``base_manipulation`` and ``task_manipulation`` say what, ``commands`` and ``words`` are
+the same as text, and ``module`` takes commands.
+"""
+
+import logging
+from typing import TYPE_CHECKING
+
+from ravemj.rave.interface import checked_environment
+from ravemj.rave.modules.base_manipulation import BaseManipulation
+from ravemj.rave.modules.commands import base_commands, task_commands
+from ravemj.rave.modules.module import Command, Module
+from ravemj.rave.modules.motions import Mover
+from ravemj.rave.modules.task_manipulation import TaskManipulation
+from ravemj.rave.modules.words import Words
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+__all__ = ["MODULES", "Module", "base_module", "made_module", "task_module"]
+
+_LOG = logging.getLogger("ravemj")
+
+MODULES = ("BaseManipulation", "TaskManipulation")
+"""Names of the modules."""
+
+
+def base_module(env: "Environment", xmlid: str = "BaseManipulation") -> tuple[Module, BaseManipulation]:
+    """Make a module that moves arms, and return it with what it runs."""
+    mover = BaseManipulation(env)
+    return _module(env, xmlid, mover, base_commands(mover)), mover
+
+
+def task_module(env: "Environment", xmlid: str = "TaskManipulation") -> tuple[Module, TaskManipulation]:
+    """Make a module that moves grippers, and return it with what it runs."""
+    mover = TaskManipulation(env)
+    return _module(env, xmlid, mover, task_commands(mover)), mover
+
+
+def made_module(env: "Environment", name: str) -> Module | None:
+    """Return a new module of a name, whose letter case does not count, or None."""
+    checked_environment(env, "RaveCreateModule")
+    word = next(iter(name.split()), "")
+    make = {"basemanipulation": base_module, "taskmanipulation": task_module}.get(word.lower())
+    return None if make is None else make(env, word)[0]
+
+
+def _module(env: "Environment", xmlid: str, mover: Mover, commands: dict[str, Command]) -> Module:
+    def start(arguments: str) -> None:
+        words = Words(arguments)
+        if words and not mover.choose(name := words.next()):
+            _LOG.warning("module %s: there is no robot '%s'", xmlid, name)
+        while words:
+            name = words.next().lower()
+            if name == "planner":
+                mover.choose_planner(words.next("a planner"))
+            elif name == "maxvelmult":
+                mover.maxvelmult = words.number()
+            else:
+                _LOG.warning("module %s: '%s' is no argument of it", xmlid, name)
+
+    return Module(env, xmlid, start, commands)

@@ -1,0 +1,286 @@
+"""Motions of joints and of the tool: the module ``BaseManipulation``."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.planning.jitter import nearby
+from ravemj.rave.enums import IkFilterOptions
+from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.modules.motions import Mover, Postprocessing
+from ravemj.rave.planning.bodies import Bodies
+from ravemj.rave.planning.names import PLANNERS
+from ravemj.rave.planning.parameters import PlannerParameters
+from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.specification import IkParameterization
+from ravemj.rave.trajectory import Trajectory
+
+_LARGEST_JUMP = 0.5
+"""How far a joint may move [rad or m] in one step of the tool along a straight line."""
+
+
+class Effort(NamedTuple):
+    """How hard to try.
+
+    Attributes:
+        tries: How often the planner is asked.
+        iterations: How many iterations it has.
+        jitter: How far each value of a start or goal in collision may be moved [rad or m].
+    """
+
+    tries: int = 2
+    iterations: int = 4000
+    jitter: float = 0.04
+
+
+HAND_EFFORT = Effort(tries=3, jitter=0.03)
+"""OpenRAVE's for motions to poses of the tool."""
+
+
+class BaseManipulation(Mover):
+    """Plans motions of the active DOFs, of an arm, or of its tool."""
+
+    def move_active_joints(
+        self,
+        goals: Sequence[Floats],
+        effort: Effort,
+        *,
+        starts: Sequence[Floats] = (),
+        postprocessing: Postprocessing | None = None,
+    ) -> Trajectory:
+        """Return a motion of the active DOFs to one of several goals.
+
+        Args:
+            goals: The goals.
+            effort: How hard to try.
+            starts: Where it may start; none: where the robot is.
+            postprocessing: Smoother and its parameters; None: OpenRAVE's.
+
+        Raises:
+            PlanningError: there is none.
+        """
+        dof = self.robot.GetActiveDOF()
+        if not len(goals):
+            raise PlanningError("there is no goal")
+        for one in [*goals, *starts]:
+            if len(one) != dof or not np.isfinite(one).all():
+                raise ArgumentError(f"a goal or start is {list(one)}, and should be {dof} finite numbers")
+        return self.plan(goals, starts=starts, postprocessing=postprocessing, **effort._asdict())
+
+    def move_manipulator(self, goals: Sequence[Floats], effort: Effort) -> Trajectory:
+        """Return a motion of the joints of the active manipulator's arm to one of several goals.
+
+        Args:
+            goals: The goals.
+            effort: How hard to try.
+
+        Raises:
+            PlanningError: there is none.
+        """
+        with self.keeping_active():
+            self.robot.SetActiveDOFs(self.arm().GetArmIndices())
+            return self.move_active_joints(goals, effort)
+
+    def arm(self) -> Manipulator:
+        """Return the active manipulator.
+
+        Raises:
+            PlanningError: the robot has none.
+        """
+        manip = self.robot.GetActiveManipulator()
+        if manip is None:
+            raise PlanningError(f"robot '{self.robot.GetName()}' has no active manipulator")
+        return manip
+
+    def move_to_hand_position(
+        self,
+        goals: Sequence[IkParameterization],
+        effort: Effort,
+        *,
+        samples: int = 40,
+        starts: Sequence[Floats] = (),
+        postprocessing: Postprocessing | None = None,
+    ) -> Trajectory:
+        """Return a motion of the arm that takes its tool to one of several goals.
+
+        Args:
+            goals: The goals.
+            effort: How hard to try.
+            samples: How many solutions of inverse kinematics are goals at most.
+            starts: Values of the arm where it may start; none: where it is.
+            postprocessing: Smoother and its parameters; None: OpenRAVE's.
+
+        Raises:
+            PlanningError: there is none.
+        """
+        manip = self._solvable()
+        found = [row for goal in goals for row in solutions(manip, goal, IkFilterOptions.CheckEnvCollisions)]
+        if not found:
+            raise PlanningError("inverse kinematics (IK) has no solution without collisions for any of the goals")
+        here = manip.GetArmDOFValues()
+        found.sort(key=lambda row: float(np.abs(row - here).max()))
+        with self.keeping_active():
+            self.robot.SetActiveDOFs(manip.GetArmIndices())
+            return self.move_active_joints(found[:samples], effort, starts=starts, postprocessing=postprocessing)
+
+    def _solvable(self) -> Manipulator:
+        manip = self.arm()
+        if manip.GetIkSolver() is None:
+            raise PlanningError(f"manipulator '{manip.GetName()}' has no solver of inverse kinematics (IK)")
+        return manip
+
+    def move_hand_straight(
+        self,
+        direction: Floats,
+        *,
+        step: float = 0.01,
+        least: int = 0,
+        most: int = 10000,
+        start: Floats | None = None,
+        ignored: float = 0.1,
+    ) -> Trajectory:
+        """Return a motion of the arm that takes its tool along a straight line, as far as it goes.
+
+        Args:
+            direction: Where to, in the world; its length does not count, shape (3,).
+            step: Distance of the poses that the tool goes through [m].
+            least: How many steps there are at least.
+            most: How many at most.
+            start: ``T_world_tool`` where it starts; None: where it is.
+            ignored: Way at the start in which collisions do not count [m].
+
+        Raises:
+            PlanningError: it does not get that far.
+        """
+        length = float(np.linalg.norm(direction))
+        if not (np.isfinite(length) and length > 0 and step > 0):
+            raise ArgumentError(f"direction {direction.tolist()} and stepsize {step:g} should not be 0")
+        manip = self._solvable()
+        T_world_tool = manip.GetTransform() if start is None else start.copy()
+        arm, robot = manip.GetArmIndices(), self.robot
+        rows = [manip.GetArmDOFValues()]
+        with self.keeping_active(), Bodies(self.env, self._arm_groups(manip)).kept():
+            robot.SetActiveDOFs(arm)
+            for number in range(0 if start is not None else 1, most + 1):
+                pose = T_world_tool.copy()
+                pose[:3, 3] += direction / length * (step * number)
+                is_free = number * step <= ignored
+                row = self._next(manip, pose, rows[-1], check=not is_free, jumps=number == 0)
+                if row is None:
+                    break
+                if number == 0:
+                    rows.clear()
+                rows.append(row)
+            reached = len(rows) - 1
+            if reached < max(least, 1):
+                raise PlanningError(f"the tool gets {reached} steps far, and should get {max(least, 1)}")
+            return self.straight(np.array(rows))
+
+    def _arm_groups(self, manip: Manipulator) -> Any:  # noqa: ANN401 - groups
+        return manip.GetArmConfigurationSpecification().GetGroups()
+
+    def _next(
+        self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool, jumps: bool
+    ) -> Floats | None:
+        """Return the solution next to joint values, or None where there is none nearby without collisions."""
+        self.robot.SetDOFValues(before, manip.GetArmIndices())
+        options = IkFilterOptions.CheckEnvCollisions if check else IkFilterOptions.IgnoreSelfCollisions
+        goal = IkParameterization(pose, IkParameterization.Type.Transform6D)
+        found = solutions(manip, goal, options)
+        if not found:
+            return None
+        nearest = min(found, key=lambda row: float(np.abs(row - before).max()))
+        return nearest if jumps or np.abs(nearest - before).max() <= _LARGEST_JUMP else None
+
+    def move_unsync_joints(
+        self, hand: Floats, indices: Sequence[int], *, tries: int = 1, divisions: int = 10, planner: str = "BasicRRT"
+    ) -> Trajectory:
+        """Return a motion of the active DOFs to where other joints can move to values without collisions.
+
+        The other joints are not moved.
+
+        Args:
+            hand: Values of the other joints.
+            indices: Their DOF indices.
+            tries: How often a place is looked for.
+            divisions: In how many steps the motion of the other joints is tested.
+            planner: The planner of the motion.
+
+        Raises:
+            PlanningError: there is none.
+        """
+        robot = self.robot
+        params = PlannerParameters()
+        params.SetRobotActiveJoints(robot)
+        values, before = params.resolved(), robot.GetDOFValues(indices)
+        space, here = values.space(), values.vectors["_vinitialconfig"]
+        assert values.bodies is not None
+        moving = Bodies(self.env, robot.GetConfigurationSpecificationIndices(indices).GetGroups())
+        test = values.allowed()
+
+        def hand_can_move(active: Floats) -> bool:
+            if not test(active):
+                return False
+            try:
+                parts = np.linspace(0.0, 1.0, divisions + 1)[1:]
+                return all(_free(moving, before + part * (hand - before)) for part in parts)
+            finally:
+                moving.move(before)
+
+        farthest = float((space.upper - space.lower).max())
+        for attempt in range(tries):
+            with values.bodies.kept(), moving.kept():
+                random = np.random.default_rng(attempt)
+                goal = nearby(space, here, hand_can_move, 1000, farthest, random)
+            if goal is None:
+                continue
+            if goal is here:
+                return self.straight(here[None])
+            found = self._by(planner, lambda goal=goal: self.move_active_joints([goal], Effort()))
+            if found is not None:
+                return found
+        raise PlanningError("there is no place where the joints can move to their values")
+
+    def _by(self, planner: str, plan: Callable[[], Trajectory]) -> Trajectory | None:
+        old, self.planner = self.planner, planner if planner.lower() in PLANNERS else "birrt"
+        try:
+            return plan()
+        except PlanningError:
+            return None
+        finally:
+            self.planner = old
+
+    def jitter_active(self, tries: int = 5000, jitter: float = 0.03) -> tuple[Floats, Trajectory]:
+        """Return active values nearby that are without collisions, and the straight motion to them.
+
+        Args:
+            tries: How many others are tried.
+            jitter: How far each value may move [rad or m].
+
+        Raises:
+            PlanningError: there are none.
+        """
+        params = PlannerParameters()
+        params.SetRobotActiveJoints(self.robot)
+        values = params.resolved()
+        here = values.vectors["_vinitialconfig"]
+        assert values.bodies is not None
+        with values.bodies.kept():
+            random = np.random.default_rng(0)
+            found = nearby(values.space(), here, values.allowed(), tries, jitter, random)
+        if found is None:
+            raise PlanningError(f"{tries} configurations within {jitter:g} are all in collision")
+        return found, self.straight(here[None] if found is here else np.stack([here, found]))
+
+
+def _free(bodies: Bodies, values: Floats) -> bool:
+    bodies.move(values)
+    return not bodies.collision()
+
+
+def solutions(manip: Manipulator, goal: IkParameterization, options: int) -> list[Floats]:
+    """Return the joint values of an arm that reach a goal."""
+    return [np.asarray(row, dtype=float) for row in manip.FindIKSolutions(goal, int(options))]

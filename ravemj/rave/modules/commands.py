@@ -1,0 +1,199 @@
+"""The commands of the modules for manipulation, as text."""
+
+from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import Any
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.rave.modules.base_manipulation import HAND_EFFORT, BaseManipulation, Effort
+from ravemj.rave.modules.module import Command
+from ravemj.rave.modules.motions import Mover
+from ravemj.rave.modules.task_manipulation import TaskManipulation
+from ravemj.rave.modules.words import Reader, Words, flag, read_options, switch, text
+from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.specification import IkParameterization
+from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.serialization import AS_TEXT
+
+_OUTPUT: Mapping[str, Reader] = {"execute": flag, "outputtraj": switch}
+_EFFORT: Mapping[str, Reader] = {"maxiter": Words.integer, "maxtries": Words.integer, "jitter": Words.number}
+_POSTPROCESSING = ("postprocessingplanner", "postprocessingparameters")
+
+
+def reply(mover: Mover, traj: Trajectory, options: Mapping[str, Any], before: str = "") -> str:
+    """Execute a motion if the options do not forbid it, and return the answer of the command."""
+    if options.get("execute", True):
+        mover.execute(traj)
+    return before + (str(traj.serialize(AS_TEXT)) if options.get("outputtraj") else "")
+
+
+def effort_of(options: Mapping[str, Any], default: Effort) -> Effort:
+    """Return how hard options say to try."""
+    names = {"maxiter": "iterations", "maxtries": "tries", "jitter": "jitter"}
+    return default._replace(**{names[name]: value for name, value in options.items() if name in names})
+
+
+def _or_none(command: Command) -> Command:
+    """Answer None where no motion is found, as OpenRAVE's commands do."""
+
+    @wraps(command)
+    def run(arguments: str) -> str | None:
+        try:
+            return command(arguments)
+        except PlanningError:
+            return None
+
+    return run
+
+
+def base_commands(mover: BaseManipulation) -> dict[str, Command]:
+    """Return the commands of ``BaseManipulation``."""
+
+    def move_active_joints(arguments: str) -> str:
+        """Moves the active DOFs to one of several goals without collisions."""
+        dof = mover.robot.GetActiveDOF()
+        readers = {**_OUTPUT, **_EFFORT, **_goals(dof), "steplength": Words.number}
+        readers |= {"initialconfigs": lambda words: words.rows(dof), "postprocessingplanner": text}
+        options = read_options(arguments, readers)
+        starts = options.get("initialconfigs", ())
+        post = (options["postprocessingplanner"], "") if "postprocessingplanner" in options else None
+        goals = [*options.get("goal", ()), *options.get("goals", ())]
+        effort = effort_of(options, Effort())
+        return reply(mover, mover.move_active_joints(goals, effort, starts=starts, postprocessing=post), options)
+
+    def move_manipulator(arguments: str) -> str:
+        """Moves the arm of the active manipulator to one of several goals without collisions."""
+        dof = mover.arm().GetArmDOF()
+        options = read_options(arguments, {**_OUTPUT, **_EFFORT, **_goals(dof), "steplength": Words.number})
+        goals = [*options.get("goal", ()), *options.get("goals", ())]
+        return reply(mover, mover.move_manipulator(goals, effort_of(options, Effort())), options)
+
+    def move_to_hand_position(arguments: str) -> str:
+        """Moves the tool of the active manipulator to one of several poses without collisions."""
+        readers: dict[str, Reader] = {**_OUTPUT, **_EFFORT, "matrix": Words.matrix, "matrices": _matrices}
+        readers |= {"goalsamples": Words.integer, "goalmaxsamples": Words.integer, "steplength": Words.number}
+        readers |= dict.fromkeys(("seedik", "goalsampleprob", "goalmaxtries", "minimumgoalpaths"), Words.number)
+        options = read_options(arguments, readers)
+        poses = [*([options["matrix"]] if "matrix" in options else []), *options.get("matrices", ())]
+        goals = [IkParameterization(pose, IkParameterization.Type.Transform6D) for pose in poses]
+        samples = options.get("goalsamples", options.get("goalmaxsamples", 40))
+        traj = mover.move_to_hand_position(goals, effort_of(options, HAND_EFFORT), samples=samples)
+        return reply(mover, traj, options, "1" if not options.get("outputtraj") else "1 ")
+
+    def move_hand_straight(arguments: str) -> str:
+        """Moves the tool of the active manipulator along a straight line."""
+        readers: dict[str, Reader] = {**_OUTPUT, "direction": lambda words: words.numbers(3), "greedysearch": flag}
+        readers |= {"minsteps": Words.integer, "maxsteps": Words.integer, "starteematrix": Words.matrix}
+        readers |= dict.fromkeys(("stepsize", "ignorefirstcollision", "maxdeviationangle", "steplength"), Words.number)
+        options = read_options(arguments, {**readers, "planner": text})
+        return reply(mover, straight(mover, options), options)
+
+    def move_unsync_joints(arguments: str) -> str:
+        """Moves the active DOFs to where other joints can move to values without collisions."""
+        readers: dict[str, Reader] = {**_OUTPUT, "handjoints": _hand, "planner": text}
+        readers |= {"maxtries": Words.integer, "maxdivision": Words.integer}
+        options = read_options(arguments, readers)
+        return reply(mover, unsync(mover, *options.get("handjoints", (np.zeros(0), [])), options), options)
+
+    def jitter_active(arguments: str) -> str:
+        """Moves the active DOFs a little, out of collision."""
+        readers: dict[str, Reader] = {**_OUTPUT, "maxiter": Words.integer, "jitter": Words.number}
+        options = read_options(arguments, {**readers, "outputfinal": switch})
+        final, traj = mover.jitter_active(options.get("maxiter", 5000), options.get("jitter", 0.03))
+        return reply(mover, traj, options, _numbers(final) if options.get("outputfinal") else "")
+
+    named: dict[str, Callable[[str], str]] = {
+        "MoveActiveJoints": move_active_joints,
+        "MoveManipulator": move_manipulator,
+        "MoveToHandPosition": move_to_hand_position,
+        "MoveHandStraight": move_hand_straight,
+        "MoveUnsyncJoints": move_unsync_joints,
+        "JitterActive": jitter_active,
+    }
+    return {**{name: _or_none(command) for name, command in named.items()}, **_common(mover)}
+
+
+def task_commands(mover: TaskManipulation) -> dict[str, Command]:
+    """Return the commands of ``TaskManipulation``."""
+
+    def fingers(arguments: str) -> dict[str, Any]:
+        readers: dict[str, Reader] = {**_OUTPUT, "outputfinal": switch, "movingdir": _directions, "offset": _directions}
+        readers |= dict.fromkeys(("coarsestep", "finestep", "translationstepmult"), Words.number)
+        return read_options(arguments, {**readers, "target": text})
+
+    def _directions(words: Words) -> Floats:
+        manip = mover.robot.GetActiveManipulator()
+        return words.numbers(manip.GetGripperDOF() if manip else 0)
+
+    def answer(found: tuple[Floats, Trajectory], options: Mapping[str, Any]) -> str:
+        return reply(mover, found[1], options, _numbers(found[0]) if options.get("outputfinal") else "")
+
+    def close_fingers(arguments: str) -> str:
+        """Closes the gripper until its fingers touch something."""
+        options = fingers(arguments)
+        return answer(mover.close_fingers(options.get("movingdir"), options.get("offset")), options)
+
+    def release_fingers(arguments: str) -> str:
+        """Opens the gripper, and lets go of a body."""
+        options = fingers(arguments)
+        target = mover.env.GetKinBody(options["target"]) if "target" in options else None
+        return answer(mover.release_fingers(options.get("movingdir"), target), options)
+
+    def release_active(arguments: str) -> str:
+        """Moves the active joints to one side until they touch something."""
+        dof = mover.robot.GetActiveDOF()
+        readers: dict[str, Reader] = {**_OUTPUT, "outputfinal": switch, "movingdir": lambda words: words.numbers(dof)}
+        readers |= dict.fromkeys(("finestep", "translationstepmult"), Words.number)
+        options = read_options(arguments, readers)
+        return answer(mover.release_active(options.get("movingdir", np.zeros(dof))), options)
+
+    named: dict[str, Callable[[str], str]] = {
+        "CloseFingers": close_fingers,
+        "ChuckFingers": close_fingers,
+        "ReleaseFingers": release_fingers,
+        "UnchuckFingers": release_fingers,
+        "ReleaseActive": release_active,
+    }
+    return {**{name: _or_none(command) for name, command in named.items()}, **_common(mover)}
+
+
+def _common(mover: Mover) -> dict[str, Command]:
+    def set_robot(arguments: str) -> str | None:
+        """Chooses the robot by its name."""
+        return "" if mover.choose(arguments.strip()) else None
+
+    return {"SetRobot": set_robot}
+
+
+def straight(mover: BaseManipulation, options: Mapping[str, Any]) -> Trajectory:
+    """Return the motion of the tool along a straight line that options ask for."""
+    names = {"stepsize": "step", "minsteps": "least", "maxsteps": "most", "starteematrix": "start"}
+    names["ignorefirstcollision"] = "ignored"
+    given = {names[name]: value for name, value in options.items() if name in names}
+    return mover.move_hand_straight(options.get("direction", np.zeros(3)), **given)
+
+
+def unsync(mover: BaseManipulation, hand: Floats, indices: list[int], options: Mapping[str, Any]) -> Trajectory:
+    """Return the motion to where other joints can move that options ask for."""
+    names = {"maxtries": "tries", "maxdivision": "divisions", "planner": "planner"}
+    given = {names[name]: value for name, value in options.items() if name in names}
+    return mover.move_unsync_joints(hand, indices, **given)
+
+
+def _goals(dof: int) -> dict[str, Reader]:
+    return {"goal": lambda words: [words.numbers(dof)], "goals": lambda words: words.rows(dof)}
+
+
+def _matrices(words: Words) -> list[Floats]:
+    return [words.matrix() for _ in range(words.integer())]
+
+
+def _hand(words: Words) -> tuple[Floats, list[int]]:
+    count = words.integer()
+    return words.numbers(count), [words.integer() for _ in range(count)]
+
+
+def _numbers(values: Floats) -> str:
+    return " ".join(repr(value) for value in values.tolist()) + " "

@@ -1,0 +1,106 @@
+"""Modules: objects of an environment that take commands."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+from ravemj.core.arguments import checked_kind
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.rave.enums import InterfaceType
+from ravemj.rave.interface import Annotations, Interface
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+Command = Callable[[str], str | None]
+"""What runs a command: takes its arguments as text, and returns the answer, or None if it failed."""
+
+
+class Module(Interface):
+    """An object that takes commands; ``RaveCreateModule`` makes it.
+
+    Args:
+        env: The environment.
+        xmlid: The name of the module.
+        start: Called with the arguments with which the module is added.
+        commands: What runs commands, by their names.
+    """
+
+    _interface_type = InterfaceType.module
+    _internal = ("start",)
+
+    def __init__(
+        self, env: "Environment", xmlid: str, start: Callable[[str], None], commands: Mapping[str, Command]
+    ) -> None:
+        self._env = env
+        self._xmlid = xmlid
+        self._annotations = Annotations()
+        self.start = start
+        self._by_name = commands
+
+    def GetXMLId(self) -> str:
+        """Return the name of the module, as it was spelled when it was made."""
+        return self._xmlid
+
+    def Destroy(self) -> None:
+        """Take the module out of the environment."""
+        self._env.Remove(self)
+
+    def SimulationStep(self, elapsedtime: float) -> bool:
+        """Do nothing in a step of time; return False.
+
+        Args:
+            elapsedtime: How long the step is [s].
+        """
+        del elapsedtime
+        return False
+
+    def SupportsCommand(self, cmd: str) -> bool:
+        """Return whether ``SendCommand`` knows a command.
+
+        Args:
+            cmd: The name of the command; upper and lower case are the same.
+        """
+        return cmd.lower() in {"help", *map(str.lower, self._by_name)}
+
+    def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str | None:
+        """Run a command.
+
+        Args:
+            cmd: The name of the command, and behind it its arguments as words. ``help`` lists the commands.
+            releasegil: Not used.
+            lockenv: Not used.
+
+        Returns:
+            Its answer; None if it failed.
+
+        Raises:
+            openrave_exception: ``cmd`` is empty, or the arguments are wrong (``InvalidArguments``); the command is not
+                known (``CommandNotSupported``).
+
+        Example:
+            >>> module = RaveCreateModule(env, "BaseManipulation")
+            >>> env.Add(module, True, robot.GetName())
+            >>> module.SendCommand("MoveActiveJoints goal 0.1 0.2 execute 0 outputtraj")[:12]
+            '<trajectory '
+        """
+        del releasegil, lockenv
+        name, *arguments = checked_kind(cmd, str, "SendCommand: cmd", "a text").split(maxsplit=1) or [""]
+        if not name:
+            raise ArgumentError("SendCommand: cmd is empty, and should be the name of a command")
+        if name.lower() == "help":
+            return self._help()
+        for known, command in self._by_name.items():
+            if known.lower() == name.lower():
+                return command(" ".join(arguments))
+        known = ", ".join(["help", *self._by_name])
+        message = f"{self._xmlid} knows no command '{name}', only {known}"
+        raise RavemjError(message, ErrorCode.CommandNotSupported)
+
+    def _help(self) -> str:
+        entries = {"help": "Lists the commands.", **{name: _purpose(one) for name, one in self._by_name.items()}}
+        return "\n".join(f"\n{name}\n{'~' * len(name)}\n\n{purpose}\n" for name, purpose in entries.items())
+
+
+def _purpose(command: Command) -> str:
+    return (inspect.getdoc(command) or "").partition("\n")[0]

@@ -1,0 +1,137 @@
+"""Motions of fingers: the module ``TaskManipulation``."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.engine.collision.questions import MovedBy, body_and_others, itself
+from ravemj.errors import ArgumentError
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.modules.motions import Mover
+from ravemj.rave.planning.bodies import Bodies
+from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.trajectory import Trajectory
+
+_STEP = 0.01
+"""How far joints move between two tests [rad or m]."""
+
+_CLOSE = 1e-6
+"""How near [rad or m] to a contact joints stop."""
+
+
+class TaskManipulation(Mover):
+    """Opens and closes grippers."""
+
+    def close_fingers(
+        self, directions: Floats | None = None, offsets: Floats | None = None, step: float = _STEP
+    ) -> tuple[Floats, Trajectory]:
+        """Return where the gripper's joints get when they close, and the motion; they stop at contacts and limits.
+
+        Args:
+            directions: For each joint, to which side it moves: its sign; None: the closing direction.
+            offsets: How far each joint goes back from there [rad or m]; None: not at all.
+            step: How far joints move between two tests [rad or m].
+
+        Raises:
+            PlanningError: the robot has no gripper.
+        """
+        dofs, closing = self._gripper()
+        directions = closing if directions is None else directions
+        final = self._until_contact(dofs, directions, step)
+        if offsets is not None:
+            lower, upper = self.robot.GetDOFLimits(dofs)
+            final = np.clip(final - np.sign(directions) * offsets, lower, upper)
+        return final, self._motion(dofs, final)
+
+    def release_fingers(
+        self, directions: Floats | None = None, target: KinBody | None = None, step: float = _STEP
+    ) -> tuple[Floats, Trajectory]:
+        """Return where the gripper's joints get when they open, and the motion.
+
+        Args:
+            directions: For each joint, to which side it moves: its sign; None: against the closing direction.
+            target: A held body that is let go.
+            step: How far joints move between two tests [rad or m].
+
+        Raises:
+            PlanningError: the robot has no gripper.
+        """
+        dofs, closing = self._gripper()
+        if target is not None:
+            self.robot.Release(target)
+        final = self._until_contact(dofs, -closing if directions is None else directions, step)
+        return final, self._motion(dofs, final)
+
+    def release_active(self, directions: Floats, step: float = _STEP) -> tuple[Floats, Trajectory]:
+        """Return where the active joints get when they move to one side, and the motion.
+
+        Args:
+            directions: For each active joint, to which side it moves: its sign.
+            step: How far joints move between two tests [rad or m].
+        """
+        dofs = [int(dof) for dof in self.robot.GetActiveDOFIndices()]
+        if len(directions) != len(dofs):
+            raise ArgumentError(f"movingdir: has {len(directions)} numbers, and there are {len(dofs)} active joints")
+        final = self._until_contact(dofs, directions, step)
+        return final, self._motion(dofs, final)
+
+    def _gripper(self) -> tuple[list[int], Floats]:
+        manip = self.robot.GetActiveManipulator()
+        dofs = [] if manip is None else [int(dof) for dof in manip.GetGripperIndices()]
+        if manip is None or not dofs:
+            raise PlanningError(f"robot '{self.robot.GetName()}' has no active manipulator with a gripper")
+        return dofs, np.asarray(manip.GetChuckingDirection(), dtype=float)
+
+    def _motion(self, dofs: Sequence[int], final: Floats) -> Trajectory:
+        with self.keeping_active():
+            self.robot.SetActiveDOFs(dofs)
+            here = self.robot.GetDOFValues(dofs)
+            return self.straight(np.stack([here, final]))
+
+    def _until_contact(self, dofs: Sequence[int], directions: Floats, step: float) -> Floats:
+        """Return how far joints get, each until what it moves meets something that it did not touch from the start."""
+        robot, sides = self.robot, np.sign(directions)
+        bodies = Bodies(self.env, robot.GetConfigurationSpecificationIndices(dofs).GetGroups())
+        lower, upper = robot.GetDOFLimits(dofs)
+        with bodies.kept():
+            values = bodies.values()
+            touching = [self._touches(dof) for dof in dofs]
+            moving = [place for place in range(len(dofs)) if sides[place] != 0]
+            while moving:
+                for place in tuple(moving):
+                    before = values[place]
+                    target = float(np.clip(before + sides[place] * step, lower[place], upper[place]))
+                    values[place] = target
+                    bodies.move(values)
+                    touches = self._touches(dofs[place])
+                    if touches and not touching[place]:
+                        values[place] = self._contact(bodies, values, place, before, dofs[place])
+                        moving.remove(place)
+                    elif target in {lower[place], upper[place]}:
+                        moving.remove(place)
+                    touching[place] = touches
+            return values
+
+    def _contact(self, bodies: Bodies, values: Floats, place: int, free: float, dof: int) -> float:
+        """Return the last value without contact, between one without and the present one with contact."""
+        taken = float(values[place])
+        while abs(taken - free) > _CLOSE:
+            middle = (taken + free) / 2
+            values[place] = middle
+            bodies.move(values)
+            if self._touches(dof):
+                taken = middle
+            else:
+                free = middle
+        values[place] = free
+        bodies.move(values)
+        return free
+
+    def _touches(self, dof: int) -> bool:
+        """Return whether a link that a joint moves touches another body, or a link that it moves against."""
+        state, simulation = self.robot.simulation_state, self.env.simulation
+        world = simulation.collisions()
+        others = body_and_others(world, state, MovedBy((dof,)))
+        own = itself(world, state, MovedBy((dof,)))
+        return world.collide(others) or world.collide(own)

@@ -1,0 +1,107 @@
+"""Arguments of commands: words and numbers in a text."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+
+
+class Words:
+    """The words of a text, taken one after the other."""
+
+    def __init__(self, text: str) -> None:
+        self._words = text.split()
+
+    def next(self, wanted: str = "a word") -> str:
+        """Return the next word.
+
+        Raises:
+            ArgumentError: there is none.
+        """
+        if not self._words:
+            raise ArgumentError(f"the text ends where {wanted} should follow")
+        return self._words.pop(0)
+
+    def __bool__(self) -> bool:
+        return bool(self._words)
+
+    def number(self) -> float:
+        """Return the next word as a number.
+
+        Raises:
+            ArgumentError: it is none.
+        """
+        word = self.next("a number")
+        try:
+            return float(word)
+        except ValueError:
+            raise ArgumentError(f"'{word}' should be a number") from None
+
+    def integer(self) -> int:
+        """Return the next word as a whole number."""
+        number = self.number()
+        if number != int(number):
+            raise ArgumentError(f"{number:g} should be a whole number")
+        return int(number)
+
+    def numbers(self, count: int) -> Floats:
+        """Return some of the next words as numbers, shape (count,)."""
+        return np.array([self.number() for _ in range(count)])
+
+    def rows(self, width: int) -> Floats:
+        """Return rows of numbers, how many of which stands first, shape (n, width)."""
+        return self.numbers(self.integer() * width).reshape(-1, width)
+
+    def list(self) -> Floats:
+        """Return numbers, how many of which stands first."""
+        return self.numbers(self.integer())
+
+    def matrix(self) -> Floats:
+        """Return a pose, 12 numbers by columns, as OpenRAVE writes it, shape (4, 4)."""
+        pose = np.eye(4)
+        pose[:3] = self.numbers(12).reshape(4, 3).T
+        return pose
+
+
+Reader = Callable[[Words], Any]
+
+
+def read_options(text: str, readers: Mapping[str, Reader]) -> dict[str, Any]:
+    """Return the options in a text.
+
+    Args:
+        text: Words, each followed by what its reader takes.
+        readers: By the names of the options, in lower case.
+
+    Raises:
+        ArgumentError: a word is no option, or what follows it is wrong.
+    """
+    words, found = Words(text), dict[str, Any]()
+    while words:
+        name = words.next().lower()
+        if name not in readers:
+            raise ArgumentError(f"'{name}' is no argument of the command; it takes {', '.join(readers)}")
+        try:
+            found[name] = readers[name](words)
+        except ArgumentError as error:
+            raise ArgumentError(f"{name}: {error.message}") from None
+    return found
+
+
+def switch(words: Words) -> bool:
+    """Return True for a word that stands alone."""
+    del words
+    return True
+
+
+def flag(words: Words) -> bool:
+    """Return whether the next word is not 0."""
+    return bool(words.number())
+
+
+def text(words: Words) -> str:
+    """Return the next word."""
+    return words.next()
