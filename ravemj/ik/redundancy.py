@@ -23,17 +23,25 @@ _POSTURES = 4
 def rank(chain: Chain, task: Task) -> int:
     """Return how many independent changes of what counts the joints can make."""
     values = np.random.default_rng(7).uniform(-3, 3, (_POSTURES, chain.dof)) * np.where(chain.prismatic, 0.1, 1.0)
+    return max(int(np.linalg.matrix_rank(slope, tol=1e-4)) for slope in slopes(chain, task, values))
+
+
+def slopes(chain: Chain, task: Task, values: Floats, goal: Floats | None = None) -> list[Floats]:
+    """Return how what counts changes with the joint values in postures (M, n): each of shape (k, n).
+
+    Lengths are in units of the reach. The goal is one that the posture reaches, if none is given, as a pose (4, 4).
+    """
     tools, jacobians = chain.forward(values), chain.forward_and_jacobian(values)[1]
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
-    slopes: list[Floats] = []
+    found: list[Floats] = []
     for tool, jacobian in zip(tools, jacobians, strict=True):
-        goal = tool.copy()
-        if task is Task.LOOK_AT:
-            goal[:3, 3] += tool[:3, :3] @ chain.direction * chain.reach
-        elif task is Task.LOCAL_PLACE:
-            goal[3, :3] = 0.3, 0.2, 0.1
-        slopes.append(linear(chain, task, goal, Posture(tool[:3, :3], tool[:3, 3], jacobian), scale)[1])
-    return max(int(np.linalg.matrix_rank(slope, tol=1e-4)) for slope in slopes)
+        wanted = tool.copy() if goal is None else goal
+        if goal is None and task is Task.LOOK_AT:
+            wanted[:3, 3] += tool[:3, :3] @ chain.direction * chain.reach
+        elif goal is None and task is Task.LOCAL_PLACE:
+            wanted[3, :3] = 0.3, 0.2, 0.1
+        found.append(linear(chain, task, wanted, Posture(tool[:3, :3], tool[:3, 3], jacobian), scale)[1])
+    return found
 
 
 def choices(chain: Chain, task: Task) -> Iterator[tuple[int, ...]]:

@@ -28,7 +28,7 @@ ANGLE_STEP = 0.1
 SLIDE_STEP = 0.01
 """Step of a prismatic free joint, in units of the reach."""
 _TRIED = 12
-_STARTS = 12
+_STARTS = 24
 """Starts of a search for what is between the samples of a free joint."""
 _FIRST, _NEXT = 12, 96
 """So many samples of free joints are tried at once; those near the present values mostly are enough."""
