@@ -11,6 +11,7 @@ from ravemj.ik.chain import Chain
 from ravemj.ik.closed import ClosedForm, Solutions
 from ravemj.ik.derive import Certificate, derive
 from ravemj.ik.numeric import Nearest, NumericSolver
+from ravemj.ik.self_motion import null_space, null_space_path, sweep
 from ravemj.ik.solver import IKSolver, make_solver
 from ravemj.ik.tasks import Task
 
@@ -25,4 +26,7 @@ __all__ = [
     "Task",
     "derive",
     "make_solver",
+    "null_space",
+    "null_space_path",
+    "sweep",
 ]

@@ -58,7 +58,7 @@ class Chain:
         T_base_tool: ArrayLike | None = None,
         direction: ArrayLike = (0.0, 0.0, 1.0),
     ) -> "Chain":
-        """Make a chain of plain numbers; axes need not be unit vectors.
+        """Make a chain of plain numbers; axes and the direction need not be unit vectors.
 
         Without limits, joints turn by ±pi or move by ±1 m.
 
@@ -81,7 +81,8 @@ class Chain:
             direction=np.array(direction, dtype=float),
         )
         chain._check()
-        return replace(chain, axes=directions / np.linalg.norm(directions, axis=1, keepdims=True))
+        pointing = chain.direction / (np.linalg.norm(chain.direction) or 1.0)
+        return replace(chain, axes=directions / np.linalg.norm(directions, axis=1, keepdims=True), direction=pointing)
 
     def _check(self) -> None:
         count = len(self.axes)

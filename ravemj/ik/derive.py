@@ -16,6 +16,8 @@ from ravemj.ik.vectors import Floats
 SAMPLES = 64
 """Configurations of a certificate."""
 _FEW = 8
+_SOLVED = (Task.TRANSFORM, Task.PLACE, Task.PLACE_XY, Task.PLANAR)
+"""What families solve; ``reductions`` leads other tasks to these."""
 _TRIED = 32
 """Families that are tried, at most, for one choice of locked joints."""
 
@@ -82,6 +84,8 @@ def derive(
         The solver and its certificate; None where no family fits.
     """
     free = [joint for joint in range(chain.dof) if joint not in locked]
+    if task not in _SOLVED:
+        return None
     if not free or len(free) > task.dof or not _regular(chain, task, free):
         return None
     exact = nominal(chain)

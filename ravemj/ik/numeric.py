@@ -14,6 +14,7 @@ import numpy as np
 from ravemj.ik.chain import Chain
 from ravemj.ik.compiled import CompiledKinematics
 from ravemj.ik.limits import nearest_turns
+from ravemj.ik.residuals import Posture, linear, rotation_between
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats
 
@@ -59,7 +60,6 @@ class NumericSolver:
     ) -> None:
         self.chain, self.task, self.starts = chain, task, starts
         self._kinematics = kinematics(chain)
-        self._rows = None if task is Task.TRANSFORM else np.array(task.rows)
         self._scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
         endless = chain.circular | ~(np.isfinite(chain.lower) & np.isfinite(chain.upper))
         span = np.where(chain.prismatic, chain.reach, np.pi)
@@ -92,11 +92,12 @@ class NumericSolver:
     def _linear(self, pose: Floats, values: Floats, scale: Floats) -> tuple[Floats, Floats]:
         """Return the scaled error of a posture and how it changes with the joint values."""
         rotation, place, jacobian = self._kinematics(values)
+        if self.task is not Task.TRANSFORM:
+            return linear(self.chain, self.task, pose, Posture(rotation, place, jacobian), scale)
         missing = np.empty(6)
         missing[:3] = pose[:3, 3] - place
-        missing[3:] = _rotation_between(rotation, pose)
-        error, slope = missing * scale, jacobian * scale[:, None]
-        return (error, slope) if self._rows is None else (error[self._rows], slope[self._rows])
+        missing[3:] = rotation_between(rotation, pose)
+        return missing * scale, jacobian * scale[:, None]
 
     def _step(self, values: Floats, error: Floats, slope: Floats, damping: float) -> Floats:
         """Return the values after a damped step within the limits."""
@@ -119,14 +120,15 @@ class NumericSolver:
         """Return one of the starts, shape (n,), which fill the range of joint values evenly."""
         return self._low + (self._high - self._low) * _evenly(self.chain.dof, number)
 
-    def solve(self, pose: Floats, seed: Floats | None = None) -> Floats | None:
+    def solve(self, pose: Floats, seed: Floats | None = None, *, starts: int | None = None) -> Floats | None:
         """Return one solution within the limits, shape (n,), or None where no start finds any.
 
         Args:
             pose: The pose, shape (4, 4).
             seed: Joint values to start at.
+            starts: How many starts at most; as many as the solver has if None.
         """
-        for number in range(self.starts):
+        for number in range(self.starts if starts is None else starts):
             start = seed if seed is not None and number == 0 else self.start(number)
             found = self.descend(pose, start)
             if found.error < ACCURATE:
@@ -178,23 +180,6 @@ class NumericSolver:
                 if damping > 1e9:
                     break
         return Nearest(values, float(np.sqrt(square)), step + 1)
-
-
-def _rotation_between(rotation: Floats, pose: Floats) -> Floats:
-    """Return the rotation vector, in base axes, from a rotation (3, 3) to that of a pose."""
-    (a, b, c), (d, e, f), (g, h, i) = (pose[:3, :3] @ rotation.T).tolist()
-    x, y, z = h - f, c - g, d - b
-    sine, cosine = (x * x + y * y + z * z) ** 0.5, a + e + i - 1  # twice both
-    if sine > 1e-6:
-        factor = float(np.arctan2(sine, cosine)) / sine
-    elif cosine > 0:
-        factor = 0.5
-    else:  # half a turn: the axis is in the sum of the matrix and its transpose
-        square = np.array([a, e, i]) + 1
-        axis = int(np.argmax(square))
-        column = np.array([[2 * a + 2, b + d, c + g], [b + d, 2 * e + 2, f + h], [c + g, f + h, 2 * i + 2]])[axis]
-        return np.pi * column / np.linalg.norm(column)
-    return np.array([x * factor, y * factor, z * factor])
 
 
 def _evenly(count: int, number: int) -> Floats:

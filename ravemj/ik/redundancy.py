@@ -8,21 +8,40 @@ import numpy as np
 from ravemj.ik.chain import Chain
 from ravemj.ik.families.blocks import common_point
 from ravemj.ik.families.snapping import TOLERANCE, nominal
+from ravemj.ik.residuals import Posture, linear
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats, Screw, constant
 
 SINGULAR_STEP = np.pi / 8
 """Where two joints turn about one line, the first of them is shown at every such angle."""
+MOST = 4096
+"""Samples of all free joints together, at most."""
 _COAXIAL = 1e-9
 _POSTURES = 4
 
 
 def rank(chain: Chain, task: Task) -> int:
-    """Return how many independent motions of the tool that count the joints can make."""
+    """Return how many independent changes of what counts the joints can make."""
     values = np.random.default_rng(7).uniform(-3, 3, (_POSTURES, chain.dof)) * np.where(chain.prismatic, 0.1, 1.0)
-    _, jacobians = chain.forward_and_jacobian(values)
-    scaled = jacobians * np.array([1 / chain.reach] * 3 + [1.0] * 3)[:, None]
-    return int(np.linalg.matrix_rank(scaled[:, list(task.rows)], tol=1e-4).max(initial=0))
+    return max(int(np.linalg.matrix_rank(slope, tol=1e-4)) for slope in slopes(chain, task, values))
+
+
+def slopes(chain: Chain, task: Task, values: Floats, goal: Floats | None = None) -> list[Floats]:
+    """Return how what counts changes with the joint values in postures (M, n): each of shape (k, n).
+
+    Lengths are in units of the reach. The goal is one that the posture reaches, if none is given, as a pose (4, 4).
+    """
+    tools, jacobians = chain.forward(values), chain.forward_and_jacobian(values)[1]
+    scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
+    found: list[Floats] = []
+    for tool, jacobian in zip(tools, jacobians, strict=True):
+        wanted = tool.copy() if goal is None else goal
+        if goal is None and task is Task.LOOK_AT:
+            wanted[:3, 3] += tool[:3, :3] @ chain.direction * chain.reach
+        elif goal is None and task is Task.LOCAL_PLACE:
+            wanted[3, :3] = 0.3, 0.2, 0.1
+        found.append(linear(chain, task, wanted, Posture(tool[:3, :3], tool[:3, 3], jacobian), scale)[1])
+    return found
 
 
 def choices(chain: Chain, task: Task) -> Iterator[tuple[int, ...]]:
@@ -49,6 +68,23 @@ def _is_like_a_human_arm(chain: Chain) -> bool:
     return all(common_point(ends, TOLERANCE) is not None for ends in (screws[:3], screws[4:]))
 
 
+def _range(chain: Chain, joint: int) -> tuple[float, float]:
+    """Return where values of a free joint are sampled."""
+    low, high = float(chain.lower[joint]), float(chain.upper[joint])
+    if chain.circular[joint] or (not chain.prismatic[joint] and high - low > 2 * np.pi):
+        return -np.pi, np.pi
+    return low, high
+
+
+def affordable(chain: Chain, free: Sequence[int], steps: Sequence[float]) -> tuple[float, ...]:
+    """Return steps of several free joints, wider ones where there would be more than ``MOST`` samples."""
+    ranges = [high - low for low, high in (_range(chain, joint) for joint in free)]
+    wider = list(steps)
+    while np.prod([span // step + 1 for span, step in zip(ranges, wider, strict=True)]) > MOST:
+        wider = [1.2 * step for step in wider]
+    return tuple(wider)
+
+
 def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Floats | None = None) -> Floats:
     """Return values of free joints within their limits: a start, or 0, then a step more, a step less, and so on.
 
@@ -63,9 +99,7 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
     """
     columns: list[list[float]] = []
     for index, (joint, step) in enumerate(zip(free, steps, strict=True)):
-        low, high = chain.lower[joint], chain.upper[joint]
-        if chain.circular[joint] or (not chain.prismatic[joint] and high - low > 2 * np.pi):
-            low, high = -np.pi, np.pi
+        low, high = _range(chain, joint)
         centre = float(np.clip(0.0 if start is None else start[index], low, high))
         up = centre + step * np.arange(1, int((high - centre) / step + 1e-9) + 1)
         down = centre - step * np.arange(1, int((centre - low) / step + 1e-9) + 1)

@@ -19,6 +19,7 @@ from ravemj.ik.compiled import CompiledKinematics
 from ravemj.ik.derive import Certificate, derive
 from ravemj.ik.limits import all_turns, distances, nearest_turns
 from ravemj.ik.numeric import ACCURATE, Kinematics, Nearest, NumericSolver
+from ravemj.ik.reductions import ReducedForm, derive_reduced
 from ravemj.ik.tasks import Task, goal_poses
 from ravemj.ik.vectors import Floats
 
@@ -27,6 +28,8 @@ ANGLE_STEP = 0.1
 SLIDE_STEP = 0.01
 """Step of a prismatic free joint, in units of the reach."""
 _TRIED = 12
+_STARTS = 24
+"""Starts of a search for what is between the samples of a free joint."""
 _FIRST, _NEXT = 12, 96
 """So many samples of free joints are tried at once; those near the present values mostly are enough."""
 
@@ -47,7 +50,7 @@ class IKSolver:
 
     chain: Chain
     task: Task
-    closed: ClosedForm | None
+    closed: ClosedForm | ReducedForm | None
     certificate: Certificate | None
     free: tuple[int, ...]
     steps: tuple[float, ...]
@@ -72,6 +75,8 @@ class IKSolver:
             f"certificate: {proof.found} of {proof.configurations} random configurations found, "
             f"worst error {proof.error:.1e}, {proof.solutions:.1f} solutions on average",
         ]
+        if isinstance(self.closed, ReducedForm):
+            lines.insert(1, f"by reduction: {self.closed.how}")
         for joint, step in zip(self.free, self.steps, strict=True):
             unit = "m" if self.chain.prismatic[joint] else "rad"
             lines.append(f"joint {joint + 1} is free, sampled every {step:g} {unit}; complete for each of its values")
@@ -148,8 +153,8 @@ class IKSolver:
         """Return the solution within the limits that is nearest to a posture.
 
         Free joints come first: the value nearest to theirs in the posture with any solution ends the search. In
-        singular postures a closed form shows some of infinitely many solutions; there, and where no sample has a
-        solution, one descent from the posture adds what it finds.
+        singular postures a closed form shows some of infinitely many solutions; there one descent from the posture
+        adds what it finds. Where no sample has a solution, a short search is the last word.
 
         Args:
             goal: A pose (4, 4), or what else the task asks for.
@@ -178,8 +183,8 @@ class IKSolver:
                 best = self._best(solutions, int(index), seed, weights, accept)
                 if best is not None:
                     return best
-        found = self._descent(pose, seed)
-        return next((row for row in found if accept is None or accept(row)), None)
+        found = self.numeric.solve(pose, seed, starts=_STARTS)
+        return None if found is None or (accept is not None and not accept(found)) else found
 
     def _descent(self, pose: Floats, seed: Floats) -> Floats:
         """Return the solution below a posture, shape (1, n), or none, shape (0, n)."""
@@ -243,10 +248,10 @@ def make_solver(
             raise ValueError(f"free joints {joints}: the arm has joints 0 to {chain.dof - 1}")
     numeric = NumericSolver(chain, task, kinematics=kinematics)
     for general, joints in itertools.product((False, True), chosen):
-        derived = derive(chain, task, joints, general=general)
+        derived = derive_reduced(chain, task, joints, general=general) or derive(chain, task, joints, general=general)
         if derived is not None:
             sizes = [SLIDE_STEP * chain.reach if chain.prismatic[joint] else ANGLE_STEP for joint in joints]
-            given = tuple(sizes if steps is None else steps)
+            given = redundancy.affordable(chain, joints, sizes) if steps is None else tuple(steps)
             if len(given) != len(joints) or not all(step > 0 for step in given):
                 raise ValueError(f"steps {given} for free joints {joints}: expected one above 0 for each")
             return IKSolver(chain, task, *derived, joints, given, numeric)

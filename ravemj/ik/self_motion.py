@@ -1,0 +1,123 @@
+"""Motions of redundant arms while the goal stays reached: null spaces, paths in them, sweeps of a free joint."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.ik import redundancy
+from ravemj.ik.chain import Chain
+from ravemj.ik.limits import distances, nearest_turns
+from ravemj.ik.numeric import ACCURATE
+from ravemj.ik.solver import IKSolver
+from ravemj.ik.tasks import Task, goal_poses
+from ravemj.ik.vectors import Floats
+
+_SINGULAR = 1e-6
+"""Singular values below this, in units of the reach and in radians, are 0."""
+_JUMP = 0.5
+"""Where a joint moves more [rad or m] from one posture to the next, that is another branch."""
+
+
+def null_space(chain: Chain, values: Floats, task: Task = Task.TRANSFORM, goal: ArrayLike | None = None) -> Floats:
+    """Return an orthonormal basis of the joint velocities that change nothing of what counts, shape (n, k).
+
+    In singular postures it has more columns than elsewhere.
+
+    Args:
+        chain: The arm.
+        values: The posture, shape (n,).
+        task: What counts.
+        goal: A goal that the posture reaches, if it is not for the posture to say, as with ``LOOK_AT``.
+    """
+    pose = None if goal is None else goal_poses(chain, task, goal)
+    slope = redundancy.slopes(chain, task, values[None], pose)[0]
+    _, sizes, rows = np.linalg.svd(slope)
+    basis: Floats = rows[int((sizes > _SINGULAR).sum()) :].T
+    return basis
+
+
+def null_space_path(
+    solver: IKSolver, goal: ArrayLike, start: Floats, along: Floats, *, step: float = 0.05, length: float = 2 * np.pi
+) -> Floats:
+    """Return postures along a path that leaves a goal reached: through the null space, from a start on.
+
+    It ends at a limit, where it comes back to its start, or after a length.
+
+    Args:
+        solver: The solver of the arm.
+        goal: The goal, which the start reaches.
+        start: Joint values, shape (n,).
+        along: Joint velocities, shape (n,); the path begins with what of them is in the null space.
+        step: The distance between postures, in joint space [rad or m].
+        length: The greatest length of the path.
+
+    Returns:
+        Postures, shape (M, n), the first of them the start.
+
+    Raises:
+        ValueError: nothing of ``along`` is in the null space.
+    """
+    chain, pose = solver.chain, goal_poses(solver.chain, solver.task, goal)
+    lower, upper = chain.bounds
+    rows, direction = [start], along
+    for _ in range(int(length / step)):
+        basis = null_space(chain, rows[-1], solver.task, goal)
+        direction = basis @ (basis.T @ direction)
+        size = np.linalg.norm(direction)
+        if size < _SINGULAR:
+            if len(rows) == 1:
+                raise ValueError("the arm cannot move along these joint velocities while its goal stays reached")
+            break
+        direction = direction / size
+        ahead = rows[-1] + step * direction
+        if (ahead < lower).any() or (ahead > upper).any():
+            break
+        found = solver.numeric.descend(pose, ahead)
+        if found.error > ACCURATE or np.linalg.norm(found.values - ahead) > step:
+            break
+        rows.append(found.values)
+        if len(rows) > 3 and distances(chain, found.values, start) < 0.6 * step:
+            break
+    return np.array(rows)
+
+
+def sweep(solver: IKSolver, goal: ArrayLike, seed: Floats, *, step: float = 0.01) -> Floats:
+    """Return postures that reach a goal and change continuously while the free joint takes its values.
+
+    Args:
+        solver: A solver in closed form, with one free joint.
+        goal: The goal.
+        seed: A posture, shape (n,); the sweep goes through the solution nearest to it.
+        step: The step of the free joint [rad or m].
+
+    Returns:
+        Postures within the limits, shape (M, n), by the value of the free joint; none if the goal is out of reach.
+
+    Raises:
+        ValueError: the solver has no free joint, or several.
+    """
+    if solver.closed is None or len(solver.free) != 1:
+        raise ValueError(f"a sweep needs a solver in closed form with one free joint, and {len(solver.free)} are free")
+    middle = solver.nearest(goal, seed)
+    if middle is None:
+        return np.zeros((0, solver.chain.dof))
+    joint, pose = solver.free[0], goal_poses(solver.chain, solver.task, goal)
+    values = redundancy.samples(solver.chain, solver.free, [step], middle[[joint]])[1:, 0]
+    above = _followed(solver, pose, middle, values[values > middle[joint]])
+    below = _followed(solver, pose, middle, values[values < middle[joint]])
+    return np.array([*below[::-1], middle, *above])
+
+
+def _followed(solver: IKSolver, pose: Floats, start: Floats, values: Floats) -> list[Floats]:
+    """Return the postures for values of the free joint, each the one nearest to that before it, as far as there are."""
+    assert solver.closed is not None
+    found = solver.closed.solve(np.repeat(pose[None], len(values), axis=0), values[:, None])
+    rows, last = list[Floats](), start
+    for index in range(len(values)):
+        near, inside = nearest_turns(solver.chain, found.of(index), last)
+        near = near[inside]
+        away = np.abs(near - last).max(axis=1, initial=0.0)
+        if not len(near) or away.min() > _JUMP:
+            break
+        last = near[np.argmin(away)]
+        rows.append(last)
+    return rows
