@@ -14,13 +14,15 @@ from ravemj.ik.solver import IKSolver, make_solver
 from ravemj.ik.tasks import Task
 from ravemj.model.joints import directions_at, relative_pose
 from ravemj.model.manipulators import chain as joints_between
+from ravemj.model.manipulators import joint_dofs
 from ravemj.model.scene import Axis, Joint, KinBody, Manipulator
 
 
 def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
     """Return the joints from the base of a manipulator to its tool; their order is that of ``arm_dofs``.
 
-    Passive joints that follow nothing stay as they were loaded.
+    Passive joints that follow nothing stay as they were loaded. A joint that limits of equal values lock later is still
+    one of the arm.
 
     Raises:
         ValueError: there is no base, no effector or no joint between them, or one of these follows others or is
@@ -35,8 +37,9 @@ def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
     T_base_link = Pose()
     moving: list[tuple[Joint, Axis, Vec3, Vec3]] = []
     for index in way:
-        joint = (*body.joints, *body.passive_joints)[index]
-        if joint.static:
+        joint = body.all_joints[index]
+        locked_later = index < len(body.joints) and set(joint_dofs(body, index)) <= set(manipulator.arm_dofs)
+        if joint.static and not locked_later:
             T_base_link = T_base_link @ joint.T_parent_child
         elif index >= len(body.joints) and joint.mimic is None:
             T_base_link = T_base_link @ relative_pose(joint, [axis.value for axis in joint.axes])
@@ -96,10 +99,12 @@ class ArmSolver:
         return self._solver
 
     def _derived(self, chain: Chain) -> IKSolver:
-        free = self.free
-        if free is None and self.task is not Task.TRANSFORM:
-            free = default_free(chain, self.task.value, self.task.dof)
-        solver = make_solver(chain, self.task, free=free)
+        usual = self.free
+        if usual is None and self.task is not Task.TRANSFORM:
+            usual = default_free(chain, self.task.value, self.task.dof)
+        solver = make_solver(chain, self.task, free=usual)
+        if solver.closed is None and usual != self.free:
+            solver = make_solver(chain, self.task)  # other free joints may leave a family
         return replace(solver, steps=default_steps(chain, solver.free))
 
 

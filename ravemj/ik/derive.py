@@ -89,7 +89,7 @@ def derive(
     if not free or len(free) > task.dof or not _regular(chain, task, free):
         return None
     exact = nominal(chain)
-    if (task is Task.PLANAR and not _is_planar(exact)) or (general and task is not Task.TRANSFORM):
+    if (task is Task.PLANAR and not _is_planar(exact, free)) or (general and task is not Task.TRANSFORM):
         return None
     deviation = np.abs(exact.axes - chain.axes).max() + _sideways(exact, chain)
     found = general_families(exact, locked) if general else families(exact, task, locked)
@@ -122,9 +122,11 @@ def _regular(chain: Chain, task: Task, free: Sequence[int]) -> bool:
     return bool(np.linalg.svd(part, compute_uv=False)[:, -1].max() > 1e-4)
 
 
-def _is_planar(chain: Chain) -> bool:
+def _is_planar(chain: Chain, free: Sequence[int]) -> bool:
+    """Return whether the joints move a plane of x and y in itself; locked sliders may lift it."""
     upright = np.abs(chain.axes[:, 2])
-    return bool(np.where(chain.prismatic, upright < 1e-9, upright > 1 - 1e-12).all())
+    lifted = np.isin(np.arange(chain.dof), free, invert=True)
+    return bool(np.where(chain.prismatic, (upright < 1e-9) | lifted, upright > 1 - 1e-12).all())
 
 
 def _sideways(exact: Chain, chain: Chain) -> float:

@@ -243,7 +243,7 @@ class ArmIk(ArmGoals):
             own = kept.setdefault((self._scene.name, _Type(iktype)), ArmSolver(task_of(_Type(iktype))))
             return own.of(self._state.scene, self._scene)
         except ValueError as error:
-            raise ArgumentError(f"inverse kinematics of {error}") from error
+            raise ArgumentError(str(error)) from error
 
     def ik(
         self, goals: ArrayLike, iktype: IkParameterizationType = _Type.Transform6D, *, limits: bool = True

@@ -47,7 +47,8 @@ def task_of(kind: IkParameterizationType) -> Task:
         return Task(kind.name)
     except ValueError:
         known = ", ".join(task.value for task in Task)
-        raise UnsupportedError(f"{kind.name}: of these types only {known} are solved", "inverse kinematics") from None
+        name = f"goals of type {kind.name} (types that are solved: {known})"
+        raise UnsupportedError(name, "inverse kinematics of that type") from None
 
 
 class IkSearch(Interface):

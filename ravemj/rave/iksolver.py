@@ -5,6 +5,7 @@ import operator
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import checked_kind
@@ -68,7 +69,8 @@ class IkSolver(IkSearch):
         solver, values = self.derived(), self._posture()
         free = list(solver.free)
         lower, upper = solver.chain.lower[free], solver.chain.upper[free]
-        return (values[free] - lower) / (upper - lower)
+        width = upper - lower
+        return np.divide(values[free] - lower, width, out=np.zeros(len(free)), where=width > 0)
 
     # Filters
 
@@ -171,7 +173,10 @@ def split_options(
     """
     names = [free_name, _OPTIONS] if len(arguments) > 1 or free_name in named else [_OPTIONS]
     given = dict(zip([name for name in names if name not in named], arguments, strict=False)) | dict(named)
-    if _OPTIONS not in given or given.keys() - {free_name, _OPTIONS} or len(given) != len(arguments) + len(named):
+    unknown = given.keys() - {free_name, _OPTIONS}
+    if unknown:
+        raise TypeError(f"{caller}: has no argument {', '.join(unknown)}")
+    if _OPTIONS not in given or len(given) != len(arguments) + len(named):
         raise TypeError(f"{caller}: takes a goal, [{free_name},] {_OPTIONS}; see IkFilterOptions")
     options = given[_OPTIONS]
     try:

@@ -108,17 +108,21 @@ class InverseKinematicsModel(SolvedJoints):
         self.statistics = {"generationtime": time.perf_counter() - start, "usinglapack": False}
 
     def _derive(self, kind: IkParameterizationType) -> None:
-        free = self.GetDefaultIndices()[1] if self.freeindices is None else self.freeindices
-        solve, arm = self._divide(free), self.manip.GetArmIndices().tolist()
-        needed = goal_dof(kind)
+        arm, needed, free = self.manip.GetArmIndices().tolist(), goal_dof(kind), self.freeindices
+        usual = self.GetDefaultIndices()[1]
+        solve = self._divide(usual if free is None else free)
         if len(solve) > needed or (len(solve) < needed and kind != IkParameterizationType.Transform6D):
             message = f"'{self.manip.GetName()}' has {len(solve)} joints to solve for, and {kind.name} needs {needed}"
             hint = "; name others in freeindices" if len(solve) > needed else ""
             raise InverseKinematicsError(message + hint)
-        solver = IkSolver(self.env, self._name(kind), kind, [arm.index(index) for index in free])
+        joints = None if free is None else [arm.index(index) for index in free]
+        solver = IkSolver(self.env, self._name(kind), kind, joints)
         if not self.manip.SetIkSolver(solver):
             raise InverseKinematicsError(f"no solver of {kind.name} fits the arm '{self.manip.GetName()}'")
-        self.iksolver, self.freeindices, self.solveindices = solver, list(free), solve
+        found = [arm[joint] for joint in solver.derived().free]
+        wanted = usual if free is None else free
+        self.iksolver, self.freeindices = solver, wanted if set(wanted) == set(found) else found
+        self.solveindices = self._divide(self.freeindices)
 
     def generate(
         self,
@@ -189,7 +193,7 @@ class InverseKinematicsModel(SolvedJoints):
             self.freeinc = steps
         if self.freeinc is None or len(self.freeinc) != len(free):
             self.freeinc = self.getDefaultFreeIncrements(0.1, 0.01)
-        self.iksolver.set_steps(self.freeinc if self.iksolver.GetNumFreeParameters() else None)
+        self.iksolver.set_steps([step for _, step in sorted(zip(free, self.freeinc, strict=True))])
         return True
 
     setFreeIncrements = setrobot

@@ -2,10 +2,14 @@
 
 from typing import TYPE_CHECKING, cast
 
+from numpy.typing import ArrayLike
+
 from ravemj.core.arguments import also_named, checked_kind
-from ravemj.errors import ArgumentError, Diagnostics, send_warnings
+from ravemj.errors import ArgumentError, Diagnostics, RavemjError, send_warnings
+from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.model import hashes
 from ravemj.model.manipulators import freeze_manipulator
+from ravemj.rave.arm_ik import IkBatch
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.manipulator import Manipulator
@@ -48,6 +52,28 @@ class Manipulators(BodyPart):
             >>> T_world_tool = robot.GetActiveManipulator().GetTransform()
         """
         return next(iter(self.GetManipulators(self._active_manipulator)), None)
+
+    def ik(
+        self,
+        goals: ArrayLike,
+        iktype: IkParameterizationType = IkParameterizationType.Transform6D,
+        *,
+        limits: bool = True,
+    ) -> IkBatch:
+        """Return all joint values that take the tool of the active arm to many goals; see ``Manipulator.ik``.
+
+        Args:
+            goals: ``T_world_tool``, shape (N, 4, 4) or (4, 4); for other types the numbers of goals, shape (N, k).
+            iktype: The type of goal.
+            limits: Whether only solutions within the limits are valid.
+
+        Raises:
+            openrave_exception: no arm is active, or it is none that can be solved.
+        """
+        arm = self.GetActiveManipulator()
+        if arm is None:
+            raise RavemjError(f"ik: '{self.GetName()}' has no active manipulator; SetActiveManipulator chooses one")
+        return arm.ik(goals, iktype, limits=limits)
 
     def GetRobotStructureHash(self) -> str:
         """Return a text that is the same for robots of the same structure, arms and sensors: 32 hexadecimal digits."""
