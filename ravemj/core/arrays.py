@@ -50,7 +50,8 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     Raises:
         ArgumentError: it has another length, or something in it is no finite number.
     """
-    vector = checked_numbers(values, name)
+    is_array = type(values) is np.ndarray and values.dtype is FLOAT
+    vector = values.copy() if is_array else checked_numbers(values, name)
     if vector.shape != (length,):
         if length or vector.size:
             raise ArgumentError(f"{name}: has shape {vector.shape}, and should have shape ({length},)")
