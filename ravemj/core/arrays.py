@@ -50,8 +50,10 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     Raises:
         ArgumentError: it has another length, or something in it is no finite number.
     """
-    is_array = type(values) is np.ndarray and values.dtype is FLOAT
-    vector = values.copy() if is_array else checked_numbers(values, name)
+    if type(values) is np.ndarray and values.dtype is FLOAT:
+        vector: Floats = values.copy()
+    else:
+        vector = checked_numbers(values, name)
     if vector.shape != (length,):
         if length or vector.size:
             raise ArgumentError(f"{name}: has shape {vector.shape}, and should have shape ({length},)")

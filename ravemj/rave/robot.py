@@ -40,6 +40,9 @@ if TYPE_CHECKING:
 
 _LOG = logging.getLogger("ravemj")
 
+_ACTIVE_DOF, _ACTIVE_MANIPULATOR = int(SaveParameters.ActiveDOF), int(SaveParameters.ActiveManipulator)
+_TOOLS, _ACTIVE_TOOL = int(SaveParameters.ManipulatorsToolTransform), int(SaveParameters.ActiveManipulatorToolTransform)
+
 POLL = 1e-3
 """How often [s] ``WaitForController`` looks."""
 
@@ -57,7 +60,7 @@ class Robot(ActiveDofs, Manipulators, KinBody):
     _interface_type = InterfaceType.robot
     _controller: "Controller | EllipsisType | None" = ...
     _internal = ("active_choice", "affine_kinds", "powered_sensors", "step_controller", "take_choices")
-    default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator
+    default_saved = KinBody.default_saved | _ACTIVE_DOF | _ACTIVE_MANIPULATOR
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
         super().__init__(env, state)
@@ -271,18 +274,17 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
         self._active_manipulator = other._active_manipulator
 
-    def restorers(self, options: SaveParameters) -> list[Restorer]:
+    def restorers(self, options: int) -> list[Restorer]:
         """Return what gives this robot, or one like it, its present state back."""
         found = super().restorers(options)
-        if options & SaveParameters.ActiveDOF:
+        if options & _ACTIVE_DOF:
             choice = self.active_choice
             found.append(lambda body: setattr(body, "active_choice", choice))
-        if options & SaveParameters.ActiveManipulator:
+        if options & _ACTIVE_MANIPULATOR:
             name = self._active_manipulator
             found.append(lambda body: setattr(body, "_active_manipulator", name))
-        tools = self.GetManipulators() if options & SaveParameters.ManipulatorsToolTransform else []
-        active = self.GetActiveManipulator()
-        if options & SaveParameters.ActiveManipulatorToolTransform and active is not None:
+        tools = self.GetManipulators() if options & _TOOLS else []
+        if options & _ACTIVE_TOOL and (active := self.GetActiveManipulator()) is not None:
             tools.append(active)
         for tool, transform in [(tool.GetName(), tool.GetLocalToolTransform()) for tool in tools]:
             found.append(lambda body, tool=tool, transform=transform: _set_tool(body, tool, transform))

@@ -102,7 +102,8 @@ class Dynamics(BodyPart):
         Returns:
             Its derivative by the DOF values, shape (4, dof).
         """
-        return wxyz_jacobian(checked_vector(quat, 4, "quat").tolist()) @ self.ComputeJacobianAxisAngle(linkindex)
+        rates = wxyz_jacobian(checked_vector(quat, 4, "quat").tolist())
+        return rates.dot(self.ComputeJacobianAxisAngle(linkindex))  # faster than @ for small matrices
 
     def ComputeHessianTranslation(
         self, linkindex: int, position: ArrayLike, dofindices: "ArrayLike | None" = None
@@ -227,8 +228,7 @@ class Dynamics(BodyPart):
     def _checked_pushes(self, pushes: "Mapping[int, ArrayLike] | None", name: str) -> dict[int, Floats]:
         if not pushes:
             return {}
-        if type(pushes) is not dict:  # the look at ``Mapping`` takes longer
-            checked_kind(pushes, Mapping, name, "a dictionary")
+        checked_kind(pushes, (dict, Mapping), name, "a dictionary")  # dict first, since it is faster to see
         return {self._checked_link(link): checked_vector(push, 6, name) for link, push in pushes.items()}
 
     def batch_link_transforms(self, values: ArrayLike, out: Floats | None = None) -> Floats:

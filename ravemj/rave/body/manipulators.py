@@ -20,15 +20,21 @@ class Manipulators(BodyPart):
     _active_manipulator: str | None
     """Name of the active one; None: the first."""
 
+    _manipulators: tuple[Manipulator, ...] = ()
+
     def GetManipulators(self, name: str | None = None) -> list[Manipulator]:
         """Return the manipulators, in the order of the file.
 
         Args:
             name: Return the one of that name only.
         """
-        robot = cast("Robot", self)
-        found = [Manipulator(robot, self._state, index) for index in range(len(self._state.scene.manipulators))]
-        return found if name is None else [one for one in found if one.GetName() == name]
+        arms = self._state.scene.manipulators
+        if len(self._manipulators) != len(arms):  # they are made once, as links are
+            robot = cast("Robot", self)
+            self._manipulators = tuple(Manipulator(robot, self._state, index) for index in range(len(arms)))
+        if name is None:
+            return list(self._manipulators)
+        return [one for one, arm in zip(self._manipulators, arms, strict=True) if arm.name == name]
 
     def GetManipulator(self, name: str) -> Manipulator | None:
         """Return the manipulator of that name, or None."""
