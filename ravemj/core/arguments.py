@@ -71,7 +71,8 @@ def checked_index(index: int, count: int, name: str) -> int:
     Raises:
         ArgumentError: it is no number, or not from 0 to ``count - 1``.
     """
-    checked_kind(index, (int, np.integer), name, "a number")
+    if type(index) is not int:
+        checked_kind(index, (int, np.integer), name, "a number")
     if not 0 <= index < count:
         raise ArgumentError(f"{name} is {index}, and should be from 0 to {count - 1}")
     return index

@@ -50,7 +50,10 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     Raises:
         ArgumentError: it has another length, or something in it is no finite number.
     """
-    vector = checked_numbers(values, name)
+    if type(values) is np.ndarray and values.dtype is FLOAT:
+        vector: Floats = values.copy()
+    else:
+        vector = checked_numbers(values, name)
     if vector.shape != (length,):
         if length or vector.size:
             raise ArgumentError(f"{name}: has shape {vector.shape}, and should have shape ({length},)")

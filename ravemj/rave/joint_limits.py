@@ -18,7 +18,9 @@ class JointLimits(Member):
 
     @property
     def _scene(self) -> scene.Joint:
-        return self._state.scene.all_joints[self._index]
+        body = self._state.scene
+        first = len(body.joints)
+        return body.joints[self._index] if self._index < first else body.passive_joints[self._index - first]
 
     def GetLimits(self) -> tuple[Floats, Floats]:
         """Return the lower and the upper limits [rad or m], each of shape (axes,); ±10000 for a circular joint."""

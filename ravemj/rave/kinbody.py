@@ -51,7 +51,7 @@ class KinBody(Building, GeometryGroups, Grabbing, BodyCollision, Velocities, Dyn
 
     _interface_type = InterfaceType.kinbody
     _internal = ("default_saved", "restorers")
-    default_saved = SaveParameters.LinkTransformation | SaveParameters.LinkEnable
+    default_saved = int(SaveParameters.LinkTransformation | SaveParameters.LinkEnable)
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
         self._env = env
@@ -123,7 +123,7 @@ class KinBody(Building, GeometryGroups, Grabbing, BodyCollision, Velocities, Dyn
         """
         return StateSaver(self, options)
 
-    def restorers(self, options: SaveParameters) -> list[Restorer]:
+    def restorers(self, options: int) -> list[Restorer]:
         """Return what gives this body, or one like it, its present state back."""
         return body_restorers(self._state, options)
 

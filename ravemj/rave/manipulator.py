@@ -1,14 +1,14 @@
 """Arms of a robot."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_transform, checked_vector
-from ravemj.core.transforms import Floats, Ints, pose_of, wxyz_from_rows
+from ravemj.core.transforms import Floats, Ints, pose_of, wxyz_from_rows, wxyz_jacobian
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
@@ -34,6 +34,20 @@ _WITH_DIRECTION = {
 }
 
 
+class Tool(NamedTuple):
+    """What is computed with at a manipulator.
+
+    Attributes:
+        arm: The description that it was made of.
+        T_effector_tool: Pose of the tool in the effector, shape (4, 4).
+        dofs: DOF indices of the joints, shape (n,).
+    """
+
+    arm: scene.Manipulator
+    T_effector_tool: Floats
+    dofs: Ints
+
+
 class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
@@ -41,6 +55,7 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
         self._robot = robot
         self._state = state
         self._index = index
+        self._known: Tool | None = None
 
     @property
     def _scene(self) -> scene.Manipulator:
@@ -96,15 +111,24 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
         Raises:
             openrave_exception: the manipulator has no effector.
         """
-        return self._effector().GetTransform() @ self.GetLocalToolTransform()
+        effector = self._checked_effector()
+        with self._state.simulation.lock:
+            return self._state.link_transform(effector).dot(self._tool().T_effector_tool)
 
     GetEndEffectorTransform = GetGraspTransform = GetTransform
 
-    def _effector(self) -> Link:
-        effector = self.GetEndEffector()
+    def _checked_effector(self) -> int:
+        effector = self._scene.effector
         if effector is None:
             raise RavemjError(f"manipulator '{self.GetName()}' has no end effector")
         return effector
+
+    def _tool(self) -> Tool:
+        """Return the tool and the joints as arrays, which are made anew when the description is another one."""
+        arm = self._scene
+        if self._known is None or self._known.arm is not arm:
+            self._known = Tool(arm, arm.T_effector_tool.matrix(), np.array(arm.arm_dofs, dtype=np.int_))
+        return self._known
 
     def GetVelocity(self) -> Floats:
         """Return the velocity of the tool, in world axes.
@@ -112,10 +136,10 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
         Returns:
             That of the tool point [m/s] and the angular one [rad/s], shape (6,).
         """
-        effector = self._effector()
+        effector = self._checked_effector()
         with self._state.simulation.lock:
-            velocity = effector.GetVelocity()
-            arm = self.GetTransform()[:3, 3] - effector.GetTransform()[:3, 3]
+            velocity = self._state.link_velocities()[effector]
+            arm = self.GetTransform()[:3, 3] - self._state.link_transform(effector)[:3, 3]
         velocity[:3] += np.cross(velocity[3:], arm)
         return velocity
 
@@ -125,19 +149,23 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
         Returns:
             Derivative of its position in the world by the values of ``GetArmIndices()``, shape (3, arm dof).
         """
+        effector = self._checked_effector()
         with self._state.simulation.lock:
-            tool = self.GetTransform()[:3, 3]
-            return self._robot.ComputeJacobianTranslation(self._effector().GetIndex(), tool)[:, self.GetArmIndices()]
+            state, tool = self._state, self._tool()
+            point = state.link_transform(effector)[:3].dot(tool.T_effector_tool[:, 3])
+            return state.dynamics.translation_jacobian(effector, point).take(tool.dofs, 1)
 
     def CalculateAngularVelocityJacobian(self) -> Floats:
         """Return the angular velocity of the tool, in world axes, per unit of the arm's, shape (3, arm dof)."""
-        return self._robot.ComputeJacobianAxisAngle(self._effector().GetIndex())[:, self.GetArmIndices()]
+        effector = self._checked_effector()
+        with self._state.simulation.lock:
+            return self._state.dynamics.rotation_jacobian(effector).take(self._tool().dofs, 1)
 
     def CalculateRotationJacobian(self) -> Floats:
         """Return how the tool's quaternion [w, x, y, z] changes with the arm's joints, shape (4, arm dof)."""
         with self._state.simulation.lock:
             wxyz = wxyz_from_rows(self.GetTransform()[:3, :3].tolist())
-            return self._robot.CalculateRotationJacobian(self._effector().GetIndex(), wxyz)[:, self.GetArmIndices()]
+            return wxyz_jacobian(wxyz).dot(self.CalculateAngularVelocityJacobian())
 
     def GetTransformPose(self) -> Floats:
         """Return the pose of the tool in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""
@@ -149,7 +177,7 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
         Returns:
             ``T_effector_tool``, shape (4, 4).
         """
-        return self._scene.T_effector_tool.matrix()
+        return self._tool().T_effector_tool.copy()
 
     def GetLocalToolTransformPose(self) -> Floats:
         """Return ``GetLocalToolTransform`` as [w, x, y, z, tx, ty, tz], shape (7,)."""
@@ -199,7 +227,7 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
         Example:
             >>> robot.SetActiveDOFs(robot.GetActiveManipulator().GetArmIndices())
         """
-        return np.array(self._scene.arm_dofs, dtype=np.int_)
+        return self._tool().dofs.copy()
 
     GetArmJoints = GetArmIndices
 

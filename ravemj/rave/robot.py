@@ -44,6 +44,9 @@ if TYPE_CHECKING:
 
 _LOG = logging.getLogger("ravemj")
 
+_ACTIVE_DOF, _ACTIVE_MANIPULATOR = int(SaveParameters.ActiveDOF), int(SaveParameters.ActiveManipulator)
+_TOOLS, _ACTIVE_TOOL = int(SaveParameters.ManipulatorsToolTransform), int(SaveParameters.ActiveManipulatorToolTransform)
+
 POLL = 1e-3
 """How often [s] ``WaitForController`` looks."""
 
@@ -69,7 +72,7 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         "step_controller",
         "take_choices",
     )
-    default_saved = KinBody.default_saved | SaveParameters.ActiveDOF | SaveParameters.ActiveManipulator
+    default_saved = KinBody.default_saved | _ACTIVE_DOF | _ACTIVE_MANIPULATOR
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
         super().__init__(env, state)
@@ -356,18 +359,17 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         self._active_manipulator = other._active_manipulator
         self.ik_solvers = {name: solver.copy_for(self) for name, solver in other.ik_solvers.items()}
 
-    def restorers(self, options: SaveParameters) -> list[Restorer]:
+    def restorers(self, options: int) -> list[Restorer]:
         """Return what gives this robot, or one like it, its present state back."""
         found = super().restorers(options)
-        if options & SaveParameters.ActiveDOF:
+        if options & _ACTIVE_DOF:
             choice = self.active_choice
             found.append(lambda body: setattr(body, "active_choice", choice))
-        if options & SaveParameters.ActiveManipulator:
+        if options & _ACTIVE_MANIPULATOR:
             name = self._active_manipulator
             found.append(lambda body: setattr(body, "_active_manipulator", name))
-        tools = self.GetManipulators() if options & SaveParameters.ManipulatorsToolTransform else []
-        active = self.GetActiveManipulator()
-        if options & SaveParameters.ActiveManipulatorToolTransform and active is not None:
+        tools = self.GetManipulators() if options & _TOOLS else []
+        if options & _ACTIVE_TOOL and (active := self.GetActiveManipulator()) is not None:
             tools.append(active)
         for tool, transform in [(tool.GetName(), tool.GetLocalToolTransform()) for tool in tools]:
             found.append(lambda body, tool=tool, transform=transform: _set_tool(body, tool, transform))

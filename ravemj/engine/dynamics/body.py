@@ -10,11 +10,12 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 
-from ravemj.core.transforms import Floats, Ints
+from ravemj.core.transforms import ZERO, Floats, Ints, Vec3
 from ravemj.engine.dynamics.coupling import Coupling, CouplingMap
 from ravemj.engine.dynamics.joint_velocities import JointVelocities, cross
+from ravemj.engine.dynamics.rows import Rows
 from ravemj.engine.dynamics.tree import Tree
-from ravemj.engine.kinematics import BodyKinematics, index_range
+from ravemj.engine.kinematics import BodyKinematics
 from ravemj.model.scene import Joint
 
 
@@ -35,13 +36,18 @@ class BodyDynamics:
         self.couplings = CouplingMap(kinematics, self.tree)
         self._body_ids: list[int] = kinematics.body_ids.tolist()
         self._inner = np.arange(model.nv)[kinematics.inner_qvel]
-        self._moving, self._turning = np.zeros((3, model.nv)), np.zeros((3, model.nv))
-        self._forces = np.zeros(model.nv)
         self._joint_velocities = JointVelocities(kinematics)
-        self._columns = self._one_to_one_columns()
         constant = self.couplings.constant
         self._coupling_matrix = None if constant is None else self._matrix(constant)
+        columns = self._columns()
+        self._are_one_to_one = columns is not None
+        self._moving, self._turning, self._forces, self._parts = (
+            Rows(shape, model.nv, columns) for shape in ((3,), (3,), (), (3,))
+        )
+        self._part_rows: list[Floats] = list(self._parts.matrix)
+        self._xipos = self._data.xipos
         self._qvel, self._qacc, self._gravity = self._data.qvel, self._data.qacc, model.opt.gravity
+        self._free_fall = (ZERO, np.zeros(3))  # the last gravity asked for, as given and as an array
         self._velocities: Floats | None = None  # of the links: those that the data are set for
         self._velocities_stamp = -1
         self._with_joints: bool = False
@@ -50,14 +56,14 @@ class BodyDynamics:
         self._rates = np.zeros(kinematics.dof)
         self._rest_qacc = np.zeros(model.nv)
 
-    def _one_to_one_columns(self) -> tuple[slice | Ints, Ints] | None:
-        """Return the column of MuJoCo's Jacobians for each DOF, and the DOFs that move nothing; None if DOFs couple."""
-        if not self.couplings.is_one_to_one or self.couplings.constant is None:
+    def _columns(self) -> Ints | None:
+        """Return which of MuJoCo's velocities is that of each DOF, ``nv`` if none is; None if DOFs couple."""
+        constant = self.couplings.constant
+        if constant is None or not self.couplings.is_one_to_one:
             return None
-        columns = np.zeros(self._kinematics.dof, dtype=int)
-        columns[self.couplings.constant.dofs] = self._inner[self.couplings.constant.coordinates]
-        idle = np.setdiff1d(np.arange(self._kinematics.dof), self.couplings.constant.dofs)
-        return columns if len(idle) else index_range(columns), idle
+        columns = np.full(self._kinematics.dof, self._model.nv)
+        columns[constant.dofs] = self._inner[constant.coordinates]
+        return columns
 
     def _matrix(self, coupling: Coupling) -> Floats:
         """Return the coupling matrix with a row for each of MuJoCo's velocities, shape (nv, dof)."""
@@ -69,18 +75,12 @@ class BodyDynamics:
         """Return the coupling in the present configuration."""
         return self.couplings.constant or self.couplings.at(self._kinematics.values(), second=second)
 
-    def _of_dof_values(self, jacobian: Floats) -> Floats:
-        """Return a derivative by MuJoCo's velocities, shape (..., nv), as one by the DOF values, shape (..., dof)."""
-        if self._columns is not None:
-            columns, idle = self._columns
-            if isinstance(columns, slice):
-                return jacobian[..., columns].copy()
-            chosen = jacobian.take(columns, axis=-1)
-            if len(idle):
-                chosen[..., idle] = 0.0
-            return chosen
+    def _of_dofs(self, rows: Rows) -> Floats:
+        """Return what MuJoCo wrote as a derivative by the DOFs, shape (..., dof); a copy."""
+        if self._are_one_to_one:
+            return rows.of_dofs(None)
         matrix = self._coupling_matrix
-        return jacobian @ (self._matrix(self._coupling()) if matrix is None else matrix)
+        return rows.of_dofs(self._matrix(self._coupling()) if matrix is None else matrix)
 
     def translation_jacobian(self, link: int, point: Floats) -> Floats:
         """Return the derivative of the position of a link's point by the DOF values.
@@ -93,14 +93,14 @@ class BodyDynamics:
             Shape (3, dof).
         """
         self._kinematics.place_coms()
-        mujoco.mj_jac(self._model, self._data, self._moving, None, point, self._body_ids[link])
-        return self._of_dof_values(self._moving)
+        mujoco.mj_jac(self._model, self._data, self._moving.matrix, None, point, self._body_ids[link])
+        return self._of_dofs(self._moving)
 
     def rotation_jacobian(self, link: int) -> Floats:
         """Return a link's angular velocity, in world axes, for each DOF's unit velocity, shape (3, dof)."""
         self._kinematics.place_coms()
-        mujoco.mj_jacBody(self._model, self._data, None, self._turning, self._body_ids[link])
-        return self._of_dof_values(self._turning)
+        mujoco.mj_jacBody(self._model, self._data, None, self._turning.matrix, self._body_ids[link])
+        return self._of_dofs(self._turning)
 
     def hessian(self, link: int, point: Floats) -> tuple[Floats, Floats]:
         """Return the derivatives of ``translation_jacobian`` and ``rotation_jacobian`` by the DOF values.
@@ -109,9 +109,10 @@ class BodyDynamics:
             Two arrays of shape (dof, 3, dof): ``[i, :, j]`` is the derivative of the Jacobian's column j by DOF i.
         """
         self._kinematics.place_coms()
-        mujoco.mj_jac(self._model, self._data, self._moving, self._turning, point, self._body_ids[link])
+        moving, turning = self._moving.matrix, self._turning.matrix
+        mujoco.mj_jac(self._model, self._data, moving, turning, point, self._body_ids[link])
         chain = np.flatnonzero(self.tree.moves[link])
-        columns = np.stack((self._moving, self._turning))[:, :, self._inner[chain]].transpose(2, 0, 1)
+        columns = np.stack((moving, turning))[:, :, self._inner[chain]].transpose(2, 0, 1)
         spins = columns[:, None, 1]
         moved, turned = cross(spins, columns[None, :, 0]), cross(spins, columns[None, :, 1])  # w_a x v_b as [a, b]
         before = (chain[:, None] <= self.tree.carriers[chain])[..., None]  # the first moves the axis of the second
@@ -131,12 +132,13 @@ class BodyDynamics:
     def com_jacobian(self) -> Floats:
         """Return the derivative of the body's centre of mass by the DOF values, shape (3, dof)."""
         self._kinematics.place_coms()
-        total, masses = np.zeros_like(self._moving), self._model.body_subtreemass
+        of_root, masses = np.zeros((3, self._model.nv)), self._model.body_subtreemass
+        self._moving.matrix[:] = 0.0
         for root in self._kinematics.roots:
             body_id = self._body_ids[root]
-            mujoco.mj_jacSubtreeCom(self._model, self._data, self._moving, body_id)
-            total += masses[body_id] / masses[0] * self._moving
-        return self._of_dof_values(total)
+            mujoco.mj_jacSubtreeCom(self._model, self._data, of_root, body_id)
+            self._moving.matrix[:] += masses[body_id] / masses[0] * of_root
+        return self._of_dofs(self._moving)
 
     def qvel(self, velocities: Floats, rates: Floats) -> Floats:
         """Return MuJoCo's velocities in the body's own model, shape (nv,).
@@ -240,9 +242,11 @@ class BodyDynamics:
             return  # all is 0 in MuJoCo's data
         if is_other or has_moved:
             self._rates = self.dof_velocities(velocities)
-        self._qvel[:] = self._rest_qacc[:] = 0.0
+        self._rest_qacc[...] = 0.0
         if with_joints:
             self._set_joint_velocities()
+        else:
+            self._qvel[...] = 0.0
         if self._roots_move:
             self._set_roots(self._qvel, velocities)
             turning = {root: _turning_acceleration(velocities[root]) for root in kinematics.roots}
@@ -252,9 +256,10 @@ class BodyDynamics:
     def _set_joint_velocities(self) -> None:
         """Write the velocities of the joints, and the accelerations that coupled ones have at constant velocities."""
         if self._coupling_matrix is not None:
-            np.matmul(self._coupling_matrix, self._rates, out=self._qvel)
+            self._coupling_matrix.dot(self._rates, self._qvel)
             return
         coupling = self._coupling(second=True)
+        self._qvel[...] = 0.0
         self._qvel[self._inner] = coupling.forward(self._rates)
         if coupling.second:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
@@ -267,25 +272,26 @@ class BodyDynamics:
             external: Further accelerations of roots, by link, shape (6,).
         """
         qacc = self._qacc
-        qacc[:] = self._rest_qacc
+        if accelerations is None:
+            qacc[...] = 0.0
+        elif self._coupling_matrix is not None:
+            self._coupling_matrix.dot(accelerations, qacc)
+        else:
+            qacc[...] = 0.0
+            qacc[self._inner] = self._coupling().forward(accelerations)
+        if self._are_moving and (self._roots_move or self._coupling_matrix is None):
+            qacc += self._rest_qacc
         if external:
             added = np.zeros_like(qacc)
             none = np.zeros(6)
             self._set_roots(added, {root: external.get(root, none) for root in self._kinematics.roots})
             qacc += added
-        if accelerations is not None:
-            if self._columns is not None and isinstance(self._columns[0], slice):
-                qacc[self._columns[0]] += accelerations
-            elif self._coupling_matrix is not None:
-                qacc += self._coupling_matrix @ accelerations
-            else:
-                qacc[self._inner] += self._coupling().forward(accelerations)
 
     def inverse(
         self,
         velocities: Floats,
         accelerations: Floats,
-        gravity: Sequence[float],
+        gravity: Vec3,
         external: Mapping[int, Floats] | None = None,
     ) -> Floats:
         """Return the generalised forces for given accelerations.
@@ -299,47 +305,50 @@ class BodyDynamics:
         Returns:
             Torques and forces [N m or N], shape (dof,).
         """
+        self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)
-        forces = self._needed_forces(gravity)
+        mujoco.mj_rne(self._model, self._data, 1, self._forces.matrix)
         if external:
-            self._add_external(forces, external)
-        return self._of_dof_values(forces)
+            self._add_external(self._forces.matrix, external)
+        return self._of_dofs(self._forces)
 
     def inverse_components(
         self,
         velocities: Floats,
         accelerations: Floats,
-        gravity: Sequence[float],
+        gravity: Vec3,
         external: Mapping[int, Floats] | None = None,
     ) -> tuple[Floats, Floats, Floats]:
         """Return the parts of ``inverse``: of accelerations, of joint velocities, and of all else."""
-        # Gravity and the base are in all three motions, so that differences leave what is asked for.
-        self._set_velocities(velocities)
-        self._set_accelerations(accelerations)
-        whole = self._needed_forces(gravity).copy()
-        self._set_accelerations(None)
-        moving = self._needed_forces(gravity).copy()
-        self._set_velocities(velocities, with_joints=False)
-        self._set_accelerations(None)
-        rest = self._needed_forces(gravity)
-        by_acceleration, by_velocity = whole - moving, moving - rest
+        by_acceleration, by_velocity, rest = self._part_rows
+        self._set_gravity(gravity)
+        # Gravity and the base are in all three motions, so that differences leave what is asked for. The first is the
+        # one with velocities as they are in MuJoCo's data already.
+        for with_joints in (self._with_joints, not self._with_joints):
+            self._set_velocities(velocities, with_joints=with_joints)
+            if with_joints:
+                self._set_accelerations(accelerations)
+                mujoco.mj_rne(self._model, self._data, 1, by_acceleration)
+            self._set_accelerations(None)
+            mujoco.mj_rne(self._model, self._data, 1, by_velocity if with_joints else rest)
+        by_acceleration -= by_velocity
+        by_velocity -= rest
         if external:
             self._add_external(rest, external)
-        return self._of_dof_values(by_acceleration), self._of_dof_values(by_velocity), self._of_dof_values(rest)
+        of_accelerations, of_velocities, others = self._of_dofs(self._parts)
+        return of_accelerations, of_velocities, others
 
-    def _needed_forces(self, gravity: Sequence[float]) -> Floats:
-        """Return the forces on all coordinates for the motion in MuJoCo's data, shape (nv,); no copy."""
-        self._gravity[:] = gravity
-        mujoco.mj_rne(self._model, self._data, 1, self._forces)
-        return self._forces
+    def _set_gravity(self, gravity: Vec3) -> None:
+        if gravity is not self._free_fall[0]:
+            self._free_fall = (gravity, np.array(gravity))
+        self._gravity[...] = self._free_fall[1]
 
     def _add_external(self, forces: Floats, external: Mapping[int, Floats]) -> None:
         """Add forces and moments on links at their centres of mass."""
         for link, wrench in external.items():
             body_id = self._body_ids[link]
-            point = self._data.xipos[body_id]
-            mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], point, body_id, forces)
+            mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], self._xipos[body_id], body_id, forces)
 
 
 def _turning_acceleration(velocity: Floats) -> Floats:

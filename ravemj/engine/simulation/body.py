@@ -43,11 +43,11 @@ class SavedConfiguration(NamedTuple):
 
     Attributes:
         configuration: That of MuJoCo's model.
-        T_world_links: Where the links are, for a body that has other joints by then, shape (links, 4, 4).
+        scene: The body that the model was made of, for one that has other joints by then.
     """
 
     configuration: Configuration
-    T_world_links: Floats
+    scene: KinBody
 
 
 class BodyState:
@@ -71,6 +71,7 @@ class BodyState:
         self.index = 0
         self.stamp = 0
         self._grabs: tuple[GrabbedBody, ...] = ()
+        self._link_enabled: tuple[bool, ...] = ()
         self.rest_poses: Floats | None = None
         self._inertias: tuple[tuple[Link, ...], Inertias] | None = None
         self.rebuild(scene)
@@ -103,8 +104,9 @@ class BodyState:
     @link_enabled.setter
     def link_enabled(self, enabled: Iterable[bool]) -> None:
         with self.simulation.lock:
-            self._link_enabled = tuple(enabled)
-            self.simulation.collision_stamp += 1
+            before, self._link_enabled = self._link_enabled, tuple(enabled)
+            if self._link_enabled != before:
+                self.simulation.collision_stamp += 1
 
     @property
     def grabs(self) -> tuple[GrabbedBody, ...]:
@@ -285,13 +287,15 @@ class BodyState:
 
     def configuration(self) -> SavedConfiguration:
         """Return the state of joints and links, for ``restore``."""
-        return SavedConfiguration(self.own_kinematics.configuration(), self.link_transforms())
+        return SavedConfiguration(self.own_kinematics.configuration(), self.scene)
 
     def restore(self, saved: SavedConfiguration) -> None:
         """Bring joints and links back to a state that ``configuration`` returned, of this body or one like it."""
         kinematics = self.own_kinematics
         if not kinematics.restore(saved.configuration):
-            place_links(kinematics, saved.T_world_links, kinematics.values())
+            before = BodyKinematics(saved.scene)
+            before.restore(saved.configuration)
+            place_links(kinematics, before.link_transforms(), kinematics.values())
         self.moved()
 
     def copy(self, other: "BodyState", name: str | None = None) -> None:

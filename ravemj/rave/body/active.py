@@ -26,13 +26,13 @@ class ActiveChoice(NamedTuple):
     """Which DOFs are active.
 
     Attributes:
-        dofs: Indices of the joints' DOFs in the order of their values; None: all.
-        affine: The parts of the base's pose that come after them.
+        dofs: Indices of the joints' DOFs in the order of their values, in an array that is never changed; None: all.
+        affine: The parts of the base's pose that come after them: ``DOFAffine`` as a plain number, which is faster.
         axis: Axis of ``DOFAffine.RotationAxis``.
     """
 
-    dofs: tuple[int, ...] | None = None
-    affine: DOFAffine = DOFAffine.NoTransform
+    dofs: Ints | None = None
+    affine: int = 0
     axis: Vec3 = Z_AXIS
 
 
@@ -61,7 +61,7 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
             >>> robot.SetActiveDOFValues([1.0, 2.0, 0.5])  # the base drives
         """
         try:
-            dofs = checked_indices(dofindices, self.GetDOF(), "SetActiveDOFs: dofindices").tolist()
+            dofs = checked_indices(dofindices, self.GetDOF(), "SetActiveDOFs: dofindices")
         except IndexError as error:
             raise ArgumentError(str(error)) from None
         axis = Z_AXIS
@@ -70,25 +70,27 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
             axis = (x, y, z)
             if affine & DOFAffine.RotationAxis and not any(axis):
                 raise ArgumentError("SetActiveDOFs: rotationaxis is zero, and should point somewhere")
-        self.active_choice = ActiveChoice(tuple(dofs), DOFAffine(int(affine)), axis)
+        self.active_choice = ActiveChoice(dofs, int(DOFAffine(int(affine))), axis)
 
     def GetActiveDOF(self) -> int:
         """Return the number of active values: all DOFs until ``SetActiveDOFs`` was called."""
-        return len(self._active_dofs()) + len(self._affine_numbers("weight"))
+        chosen = self.active_choice
+        joints = self.GetDOF() if chosen.dofs is None else len(chosen.dofs)
+        return joints + len(self._affine_numbers("weight")) if chosen.affine else joints
 
     def GetActiveDOFIndices(self) -> Ints:
         """Return the active joints' DOFs in the order of their values; affine ones are not among them."""
-        return np.array(self._active_dofs(), dtype=np.int_)
+        chosen = self.active_choice.dofs
+        return np.arange(self.GetDOF()) if chosen is None else chosen.copy()
 
     GetActiveJointIndices = GetActiveDOFIndices
 
     def _active_dofs(self) -> list[int]:
-        chosen = self.active_choice.dofs
-        return list(range(self.GetDOF())) if chosen is None else list(chosen)
+        return self.GetActiveDOFIndices().tolist()
 
     def GetAffineDOF(self) -> int:
         """Return the active parts of the base's pose, a ``DOFAffine``."""
-        return int(self.active_choice.affine)
+        return self.active_choice.affine
 
     def GetAffineDOFIndex(self, index: int) -> int:
         """Return where the value of a part of the base's pose is among the active values.
@@ -102,7 +104,7 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
         affine = self.active_choice.affine
         if not index & affine:
             raise ArgumentError(f"GetAffineDOFIndex: {DOFAffine(index)!r} is not active")
-        before = DOFAffine(affine & (int(index) - 1) & DOFAffine.Transform)
+        before = affine & (int(index) - 1) & int(DOFAffine.Transform)
         return len(self._active_dofs()) + sum(bool(before & part) for part in (1, 2, 4))
 
     def GetAffineRotationAxis(self) -> Floats:
@@ -119,9 +121,11 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
             array([-0.5])
         """
         with self._simulation.lock:
-            joints = self.GetDOFValues()[self.GetActiveDOFIndices()]
-            base = affine_values(self._state.pose(), self.active_choice.affine, self.active_choice.axis)
-            return np.concatenate([joints, base])
+            chosen, values = self.active_choice, self._state.kinematics.values()
+            joints = values if chosen.dofs is None else values[chosen.dofs]
+            if not chosen.affine:
+                return joints
+            return np.concatenate([joints, affine_values(self._state.pose(), chosen.affine, chosen.axis)])
 
     def SetActiveDOFValues(self, values: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits) -> None:
         """Set the active values: joints [rad or m], then the base's X, Y, Z [m] and rotation.
@@ -143,13 +147,13 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
         if given.ndim != 1 or len(given) < count:
             message = f"SetActiveDOFValues: values have shape {given.shape}, and should be {count} numbers"
             raise ArgumentError(message)
-        joints = self._active_dofs()
-        base = checked_vector(given[len(joints) : count], count - len(joints), "SetActiveDOFValues: base's values")
+        choice = self.active_choice
+        joints = self.GetDOF() if choice.dofs is None else len(choice.dofs)
+        base = checked_vector(given[joints:count], count - joints, "SetActiveDOFValues: base's values")
         with self._simulation.lock:
             if joints:
-                self.SetDOFValues(given[: len(joints)], joints, checklimits)
-            if self.active_choice.affine:
-                choice = self.active_choice
+                self.SetDOFValues(given[:joints], choice.dofs, checklimits)
+            if choice.affine:
                 self._state.set_pose(pose_with_values(self._state.pose(), base, choice.affine, choice.axis))
 
     def GetActiveDOFVelocities(self) -> Floats:
@@ -178,8 +182,7 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
 
     def GetActiveDOFLimits(self) -> tuple[Floats, Floats]:
         """Return the lower and upper limits of the active values, shape (n,) each; the base has ±100 m, ±10000 rad."""
-        dofs = self._active_dofs()
-        lower, upper = self.GetDOFLimits(dofs)
+        lower, upper = self.GetDOFLimits(self.GetActiveDOFIndices())
         return self._with_affine(lower, "lower"), self._with_affine(upper, "upper")
 
     def GetActiveDOFMaxVel(self) -> Floats:
@@ -221,7 +224,7 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
         return self._with_affine(self.GetDOFWeights(self._active_dofs()), "weight")
 
     def _with_affine(self, joints: Floats, name: str) -> Floats:
-        return np.concatenate([joints, self._affine_numbers(name)])
+        return np.concatenate([joints, self._affine_numbers(name)]) if self.active_choice.affine else joints
 
     def _affine_numbers(self, name: str) -> Floats:
         """Return a setting of all active parts of the base's pose."""
@@ -273,9 +276,17 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
             Derivative of the point's position in the world, shape (3, active dof).
         """
         point = checked_vector(offset, 3, "offset")
+        link = self._checked_link(linkindex)
         with self._simulation.lock:
-            joints = self.ComputeJacobianTranslation(linkindex, point)[:, self.GetActiveDOFIndices()]
+            joints = self._active_columns(self._state.dynamics.translation_jacobian(link, point))
+            if not self.active_choice.affine:
+                return joints
             return np.hstack([joints, self._affine_motion().translation_jacobian(point)])
+
+    def _active_columns(self, jacobian: Floats) -> Floats:
+        """Return the columns of the active joints."""
+        chosen = self.active_choice.dofs
+        return jacobian if chosen is None else jacobian.take(chosen, 1)
 
     def CalculateActiveAngularVelocityJacobian(self, linkindex: int) -> Floats:
         """Return the angular velocity of a link, in world axes, per unit of the active values' velocity.
@@ -287,7 +298,9 @@ class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Co
             Shape (3, active dof).
         """
         with self._simulation.lock:
-            joints = self.ComputeJacobianAxisAngle(linkindex)[:, self.GetActiveDOFIndices()]
+            joints = self._active_columns(self.ComputeJacobianAxisAngle(linkindex))
+            if not self.active_choice.affine:
+                return joints
             return np.hstack([joints, self._affine_motion().rotation_jacobian()])
 
     def CalculateActiveRotationJacobian(self, linkindex: int, quat: ArrayLike) -> Floats:

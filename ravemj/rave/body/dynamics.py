@@ -102,7 +102,8 @@ class Dynamics(BodyPart):
         Returns:
             Its derivative by the DOF values, shape (4, dof).
         """
-        return wxyz_jacobian(checked_vector(quat, 4, "quat").tolist()) @ self.ComputeJacobianAxisAngle(linkindex)
+        rates = wxyz_jacobian(checked_vector(quat, 4, "quat").tolist())
+        return rates.dot(self.ComputeJacobianAxisAngle(linkindex))  # faster than @ for small matrices
 
     def ComputeHessianTranslation(
         self, linkindex: int, position: ArrayLike, dofindices: "ArrayLike | None" = None
@@ -213,19 +214,22 @@ class Dynamics(BodyPart):
             >>> inertia, coriolis, gravity = robot.ComputeInverseDynamics([1, 0], None, True)
         """
         accelerations = self._checked_accelerations(dofaccelerations, "ComputeInverseDynamics")
-        pushes = self._checked_pushes(externalforcetorque, "externalforcetorque")
+        pushes = self._checked_pushes(externalforcetorque, "externalforcetorque") if externalforcetorque else {}
         with self._simulation.lock:
-            dynamics = self._state.dynamics
-            given = self._state.present_velocities, accelerations, self._simulation.gravity, pushes
-            return dynamics.inverse_components(*given) if returncomponents else dynamics.inverse(*given)
+            state, gravity = self._state, self._simulation.gravity
+            if returncomponents:
+                return state.dynamics.inverse_components(state.present_velocities, accelerations, gravity, pushes)
+            return state.dynamics.inverse(state.present_velocities, accelerations, gravity, pushes)
 
     def _checked_accelerations(self, accelerations: "ArrayLike | None", name: str) -> Floats:
-        dof = self.GetDOF()
+        dof = self._state.dof
         return np.zeros(dof) if accelerations is None else checked_vector(accelerations, dof, name)
 
     def _checked_pushes(self, pushes: "Mapping[int, ArrayLike] | None", name: str) -> dict[int, Floats]:
-        checked_kind(pushes or {}, Mapping, name, "a dictionary")
-        return {self._checked_link(link): checked_vector(push, 6, name) for link, push in (pushes or {}).items()}
+        if not pushes:
+            return {}
+        checked_kind(pushes, (dict, Mapping), name, "a dictionary")  # dict first, since it is faster to see
+        return {self._checked_link(link): checked_vector(push, 6, name) for link, push in pushes.items()}
 
     def batch_link_transforms(self, values: ArrayLike, out: Floats | None = None) -> Floats:
         """Return the poses of all links for many joint values, several times faster than a loop.

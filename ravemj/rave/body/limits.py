@@ -10,11 +10,15 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.model.joints import value_differences
 from ravemj.model.limits import with_fields
+from ravemj.model.scene import Joint
 from ravemj.rave.body.base import BodyPart
 
 
 class Limits(BodyPart):
     """Limits, weights and resolutions. Setting them moves nothing."""
+
+    _known: tuple[tuple[Joint, ...], dict[str, Floats]] | None = None
+    """Fields of all axes as arrays, by name, and the joints that they are of, which are replaced, never changed."""
 
     def GetDOFLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> tuple[Floats, Floats]:
         """Return the joint limits.
@@ -214,8 +218,14 @@ class Limits(BodyPart):
             raise ArgumentError(f"{name}: are {numbers.tolist()}, and should be positive")
 
     def _of_axes(self, field: str, indices: "ArrayLike | EllipsisType | None") -> Floats:
-        values = np.array([getattr(axis, field) for axis in self._state.scene.dof_axes], dtype=np.float64)
-        return values if indices is ... else values[checked_indices(indices, len(values))]
+        scene = self._state.scene
+        if self._known is None or self._known[0] is not scene.joints:
+            self._known = (scene.joints, {})
+        fields = self._known[1]
+        values = fields.get(field)
+        if values is None:
+            fields[field] = values = np.array([getattr(axis, field) for axis in scene.dof_axes], dtype=np.float64)
+        return values.copy() if indices is ... else values[checked_indices(indices, len(values))]
 
     def _set_axes(self, caller: str, fields: dict[str, ArrayLike], indices: "ArrayLike | None") -> None:
         """Set one or more fields of axes, all or nothing."""

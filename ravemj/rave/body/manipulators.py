@@ -27,15 +27,21 @@ class Manipulators(BodyPart):
     ik_solvers: "dict[str, IkSolver]"
     """Solvers of inverse kinematics, by the names of their arms."""
 
+    _manipulators: tuple[Manipulator, ...] = ()
+
     def GetManipulators(self, manipname: str | None = None) -> list[Manipulator]:
         """Return the manipulators, in the order of the file.
 
         Args:
             manipname: Return the one of that name only.
         """
-        robot = cast("Robot", self)
-        found = [Manipulator(robot, self._state, index) for index in range(len(self._state.scene.manipulators))]
-        return found if manipname is None else [one for one in found if one.GetName() == manipname]
+        arms = self._state.scene.manipulators
+        if len(self._manipulators) != len(arms):  # they are made once, as links are
+            robot = cast("Robot", self)
+            self._manipulators = tuple(Manipulator(robot, self._state, index) for index in range(len(arms)))
+        if manipname is None:
+            return list(self._manipulators)
+        return [one for one, arm in zip(self._manipulators, arms, strict=True) if arm.name == manipname]
 
     def GetManipulator(self, manipname: str) -> Manipulator | None:
         """Return a manipulator, or None where there is none of that name.

@@ -20,29 +20,37 @@ if TYPE_CHECKING:
 Restorer = Callable[["KinBody"], None]
 """Gives a body, the saved one or one like it, a part of its state back."""
 
+# Plain numbers, since ``&`` of two flags takes as long as saving a pose.
+_TRANSFORMATION, _ENABLE = int(SaveParameters.LinkTransformation), int(SaveParameters.LinkEnable)
+_VELOCITIES, _GRABBED = int(SaveParameters.LinkVelocities), int(SaveParameters.GrabbedBodies)
 _AXIS_FIELDS = {
-    SaveParameters.JointLimits: ("lower", "upper"),
-    SaveParameters.JointMaxVelocityAndAcceleration: ("max_velocity", "max_acceleration"),
-    SaveParameters.JointWeights: ("weight",),
-    SaveParameters.JointResolutions: ("resolution",),
+    int(SaveParameters.JointLimits): ("lower", "upper"),
+    int(SaveParameters.JointMaxVelocityAndAcceleration): ("max_velocity", "max_acceleration"),
+    int(SaveParameters.JointWeights): ("weight",),
+    int(SaveParameters.JointResolutions): ("resolution",),
 }
 
 
-def body_restorers(state: BodyState, options: SaveParameters) -> list[Restorer]:
-    """Return what gives a body, or one like it, the present state of this one back."""
+def body_restorers(state: BodyState, options: int) -> list[Restorer]:
+    """Return what gives a body, or one like it, the present state of this one back.
+
+    Args:
+        state: The body.
+        options: ``SaveParameters`` combined, as a plain number.
+    """
     found: list[Restorer] = []
-    if options & SaveParameters.GrabbedBodies:
+    if options & _GRABBED:
         grabs = state.grabs
         found.append(lambda body: _hold(body.simulation_state, grabs))
-    if options & SaveParameters.LinkTransformation:
+    if options & _TRANSFORMATION:
         saved = state.configuration()
         found.append(lambda body: body.simulation_state.restore(saved))
-    if options & SaveParameters.LinkVelocities:
+    if options & _VELOCITIES:
         velocities = state.link_velocities()
         found.append(lambda body: body.simulation_state.set_link_velocities(velocities))
-    if options & SaveParameters.LinkEnable:
-        enabled = list(state.link_enabled)
-        found.append(lambda body: setattr(body.simulation_state, "link_enabled", list(enabled)))
+    if options & _ENABLE:
+        enabled = state.link_enabled
+        found.append(lambda body: setattr(body.simulation_state, "link_enabled", enabled))
     fields = [name for option, names in _AXIS_FIELDS.items() if options & option for name in names]
     if fields:
         axes = state.scene.dof_axes
@@ -57,7 +65,7 @@ class StateSaver(ApiObject):
     def __init__(self, body: "KinBody", options: int | None = None) -> None:
         checked_kind(body, BodyPart, "StateSaver: body", "a KinBody")
         self._body = body
-        wanted = body.default_saved if options is None else SaveParameters(options)
+        wanted = body.default_saved if options is None else int(SaveParameters(options))
         with body.GetEnv().simulation.lock:
             self._restorers = body.restorers(wanted)
 
@@ -101,7 +109,8 @@ def _hold(state: BodyState, grabs: Sequence[GrabbedBody]) -> None:
 
 
 def _structure(body: "KinBody") -> tuple[int, int]:
-    return len(body.GetLinks()), body.GetDOF()
+    state = body.simulation_state
+    return len(state.scene.links), state.dof
 
 
 def _set_axes(body: BodyPart, kept: Mapping[str, Sequence[float]]) -> None:

@@ -1,5 +1,6 @@
 """The structure of a body: links, joints, how they are connected, mass."""
 
+import itertools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, cast, overload
 
@@ -19,6 +20,8 @@ class Structure(BodyPart):
     """Links and joints: which there are, what moves what, the path between links, mass, hashes of the structure."""
 
     _links: tuple[Link, ...] = ()
+    _joints: tuple[Joint, ...] = ()
+    _places: tuple[object, dict[str, int]] = (None, {})
 
     @property
     def _body(self) -> "KinBody":
@@ -54,10 +57,11 @@ class Structure(BodyPart):
             >>> robot.GetLink("no such link") is None
             True
         """
-        for link, scene in zip(self._all_links(), self._state.scene.links, strict=True):
-            if scene.name == name:
-                return link
-        return None
+        scenes = self._state.scene.links
+        if self._places[0] is not scenes:  # the first of several that have a name, hence backwards
+            self._places = (scenes, {scenes[index].name: index for index in reversed(range(len(scenes)))})
+        index = self._places[1].get(name)
+        return None if index is None else self._all_links()[index]
 
     def GetJoints(self, indices: Sequence[int] | None = None) -> list[Joint]:
         """Return the joints that have DOFs, in DOF order.
@@ -65,14 +69,22 @@ class Structure(BodyPart):
         Args:
             indices: Which joints; None: all.
         """
-        joints = [Joint(self._body, self._state, index) for index in range(len(self._state.scene.joints))]
-        return [joints[index] for index in checked_indices(... if indices is None else indices, len(joints), "indices")]
+        joints = self._all_joints()[: len(self._state.scene.joints)]
+        if indices is None:
+            return list(joints)
+        return [joints[index] for index in checked_indices(indices, len(joints), "indices").tolist()]
+
+    def _all_joints(self) -> tuple[Joint, ...]:
+        """Return the joints that have DOFs, then the passive ones; like the links, they are made once."""
+        body = self._state.scene
+        count = len(body.joints) + len(body.passive_joints)
+        if len(self._joints) != count:
+            self._joints = tuple(Joint(self._body, self._state, index) for index in range(count))
+        return self._joints
 
     def GetPassiveJoints(self) -> list[Joint]:
         """Return the joints that have no DOF."""
-        body = self._state.scene
-        first = len(body.joints)
-        return [Joint(self._body, self._state, index) for index in range(first, first + len(body.passive_joints))]
+        return list(self._all_joints()[len(self._state.scene.joints) :])
 
     def GetJoint(self, name: str) -> Joint | None:
         """Return the joint of that name, passive or not, or None.
@@ -83,8 +95,7 @@ class Structure(BodyPart):
             >>> robot.GetJoint("no such joint") is None
             True
         """
-        joints = (*self.GetJoints(), *self.GetPassiveJoints())
-        return next((joint for joint in joints if joint.GetName() == name), None)
+        return next((joint for joint in self._all_joints() if joint.GetName() == name), None)
 
     def GetJointFromDOFIndex(self, dofindex: int) -> Joint:
         """Return the joint that a DOF belongs to.
@@ -95,8 +106,10 @@ class Structure(BodyPart):
         Raises:
             IndexError: there is no such DOF.
         """
-        checked_indices(dofindex, self.GetDOF())
-        return next(joint for joint in reversed(self.GetJoints()) if joint.GetDOFIndex() <= dofindex)
+        (dof,) = checked_indices(dofindex, self.GetDOF()).tolist()
+        joints = self._state.scene.joints
+        behind = itertools.accumulate(len(joint.axes) for joint in joints)  # the DOF behind each joint
+        return self._all_joints()[next(index for index, end in enumerate(behind) if dof < end)]
 
     def GetAdjacentLinks(self) -> set[tuple[int, int]]:
         """Return the pairs of links, by index, that self-collision leaves out."""

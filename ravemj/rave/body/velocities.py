@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, send_warning
-from ravemj.rave.body.base import BodyPart
+from ravemj.rave.body.limits import Limits
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.interface import Interface
 
@@ -16,7 +16,7 @@ ROUNDING = 1e-10
 """How far beyond its limit [rad/s or m/s] a velocity counts as within."""
 
 
-class Velocities(BodyPart, Interface):
+class Velocities(Limits, Interface):
     """Velocities, by which nothing moves, but on which accelerations and inverse dynamics depend; joint torques.
 
     What is kept are the velocities of the links; those of the DOFs are read off them, as in OpenRAVE. So set joint
@@ -96,7 +96,9 @@ class Velocities(BodyPart, Interface):
     def _limited_rates(self, rates: Floats, checklimits: int) -> Floats:
         if checklimits == CheckLimitsAction.Nothing:
             return rates
-        limits = np.array([axis.max_velocity for axis in self._state.scene.dof_axes])
+        limits = self.GetDOFVelocityLimits()
+        if np.count_nonzero(np.abs(rates) <= limits) == len(rates):  # most often, and faster than what follows
+            return rates
         limited = np.clip(rates, -limits, limits)
         outside = np.flatnonzero(np.abs(rates - limited) > ROUNDING)
         if len(outside) and checklimits != CheckLimitsAction.CheckLimitsSilent:
