@@ -45,7 +45,8 @@ class Detection:
         self.positions, self.radii = model.data.geom_xpos, model.model.geom_rbound
         self.is_overruled = False
         self._stamp = -1
-        self._keys, self._found = _NO_KEYS, b""
+        self._keys = _NO_KEYS
+        self._found: bytes = b""
         self._option = self._model.opt
         self._option.o_margin = _MARGIN  # only ``_OVERRIDE`` lets it count
         self._most = int(self._data.narena * _MOST_CONTACTS)
