@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 import ravemj
 from ravemj import CollisionOptions, CollisionReport, KinBody, Ray
+from ravemj.engine.collision import pairs
+from ravemj.engine.collision.configurations import collision_test
 from ravemj.geometry_functions import CheckOBBCollision, OrientedBox
 
 pytestmark = pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
@@ -229,6 +231,34 @@ def test_mesh_against_mesh(env):
     report = CollisionReport()
     env.CheckCollision(one, other, report)
     assert report.minDistance == pytest.approx(0.8, abs=1e-6)
+
+
+def test_meshes_report_where_they_are_deepest_in_each_other(env):
+    one = mesh(env, "one", *u_shape())
+    env.GetCollisionChecker().SetCollisionOptions(CollisionOptions.Contacts)
+    # Two open wedges above the floor of the U, whose edges along y are 0.02 and 0.06 deep in it.
+    wedge = np.array([[0, y, 0] for y in (-1.0, 1.0)] + [[x, y, 1] for x in (-0.1, 0.1) for y in (-1.0, 1.0)])
+    faces = np.array([[0, 1, 3], [0, 3, 2], [0, 5, 1], [0, 4, 5]])
+    both = np.vstack([wedge + (-0.4, 0, -0.92), wedge + (0.4, 0, -0.96)])
+    wedges = mesh(env, "wedges", both, np.vstack([faces, faces + 6]))
+    report = CollisionReport()
+    assert env.CheckCollision(wedges, one, report)
+    (contact,) = report.contacts
+    assert contact.depth == pytest.approx(0.06, abs=1e-6)
+    np.testing.assert_allclose(contact.pos[[0, 2]], [0.4, -0.93], atol=1e-6)
+
+
+def test_meshes_that_stand_on_each_other_touch(env):
+    for position, turn in [((0, 0, 0), (0, 0, 0)), ((0.3, -2.1, 0.7), (0.3, 0.5, -0.9)), ((7, 5, 3), (1, 2, -0.5))]:
+        T = ravemj.matrixFromAxisAngle(turn)
+        lower, upper = mesh(env, "lower", *u_shape()), mesh(env, "upper", *u_shape())
+        place(lower, position, turn)
+        place(upper, position + T[:3, 2] * 2.1, turn)
+        assert env.CheckCollision(upper, lower)
+        place(upper, position + T[:3, 2] * (2.1 + 1e-6), turn)
+        assert not env.CheckCollision(upper, lower)
+        env.Remove(lower)
+        env.Remove(upper)
 
 
 def test_convex_meshes_are_solid(env):
@@ -590,6 +620,93 @@ def test_nothing_collides_without_a_checker(env):
     assert not one.CheckSelfCollision()
     assert not env.CheckCollision(Ray([-2, 0, 0], [4, 0, 0]))
     assert not env.CheckCollisionRays([[-2, 0, 0, 4, 0, 0]])[0].any()
+
+
+SNAKE = "".join(
+    f"""<Body name="l{n}"><offsetfrom>l{max(n - 1, 0)}</offsetfrom><Translation>{0.4 * (n > 0)} 0 0</Translation>
+    <Geom type="box"><Translation>.2 0 0</Translation><extents>.15 .05 .04</extents></Geom></Body>"""
+    for n in range(9)
+) + "".join(
+    f"""<Joint name="j{n}" type="hinge" enable="{'false' if n == 4 else 'true'}"><Body>l{n}</Body><Body>l{n + 1}</Body>
+    <offsetfrom>l{n + 1}</offsetfrom><axis>{("0 0 1", "0 1 0")[n % 2]}</axis><limitsrad>{limits}</limitsrad></Joint>"""
+    for n in range(8)
+    for limits in ["0 0" if n == 4 else "-3 3"]
+)
+"""Nine links, of which the fifth and the sixth are one."""
+
+
+class TestManyPairs:
+    """Questions about so many pairs that MuJoCo's collision detection looks for those that touch."""
+
+    @pytest.fixture
+    def snake(self, env):
+        env.LoadData(f'<Environment><Robot name="snake"><KinBody>{SNAKE}</KinBody></Robot></Environment>')
+        random = np.random.default_rng(7)
+        for number in range(12):
+            box(env, f"box{number}", random.uniform(-2, 2, 3) * (1, 1, 0.5), random.uniform(0.05, 0.3, 3))
+        return env.GetRobot("snake")
+
+    @staticmethod
+    def solids(body, links=None):
+        chosen = body.GetLinks() if links is None else [body.GetLinks()[link] for link in links]
+        return [
+            OrientedBox(link.GetTransform() @ geometry.GetTransform(), geometry.GetBoxExtents())
+            for link in chosen
+            if link.IsEnabled()
+            for geometry in link.GetGeometries()
+        ]
+
+    def overlap(self, ones, others):
+        return any(CheckOBBCollision(one, other) for one in ones for other in others)
+
+    def check(self, env, snake):
+        """Compare with separating axes, for each body among the others and for the snake itself."""
+        held = snake.GetGrabbed()
+        for body in env.GetBodies():
+            group = [snake, *held] if body in (snake, *held) else [body]
+            ours = [solid for one in group for solid in self.solids(one)]
+            others = [solid for one in env.GetBodies() if one not in group for solid in self.solids(one)]
+            assert env.CheckCollision(body) == self.overlap(ours, others)
+        if not held:
+            tested = snake.GetNonAdjacentLinks()
+            assert len(tested) > pairs.FEW
+            assert snake.CheckSelfCollision() == any(
+                self.overlap(self.solids(snake, [one]), self.solids(snake, [other])) for one, other in tested
+            )
+
+    @pytest.mark.parametrize("seed", range(4))
+    def test_everything_can_move(self, env, snake, seed):
+        random = np.random.default_rng(seed)
+        bodies = [body for body in env.GetBodies() if body != snake]
+        steps = {
+            "values": lambda: snake.SetDOFValues(random.uniform(-1.5, 1.5, snake.GetDOF())),
+            "base": lambda: place(snake, random.uniform(-1, 1, 3), random.uniform(-1, 1, 3)),
+            "body": lambda: place(random.choice(bodies), random.uniform(-1.5, 1.5, 3), random.uniform(-1, 1, 3)),
+            "link": lambda: snake.GetLinks()[8].SetTransform(random.choice(bodies).GetTransform()),
+            "enable": lambda: random.choice(snake.GetLinks()).Enable(bool(random.integers(2))),
+            "grab": lambda: snake.Grab(random.choice(bodies), snake.GetLinks()[6]),
+            "release": snake.ReleaseAllGrabbed,
+        }
+        for _ in range(40):
+            steps[random.choice(list(steps))]()
+            self.check(env, snake)
+
+    def test_as_planners_ask(self, env, snake):
+        values = np.random.default_rng(3).uniform(-2.5, 2.5, (60, snake.GetDOF()))
+        before = snake.GetLinkTransformations()
+        with env.simulation.lock, collision_test(snake.simulation_state) as collides:
+            found = [collides(one) for one in values]
+        np.testing.assert_array_equal(snake.GetLinkTransformations(), before)
+        for one, answer in zip(values, found, strict=True):
+            snake.SetDOFValues(one)
+            assert answer == (env.CheckCollision(snake) or snake.CheckSelfCollision())
+        assert 0 < sum(found) < len(found)
+
+    def test_more_contacts_than_fit_into_memory(self, env, snake, monkeypatch):
+        monkeypatch.setattr(pairs, "_MOST_CONTACTS", 0.0)
+        for number in range(5):
+            snake.SetDOFValues(np.full(snake.GetDOF(), 0.3 * number))
+            self.check(env, snake)
 
 
 def test_batch_agrees_with_single_questions(env, arm):

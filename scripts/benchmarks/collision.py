@@ -1,12 +1,18 @@
 """Collision checking."""
 
+import tempfile
 import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import mujoco
 import numpy as np
 
 import ravemj
-from benchmarks.measure import Row, microseconds, take_turns
+from benchmarks.kinematics import robots
+from benchmarks.measure import ROOT, Row, microseconds, take_turns
+from ravemj.core.transforms import Floats
+from ravemj.engine.collision.configurations import collision_test
 
 _LINKS = 7
 _LINK = """<Body name="l{n}"><offsetfrom>l{before}</offsetfrom><Translation>0 0 .3</Translation>
@@ -15,43 +21,123 @@ _LINK = """<Body name="l{n}"><offsetfrom>l{before}</offsetfrom><Translation>0 0 
 <Joint name="j{n}" type="hinge"><Body>l{before}</Body><Body>l{n}</Body><offsetfrom>l{n}</offsetfrom>
 <axis>{axis}</axis><limitsrad>-3 3</limitsrad></Joint>"""
 
+_COUNT = 10
+"""Configurations that are taken in turn, since MuJoCo's time depends on them."""
+
+_BATCH = 600
+
 
 def rows() -> list[Row]:
-    """Compare ``SetDOFValues`` and ``CheckCollision`` of an arm among boxes with what MuJoCo takes for the scene."""
+    """Compare collision checks in changing configurations with ``mj_kinematics`` and ``mj_collision``."""
     with warnings.catch_warnings(action="ignore"):
-        env = _scene()
-    robot = env.GetRobots()[0]
-    model, data = env.model, mujoco.MjData(env.model)
-    samples = np.random.default_rng(2).uniform(-1.5, 1.5, (100, _LINKS))
-    first, second = samples[~robot.batch_collides(samples)][:2]
+        arm = _arm()
+        panda = ravemj.load(ROOT / "models" / "panda.xml").GetRobots()[0]
+        _add_boxes(panda.GetEnv(), 0.6)
+    return [*_arm_rows(arm), *_panda_rows(panda), *_pr2_rows()]
 
-    def ours() -> None:
-        robot.SetDOFValues(first)
-        env.CheckCollision(robot)
-        robot.SetDOFValues(second)
-        env.CheckCollision(robot)
 
-    def bare() -> None:
-        data.qpos[:] = first
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_collision(model, data)
-        data.qpos[:] = second
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_collision(model, data)
-
-    both, floor = (time / 2 for time in take_turns([microseconds(ours, 100), microseconds(bare, 100)], 300))
-    check, itself = take_turns(
-        [microseconds(lambda: env.CheckCollision(robot), 100), microseconds(robot.CheckSelfCollision, 100)], 300
-    )
+def _arm_rows(arm: ravemj.Robot) -> Iterator[Row]:
+    env = arm.GetEnv()
+    free = _Configurations(arm, 1.5)
+    both, floor = free.measure(lambda: env.CheckCollision(arm))
     what = f"SetDOFValues + CheckCollision, {_LINKS} links among 10 boxes : mj_kinematics + mj_collision"
-    return [
-        Row(what, "µs", both, floor, 3.0, note="configurations without collision, in turn"),
-        Row("CheckCollision alone", "µs", check),
-        Row("CheckSelfCollision alone", "µs", itself),
-    ]
+    yield Row(what, "µs", both, floor, 3.0, note="configurations without collision")
+    check, itself = take_turns(
+        [microseconds(lambda: env.CheckCollision(arm), 100), microseconds(arm.CheckSelfCollision, 100)], 300
+    )
+    yield Row("CheckCollision alone", "µs", check)
+    yield Row("CheckSelfCollision alone", "µs", itself)
 
 
-def _scene() -> ravemj.Environment:
+def _panda_rows(panda: ravemj.Robot) -> Iterator[Row]:
+    env, what = panda.GetEnv(), "Panda among 10 boxes"
+    free = _Configurations(panda, 3.0)
+    both, floor = free.measure(lambda: env.CheckCollision(panda) or panda.CheckSelfCollision())
+    label = f"{what}: SetDOFValues + CheckCollision + CheckSelfCollision : mj_kinematics + mj_collision"
+    yield Row(label, "µs", both, floor)
+    with env.simulation.lock, collision_test(panda.simulation_state) as collides:
+        tested, floor = free.measure(collides=collides)
+    yield Row(f"{what}: the same as planners ask : mj_kinematics + mj_collision", "µs", tested, floor, 1.5)
+    values, qpos = zip(*(free.one() for _ in range(_BATCH)), strict=True)
+    batch, loop = take_turns(
+        [microseconds(lambda: panda.batch_collides(values)), microseconds(lambda: [free.bare(one) for one in qpos])], 10
+    )
+    label = f"{what}: configurations a second, batch_collides : a loop over mj_kinematics + mj_collision"
+    yield Row(label, "1/s", _BATCH / batch * 1e6, _BATCH / loop * 1e6, 1.0, more_is_better=True)
+
+
+def _pr2_rows() -> Iterator[Row]:
+    with tempfile.TemporaryDirectory() as folder:
+        pr2 = dict(robots(Path(folder))).get("PR2")
+    if pr2 is None:
+        return
+    for what, overlap, limit in (("nothing overlaps", False, 2.0), ("hulls overlap, triangles decide", True, 5.0)):
+        chosen = _Configurations(pr2, 3.0, hulls_overlap=overlap)
+        check, floor = chosen.measure(pr2.CheckSelfCollision)
+        label = f"PR2, {what}: SetDOFValues + CheckSelfCollision : mj_kinematics + mj_collision"
+        yield Row(label, "µs", check, floor, limit)
+
+
+class _Configurations:
+    """Configurations of a robot in which it does not collide, for us and for MuJoCo alone."""
+
+    def __init__(self, robot: ravemj.Robot, largest: float, *, hulls_overlap: bool = False) -> None:
+        """Choose configurations.
+
+        Args:
+            robot: The robot.
+            largest: Greatest joint value [rad or m].
+            hulls_overlap: Whether MuJoCo finds contacts of hulls in each of them, or in none.
+        """
+        self._robot = robot
+        self._model = robot.GetEnv().model
+        self._data = mujoco.MjData(self._model)
+        lower, upper = robot.GetDOFLimits()
+        self._limits = np.maximum(lower, -largest), np.minimum(upper, largest)
+        self._random = np.random.default_rng(2)
+        self._chosen = [self.one(hulls_overlap=hulls_overlap) for _ in range(_COUNT)]
+
+    def one(self, *, hulls_overlap: bool | None = None) -> tuple[Floats, Floats]:
+        """Return DOF values and ``qpos`` of the world; with None whether it collides or not."""
+        env, robot = self._robot.GetEnv(), self._robot
+        while True:
+            values = self._random.uniform(*self._limits)
+            robot.SetDOFValues(values)
+            qpos = env.simulation.compiled().data.qpos.copy()
+            if hulls_overlap is None:
+                return values, qpos
+            self.bare(qpos)
+            is_free = not (env.CheckCollision(robot) or robot.CheckSelfCollision())
+            if is_free and hulls_overlap == bool(self._data.ncon):
+                return values, qpos
+
+    def bare(self, qpos: Floats) -> None:
+        """Let MuJoCo look for contacts."""
+        self._data.qpos[:] = qpos
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_collision(self._model, self._data)
+
+    def measure(
+        self, check: Callable[[], bool] | None = None, collides: Callable[[Floats], bool] | None = None
+    ) -> list[float]:
+        """Return the mean times [µs] of ``SetDOFValues`` with a check, or of a test, and of MuJoCo alone."""
+
+        def ours() -> None:
+            for values, _ in self._chosen:
+                if collides is not None:
+                    collides(values)
+                elif check is not None:
+                    self._robot.SetDOFValues(values)
+                    check()
+
+        def floor() -> None:
+            for _, qpos in self._chosen:
+                self.bare(qpos)
+
+        return [time / _COUNT for time in take_turns([microseconds(ours, 3), microseconds(floor, 3)], 200)]
+
+
+def _arm() -> ravemj.Robot:
     links = "".join(
         _LINK.format(n=n, before=n - 1, kind="box" if n % 2 else "cylinder", axis=("0 0 1", "0 1 0")[n % 2])
         for n in range(1, _LINKS + 1)
@@ -59,11 +145,17 @@ def _scene() -> ravemj.Environment:
     base = '<Body name="l0"><Geom type="box"><extents>.1 .1 .05</extents></Geom></Body>'
     env = ravemj.Environment()
     env.LoadData(f'<Environment><Robot name="arm"><KinBody>{base}{links}</KinBody></Robot></Environment>')
+    _add_boxes(env, 1.2)
+    return env.GetRobots()[0]
+
+
+def _add_boxes(env: ravemj.Environment, radius: float) -> None:
+    """Add ten boxes in a spiral [m]."""
     for number in range(10):
         body = ravemj.RaveCreateKinBody(env, "")
         assert body is not None
         angle = 2 * np.pi * number / 10
-        body.InitFromBoxes([[1.2 * np.cos(angle), 1.2 * np.sin(angle), 0.5 + 0.1 * number, 0.2, 0.2, 0.3]])
+        place = [radius * np.cos(angle), radius * np.sin(angle), 0.5 + 0.1 * number]
+        body.InitFromBoxes([[*place, *(radius / 6 * np.array([1, 1, 1.5]))]])
         body.SetName(f"box{number}")
         env.Add(body)
-    return env

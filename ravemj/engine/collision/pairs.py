@@ -20,9 +20,14 @@ _MOST_CONTACTS = 1 / 4096  # for each byte of MuJoCo's working memory, where a c
 _ONES = np.ones(3)  # summing rows by a product with it is the fastest way for few of them
 _NO_NUMBERS: list[int] = []
 _NO_PAIRS: list[tuple[int, int]] = []
-_NO_KEYS = np.zeros(0, dtype=np.int_)
+_NO_KEYS: list[int] = []
 
 Bools = NDArray[np.bool_]
+
+
+def key(first: int, second: int, count: int) -> int:
+    """Return a number for a pair of geoms, whichever of them comes first; ``count`` is the number of geoms."""
+    return first * count + second if first < second else second * count + first
 
 
 class Detection:
@@ -45,7 +50,8 @@ class Detection:
         self.positions, self.radii = model.data.geom_xpos, model.model.geom_rbound
         self.is_overruled = False
         self._stamp = -1
-        self._keys, self._found = _NO_KEYS, b""
+        self._keys = _NO_KEYS
+        self._found: bytes = b""
         self._option = self._model.opt
         self._option.o_margin = _MARGIN  # only ``_OVERRIDE`` lets it count
         self._most = int(self._data.narena * _MOST_CONTACTS)
@@ -54,10 +60,6 @@ class Detection:
         self._welds = bodies[self._bodies]
         self._carriers = bodies[self._model.body_parentid[self._welds]]
         self._masks = self._model.geom_contype, self._model.geom_conaffinity
-
-    def keys_of(self, first: Ints, second: Ints) -> Ints:
-        """Return a number for each pair of geoms, whichever of them comes first."""
-        return np.minimum(first, second) * self._model.ngeom + np.maximum(first, second)
 
     def are_welded(self, first: Ints, second: Ints) -> Bools:
         """Return for each pair of geoms whether no joint is between them."""
@@ -75,10 +77,10 @@ class Detection:
         excluded = np.isin(signatures, self._model.exclude_signature)
         return ~((welds == others) | hanging | masked | excluded)
 
-    def keys(self) -> Ints | None:
-        """Return the keys of the pairs whose hulls touch now; None if they are too many for MuJoCo.
+    def keys(self) -> list[int] | None:
+        """Return ``key`` of the pairs whose hulls touch now; None if they are too many for MuJoCo.
 
-        The array is the same one as long as the pairs are the same.
+        The list is the same one as long as the pairs are the same.
         """
         if self._stamp != self.model.stamp:
             self._stamp = self.model.stamp
@@ -96,7 +98,7 @@ class Detection:
         geoms = self._data.contact.geom
         found = geoms.tobytes()
         if found != self._found:
-            self._keys, self._found = self.keys_of(*geoms.T.astype(np.int_)), found
+            self._keys, self._found = [key(*pair, self._model.ngeom) for pair in geoms.tolist()], found
 
 
 class Pairs:
@@ -119,9 +121,10 @@ class Pairs:
         self.first, self.second = first, second
         self._detection = detection
         found = np.zeros(len(first), dtype=bool) if once or len(first) <= FEW else detection.finds(first, second)
-        keys, self._rest = detection.keys_of(first[found], second[found]), np.flatnonzero(~found)
-        order = np.argsort(keys)
-        self._keys, self._numbers = keys[order], np.flatnonzero(found)[order]
+        self._rest = np.flatnonzero(~found)
+        numbers = np.flatnonzero(found).tolist()
+        count, both = len(detection.radii), zip(first[found].tolist(), second[found].tolist(), strict=True)
+        self._numbers = {key(*pair, count): number for pair, number in zip(both, numbers, strict=True)}
         self._spheres = _Spheres(first[self._rest], second[self._rest], detection)
         self._rest_is_welded = bool(detection.are_welded(first[self._rest], second[self._rest]).all())
         self._rest_stamp = -1
@@ -131,12 +134,11 @@ class Pairs:
     def near(self) -> list[tuple[int, int]]:
         """Return the pairs that may touch, in order. The caller holds the lock."""
         detection = self._detection
-        keys = None if detection.is_overruled else detection.keys() if len(self._keys) else _NO_KEYS
+        keys = None if detection.is_overruled else detection.keys() if self._numbers else _NO_KEYS
         if keys is None:
             return self._geoms(self._all_spheres.near())
         if keys is not self._touching_keys:
-            places = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
-            self._touching = self._numbers[places[self._keys[places] == keys]].tolist()
+            self._touching = [self._numbers[key] for key in keys if key in self._numbers]
             self._touching_keys = keys
         if not self._rest_is_welded or self._rest_stamp != detection.model.pose_stamp:
             near = self._rest[self._spheres.near()].tolist()

@@ -14,7 +14,7 @@ from ravemj.engine.collision.shapes import ShapeTests
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
 
-MOST_PAIRS = 1_000_000
+MOST_PAIRS = 300_000
 """Pairs of geoms that are kept for all questions together."""
 
 

@@ -60,6 +60,13 @@ class WorldModel(Compiled):
         self.stamp += 1
         mujoco.mj_kinematics(self.model, self.data)
 
+    def follow(self, body: BodyState) -> None:
+        """Take over the joint values of one body; in fewer steps than ``take``."""
+        if self._parts[body].take(body.own_kinematics):
+            self.pose_stamp += 1
+        self.stamp += 1
+        mujoco.mj_kinematics(self.model, self.data)
+
     def _describe(self, part: ModelPart, before: Iterable[Link], links: Iterable[Link]) -> None:
         """Give links other masses, and geometries other colours; what is drawn in place of one keeps its own."""
         for old, link, body_id, counts in zip(before, links, part.body_ids.tolist(), part.names.geoms, strict=True):
