@@ -6,7 +6,7 @@ from ravemj.core.transforms import Pose, Vec3
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import collada
 from ravemj.formats.openrave_xml.context import Context
-from ravemj.model.builder import BodyBuilder
+from ravemj.model.builder import BodyBuilder, SensorBuilder
 
 
 def add_collada(
@@ -72,6 +72,6 @@ def _join(body: BodyBuilder, other: BodyBuilder) -> None:
     body.joints += other.joints
     body.adjacent += [(indices[one], indices[two]) for one, two in other.adjacent]
     body.manipulators += other.manipulators
-    body.sensors += [
-        replace(sensor, link=None if sensor.link is None else indices[sensor.link]) for sensor in other.sensors
-    ]
+    for sensor, link_name in other.sensors:
+        link = None if sensor.link is None else indices[sensor.link]
+        body.sensors.append(SensorBuilder(replace(sensor, link=link), link_name))
