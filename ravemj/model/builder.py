@@ -113,6 +113,17 @@ class BodyBuilder:
         """Let it consist of what it consisted of before."""
         self.name, self.links, self.joints, self.adjacent, self.manipulators, self.sensors = parts
 
+    def check_joint_names(self) -> None:
+        """Refuse two joints of one name, unless both have no DOF."""
+        seen: dict[str, bool] = {}
+        for joint in self.joints:
+            if joint.name in seen and (joint.active or seen[joint.name]):
+                message = (
+                    f"there are two joints '{joint.name}'" if joint.name else "there are two joints without a name"
+                )
+                self.refusal = self.refusal or SourceError(message, joint.source, "give each a name of its own")
+            seen[joint.name] = seen.get(joint.name, False) or joint.active
+
     def find_link(self, name: str) -> int | None:
         """Return the index of the first link of that name, or None."""
         return next((index for index, link in enumerate(self.links) if link.name == name), None)

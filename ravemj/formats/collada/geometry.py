@@ -13,7 +13,7 @@ from ravemj.formats.meshes.collada.document import Element, child, children, loc
 from ravemj.formats.meshes.collada.materials import bindings, read_material
 from ravemj.formats.meshes.collada.triangles import triangle_meshes
 from ravemj.formats.meshes.obj import transparency
-from ravemj.formats.meshes.parts import check_finite, check_size
+from ravemj.formats.meshes.parts import BLACK, WHITE, check_finite, check_size
 from ravemj.model.scene import SHAPE_TYPES, Geometry, Mesh, Rgb, Shape, TriMesh
 
 _DIFFUSE: Rgb = (1.0, 0.5, 0.5)
@@ -108,7 +108,7 @@ class GeometryReader:
         if material is None:
             if url:
                 self._library.warn("broken-reference", f"there is no material '{url}' with an effect", instance)
-            return _DIFFUSE, _AMBIENT, 0.0
+            return WHITE, BLACK, 0.0
         opacity = 1.0 if material.transparency is None else material.transparency
         return material.diffuse or _DIFFUSE, material.ambient or _AMBIENT, transparency(opacity)
 

@@ -3,7 +3,7 @@
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -189,10 +189,11 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
             drawn = geom.render if file is geom.collision and geom.collision is not None else None
             surfaces = _surfaces(geom, drawn, element, scope)
             displays = [surfaces, *[None if surfaces is None else ()] * (len(parts) - 1)]
-            return [
+            geometries = [
                 _geometry(geom, element, TriMesh(_scaled(part.mesh, geom, scope)), scope, part, display)
                 for part, display in zip(parts, displays, strict=True)
             ]
+            return [geometries[0], *(replace(geometry, name="") for geometry in geometries[1:])]
     corners = np.array(geom.vertices).reshape(-1, 3)
     mesh = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
     return [_geometry(geom, element, TriMesh(_scaled(mesh, geom, scope)), scope, MeshPart(mesh), None)]

@@ -262,19 +262,9 @@ def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError 
     scope.read(element)
     body.joint_values = scope.joint_values
     _check_type(element, body, context)
-    _check_joint_names(body)
+    body.check_joint_names()
     check_sensors(body, context.diagnostics)
     return body.freeze(context.diagnostics), body.refusal
-
-
-def _check_joint_names(body: BodyBuilder) -> None:
-    """Refuse two joints of one name, unless both have no DOF."""
-    seen: dict[str, bool] = {}
-    for joint in body.joints:
-        if joint.name in seen and (joint.active or seen[joint.name]):
-            message = f"there are two joints '{joint.name}'" if joint.name else "there are two joints without a name"
-            body.refusal = body.refusal or SourceError(message, joint.source, "give each a name of its own")
-        seen[joint.name] = seen.get(joint.name, False) or joint.active
 
 
 def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
