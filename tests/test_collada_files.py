@@ -51,11 +51,11 @@ class TestOtherFiles:
     def test_two_robots_and_a_body_take_kinematics_and_shapes_from_another_file(self):
         found = bodies(DATA / "pair.dae")
         assert [(name, body.is_robot) for name, body in found.items()] == [
-            ("left", True),
-            ("right", True),
+            ("hinge", True),
+            ("hinge0", True),
             ("crate", False),
         ]
-        for name, x in (("left", 0), ("right", 2)):
+        for name, x in (("hinge", 0), ("hinge0", 2)):
             base, leaf = found[name].links
             assert (base.T_world_link.position, leaf.T_world_link.position) == ((x, 0, 0), (x, 0, 0.5))
             (plate,) = leaf.geometries
@@ -68,12 +68,12 @@ class TestOtherFiles:
 
     def test_other_sets_of_shapes_are_left_out_and_links_can_be_hidden(self):
         found = bodies(DATA / "pair.dae")
-        assert [part.visible for name in ("left", "right") for part in found[name].links[1].geometries] == [True, False]
+        assert [part.visible for name in ("hinge", "hinge0") for part in found[name].links[1].geometries] == [True, False]
         assert codes(DATA / "pair.dae") == ["ignored-tag"]
 
     @pytest.mark.parametrize("name", ["right_system", "right"])
     def test_an_id_behind_the_file_picks_one_body(self, name):
-        assert list(bodies(f"{DATA}/pair.dae#{name}")) == ["right"]
+        assert list(bodies(f"{DATA}/pair.dae#{name}")) == ["hinge"]
 
     def test_an_id_that_is_not_there(self):
         failure = read_file(f"{DATA}/pair.dae#middle").failure
@@ -89,7 +89,7 @@ class TestOtherFiles:
         monkeypatch.setenv("OPENRAVE_DATA", str(DATA.parent))
         env = ravemj.Environment()
         robot = env.ReadRobotURI("openrave:/collada/pair.dae#right_system")
-        assert robot.GetName() == "right"
+        assert robot.GetName() == "hinge"
 
 
 class TestInXml:
@@ -123,7 +123,7 @@ class TestInXml:
     def test_an_id_picks_the_body(self, tmp_path, monkeypatch):
         monkeypatch.setenv("OPENRAVE_DATA", str(DATA))
         found = self.load(tmp_path, '<Robot file="pair.dae#right_system" prefix="r_"/>')
-        assert [link.name for link in found["right"].links] == ["r_base", "r_leaf"]
+        assert [link.name for link in found["hinge"].links] == ["r_base", "r_leaf"]
 
 
 class TestFunctions:

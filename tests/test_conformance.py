@@ -1,11 +1,26 @@
 """Small OpenRAVE XML files, each with what OpenRAVE makes of it."""
 
 import json
+import re
 
 import pytest
 from agreement import CONFORMANCE, compare
 
 CASES = sorted(path.parent for path in CONFORMANCE.glob("cases/*/expected.json"))
+
+NOT_COPIED = {
+    "gap-56-dae-formula-unit": (
+        r"inverse_dynamics",
+        "without written derivatives OpenRAVE leaves the follower out of its dynamics",
+    ),
+    "gap-58-dae-cylindrical": ("", "ravemj has no joint that turns and slides; the first axis counts, with a warning"),
+    "gap-72-mesh-absolute-missing": (
+        r"diffuse|ambient|geometries",
+        "OpenRAVE takes an absolute path for found without looking; all missing meshes look the same here",
+    ),
+    "gap-74-obj-quads": (r"mesh", "a concave polygon of five corners that OpenRAVE's importer cuts with an overlap"),
+}
+"""Cases in which ravemj differs: a pattern of the places, and why."""
 
 
 @pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
@@ -16,8 +31,12 @@ def test_case(folder, physics, caplog):
     caplog.set_level("CRITICAL")
     expected = json.loads((folder / "expected.json").read_text())
     differences, _ = compare(folder, expected, strict_failures=True, physics=physics)
-    assert differences == []
+    if folder.name in NOT_COPIED and not (physics and folder.name == "gap-56-dae-formula-unit"):
+        pattern, _ = NOT_COPIED[folder.name]
+        assert [one for one in differences if re.search(pattern, one)] == differences != []
+    else:
+        assert differences == []
 
 
 def test_all_cases_are_here():
-    assert len(CASES) == 189
+    assert len(CASES) == 261

@@ -56,7 +56,7 @@ def test_a_wedge(name):
     ("name", "diffuse", "ambient"),
     [
         ("wedge.stl", 1, 0.05),
-        ("wedge.off", 0.6, 0),
+        ("wedge.off", 0.6, 0.6),
         ("wedge.ply", 1, 1),
     ],
 )

@@ -120,7 +120,7 @@ class TestBodyInBody:
             f"<KinBody name='k'><Body name='a'><Translation>5 0 0</Translation>{self.BOX}{self.INNER}</Body></KinBody>"
         )
         ((link,),) = [body.links for body in reading.scene.bodies]
-        assert (link.name, link.T_world_link.position, link.inertial.mass) == ("a", (5, 0, 0), 1)
+        assert (link.name, link.T_world_link.position, link.inertial.mass) == ("other", (5, 0, 0), 1)
         for geometry in link.geometries:
             np.testing.assert_allclose(geometry.T_link_geometry.position, (1, -1, 0), atol=1e-15)
         assert [finding.code for finding in reading.diagnostics] == ["openrave-bug", "openrave-bug"]
@@ -130,7 +130,7 @@ class TestBodyInBody:
         mass = "<Mass type='custom'><total>3</total></Mass>"
         reading = read_text(f"<KinBody name='k'><Body name='a' file='inner.xml'>{mass}{self.BOX}</Body></KinBody>")
         (link,) = reading.scene.bodies[0].links
-        assert (link.name, link.inertial.mass) == ("a", 3)
+        assert (link.name, link.inertial.mass) == ("other", 3)
         positions = [geometry.T_link_geometry.position for geometry in link.geometries]
         np.testing.assert_allclose(positions, [(1, -1, 0), (0, 0, 1)], atol=1e-15)
 

@@ -77,6 +77,8 @@ def _read_collada(path: str, given: Attributes, read_content: Callable[[Context,
         for built in found:
             built.name = _unused(built.name or "body", {body.name for body in bodies})
             bodies.append(built.freeze(context.diagnostics))
+            if built.refusal is not None:
+                raise built.refusal
     except SourceError as error:
         failure = error
     except ArithmeticError:

@@ -8,13 +8,14 @@ from the poses of the links, and places the links by them, as OpenRAVE does.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
-from ravemj.core.transforms import UNMOVED, ZERO, Pose, Vec3, Wxyz, rotate, scale
+from ravemj.core.transforms import UNMOVED, ZERO, Pose, Vec3, Wxyz, add, rotate, scale
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.model import hierarchy, scene
-from ravemj.model.joints import measured_values, place_links
+from ravemj.model.joints import displaced_pose, measured_values, place_links
 from ravemj.model.limits import clamp
-from ravemj.model.manipulators import ManipulatorBuilder, freeze_manipulator
+from ravemj.model.manipulators import ManipulatorBuilder, check_reach, freeze_manipulator
 from ravemj.model.mimic import Equations, MimicJoints, NamedJoint, leaders, resolve
 
 _ROUNDING = 1e-9  # of values that were degrees
@@ -71,6 +72,16 @@ class JointBuilder:
         return all(axis.lower >= axis.upper and not axis.circular for axis in self.axes)
 
 
+class SensorBuilder(NamedTuple):
+    """An attached sensor; a name of its link stands for the first link that has it in the end.
+
+    In a robot that OpenRAVE refuses, the sensor stays on the link that it has here.
+    """
+
+    sensor: scene.AttachedSensor
+    link_name: str | None = None
+
+
 @dataclass(slots=True)
 class BodyBuilder:
     """A body in the making.
@@ -88,9 +99,30 @@ class BodyBuilder:
     adjacent: list[tuple[int, int]] = field(default_factory=lambda: [])
     joined_links_adjacent: bool = True
     manipulators: list[ManipulatorBuilder] = field(default_factory=lambda: [])
-    sensors: list[scene.AttachedSensor] = field(default_factory=lambda: [])
+    sensors: list[SensorBuilder] = field(default_factory=lambda: [])
     joint_values: list[float] | None = None
     refusal: SourceError | None = None
+
+    def parts(self) -> "BodyParts":
+        """Return what it consists of at this moment."""
+        return BodyParts(
+            self.name, [*self.links], [*self.joints], [*self.adjacent], [*self.manipulators], [*self.sensors]
+        )
+
+    def set_parts(self, parts: "BodyParts") -> None:
+        """Let it consist of what it consisted of before."""
+        self.name, self.links, self.joints, self.adjacent, self.manipulators, self.sensors = parts
+
+    def check_joint_names(self) -> None:
+        """Refuse two joints of one name, unless both have no DOF."""
+        seen: dict[str, bool] = {}
+        for joint in self.joints:
+            if joint.name in seen and (joint.active or seen[joint.name]):
+                message = (
+                    f"there are two joints '{joint.name}'" if joint.name else "there are two joints without a name"
+                )
+                self.refusal = self.refusal or SourceError(message, joint.source, "give each a name of its own")
+            seen[joint.name] = seen.get(joint.name, False) or joint.active
 
     def find_link(self, name: str) -> int | None:
         """Return the index of the first link of that name, or None."""
@@ -108,7 +140,7 @@ class BodyBuilder:
             diagnostics: Takes a warning for every value that is moved into its limits.
 
         Raises:
-            SourceError: a manipulator is impossible.
+            SourceError: a number is not finite.
         """
         if not self.joints and not self.manipulators:
             return self._frozen([link.pose for link in self.links], [], 0)
@@ -130,8 +162,30 @@ class BodyBuilder:
             placing = [joints[index] for index in decided.order]
             place_links(poses, placing, [[axis.value for axis in joint.axes] for joint in placing])
         body = self._frozen(poses, joints, sum(built.active for built in listed))
-        manipulators = tuple(freeze_manipulator(built, body, diagnostics) for built in self.manipulators)
+        manipulators = self._frozen_manipulators(body, diagnostics)
+        if self.refusal is not None:
+            if self.joint_values is not None:  # OpenRAVE does not come to setting them
+                self.joint_values = None
+                return self.freeze(Diagnostics())
+            sensors = tuple(self._sensor(built) for built in self.sensors)
+            return replace(body, manipulators=manipulators, sensors=sensors, has_active_manipulator=False)
         return replace(body, manipulators=manipulators) if manipulators else body
+
+    def _frozen_manipulators(self, body: scene.KinBody, diagnostics: Diagnostics) -> tuple[scene.Manipulator, ...]:
+        """Return the arms. One that is impossible has no gripper, and those behind it have no links."""
+        frozen: list[scene.Manipulator] = []
+        for built in self.manipulators:
+            arm = freeze_manipulator(built, body, diagnostics)
+            try:
+                check_reach(arm, body)
+            except SourceError as error:
+                self.refusal = self.refusal or error
+                break
+            frozen.append(arm)
+        rest = self.manipulators[len(frozen) :]
+        unfinished = [replace(built, gripper_joints=[]) for built in rest[:1]]
+        unfinished += [replace(built, base="", effector="", gripper_joints=[]) for built in rest[1:]]
+        return (*frozen, *(freeze_manipulator(built, body, Diagnostics()) for built in unfinished))
 
     def _frozen(self, poses: Sequence[Pose], joints: Sequence[scene.Joint], active: int) -> scene.KinBody:
         """Return the body with its links at the given poses, and without its manipulators."""
@@ -143,9 +197,13 @@ class BodyBuilder:
             passive_joints=tuple(joints[active:]),
             adjacent=tuple(self.adjacent),
             joined_links_adjacent=self.joined_links_adjacent,
-            sensors=tuple(self.sensors),
+            sensors=tuple(self._sensor(built) for built in self.sensors),
             source=self.source,
         )
+
+    def _sensor(self, built: SensorBuilder) -> scene.AttachedSensor:
+        sensor, name = built
+        return sensor if name is None or self.refusal is not None else replace(sensor, link=self.find_link(name))
 
     def _in_order(self) -> list[JointBuilder]:
         """Return the active joints, then the disabled ones, then the followers."""
@@ -201,6 +259,17 @@ class BodyBuilder:
         return _limited(active, still, diagnostics) + values[len(active) :]
 
 
+class BodyParts(NamedTuple):
+    """What a body in the making consists of; see ``BodyBuilder``."""
+
+    name: str
+    links: list[LinkBuilder]
+    joints: list[JointBuilder]
+    adjacent: list[tuple[int, int]]
+    manipulators: list[ManipulatorBuilder]
+    sensors: list[SensorBuilder]
+
+
 def _named(listed: Sequence[JointBuilder]) -> list[NamedJoint]:
     named: list[NamedJoint] = []
     dof = 0
@@ -220,6 +289,8 @@ def _directed(joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, pla
         T_parent_child = T_parent_child.inverse()
         anchor = T_parent_child.apply(anchor)
         axes = tuple(replace(axis, direction=scale(rotate(T_parent_child.wxyz, axis.direction), -1.0)) for axis in axes)
+        if joint.kind == "slider":  # OpenRAVE reports the anchor of the written poses, not that of the value 0
+            anchor = add(anchor, scale(axes[0].direction, axes[0].reference))
     return scene.Joint(
         name=joint.name,
         kind=joint.kind,
@@ -236,15 +307,16 @@ def _directed(joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, pla
 
 
 def _welded(joint: scene.Joint, built: JointBuilder, diagnostics: Diagnostics) -> scene.Joint:
-    """Return a weld as OpenRAVE reports it: its frame is that of its child, and its limits are 0."""
+    """Return a weld as OpenRAVE reports it: at the value 0, with the frame of its child, and limits of 0."""
+    T_parent_child = displaced_pose(joint, [0.0] * len(joint.axes))
     if any(axis.lower for axis in joint.axes):
         message = "a joint with equal limits does not move; OpenRAVE moves the limits to 0"
         diagnostics.warn("openrave-bug", message, joint.source)
-    turn = joint.T_parent_child.wxyz if built.weld_turn is None else built.weld_turn
+    turn = T_parent_child.wxyz if built.weld_turn is None else built.weld_turn
     is_z = joint.kind == "hinge" and built.weld_turn is None  # whatever the file says
     axes = (replace(axis, direction=rotate(turn, _Z if is_z else axis.direction)) for axis in joint.axes)
-    axes = tuple(replace(axis, lower=0.0, upper=0.0) for axis in axes)
-    return replace(joint, anchor=joint.T_parent_child.position, axes=axes)
+    axes = tuple(replace(axis, lower=0.0, upper=0.0, reference=0.0) for axis in axes)
+    return replace(joint, T_parent_child=T_parent_child, anchor=T_parent_child.position, axes=axes)
 
 
 def _limited(

@@ -6,8 +6,14 @@ Joints are counted as in a body's list: active ones, then passive ones.
 from collections import deque
 from collections.abc import Callable
 
-from ravemj.model.manipulators import joint_dofs
+from ravemj.core.graphs import ShortestPaths
 from ravemj.model.scene import Joint, KinBody, Manipulator
+
+
+def joint_dofs(body: KinBody, joint: int) -> tuple[int, ...]:
+    """Return the DOFs of an active joint."""
+    first = sum(len(other.axes) for other in body.joints[:joint])
+    return tuple(range(first, first + len(body.joints[joint].axes)))
 
 
 def parents(body: KinBody, link: int) -> list[int]:
@@ -27,10 +33,12 @@ def chain(body: KinBody, first: int, last: int) -> tuple[list[int], list[int]]:
     Returns:
         The links on it, both ends included, and the joints between them; none where there is no way, or no need of one.
     """
-    reached = _search(body, first, lambda joint: True)
-    if first == last or last not in reached:
-        return [], []
-    return _way_back(reached, first, last)
+    ends = [(joint.parent, joint.child) for joint in body.all_joints]
+    joints = ShortestPaths(len(body.links), ends).path(first, last)
+    links = [first]
+    for joint in joints:
+        links.append(sum(ends[joint]) - links[-1])
+    return (links, joints) if joints else ([], [])
 
 
 def _search(body: KinBody, start: int, passes: Callable[[Joint], bool]) -> dict[int, tuple[int, int]]:

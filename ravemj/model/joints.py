@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.graphs import topological_order
 from ravemj.core.transforms import (
+    ZERO,
     Floats,
     Pose,
     Vec3,
@@ -54,8 +55,11 @@ def poses_at(body: KinBody, values: Sequence[Sequence[float]]) -> list[Pose]:
 
 def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
     """Return the pose of a joint's child in its parent at the given values [rad or m]."""
-    if joint.static:
-        return joint.T_parent_child
+    return joint.T_parent_child if joint.static else displaced_pose(joint, values)
+
+
+def displaced_pose(joint: Joint, values: Sequence[float]) -> Pose:
+    """Return the pose of a joint's child in its parent at the given values [rad or m], also of a weld."""
     if joint.kind == "slider":
         (axis,), (value,) = joint.axes, values
         motion = Pose(scale(axis.direction, value - axis.reference))
@@ -103,8 +107,7 @@ def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
         now: ``T_parent_child`` as it is.
 
     Returns:
-        A value [rad or m] for each axis. An angle lies in (-pi, pi], or in the turn around the middle of limits beyond
-        that; a joint with two axes counts as unmoved.
+        A value [rad or m] for each axis. An angle is at most half a turn; a joint with two axes counts as unmoved.
     """
     if joint.static:
         return tuple(0.0 for _ in joint.axes)
@@ -115,21 +118,17 @@ def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
     if joint.kind == "hinge2":
         return tuple(axis.reference for axis in joint.axes)
     (axis,) = joint.axes
+    if axis.direction == ZERO:
+        return (0.0,)
     if joint.kind == "slider":
         D = Pose(add(now.position, scale(rotate(turned, rest.position), -1.0)), turned)
         moved = dot(axis.direction, add(D.apply(joint.anchor), scale(joint.anchor, -1.0)))
     else:
-        moved = _nearest_turn(axis, 2 * math.atan2(dot(axis.direction, turned[1:]), turned[0]))
+        moved = 2 * math.atan2(dot(axis.direction, turned[1:]), turned[0])
+        if math.isnan(moved):
+            raise OverflowError("the poses of the links are too far apart to compute with")
+        moved -= math.tau * round((axis.reference + moved) / math.tau)
     return (axis.reference + (moved if abs(moved) > ROUNDING else 0.0),)
-
-
-def _nearest_turn(axis: Axis, moved: float) -> float:
-    """Add full turns to an angle so that the joint's value comes near the middle of its range."""
-    if math.isnan(moved):
-        raise OverflowError("the poses of the links are too far apart to compute with")
-    beyond = axis.lower < -math.pi or axis.upper > math.pi
-    middle = (axis.lower + axis.upper) / 2 if beyond else 0.0
-    return moved - math.tau * round((axis.reference + moved - middle) / math.tau)
 
 
 def wxyz_from_rotation_vector(vector: Vec3) -> Wxyz:

@@ -3,9 +3,11 @@
 import math
 from dataclasses import dataclass, field
 
+from ravemj.core.graphs import lies_between
 from ravemj.core.transforms import Pose, Vec3, dot, scale
 from ravemj.errors import Diagnostics, Source, SourceError
-from ravemj.model import scene
+from ravemj.model import chains, scene
+from ravemj.model.chains import joint_dofs
 
 
 @dataclass(slots=True)
@@ -24,18 +26,12 @@ class ManipulatorBuilder:
 
 
 def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnostics: Diagnostics) -> scene.Manipulator:
-    """Find the links and joints that a manipulator names.
-
-    Raises:
-        SourceError: the effector is not moved by the arm's joints, so that OpenRAVE refuses the robot.
-    """
+    """Find the links and joints that a manipulator names."""
     names = [link.name for link in body.links]
     base = names.index(built.base) if built.base in names else None
     effector = names.index(built.effector) if built.effector in names else None
-    arm = () if base is None or effector is None else _arm_dofs(built, body, base, effector)
-    gripper_joints = _gripper(built, body, arm, diagnostics)
-    gripper_dofs = tuple(dof for joint in gripper_joints for dof in joint_dofs(body, joint))
-    signs = [math.copysign(1.0, value) if value else 0.0 for value in built.closing_direction]
+    arm = () if base is None or effector is None else _arm_dofs(body, base, effector)
+    gripper = _gripper(built, body, arm, diagnostics)
     return scene.Manipulator(
         name=built.name,
         base=base,
@@ -43,18 +39,12 @@ def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnosti
         T_effector_tool=built.T_effector_tool,
         direction=_direction(built, diagnostics),
         arm_dofs=arm,
-        gripper_joints=gripper_joints,
-        gripper_dofs=gripper_dofs,
-        chucking_direction=tuple((signs + [0.0] * len(gripper_dofs))[: len(gripper_dofs)]),
+        gripper_joints=tuple(gripper),
+        gripper_dofs=tuple(dof for joint in gripper for dof in joint_dofs(body, joint)),
+        chucking_direction=tuple(sign for signs in gripper.values() for sign in signs),
         source=built.source,
         gripper_name=built.gripper_name,
     )
-
-
-def joint_dofs(body: scene.KinBody, joint: int) -> tuple[int, ...]:
-    """Return the DOFs of an active joint."""
-    first = sum(len(other.axes) for other in body.joints[:joint])
-    return tuple(range(first, first + len(body.joints[joint].axes)))
 
 
 def chain(body: scene.KinBody, base: int, effector: int) -> list[int] | None:
@@ -75,34 +65,65 @@ def chain(body: scene.KinBody, base: int, effector: int) -> list[int] | None:
     return way[::-1]
 
 
-def _arm_dofs(built: ManipulatorBuilder, body: scene.KinBody, base: int, effector: int) -> tuple[int, ...]:
+def check_reach(manipulator: scene.Manipulator, body: scene.KinBody) -> None:
+    """Check that the joints of an arm move its effector.
+
+    Raises:
+        SourceError: one does not, since it lies on no path from link 0 to the effector; OpenRAVE refuses the robot.
+    """
+    effector = manipulator.effector
+    if effector is None:
+        return
+    above = chains.joints_above(body, effector)
+    hangs_on_root = bool(above) and body.all_joints[above[-1]].parent == 0
+    if hangs_on_root and set(manipulator.arm_dofs) <= chains.dofs_moving(body, effector):
+        return
+    edges = [(joint.parent, joint.child) for joint in body.all_joints]
+    for dof in manipulator.arm_dofs:
+        joint = body.joint_of_dof(dof)
+        if not lies_between(edges, (joint.parent, joint.child), 0, effector):
+            message = f"manipulator '{manipulator.name}': joint '{joint.name}' does not move its effector"
+            link = body.links[effector].name
+            hint = f"name as base a link between '{body.links[0].name}' and '{link}'"
+            raise SourceError(f"{message} '{link}'", manipulator.source, hint)
+
+
+def _arm_dofs(body: scene.KinBody, base: int, effector: int) -> tuple[int, ...]:
     joints = body.all_joints
-    way = chain(body, base, effector)
-    if way is None:
-        message = f"manipulator '{built.name}': no joints lead from '{built.base}' out to '{built.effector}'"
-        raise SourceError(message, built.source)
     dofs: dict[int, None] = {}
-    for index in way:
+    for index in chains.chain(body, base, effector)[1]:
         joint = joints[index]
+        if joint.static:
+            continue
         if joint.mimic is not None:
             dofs.update(dict.fromkeys(joint.mimic.dofs))
-        elif index < len(body.joints) and not joint.static:
+        elif index < len(body.joints):
             dofs.update(dict.fromkeys(joint_dofs(body, index)))
     return tuple(dofs)
 
 
 def _gripper(
     built: ManipulatorBuilder, body: scene.KinBody, arm: tuple[int, ...], diagnostics: Diagnostics
-) -> tuple[int, ...]:
-    found: dict[int, None] = {}
+) -> dict[int, list[float]]:
+    """Return the joints of the gripper, each with the signs of closing of its DOFs.
+
+    The signs are dealt out to the names in turn; joints of the arm get none.
+    """
+    found: dict[int, list[float]] = {}
+    signs = iter([math.copysign(1.0, value) if value else 0.0 for value in built.closing_direction])
     for name in built.gripper_joints:
         index = next((i for i, joint in enumerate(body.joints) if joint.name == name), None)
-        if index is None or set(joint_dofs(body, index)) & set(arm):
+        dofs = () if index is None else joint_dofs(body, index)
+        if set(dofs) & set(arm):
+            index = None
+        else:
+            own = [next(signs, 0.0) for _ in dofs or (None,)]
+        if index is None:
             message = f"manipulator '{built.name}': '{name}' is no active joint outside of the arm; left out"
             diagnostics.warn("unknown-joint", message, built.source)
         else:
-            found.setdefault(index)
-    return tuple(found)
+            found.setdefault(index, own)
+    return found
 
 
 def _direction(built: ManipulatorBuilder, diagnostics: Diagnostics) -> Vec3:

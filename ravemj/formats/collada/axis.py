@@ -13,7 +13,7 @@ _RADIANS = {"OpenRAVE Collada Writer", "URDF Collada Writer"}
 """Tools that write speeds and values of joints in radians, where the standard says degrees."""
 
 _UNLIMITED_SLIDE = 1e6
-_DEFAULT_VELOCITY = 0.5
+_DEFAULT_VELOCITIES = {"revolute": 0.5, "prismatic": 0.01}  # [rad/s, m/s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ class AxisReader:
             circular=circular,
             weight=self._parameter(info.kinematics, "planning_weight", 1.0),
             resolution=self._parameter(info.kinematics, "discretization_resolution", 0.02),
-            max_velocity=self._rate(info.motion, "speed", speed_factor, _DEFAULT_VELOCITY),
+            max_velocity=self._rate(info.motion, "speed", speed_factor, _DEFAULT_VELOCITIES[local_name(element)]),
             max_acceleration=self._rate(info.motion, "acceleration", speed_factor, 50.0),
         )
 

@@ -4,7 +4,7 @@ from ravemj.formats.collada.library import Library
 from ravemj.formats.collada.mathml import FormulaError, Writer
 from ravemj.formats.collada.references import References
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, words
-from ravemj.model.builder import BodyBuilder
+from ravemj.model.builder import BodyBuilder, JointBuilder
 from ravemj.model.mimic import Equations
 
 
@@ -36,7 +36,8 @@ class _FormulaReader:
         self._model = model
         self._joints = joints
         self._body = body
-        self._writer = Writer(self._joint_name, self._function)
+        self._writer = Writer(self._source, self._function)
+        self._metres = library.metres(model)
 
     def read(self, formula: Element) -> None:
         """Read a formula; a joint whose formula says nothing that can be computed stays where it is."""
@@ -47,7 +48,7 @@ class _FormulaReader:
             return
         joint = self._body.joints[index]
         try:
-            position = self._writer.equation(_position(formula))
+            position = self._in_metres(joint, self._writer.equation(_position(formula)))
         except FormulaError as error:
             message = f"joint '{joint.name}' cannot follow: {error}; it stays where it is"
             self._library.warn("bad-mimic", message, formula)
@@ -65,6 +66,18 @@ class _FormulaReader:
             except FormulaError as error:
                 self._library.warn("bad-mimic", f"a derivative is left out: {error}", item)
         return text
+
+    def _in_metres(self, joint: JointBuilder, text: str) -> str:
+        """Return the text of a position in metres or radians, from units of the file."""
+        return f"{self._metres:f}*({text})" if joint.kind == "slider" and self._metres != 1 else text
+
+    def _source(self, path: str) -> str | None:
+        """Return the text for the value of a joint in units of the file."""
+        index = self._joint(path)
+        if index is None:
+            return None
+        joint = self._body.joints[index]
+        return f"({1 / self._metres:f}*{joint.name})" if joint.kind == "slider" and self._metres != 1 else joint.name
 
     def _joint(self, path: str) -> int | None:
         found = self._references.resolve(path, self._model) if path else None

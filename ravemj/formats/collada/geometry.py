@@ -13,7 +13,7 @@ from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
 from ravemj.formats.meshes.collada.materials import bindings, read_material
 from ravemj.formats.meshes.collada.triangles import triangle_meshes
-from ravemj.formats.meshes.parts import check_finite, check_size
+from ravemj.formats.meshes.parts import BLACK, WHITE, check_finite, check_size
 from ravemj.model.scene import SHAPE_TYPES, CrossSection, Geometry, Mesh, Rgb, Shape, Surface, TriMesh
 
 _DIFFUSE: Rgb = (1.0, 0.5, 0.5)
@@ -123,7 +123,7 @@ class GeometryReader:
         if material is None:
             if url:
                 self._library.warn("broken-reference", f"there is no material '{url}' with an effect", instance)
-            return _DIFFUSE, _AMBIENT, 0.0
+            return WHITE, BLACK, 0.0
         opacity = material.transparency
         transparency = 1.0 - opacity if opacity is not None and 0.0 < opacity <= 1.0 else 0.0  # 0 counts as 1
         return material.diffuse or _DIFFUSE, material.ambient or _AMBIENT, transparency

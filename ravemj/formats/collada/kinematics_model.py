@@ -132,7 +132,7 @@ class ModelReader:
         self._found: list[_FoundJoint] = []
         self._ends: dict[str, list[tuple[Element, int]]] = {}
         self._link_names = _Names(link.name for link in body.links)
-        self._joint_names = _Names(joint.name for joint in body.joints)
+        self._dummies = 0
 
     def read(self) -> None:
         """Read all links, each with those that its joints carry."""
@@ -172,8 +172,9 @@ class ModelReader:
     def _read_link(self, element: Element, node: Node | None, T_world_link: Pose) -> None:
         if len(self.body.links) >= _MAX_LINKS:
             raise self._library.error(f"the body has more than {_MAX_LINKS} links", element)
-        name = element.get("name") or element.get("id") or (node.name if node else "") or element.get("sid")
-        link = LinkBuilder(self._link_name(name), self._library.source(element), T_world_link, inertial=NO_MASS)
+        link = LinkBuilder(
+            self._link_name(element.get("name")), self._library.source(element), T_world_link, inertial=NO_MASS
+        )
         index = len(self.body.links)
         self.body.links.append(link)
         self.links[element] = index
@@ -190,7 +191,10 @@ class ModelReader:
                 self._ends.setdefault(attachment.get("joint") or "", []).append((attachment, index))
 
     def _link_name(self, name: str | None) -> str:
-        return self._link_names.give(valid_name(name) or f"link{len(self.body.links)}")
+        if not name:
+            name = f"__dummy{self._dummies}"
+            self._dummies += 1
+        return self._link_names.give(valid_name(name))
 
     def _read_shapes(self, link: LinkBuilder, node: Node, T_world_link: Pose) -> None:
         T_link_world = T_world_link.inverse().matrix()
@@ -261,7 +265,7 @@ class ModelReader:
         infos = [self._infos.get(axis, AxisInfo()) for axis in axes]
         name = valid_name(joint.get("name") or joint.get("id") or joint.get("sid"))
         return JointBuilder(
-            name=self._joint_names.give(name or f"joint{len(self.body.joints) + len(self._found)}"),
+            name=name or f"joint{len(self.body.joints) + len(self._found)}",
             kind=kind,
             links=links,
             T_first_second=T_parent_child,

@@ -12,6 +12,7 @@ from ravemj.formats.collada.polar import rigid_part
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.visual import transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
+from ravemj.model.builder import SensorBuilder
 from ravemj.model.manipulators import ManipulatorBuilder
 from ravemj.model.scene import AttachedSensor, Intrinsics
 
@@ -117,16 +118,15 @@ class ExtraReader:
         instance = child(technique, "instance_sensor")
         sensor = None if instance is None else self._library.follow(instance, "sensor")
         kind = None if sensor is None else sensor.get("type")
-        self._body.sensors.append(
-            AttachedSensor(
-                name=extra.get("name", ""),
-                link=link,
-                T_link_sensor=Pose() if origin is None else self._pose(origin),
-                type=kind,
-                camera=_camera(sensor) if sensor is not None and "camera" in (kind or "").lower() else None,
-                source=self._library.source(extra),
-            )
+        built = AttachedSensor(
+            name=extra.get("name", ""),
+            link=link,
+            T_link_sensor=Pose() if origin is None else self._pose(origin),
+            type=kind,
+            camera=_camera(sensor) if sensor is not None and "camera" in (kind or "").lower() else None,
+            source=self._library.source(extra),
         )
+        self._body.sensors.append(SensorBuilder(built))
 
     def _read_actuator(self, technique: Element, system: Element) -> None:
         """Give a joint the torque limit and the inertia of its motor, where the file has a motor."""

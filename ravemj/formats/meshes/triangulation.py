@@ -1,4 +1,4 @@
-"""Triangulation of polygons: fans for convex ones, ear clipping for the others.
+"""Triangulation of polygons: halves of quadrilaterals, fans for convex ones, ear clipping for the others.
 
 Conformance cases fix the order of the triangles, so this is no package's triangulation.
 """
@@ -40,11 +40,30 @@ def clipped(points: Floats, starts: Ints, sizes: Ints) -> Ints:
     Returns:
         As ``fans``.
     """
-    concave = _concave(points, starts, sizes)
-    pieces = [fans(starts[~concave], sizes[~concave])]
+    quads = sizes == 4
+    concave = _concave(points, starts, sizes) & ~quads
+    plain = ~(concave | quads)
+    pieces = [fans(starts[plain], sizes[plain]), _halves(points, starts[quads])]
     for start, size in zip(starts[concave].tolist(), sizes[concave].tolist(), strict=True):
         pieces.append(start + clip_ears(points[start : start + size]))
     return np.concatenate(pieces)
+
+
+def _halves(points: Floats, starts: Ints) -> Ints:
+    """Cut quadrilaterals, which may be bent, from the first corner where the angles to the diagonal exceed pi.
+
+    From the first corner where there is none, as OpenRAVE's importer does it.
+    """
+    around = (np.arange(4)[:, np.newaxis] + np.arange(1, 4)) % 4  # for each corner the three others
+    corners = points[starts[:, np.newaxis] + np.arange(4)]
+    arms = corners[:, around] - corners[:, :, np.newaxis]
+    lengths = np.linalg.norm(arms, axis=3, keepdims=True)
+    arms = arms / np.where(lengths > 0, lengths, 1.0)
+    cosines = np.einsum("qcik,qck->qci", arms[:, :, ::2], arms[:, :, 1])
+    angles = np.arccos(np.clip(cosines, -1.0, 1.0)).sum(axis=2)
+    first = np.argmax(angles > np.pi + _STRAIGHT, axis=1)
+    turned = (first[:, np.newaxis] + [0, 1, 2, 0, 2, 3]) % 4
+    return (starts[:, np.newaxis] + turned).reshape(-1, 3)
 
 
 def clip_ears(polygon: Floats) -> Ints:

@@ -15,7 +15,7 @@ from ravemj.formats.meshes.parts import BLACK, WHITE, MeshPart, check_finite, ch
 from ravemj.model.scene import Rgb
 
 _COLOURS: dict[str, tuple[Rgb, Rgb]] = {
-    "off": (GRAY, BLACK),
+    "off": (GRAY, GRAY),
     "ply": (WHITE, WHITE),
     "glb": (WHITE, BLACK),
     "gltf": (WHITE, BLACK),

@@ -81,12 +81,13 @@ def excluded_pairs(body: KinBody, welds: WeldGroups) -> list[Pair]:
     solid = set(welds.solid)
     named = [(one, other) for one, other in body.adjacent if one in solid and other in solid]
     pairs = {(one, other) for one, other in named if welds.are_tested(welds.group[one], welds.group[other])}
-    if body.joined_links_adjacent:
-        rigid = connected_components(count, ((joint.parent, joint.child) for joint in joints if joint.static))
-        parts = _cells(rigid, welds)
-        joined = {ordered_pair(rigid[joint.parent], rigid[joint.child]) for joint in joints}
-        for one, other in joined | {(part, part) for part in parts}:
-            pairs.update(welds.tested_pairs(parts.get(one, {}), parts.get(other, {})))
+    if not body.joined_links_adjacent:
+        return sorted(pairs)
+    rigid = connected_components(count, ((joint.parent, joint.child) for joint in joints if joint.static))
+    parts = _cells(rigid, welds)
+    joined = {ordered_pair(rigid[joint.parent], rigid[joint.child]) for joint in joints}
+    for one, other in joined | {(part, part) for part in parts}:
+        pairs.update(welds.tested_pairs(parts.get(one, {}), parts.get(other, {})))
     trees = _cells(connected_components(count, ((joint.parent, joint.child) for joint in joints)), welds).values()
     moving = [tree for tree in trees if tree.keys() != {_WORLD}]
     fixed = {_WORLD: [link for tree in trees if tree.keys() == {_WORLD} for link in tree[_WORLD]]}

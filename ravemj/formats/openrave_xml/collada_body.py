@@ -6,13 +6,13 @@ from ravemj.core.transforms import Pose, Vec3
 from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats import collada
 from ravemj.formats.openrave_xml.context import Context
-from ravemj.model.builder import BodyBuilder
+from ravemj.model.builder import BodyBuilder, SensorBuilder
 
 
 def add_collada(
     body: BodyBuilder, uri: str, source: Source, context: Context, scale: Vec3, *, skip_geometry: bool
 ) -> None:
-    """Fill a body with the first one of a COLLADA file, as its values place it; a broken file is reported.
+    """Fill a body with the first one of a COLLADA file, all joints at 0; a broken file is reported.
 
     Args:
         body: The body.
@@ -32,6 +32,9 @@ def add_collada(
         found = next(iter((*content.bodies, *content.others)), None)
         if found is None:
             raise SourceError("there is no body in it", Source(found_path, included_from=source))
+        if found.is_robot and not body.is_robot:
+            raise SourceError("it holds a robot, and OpenRAVE takes no robot for a KinBody", source, "write <Robot>")
+        found.joint_values = None  # those of the file hold only where it is loaded by itself
         placed = found.freeze(Diagnostics())
     except SourceError as error:
         context.diagnostics.error("broken-file", error.message, error.source)
@@ -72,6 +75,6 @@ def _join(body: BodyBuilder, other: BodyBuilder) -> None:
     body.joints += other.joints
     body.adjacent += [(indices[one], indices[two]) for one, two in other.adjacent]
     body.manipulators += other.manipulators
-    body.sensors += [
-        replace(sensor, link=None if sensor.link is None else indices[sensor.link]) for sensor in other.sensors
-    ]
+    for sensor, link_name in other.sensors:
+        link = None if sensor.link is None else indices[sensor.link]
+        body.sensors.append(SensorBuilder(replace(sensor, link=link), link_name))

@@ -3,12 +3,12 @@
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from ravemj.core.transforms import ZERO, Floats, Pose, Vec3, rows_from_wxyz, scale, wxyz_from_axis_angle
+from ravemj.core.transforms import UNSCALED, ZERO, Floats, Pose, Vec3, rows_from_wxyz, scale, wxyz_from_axis_angle
 from ravemj.formats.meshes import MeshPart
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tags import Tag, placement_tags
@@ -59,7 +59,9 @@ class _Geom:
     context: Context
     name: str = ""
     placement: Placement = field(default_factory=Placement)
-    sizes: dict[str, object] = field(default_factory=lambda: dict(_NO_SIZES))
+    vectors: dict[str, Vec3] = field(default_factory=lambda: dict.fromkeys(_VECTORS, ZERO))
+    numbers: dict[str, float] = field(default_factory=lambda: dict.fromkeys(("radius", "height"), 0.0))
+    cross_section: tuple[tuple[float, float], ...] = ()
     vertices: Sequence[float] = ()
     collision: MeshFile | None = None
     render: MeshFile | None = None
@@ -74,25 +76,26 @@ class _Geom:
         self.placement.rotate(element, self.context.diagnostics)
 
     def read_half_extents(self, element: Element) -> None:
-        self.sizes["half_extents"] = vector(element, self.context.diagnostics)
+        self.vectors["half_extents"] = vector(element, self.context.diagnostics, self.vectors["half_extents"])
 
     def read_full_extents(self, element: Element) -> None:
-        self.sizes["half_extents"] = scale(vector(element, self.context.diagnostics), 0.5)
+        self.read_half_extents(element)
+        self.vectors["half_extents"] = scale(self.vectors["half_extents"], 0.5)
 
     def read_number(self, element: Element) -> None:
         """Read a size that is called like its tag."""
-        self.sizes[element.tag] = number(element, self.context.diagnostics)
+        self.numbers[element.tag] = number(element, self.context.diagnostics, self.numbers[element.tag])
 
     def read_vector(self, element: Element) -> None:
         """Read a size in three directions that is called like its tag."""
-        self.sizes[element.tag] = vector(element, self.context.diagnostics)
+        self.vectors[element.tag] = vector(element, self.context.diagnostics, self.vectors[element.tag])
 
     def read_cross_section(self, element: Element) -> None:
         numbers, rest = leading_numbers(element.text)
         if rest or len(numbers) % 2:
             message = f"<{element.spelled}> needs x and y of each corner, and holds {len(numbers)} numbers"
             self.context.diagnostics.warn("number-count", message, element.source)
-        self.sizes["cross_section"] = tuple(zip(numbers[::2], numbers[1::2], strict=False))
+        self.cross_section = tuple(zip(numbers[::2], numbers[1::2], strict=False))
 
     def read_vertices(self, element: Element) -> None:
         self.vertices, rest = leading_numbers(element.text)
@@ -109,13 +112,13 @@ class _Geom:
         self.render = self.render or _mesh_file(element)
 
     def read_diffuse(self, element: Element) -> None:
-        self.diffuse = vector(element, self.context.diagnostics)
+        self.diffuse = vector(element, self.context.diagnostics, self.diffuse or UNSCALED)
 
     def read_ambient(self, element: Element) -> None:
-        self.ambient = vector(element, self.context.diagnostics)
+        self.ambient = vector(element, self.context.diagnostics, self.ambient or ZERO)
 
     def read_transparency(self, element: Element) -> None:
-        self.transparency = number(element, self.context.diagnostics)
+        self.transparency = number(element, self.context.diagnostics, self.transparency or 0.0)
 
     def read_name(self, element: Element) -> None:
         self.name = element.text.strip()
@@ -157,18 +160,13 @@ SIZE_TAGS = {"half_extents": "extents", "cross_section": "crosssection"}
 """Tags of the sizes that are not called like their tag."""
 
 _SHAPES = {one.xml: one.shape for one in SHAPE_TYPES}
-_NO_SIZES: dict[str, object] = {
-    **dict.fromkeys(("half_extents", "outer_extents", "inner_extents", "bottom_cross", "bottom"), ZERO),
-    **dict.fromkeys(("radius", "height"), 0.0),
-    "cross_section": (),
-}
-"""What OpenRAVE takes for a size that a ``<Geom>`` leaves out."""
+_VECTORS = ("half_extents", "outer_extents", "inner_extents", "bottom_cross", "bottom")
 
 
 def read_geometries(element: Element, scope: GeometryScope, context: Context) -> list[Geometry]:
     """Read a ``<Geom>``: one geometry, or one for each part of its mesh file."""
     context.check_attributes(element, GEOM_ATTRIBUTES, {})
-    kind = element.attributes.get("type", "box").lower()
+    kind = element.attributes.get("type", "").lower() or "box"
     geom = _Geom(context, name=element.attributes.get("name", ""))
     context.walk(element, GEOM_TAGS, GEOM_IGNORED, geom)
     if element.attributes.get("group", "self") != "self":
@@ -182,7 +180,8 @@ def read_geometries(element: Element, scope: GeometryScope, context: Context) ->
         message = f"a geometry of type '{kind}' has no shape here"
         context.diagnostics.warn("unsupported-geometry", message, element.source)
     display = _surfaces(geom, geom.render, element, scope)
-    return [_geometry(geom, element, (shape or NoShape).of_sizes(geom.sizes), scope, _NO_PART, display)]
+    sizes = {**geom.vectors, **geom.numbers, "cross_section": geom.cross_section}
+    return [_geometry(geom, element, (shape or NoShape).of_sizes(sizes), scope, _NO_PART, display)]
 
 
 def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geometry]:
@@ -193,10 +192,11 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
             drawn = geom.render if file is geom.collision and geom.collision is not None else None
             surfaces = _surfaces(geom, drawn, element, scope)
             displays = [surfaces, *[None if surfaces is None else ()] * (len(parts) - 1)]
-            return [
+            geometries = [
                 _geometry(geom, element, TriMesh(_scaled(part.mesh, geom, scope)), scope, part, display)
                 for part, display in zip(parts, displays, strict=True)
             ]
+            return [geometries[0], *(replace(geometry, name="") for geometry in geometries[1:])]
     corners = np.array(geom.vertices).reshape(-1, 3)
     mesh = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
     return [_geometry(geom, element, TriMesh(_scaled(mesh, geom, scope)), scope, MeshPart(mesh), None)]

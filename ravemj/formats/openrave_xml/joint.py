@@ -25,6 +25,7 @@ from ravemj.model.scene import UNLIMITED, Axis, JointKind
 _KINDS: dict[str, JointKind] = {"hinge": "hinge", "slider": "slider", "hinge2": "hinge2", "spherical": "spherical"}
 _DEFAULT_LIMIT: dict[JointKind, float] = {"hinge": math.pi, "slider": 10.0, "hinge2": math.pi, "spherical": 100.0}
 _AXES: dict[JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "spherical": 3}
+_PLAIN_AXIS = Axis(ZERO)
 _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
@@ -36,7 +37,7 @@ class _JointReader:
     body: BodyBuilder
     kind: JointKind
     scale: Vec3
-    circular: bool
+    circular: bool  # the first axis
     axes: list[dict[str, float]]
     links: list[int] = field(default_factory=list[int])
     T_scope_frame: Pose = field(default_factory=Pose)
@@ -44,6 +45,7 @@ class _JointReader:
     directions: dict[int, Vec3] = field(default_factory=dict[int, Vec3])
     stops: bool = False
     motor: Motor | None = None
+    negative: dict[str, Element] = field(default_factory=dict[str, Element])
 
     def read_body(self, element: Element) -> None:
         """Take the first name for the first link and every later one for the second."""
@@ -58,16 +60,20 @@ class _JointReader:
         self.T_scope_frame = frame_of_link(self.body, element, self.context)
 
     def read_anchor(self, element: Element) -> None:
-        self.anchor = hadamard(self.scale, vector(element, self.context.diagnostics))
+        self.anchor = hadamard(self.scale, vector(element, self.context.diagnostics, self.anchor))
 
     def read_direction(self, element: Element) -> None:
         """Read an axis; ``axis1`` and ``axis2`` are those of a joint with two, ``axis`` that of one with one."""
         index = {"axis2": 1}.get(element.tag, 0)
+        if self.kind == "hinge2" and index == 1 and 0 not in self.directions:
+            raise SourceError(
+                f"OpenRAVE refuses <{element.spelled}> before <axis1>", element.source, "write axis1 first"
+            )
         if (element.tag == "axis") != (self.kind in {"hinge", "slider"}):
             message = f"<{element.spelled}> has no effect on a joint of type {self.kind}"
             self.context.diagnostics.warn("ignored-tag", message, element.source)
             return
-        x, y, z = vector(element, self.context.diagnostics)
+        x, y, z = vector(element, self.context.diagnostics, self.directions.get(index, ZERO))
         length = math.hypot(x, y, z)
         if length == 0.0:
             raise SourceError("the axis of a joint cannot be 0 0 0", element.source)
@@ -86,7 +92,7 @@ class _JointReader:
         factor = math.pi / 180 if element.tag == "limitsdeg" and self.kind != "slider" else 1.0
         for index, axis in enumerate(self.axes):
             lower, upper = sorted(value * factor for value in values[2 * index : 2 * index + 2])
-            if not self.circular:
+            if not self.circular or index > 0:
                 axis.update(lower=lower, upper=upper)
             elif (lower, upper) != (0.0, 0.0):
                 message = f"<{element.spelled}> has no effect on a circular joint"
@@ -95,28 +101,35 @@ class _JointReader:
     def read_stop(self, element: Element) -> None:
         """Read one of the deprecated limits, in degrees but for sliders; they also turn every axis round."""
         factor = 1.0 if self.kind == "slider" else math.pi / 180
-        for index, value in enumerate(numbers(element, len(self.axes), self.context.diagnostics)):
-            if not self.circular:
-                self.axes[index]["lower" if element.tag == "lostop" else "upper"] = value * factor
+        limit = "lower" if element.tag == "lostop" else "upper"
+        before = [axis[limit] for axis in self.axes]
+        values = numbers(element, len(self.axes), self.context.diagnostics, before)
+        for index, value in enumerate(values):
+            if not self.circular or index > 0:
+                self.axes[index][limit] = value * factor
         self.stops = True
 
     def read_initial(self, element: Element) -> None:
-        self._set(numbers(element, len(self.axes), self.context.diagnostics), "reference", 1.0)
+        self._set_all(element, "reference")
 
     def read_weight(self, element: Element) -> None:
-        self._set_all(element, "weight", 1.0, 1.0)
+        self._set_all(element, "weight")
 
     def read_resolution(self, element: Element) -> None:
-        self._set_all(element, "resolution", 0.0, 1.0 if self.kind == "slider" else math.pi / 180)
+        """Read a step for each axis, or one for all."""
+        self._set_all(element, "resolution", 1.0 if self.kind == "slider" else math.pi / 180)
+        if len(leading_numbers(element.text).values) == 1:
+            for axis in self.axes:
+                axis["resolution"] = self.axes[0]["resolution"]
 
     def read_max_velocity(self, element: Element) -> None:
-        self._set_all(element, "max_velocity", 0.0, self._degrees(element), not_negative=True)
+        self._set_all(element, "max_velocity", self._degrees(element), not_negative=True)
 
     def read_max_acceleration(self, element: Element) -> None:
-        self._set_all(element, "max_acceleration", 0.0, self._degrees(element), not_negative=True)
+        self._set_all(element, "max_acceleration", self._degrees(element), not_negative=True)
 
     def read_max_torque(self, element: Element) -> None:
-        self._set_all(element, "max_torque", 0.0, 1.0, not_negative=True)
+        self._set_all(element, "max_torque", not_negative=True)
 
     def read_actuator(self, element: Element) -> None:
         self.motor = read_motor(element, self.context)
@@ -124,18 +137,14 @@ class _JointReader:
     def _degrees(self, element: Element) -> float:
         return math.pi / 180 if element.tag.endswith("deg") else 1.0
 
-    def _set_all(
-        self, element: Element, name: str, default: float, factor: float, *, not_negative: bool = False
-    ) -> None:
-        """Read a number for each axis; where there are fewer, the first stands for the rest."""
-        found = leading_numbers(element.text).values
-        count = 1 if len(found) == 1 else len(self.axes)
-        values = numbers(element, count, self.context.diagnostics, default)
-        if not_negative and min(values) < 0:
-            raise SourceError(f"<{element.spelled}> is {min(values):g}, and cannot be negative", element.source)
-        self._set(values if len(values) == len(self.axes) else values * len(self.axes), name, factor)
-
-    def _set(self, values: list[float], name: str, factor: float) -> None:
+    def _set_all(self, element: Element, name: str, factor: float = 1.0, *, not_negative: bool = False) -> None:
+        """Read a number for each axis; those that are missing keep their values, which the factor multiplies, too."""
+        before = [axis.get(name, getattr(_PLAIN_AXIS, name)) for axis in self.axes]
+        values = numbers(element, len(self.axes), self.context.diagnostics, before)
+        if not_negative:
+            self.negative.pop(name, None)
+            if min(values) < 0:
+                self.negative[name] = element
         for axis, value in zip(self.axes, values, strict=True):
             axis[name] = value * factor
 
@@ -170,7 +179,7 @@ JOINT_ATTRIBUTES = {
     "name": "name of the joint",
     "type": "hinge, slider, hinge2, spherical; OpenRAVE refuses universal, and takes others for a hinge",
     "enable": "false: passive, without a DOF",
-    "circular": "true: turns without end",
+    "circular": "true: the first axis turns without end",
     "scalegeometry": "one factor or three, of the anchor",
     "mimic_pos": "equation of the value that it follows",
     "mimic_vel": "its partial derivatives",
@@ -191,10 +200,12 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
         return
     kind = _read_kind(element, context)
     circular = not is_false(element.attributes.get("circular", "false"))
-    limit = UNLIMITED if circular else _DEFAULT_LIMIT[kind]
-    limits: list[dict[str, float]] = [{"lower": -limit, "upper": limit} for _ in range(_AXES[kind])]
+    spans = [UNLIMITED if circular and index == 0 else _DEFAULT_LIMIT[kind] for index in range(_AXES[kind])]
+    limits: list[dict[str, float]] = [{"lower": -span, "upper": span} for span in spans]
     reader = _JointReader(context, body, kind, scale_attribute(element), circular, limits)
     context.walk(element, JOINT_TAGS, JOINT_IGNORED, reader)
+    for limit in reader.negative.values():
+        raise SourceError(f"<{limit.spelled}> is {limit.text.strip()}, and cannot be negative", limit.source)
     if len(reader.links) != 2:
         raise SourceError(
             f"the joint names {len(reader.links)} bodies; a joint needs two", element.source, "add <Body> elements"
@@ -202,10 +213,14 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     if reader.links[0] == reader.links[1]:
         body.refusal = SourceError("the joint names the same body twice", element.source)
         return
-    first, second = (body.links[index].pose for index in reader.links)
-    T_first_frame = first.inverse() @ reader.T_scope_frame
+    first, second = reader.links
+    exchanged = first != 0 and body.links[second].static and not body.links[first].static
+    if exchanged:
+        first, second = second, first
+    T_scope_first, T_scope_second = body.links[first].pose, body.links[second].pose
+    T_first_frame = T_scope_first.inverse() @ reader.T_scope_frame
     axes = tuple(
-        Axis(_direction(reader, index, T_first_frame), circular=circular, **numbers)
+        Axis(_direction(reader, index, T_first_frame, exchanged=exchanged), circular=circular and index == 0, **numbers)
         for index, numbers in enumerate(reader.axes)
     )
     if reader.motor is not None:
@@ -214,8 +229,8 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
         JointBuilder(
             name=element.attributes.get("name", ""),
             kind=kind,
-            links=(reader.links[0], reader.links[1]),
-            T_first_second=first.inverse() @ second,
+            links=(first, second),
+            T_first_second=T_scope_first.inverse() @ T_scope_second,
             anchor=T_first_frame.apply(ZERO if kind == "slider" else reader.anchor),  # OpenRAVE drops a slider's
             axes=axes,
             enabled=not is_false(element.attributes.get("enable", "true")),
@@ -225,13 +240,12 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
     )
 
 
-def _direction(reader: _JointReader, index: int, frame: Pose) -> Vec3:
-    """Return an axis in the first link's frame; where it is not given, what OpenRAVE takes."""
-    if reader.kind == "spherical":
-        return _UNIT[index]
-    if index in reader.directions:
-        turned = rotate(frame.wxyz, reader.directions[index])
-        return scale(turned, -1.0) if reader.stops else turned
+def _direction(reader: _JointReader, index: int, frame: Pose, *, exchanged: bool) -> Vec3:
+    """Return an axis in the first link's frame; where it is not given, what OpenRAVE takes, whatever the order."""
+    direction = _UNIT[index] if reader.kind == "spherical" else reader.directions.get(index)
+    if direction is not None:
+        turned = rotate(frame.wxyz, direction)
+        return scale(turned, -1.0) if reader.stops != exchanged else turned
     if reader.kind == "slider":
         return ZERO
     return _UNIT[index] if reader.kind == "hinge2" else _UNIT[2]

@@ -5,6 +5,7 @@ of an element acts at its end, once, on the links that were made inside it.
 """
 
 from dataclasses import replace
+from typing import TypeVar
 
 from ravemj.core.transforms import Vec3
 from ravemj.errors import SourceError
@@ -17,7 +18,7 @@ from ravemj.formats.openrave_xml.link import read_link
 from ravemj.formats.openrave_xml.mass import DefaultMassReader
 from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.formats.openrave_xml.prefix import Marks, add_prefix
-from ravemj.formats.openrave_xml.robot import read_attached_sensor, read_manipulator
+from ravemj.formats.openrave_xml.robot import check_sensors, read_attached_sensor, read_manipulator
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
@@ -29,8 +30,9 @@ from ravemj.formats.openrave_xml.values import (
     scale_attribute,
 )
 from ravemj.model.builder import BodyBuilder
-from ravemj.model.manipulators import ManipulatorBuilder
 from ravemj.model.scene import KinBody
+
+Part = TypeVar("Part")
 
 
 class _Scope:
@@ -50,8 +52,6 @@ class _Scope:
         self.default_mass = DefaultMassReader(context)
         self.geometry_scope = GeometryScope(None, scale)
         self.joint_values: list[float] | None = None
-        self.own_manipulators: list[ManipulatorBuilder] = []
-        self.own_sensors: list[int] = []
         self.transparency: float | None = None
 
     def read(self, element: Element) -> None:
@@ -69,7 +69,10 @@ class _Scope:
         if self.transparency is not None:
             for link in self.body.links:
                 link.geometries = [replace(part, transparency=self.transparency) for part in link.geometries]
-        self._own_first(marks)
+        if element.tag == "robot":
+            self._youngest_first(marks)
+        else:
+            self._join_links(element)
         if self.placement.moves:
             T_outer_scope = self.placement.pose
             for link in self.body.links[first_link:]:
@@ -94,17 +97,28 @@ class _Scope:
         attributes = {key: value for key, value in element.attributes.items() if key != "file"}
         wrapper = Element(element.tag, element.spelled, attributes, root.source, children=[root], complete=True)
         inner = _Scope(self.body, self.context, self.scale, self.depth + 1, skip_geometry=self.skip_geometry)
-        inner.read(wrapper)
+        before = self.body.parts()
+        try:
+            inner.read(wrapper)
+        except SourceError as error:
+            if self.depth > 0 and (element.tag == "kinbody" or any(before[1:])):
+                raise  # the whole body goes
+            self.context.diagnostics.error("broken-file", error.message, error.source, error.hint)
+            self.body.set_parts(before)
 
-    def _own_first(self, marks: Marks) -> None:
-        """Move manipulators and sensors of this very element before those that were there, the youngest first."""
-        if marks.manipulators:
-            mine = self.own_manipulators
-            others = [built for built in self.body.manipulators if all(built is not own for own in mine)]
-            self.body.manipulators = [*reversed(mine), *others]
-        if marks.sensors:
-            order = [index for index in range(len(self.body.sensors)) if index not in self.own_sensors]
-            self.body.sensors = [self.body.sensors[index] for index in (*reversed(self.own_sensors), *order)]
+    def _youngest_first(self, marks: Marks) -> None:
+        """Move manipulators and sensors that came since some moment before those of then, the last one first."""
+        body = self.body
+        arms = [any(built is older for older in marks.manipulators) for built in body.manipulators]
+        body.manipulators = _reordered(body.manipulators, arms)
+        body.sensors = _reordered(
+            body.sensors, [any(built[0] is older for older in marks.sensors) for built in body.sensors]
+        )
+
+    def _join_links(self, element: Element) -> None:
+        """Decide whether joined links are adjacent, by a whole number; of several KinBodies the last to end decides."""
+        found = leading_numbers(element.attributes.get("makejoinedlinksadjacent", "1")).values
+        self.body.joined_links_adjacent = bool(found and int(found[0]))
 
     def nest(self, element: Element) -> None:
         """Read a nested ``<Robot>`` or ``<KinBody>`` into the same body."""
@@ -162,7 +176,6 @@ class _Scope:
         """Read a ``<Manipulator>``."""
         built = read_manipulator(self.body, element, self.context)
         self.body.manipulators.append(built)
-        self.own_manipulators.append(built)
 
     def read_controller(self, element: Element) -> None:
         """Report a ``<Controller>``; OpenRAVE refuses one that comes behind joints."""
@@ -175,7 +188,13 @@ class _Scope:
     def read_sensor(self, element: Element) -> None:
         """Read an ``<AttachedSensor>``."""
         read_attached_sensor(self.body, element, self.context)
-        self.own_sensors.append(len(self.body.sensors) - 1)
+
+
+def _reordered(parts: list[Part], are_older: list[bool]) -> list[Part]:
+    """Return the new ones of some parts, the last one first, and behind them the older ones, if there are any."""
+    older = [part for part, is_older in zip(parts, are_older, strict=True) if is_older]
+    new = [part for part, is_older in zip(parts, are_older, strict=True) if not is_older]
+    return [*reversed(new), *older] if older else parts
 
 
 _SCOPE_TAGS: dict[str, Tag[_Scope]] = {
@@ -238,26 +257,14 @@ def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError 
     """
     check_scope_attributes(element, context)
     body = BodyBuilder(element.tag == "robot", element.source)
-    if "makejoinedlinksadjacent" in element.attributes:
-        joined = leading_numbers(element.attributes["makejoinedlinksadjacent"]).values
-        body.joined_links_adjacent = bool(joined and joined[0])
     skip_geometry = is_true(element.attributes.get("skipgeometry", "false"))
     scope = _Scope(body, context, scale_attribute(element), 0, skip_geometry=skip_geometry)
     scope.read(element)
     body.joint_values = scope.joint_values
     _check_type(element, body, context)
-    _check_joint_names(body)
+    body.check_joint_names()
+    check_sensors(body, context.diagnostics)
     return body.freeze(context.diagnostics), body.refusal
-
-
-def _check_joint_names(body: BodyBuilder) -> None:
-    """Refuse two joints of one name, unless both have no DOF."""
-    seen: dict[str, bool] = {}
-    for joint in body.joints:
-        if joint.name in seen and (joint.active or seen[joint.name]):
-            message = f"there are two joints '{joint.name}'" if joint.name else "there are two joints without a name"
-            body.refusal = body.refusal or SourceError(message, joint.source, "give each a name of its own")
-        seen[joint.name] = seen.get(joint.name, False) or joint.active
 
 
 def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:

@@ -31,6 +31,8 @@ class _LinkScope:
     def read(self, element: Element) -> None:
         """Read the attributes, the file that they name, and the children."""
         self.context.check_attributes(element, LINK_ATTRIBUTES, LINK_IGNORED_ATTRIBUTES)
+        self.link.enabled = not is_false(element.attributes.get("enable", "true"))
+        self.link.name = element.attributes.get("name", self.link.name)  # a Body in a Body renames the link
         if "file" in element.attributes:
             self._include(element)
         self.context.walk(element, LINK_TAGS, {}, self)
@@ -134,10 +136,9 @@ def read_link(
     link.pose = scope.pose
     rule = mass.rule or default_mass
     link.inertial = link_inertial(rule, link.geometries)
-    if rule is not None and rule.total and not link.inertial.mass:
+    if rule is not None and rule.by_total and rule.total and not link.inertial.mass:
         message = f"link '{link.name}' has no shape with a volume, so its mimicgeom mass is 0 and not {rule.total:g}"
         context.diagnostics.warn("openrave-bug", message, element.source, "write the mass as type custom")
-    link.enabled = not is_false(element.attributes.get("enable", "true"))
     if "type" in element.attributes:
         link.static = element.attributes["type"].lower() == "static"
     if existing is None:

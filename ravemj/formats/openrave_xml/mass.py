@@ -26,17 +26,21 @@ class MassRule(NamedTuple):
 
     Attributes:
         kind: ``mimicgeom``, ``sphere``, ``box`` or ``custom``.
-        density: Density [kg/m^3], where that came last.
-        total: Total mass [kg], where that came last.
+        density: Density [kg/m^3].
+        total: Total mass [kg], which counts ``by_total``.
+        by_total: Whether the mass follows from the total and not from the density.
         half_extents: Half sizes of the box; the first is the radius of the sphere.
-        com: Centre of mass of a ``custom`` mass.
-        inertia: Inertia about the centre of mass of a ``custom`` mass.
+        custom_mass: Mass of a ``custom`` mass [kg]: the last total of the Body, which a KinBody does not give.
+        com: Its centre of mass.
+        inertia: Its inertia about the centre of mass.
     """
 
     kind: str = "sphere"
-    density: float | None = None
-    total: float | None = None
+    density: float = 1.0
+    total: float = 1.0
+    by_total: bool = False
     half_extents: Vec3 = (1.0, 1.0, 1.0)
+    custom_mass: float = 1.0
     com: Vec3 = ZERO
     inertia: Rows = DEFAULT_INERTIAL.inertia
 
@@ -54,8 +58,7 @@ class MassReader:
     def __init__(self, context: Context, default: MassRule | None, scale: Vec3) -> None:
         self._context = context
         self._scale = scale
-        self._start = default or _SPHERE
-        self._said: dict[str, object] = {}
+        self._rule = (default or _SPHERE)._replace(by_total=False)
         self.rule: MassRule | None = None
 
     def read(self, element: Element) -> None:
@@ -67,47 +70,54 @@ class MassReader:
                 "unknown-type", f"there is no mass of type '{kind}'; OpenRAVE takes a sphere", element.source
             )
             kind = "sphere"
-        before = self.rule or self._start
-        self._said = {"kind": kind}
-        if kind == "custom" and before.total == self._start.total:
-            self._said["total"] = None  # it takes no total from the KinBody
+        self._rule = self._rule._replace(kind=kind, by_total=False)
         self._context.walk(element, MASS_TAGS, {}, self)
-        self.rule = before._replace(**self._said)
+        self.rule = self._rule
         if kind == "box" and any(child.tag == "extents" for child in element.children):
             self._context.diagnostics.warn(
                 "openrave-bug",
                 "<extents> of a box mass in a Body has no effect in OpenRAVE; "
-                f"the half sizes are {self._start.half_extents}",
+                f"the half sizes are {self._rule.half_extents}",
                 element.source,
                 "write the mass as type custom",
             )
 
     def precise_total(self, element: Element) -> None:
         """Read a total mass in double precision."""
-        self._said.update(total=number(element, self._context.diagnostics), density=None)
+        self._take_total(self._total(element))
 
     def density(self, element: Element) -> None:
-        """Read a ``<density>``."""
-        self._said.update(density=single(number(element, self._context.diagnostics)), total=None)
+        """Read a ``<density>``; it has no effect on a custom mass, but on a Mass after it."""
+        density = single(number(element, self._context.diagnostics, self._rule.density))
+        self._rule = self._rule._replace(density=density, by_total=False)
 
     def total(self, element: Element) -> None:
         """Read a ``<total>`` mass."""
-        self._said.update(total=single(number(element, self._context.diagnostics)), density=None)
+        self._take_total(single(self._total(element)))
+
+    def _total(self, element: Element) -> float:
+        rule = self._rule
+        return number(element, self._context.diagnostics, rule.custom_mass if rule.kind == "custom" else rule.total)
+
+    def _take_total(self, total: float) -> None:
+        self._rule = self._rule._replace(total=total, by_total=True, custom_mass=total)
 
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
-        extents = (self.rule or self._start).half_extents
-        radius = number(element, self._context.diagnostics) * self._scale[0]
-        self._said.update(half_extents=(radius, *extents[1:]))
+        before, *others = self._rule.half_extents
+        radius = number(element, self._context.diagnostics, before) * self._scale[0]
+        self._rule = self._rule._replace(half_extents=(radius, *others))
 
     def com(self, element: Element) -> None:
         """Read the centre of mass of a custom mass."""
-        self._said.update(com=hadamard(self._scale, vector(element, self._context.diagnostics)))
+        com = vector(element, self._context.diagnostics, self._rule.com)
+        self._rule = self._rule._replace(com=hadamard(self._scale, com))
 
     def inertia(self, element: Element) -> None:
         """Read the inertia of a custom mass; only its upper triangle counts."""
-        xx, xy, xz, _, yy, yz, _, _, zz = numbers(element, 9, self._context.diagnostics)
-        self._said.update(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+        before = [value for row in self._rule.inertia for value in row]
+        xx, xy, xz, _, yy, yz, _, _, zz = numbers(element, 9, self._context.diagnostics, before)
+        self._rule = self._rule._replace(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
 
     def extents(self, element: Element) -> None:
         """Accept ``<extents>``, which OpenRAVE does not read in a Body."""
@@ -137,6 +147,7 @@ class DefaultMassReader:
     def __init__(self, context: Context) -> None:
         self._context = context
         self.rule: MassRule | None = None
+        self._kind = "sphere"
         self._number = 1.0
         self._half_extents: Vec3 = (1.0, 1.0, 1.0)
         self._is_total = False
@@ -149,36 +160,39 @@ class DefaultMassReader:
             message = f"OpenRAVE takes a mass of type '{kind}' in a KinBody for a sphere"
             self._context.diagnostics.warn("openrave-bug", message, element.source, "give each Body its own Mass")
             kind = "sphere"
-        self._is_total = False
+        self._kind, self._is_total = kind, False
         self._context.walk(element, DEFAULT_MASS_TAGS, {}, self)
         if self._is_total and kind == "mimicgeom":
             message = f"OpenRAVE takes the total {self._number:g} of a KinBody's mimicgeom mass for a density"
             self._context.diagnostics.warn("openrave-bug", message, element.source, "write <density>")
-        is_total = self._is_total and kind != "mimicgeom"
         self.rule = MassRule(
             kind,
-            density=None if is_total else self._number,
-            total=self._number if is_total else None,
+            density=self._number,
+            total=self._number,
+            by_total=self._is_total and kind != "mimicgeom",
             half_extents=self._half_extents,
         )
 
     def density(self, element: Element) -> None:
         """Read a ``<density>``."""
-        self._number, self._is_total = single(number(element, self._context.diagnostics)), False
+        self._number, self._is_total = self._read(element), False
 
     def total(self, element: Element) -> None:
         """Read a ``<total>``; it lands in the same place as a density."""
-        self._number, self._is_total = single(number(element, self._context.diagnostics)), True
+        self._number, self._is_total = self._read(element), True
+
+    def _read(self, element: Element) -> float:
+        return single(number(element, self._context.diagnostics, self._number))
 
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
-        radius = number(element, self._context.diagnostics)
-        self._half_extents = (radius, *self._half_extents[1:])
+        before, *others = self._half_extents
+        self._half_extents = (number(element, self._context.diagnostics, before), *others)
 
     def extents(self, element: Element) -> None:
-        """Read the half sizes of a box; behind a total they have no effect."""
-        half_extents = vector(element, self._context.diagnostics)
-        if not self._is_total:
+        """Read the half sizes of a box; of other kinds and behind a total they have no effect."""
+        half_extents = vector(element, self._context.diagnostics, self._half_extents)
+        if self._kind == "box" and not self._is_total:
             self._half_extents = half_extents
 
 
@@ -196,12 +210,12 @@ def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Iner
     if rule is None:
         return DEFAULT_INERTIAL
     if rule.kind == "custom":
-        return Inertial(1.0 if rule.total is None else rule.total, rule.com, rule.inertia)
+        return Inertial(rule.custom_mass, rule.com, rule.inertia)
     if rule.kind == "mimicgeom":
         return _sum_of_shapes(rule, geometries)
     shape = Box(rule.half_extents) if rule.kind == "box" else Sphere(rule.half_extents[0])
-    mass, moments = shape.mass_moments(1.0 if rule.density is None else rule.density)
-    if rule.total is not None:
+    mass, moments = shape.mass_moments(rule.density)
+    if rule.by_total:
         moments = scale(moments, rule.total / mass if mass else 0.0)
         mass = rule.total
     return Inertial(mass, ZERO, ((moments[0], 0.0, 0.0), (0.0, moments[1], 0.0), (0.0, 0.0, moments[2])))
@@ -213,12 +227,12 @@ def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     With a total mass, OpenRAVE scales the masses of the parts and not their own inertias. Where no shape has a volume
     the mass is 0, also with a total: OpenRAVE gives 0 or NaN there.
     """
-    density = TOTAL_DENSITY if rule.total is not None else (1.0 if rule.density is None else rule.density)
+    density = TOTAL_DENSITY if rule.by_total else rule.density
     solids = [geometry.shape.mass_moments(density) for geometry in geometries]
     mass = sum(part for part, _ in solids)
     if mass == 0.0:
         return Inertial(0.0, ZERO, NO_INERTIA)
-    factor = 1.0 if rule.total is None else rule.total / mass
+    factor = rule.total / mass if rule.by_total else 1.0
     if len(geometries) == 1:
         position, wxyz = geometries[0].T_link_geometry
         return Inertial(mass * factor, position, _rotated(solids[0][1], wxyz))

@@ -3,23 +3,25 @@
 from dataclasses import replace
 from typing import NamedTuple
 
-from ravemj.model.builder import BodyBuilder
+from ravemj.model.builder import BodyBuilder, SensorBuilder
 from ravemj.model.manipulators import ManipulatorBuilder
 from ravemj.model.mimic import Equations
+from ravemj.model.scene import AttachedSensor
 
 
 class Marks(NamedTuple):
-    """How many parts a body had at some moment; manipulators change their order, so they are kept themselves."""
+    """The parts of a body at some moment: how many, or where they change their order, which."""
 
     links: int = 0
     joints: int = 0
-    sensors: int = 0
     manipulators: tuple[ManipulatorBuilder, ...] = ()
+    sensors: tuple[AttachedSensor, ...] = ()
 
     @classmethod
     def of(cls, body: BodyBuilder) -> "Marks":
         """Return the marks of the present moment."""
-        return cls(len(body.links), len(body.joints), len(body.sensors), tuple(body.manipulators))
+        sensors = tuple(built.sensor for built in body.sensors)
+        return cls(len(body.links), len(body.joints), tuple(body.manipulators), sensors)
 
 
 def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> None:
@@ -45,6 +47,10 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
             equations = joint.equations
             texts = (equations.position, equations.velocity, equations.acceleration)
             joint.equations = Equations(*(substitute(text, renamed) for text in texts))
+    _prefix_arms_and_sensors(prefix, body, marks)
+
+
+def _prefix_arms_and_sensors(prefix: str, body: BodyBuilder, marks: Marks) -> None:
     for built in body.manipulators:
         if any(built is older for older in marks.manipulators):
             continue
@@ -52,5 +58,6 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
         built.base = prefix + built.base
         built.effector = prefix + built.effector
         built.gripper_joints = [prefix + name for name in built.gripper_joints]
-    for index, sensor in enumerate(body.sensors[marks.sensors :], marks.sensors):
-        body.sensors[index] = replace(sensor, name=prefix + sensor.name)
+    for index, (sensor, link_name) in enumerate(body.sensors):
+        if all(sensor is not older for older in marks.sensors):
+            body.sensors[index] = SensorBuilder(replace(sensor, name=prefix + sensor.name), link_name)

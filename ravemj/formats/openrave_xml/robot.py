@@ -1,13 +1,23 @@
 """``<Manipulator>`` and ``<AttachedSensor>``, which only robots have."""
 
+from ravemj.errors import Diagnostics
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.sensor import Device, read_device
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import Placement, leading_numbers, vector, word
-from ravemj.model.builder import BodyBuilder
+from ravemj.model.builder import BodyBuilder, SensorBuilder
 from ravemj.model.manipulators import ManipulatorBuilder
 from ravemj.model.scene import AttachedSensor
+
+
+def named_link(body: BodyBuilder, element: Element, owner: str, context: Context) -> str:
+    """Return the name of a link. One that is not there yet is an error, though it may be there in the end."""
+    name = word(element)
+    if body.find_link(name) is None:
+        message = f"there is no Body '{name}' for the <{element.spelled}> of {owner}"
+        context.diagnostics.error("unknown-body", message, element.source, "put it behind the Body")
+    return name
 
 
 class _ManipulatorScope:
@@ -36,11 +46,7 @@ class _ManipulatorScope:
         self.built.effector = self._link(element)
 
     def _link(self, element: Element) -> str:
-        name = word(element)
-        if self.body.find_link(name) is None:
-            message = f"there is no Body '{name}' for the <{element.spelled}> of the manipulator"
-            self.context.diagnostics.error("unknown-body", message, element.source)
-        return name
+        return named_link(self.body, element, "the manipulator", self.context)
 
     def read_gripper(self, element: Element) -> None:
         """Read the names of the gripper's joints."""
@@ -97,7 +103,7 @@ class _SensorScope:
         self.body = body
         self.context = context
         self.placement = Placement()
-        self.link: int | None = None
+        self.link: str | None = None
         self.device = Device()
 
     def translate(self, element: Element) -> None:
@@ -110,11 +116,7 @@ class _SensorScope:
 
     def read_link(self, element: Element) -> None:
         """Read the name of the link that carries the sensor."""
-        name = word(element)
-        self.link = self.body.find_link(name)
-        if self.link is None:
-            message = f"there is no Body '{name}' to carry the sensor"
-            self.context.diagnostics.error("unknown-body", message, element.source)
+        self.link = named_link(self.body, element, "the sensor", self.context)
 
     def read_device(self, element: Element) -> None:
         """Read the ``<Sensor>`` itself."""
@@ -138,13 +140,21 @@ def read_attached_sensor(body: BodyBuilder, element: Element, context: Context) 
     if scope.link is None:
         message = "the sensor names no link, and is attached to nothing"
         context.diagnostics.warn("no-link", message, element.source, "add a <link>")
-    body.sensors.append(
-        AttachedSensor(
-            name=element.attributes.get("name", ""),
-            link=scope.link,
-            T_link_sensor=scope.placement.pose,
-            type=scope.device.type,
-            camera=scope.device.camera,
-            source=element.source,
-        )
+    sensor = AttachedSensor(
+        name=element.attributes.get("name", ""),
+        link=None if scope.link is None else body.find_link(scope.link),
+        T_link_sensor=scope.placement.pose,
+        type=scope.device.type,
+        camera=scope.device.camera,
+        source=element.source,
     )
+    body.sensors.append(SensorBuilder(sensor, scope.link))
+
+
+def check_sensors(body: BodyBuilder, diagnostics: Diagnostics) -> None:
+    """Warn of sensors whose link is not there at the end of the robot, where OpenRAVE looks it up."""
+    for sensor, name in body.sensors:
+        if name and body.find_link(name) is None:
+            message = f"sensor '{sensor.name}' is attached to nothing: in the end there is no Body '{name}'"
+            hint = "OpenRAVE puts no prefix before the link of a sensor: write the whole name, and the sensor first"
+            diagnostics.warn("no-link", message, sensor.source, hint)

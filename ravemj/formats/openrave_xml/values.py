@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from ravemj.core.transforms import (
@@ -64,11 +64,17 @@ def _plain_numbers(text: str) -> list[float] | None:
     return plain if math.isfinite(sum(plain)) else None
 
 
-def numbers(element: Element, count: int, diagnostics: Diagnostics, default: float = 0.0) -> list[float]:
+def numbers(element: Element, count: int, diagnostics: Diagnostics, before: Sequence[float] = ZERO) -> list[float]:
     """Return exactly ``count`` numbers from an element's text.
 
-    A word that is no number counts as 0 and ends the reading (``bad-number``); numbers that are missing keep
-    the default, and what is too much is left out (``number-count``). OpenRAVE says nothing about either.
+    A word that is no number counts as 0 and ends the reading (``bad-number``); numbers that are missing keep their
+    values, and what is too much is left out (``number-count``). OpenRAVE says nothing about either.
+
+    Args:
+        element: The element.
+        count: How many numbers it should hold.
+        diagnostics: Takes a warning.
+        before: The values that missing numbers keep; behind its end 0.
     """
     plain = _plain_numbers(element.text)
     if plain is not None and len(plain) == count:
@@ -77,7 +83,8 @@ def numbers(element: Element, count: int, diagnostics: Diagnostics, default: flo
     found = len(values)
     if found < count and rest:
         values.append(0.0)
-    values = (values + [default] * count)[:count]
+    kept = [*before[len(values) :], *[0.0] * count]
+    values = (values + kept)[:count]
     taken = " ".join(f"{value:g}" for value in values)
     expected = "a number" if count == 1 else f"{count} numbers separated by spaces"
     diagnostics.warn(
@@ -89,14 +96,14 @@ def numbers(element: Element, count: int, diagnostics: Diagnostics, default: flo
     return values
 
 
-def number(element: Element, diagnostics: Diagnostics, default: float = 0.0) -> float:
+def number(element: Element, diagnostics: Diagnostics, before: float = 0.0) -> float:
     """Return the one number in an element's text."""
-    return numbers(element, 1, diagnostics, default)[0]
+    return numbers(element, 1, diagnostics, (before,))[0]
 
 
-def vector(element: Element, diagnostics: Diagnostics) -> Vec3:
+def vector(element: Element, diagnostics: Diagnostics, before: Vec3 = ZERO) -> Vec3:
     """Return the three numbers in an element's text."""
-    x, y, z = numbers(element, 3, diagnostics)
+    x, y, z = numbers(element, 3, diagnostics, before)
     return (x, y, z)
 
 
@@ -179,7 +186,7 @@ def _matrix(element: Element, diagnostics: Diagnostics) -> Wxyz:
 
 
 def _quaternion(element: Element, diagnostics: Diagnostics) -> Wxyz:
-    w, x, y, z = numbers(element, 4, diagnostics)
+    w, x, y, z = numbers(element, 4, diagnostics, UNIT_WXYZ)
     try:
         return normalize((w, x, y, z))
     except ZeroDivisionError:

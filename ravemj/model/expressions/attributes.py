@@ -65,26 +65,21 @@ def partials(text: str) -> dict[str, str]:
     return found
 
 
-def linear_mimic(text: str) -> tuple[str, str]:
-    """Translate the deprecated attribute ``mimic="J a b"``.
+def linear_mimic(text: str) -> tuple[str, str, str]:
+    """Translate the deprecated attribute ``mimic="J a b"``; without b it is 0.
 
     Returns:
-        The equation of the position, ``J*a+b``, and that of the velocity, ``|J a``.
+        The equation of the position, ``J*a+b`` with six digits behind the points, and those of the velocity and of the
+        acceleration, both ``|J a``.
 
     Raises:
-        ExpressionError: If the text is not a name and two numbers.
+        ExpressionError: the text is not a name and one or two finite numbers.
     """
-    name, *words = text.split()[:3] or [""]
+    name, *words = [*text.split(), "0"][:3]
     try:
-        a, b = (_plain(word) for word in words)
+        a, b = map(float, words)
     except ValueError:
-        raise ExpressionError("cannot read a mimic joint", text, 0, "a joint and two numbers") from None
-    return f"{name}*{a}+{b}", f"|{name} {a}"
-
-
-def _plain(word: str) -> str:
-    """Return a number in the equations' syntax, which knows no unary plus and no nan."""
-    number = float(word)
-    if not math.isfinite(number):
-        raise ValueError(word)
-    return repr(number).removesuffix(".0")
+        raise ExpressionError("cannot read a mimic joint", text, 0, "a joint and one or two numbers") from None
+    if not math.isfinite(a + b):
+        raise ExpressionError("cannot read a mimic joint", text, 0, "finite numbers")
+    return f"{name}*{a:.6f}+{b:.6f}", f"|{name} {a:.6f}", f"|{name} {a:.6f}"

@@ -84,7 +84,8 @@ class KinBody(Record):
         passive_joints: Joints without a DOF.
         adjacent: Pairs of link indices that ``<adjacent>`` names.
         joined_links_adjacent: Whether links that a joint connects count as adjacent.
-        manipulators: Arms; the first is the active one.
+        manipulators: Arms.
+        has_active_manipulator: Whether the first one is active; of a robot that OpenRAVE refuses none is.
         sensors: Sensors on links.
         source: The element that it comes from.
     """
@@ -97,6 +98,7 @@ class KinBody(Record):
     adjacent: tuple[tuple[int, int], ...] = ()
     joined_links_adjacent: bool = True
     manipulators: tuple[Manipulator, ...] = ()
+    has_active_manipulator: bool = True
     sensors: tuple[AttachedSensor, ...] = ()
     source: Source
 

@@ -8,7 +8,7 @@ from ravemj.core.arguments import also_named, checked_kind
 from ravemj.errors import ArgumentError, Diagnostics, RavemjError, send_warnings
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.model import hashes
-from ravemj.model.manipulators import freeze_manipulator
+from ravemj.model.manipulators import check_reach, freeze_manipulator
 from ravemj.rave.arm_ik import IkBatch
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.infos import ManipulatorInfo
@@ -57,6 +57,8 @@ class Manipulators(BodyPart):
         Example:
             >>> T_world_tool = robot.GetActiveManipulator().GetTransform()
         """
+        if self._active_manipulator is None and not self._state.scene.has_active_manipulator:
+            return None
         return next(iter(self.GetManipulators(self._active_manipulator)), None)
 
     def ik(
@@ -101,8 +103,8 @@ class Manipulators(BodyPart):
             The new manipulator.
 
         Raises:
-            openrave_exception: there is one of that name, or no joints lead from its base to its effector. Nothing has
-                changed then.
+            openrave_exception: there is one of that name, or a joint of the arm does not move the effector. Nothing
+                has changed then.
 
         Example:
             >>> info = robot.GetManipulators()[0].GetInfo()
@@ -114,6 +116,7 @@ class Manipulators(BodyPart):
         diagnostics = Diagnostics()
         checked_kind(manipinfo, ManipulatorInfo, "AddManipulator: manipinfo")
         made = freeze_manipulator(manipinfo.manipulator(), body, diagnostics)
+        check_reach(made, body)
         arms, names = list(body.manipulators), [arm.name for arm in body.manipulators]
         index = names.index(made.name) if made.name in names else len(names)
         if index < len(names) and not removeduplicate:

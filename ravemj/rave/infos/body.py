@@ -107,7 +107,7 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
     Raises:
         RavemjError: something is described by a thing of another kind, has no name, or cannot be.
     """
-    from ravemj.model.builder import BodyBuilder  # noqa: PLC0415 - slow to import
+    from ravemj.model.builder import BodyBuilder, SensorBuilder  # noqa: PLC0415 - slow to import
 
     builder = BodyBuilder(is_robot=like.is_robot, source=FROM_SCRIPT, name=info._name or like.name)
     for one in _checked(info._vLinkInfos, LinkInfo):
@@ -121,9 +121,12 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
     builder.joint_values = _asked(builder, info.values_by_axis())
     if isinstance(info, RobotBaseInfo) and like.is_robot:
         builder.manipulators = [one.manipulator() for one in _checked(info._vManipInfos, ManipulatorInfo)]
-        builder.sensors = [one.sensor(names) for one in _checked(info._vAttachedSensorInfos, AttachedSensorInfo)]
+        sensors = _checked(info._vAttachedSensorInfos, AttachedSensorInfo)
+        builder.sensors = [SensorBuilder(one.sensor(names)) for one in sensors]
     diagnostics = Diagnostics()
     body = builder.freeze(diagnostics)
+    if builder.refusal is not None:
+        raise builder.refusal
     send_warnings(diagnostics)
     return body
 

@@ -24,7 +24,7 @@ from ravemj.formats.meshes.files import FileContent
 from ravemj.formats.meshes.obj import GRAY, transparency
 from ravemj.formats.meshes.parts import WHITE, MeshPart, check_finite, check_size, rgb, weld, without_degenerate
 
-_AMBIENT = rgb((0.1, 0.1, 0.1))  # where the file gives none, in OpenRAVE's importer
+_AMBIENT = rgb((0.1, 0.1, 0.1))  # where the file gives other colours alone, in OpenRAVE's importer
 _MAX_DEPTH = 150
 _MAX_NODES = 100_000
 
@@ -58,7 +58,8 @@ def read_collada(file: FileContent) -> tuple[MeshPart, ...]:
 
 def _part(corners: Floats, material: ColladaMaterial) -> MeshPart:
     diffuse = WHITE if material.textured else rgb(material.diffuse or GRAY)
-    ambient = rgb(material.ambient or _AMBIENT)
+    is_bare = material == ColladaMaterial()
+    ambient = rgb(material.ambient or (GRAY if is_bare else _AMBIENT))
     return MeshPart(weld(corners), diffuse, ambient, transparency(material.opacity))
 
 

@@ -52,7 +52,8 @@ def primitive_groups(
         kinds: Which primitive elements count.
 
     Returns:
-        One group for each primitive element, in document order, also where it has no triangles.
+        One group for each primitive element, also where it has no triangles: in document order, in OpenRAVE's robots
+        those of one kind together.
 
     Raises:
         SourceError: There are too many triangles.
@@ -62,7 +63,7 @@ def primitive_groups(
         return []
     points = _positions(document, mesh)
     groups: list[PrimitiveGroup] = []
-    for element in children(mesh, *kinds):
+    for element in children(mesh, *kinds) if concave else _by_kind(mesh, kinds):
         kind = local_name(element)
         sizes, index = _polygons(element, kind)
         if int(np.maximum(sizes - 2, 0).sum()) > MAX_TRIANGLES:
@@ -94,8 +95,13 @@ def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float)
 
     key = f"{document.digest} {document.place(geometry)} {metres!r}"
     parts = cached(key.encode(), "geometry", read)
-    symbols = [element.get("material", "") for element in children(_mesh(geometry), *_OF_ROBOTS)]
+    symbols = [element.get("material", "") for element in _by_kind(_mesh(geometry), _OF_ROBOTS)]
     return [(symbol, part.mesh) for symbol, part in zip(symbols, parts, strict=True) if len(part.mesh.triangles)]
+
+
+def _by_kind(mesh: Element | None, kinds: tuple[str, ...]) -> list[Element]:
+    """Return the primitive elements of a mesh, kind after kind."""
+    return [element for kind in kinds for element in children(mesh, kind)]
 
 
 def _mesh(geometry: Element) -> Element | None:
