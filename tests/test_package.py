@@ -126,6 +126,7 @@ NAME_EACH_OTHER = """
     rave.controllers.multi rave.controllers.velocity rave.env.base rave.env.collision rave.env.contents
     rave.env.drawing rave.env.loading rave.env.simulation rave.env.viewing rave.environment rave.interface
     rave.joint rave.joint_limits rave.kinbody rave.link rave.link_geometries rave.manipulator rave.member
+    rave.modules.module
     rave.physics rave.report rave.robot rave.sensors rave.specification rave.tables rave.trajectory
 """
 """Classes of the API whose methods take and return one another, and the topics that make them up."""

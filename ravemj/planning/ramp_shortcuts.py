@@ -5,6 +5,7 @@ shortcuts", ICRA 2010.
 """
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -57,7 +58,7 @@ def lines(points: Floats, limits: Limits) -> list[Piece]:
         limits: What the motion may do.
     """
     motion: list[Piece] = []
-    for start, end in zip(points[:-1], points[1:], strict=True):
+    for start, end in pairwise(points):
         step = limits.coordinates.difference(end, start)
         moving = step != 0
         if not moving.any():
@@ -107,8 +108,8 @@ def faster(
     for attempt in range(tries):
         if not motion or not proceed(attempt):
             break
-        ends = np.cumsum([piece.duration for piece in motion])
-        low, high = np.sort(random.random(2) * ends[-1])
+        ends: Floats = np.cumsum([piece.duration for piece in motion])
+        low, high = sorted((random.random(2) * ends[-1]).tolist())
         first, second = (min(int(np.searchsorted(ends, time)), len(motion) - 1) for time in (low, high))
         before = low - (ends[first] - motion[first].duration)
         behind = high - (ends[second] - motion[second].duration)
@@ -145,4 +146,6 @@ def _is_allowed(edges: Edges, piece: Piece) -> bool:
     """Return whether a piece is allowed everywhere, its start excluded; no joint moves farther than its resolution."""
     last = np.abs(piece.velocities + piece.accelerations * piece.duration)
     farthest = np.maximum(np.abs(piece.velocities), last) * piece.duration
-    return all(edges.point(piece.after(part * piece.duration)[0]) for part in bisection_order(edges.space.steps(farthest)))
+    return all(
+        edges.point(piece.after(part * piece.duration)[0]) for part in bisection_order(edges.space.steps(farthest))
+    )

@@ -184,21 +184,24 @@ def _driven(profile: Profile, segment: Segment, limits: Limits, given: float | N
     if not math.isfinite(needed):
         raise RetimingError("a joint moves whose velocity or acceleration limit is 0")
     if given is not None:
-        if not given >= needed - ENOUGH:
-            raise RetimingError(f"the given time is {given:.6g} s, and the limits ask for {needed:.6g} s at least")
-        duration = max(given, needed)
-    elif time_step > 0:
-        duration = max(1, math.ceil(needed / time_step - ENOUGH)) * time_step
-    else:
-        duration = needed
+        return _kept(profile, segment, limits, given, needed)
+    duration = max(1, math.ceil(needed / time_step - ENOUGH)) * time_step if time_step > 0 else needed
     for _ in range(_MOST_ATTEMPTS):
         rows = profile.drive(segment, duration, limits)
         if rows is not None:
             return rows
-        if given is not None:
-            break
-        duration = duration * _LONGER
+        duration *= _LONGER
     raise RetimingError(f"no motion of {duration:.6g} s keeps the limits with the velocities at the waypoints")
+
+
+def _kept(profile: Profile, segment: Segment, limits: Limits, given: float, needed: float) -> Rows:
+    """Return the motion of a segment in a given time."""
+    if not given >= needed - ENOUGH:
+        raise RetimingError(f"the given time is {given:.6g} s, and the limits ask for {needed:.6g} s at least")
+    rows = profile.drive(segment, max(given, needed), limits)
+    if rows is None:
+        raise RetimingError(f"no motion of {given:.6g} s keeps the limits with the velocities at the waypoints")
+    return rows
 
 
 class _Path:
