@@ -109,7 +109,7 @@ def faster(
         if not motion or not proceed(attempt):
             break
         ends: Floats = np.cumsum([piece.duration for piece in motion])
-        low, high = sorted((random.random(2) * ends[-1]).tolist())
+        low, high = sorted((random.random() * float(ends[-1]), random.random() * float(ends[-1])))
         first, second = (min(int(np.searchsorted(ends, time)), len(motion) - 1) for time in (low, high))
         before = low - (ends[first] - motion[first].duration)
         behind = high - (ends[second] - motion[second].duration)

@@ -40,7 +40,7 @@ def shorten(
         steps = space.difference(np.array(path[1:]), np.array(path[:-1]))
         lengths = np.linalg.norm(space.weights * steps, axis=1)
         ends: Floats = np.cumsum(lengths)
-        low, high = sorted((random.random(2) * ends[-1]).tolist())
+        low, high = sorted((random.random() * float(ends[-1]), random.random() * float(ends[-1])))
         first, second = (min(int(np.searchsorted(ends, place)), len(steps) - 1) for place in (low, high))
         if first == second:
             continue

@@ -108,7 +108,10 @@ class Values:
         return numbers.reshape(-1, dof)
 
     def allowed(self) -> Allowed:
-        """Return the test of configurations; it moves the bodies."""
+        """Return the test of configurations, for use within ``bodies.kept``; it may move the bodies."""
+        fast = None if self.bodies is None or self.constraints else self.bodies.fast_test()
+        if fast is not None:
+            return lambda values: not fast(values)
         return lambda values: not self.problem(values, ALL)
 
     def problem(self, values: Floats, options: int, report: CollisionReport | None = None) -> int:
