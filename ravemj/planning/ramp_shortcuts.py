@@ -71,13 +71,13 @@ def lines(points: Floats, limits: Limits) -> list[Piece]:
         along = fit_ramps(one, rest, rest, duration, speed, acceleration) if np.isfinite(duration) else None
         if along is None:
             raise ValueError("a joint moves whose velocity or acceleration limit is 0")
-        motion += _pieces(along, np.zeros(1), lambda numbers, step=step: numbers * step, start)
+        motion += _pieces(along, lambda numbers, step=step: numbers * step, start)
     return motion
 
 
-def _pieces(ramps: Ramps, start: Floats, spread: Callable[[Floats], Floats], origin: Floats) -> list[Piece]:
+def _pieces(ramps: Ramps, spread: Callable[[Floats], Floats], origin: Floats) -> list[Piece]:
     times = np.concatenate([[0.0], ramps.changes(_SAME_TIME)])
-    values, velocities = start + ramps.values(times), ramps.velocities(times)
+    values, velocities = ramps.states(times)
     found: list[Piece] = []
     for index, duration in enumerate(np.diff(times).tolist()):
         if duration > 0:
@@ -138,7 +138,7 @@ def _shortcut(
     beyond = (start[0] + least < limits.lower) | (start[0] + greatest > limits.upper)
     if (beyond & ~limits.coordinates.circular).any():
         return None
-    pieces = _pieces(ramps, start[0], lambda numbers: numbers, np.zeros_like(step))
+    pieces = _pieces(ramps, lambda numbers: numbers, start[0])
     return pieces if all(_is_allowed(edges, piece) for piece in pieces) else None
 
 

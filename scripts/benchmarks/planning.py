@@ -25,6 +25,8 @@ _APART = 2.0  # rad, from start to goal
 _RESOLUTION = 0.05  # rad
 _SECONDS = 20.0
 _SHORTCUTS = 60
+_SAMPLES = 1000  # of which goals are chosen
+_GOALS = 10  # that a problem has for choice
 
 Boxes = list[list[float]]
 """Centre and half extents of boxes."""
@@ -107,15 +109,32 @@ def problems(seed: int, each: int, resolution: float) -> "list[tuple[str, Proble
 
 
 def _problem(
-    boxes: Callable[[np.random.Generator], Boxes], random: np.random.Generator, resolution: float, *, held: bool
+    boxes: Callable[[np.random.Generator], tuple[Boxes, list[float]]],
+    random: np.random.Generator,
+    resolution: float,
+    *,
+    held: bool,
 ) -> Problem:
+    """Return a problem whose goal has the tool near a place that is hard to get to; no straight line leads there."""
     while True:
-        env, bodies, space = _world(boxes(random), resolution, held=held)
+        placed, focus = boxes(random)
+        env, bodies, space = _world(placed, resolution, held=held)
         with bodies.kept():
-            free = list(filter(_test(bodies), (space.sample(random) for _ in range(400))))
-        far = [(a, b) for a in free[:5] for b in free[5:] if np.linalg.norm(a - b) > _APART]
-        if far:
-            return Problem(env, bodies, space, *far[int(random.integers(len(far)))])
+            test = _test(bodies)
+            free = list(filter(test, (space.sample(random) for _ in range(_SAMPLES))))
+            apart = [np.linalg.norm(_tool(bodies, one) - focus) for one in free]
+            goals = [free[place] for place in np.argsort(apart)[:_GOALS]]
+            edges = Edges(space, _test(bodies))
+            for _ in range(_GOALS):
+                start, goal = free[int(random.integers(len(free)))], goals[int(random.integers(len(goals)))]
+                if np.linalg.norm(goal - start) > _APART and not edges.line(start, goal - start):
+                    return Problem(env, bodies, space, start, goal)
+
+
+def _tool(bodies: Bodies, values: Floats) -> Floats:
+    bodies.move(values)
+    (robot,) = bodies.bodies
+    return robot.GetLinks()[-1].GetTransform()[:3, 3]
 
 
 def _world(boxes: Boxes, resolution: float, *, held: bool) -> tuple[ravemj.Environment, Bodies, Space]:
@@ -146,45 +165,49 @@ def _add_box(env: ravemj.Environment, name: str, box: Sequence[float]) -> ravemj
     return body
 
 
-def _scattered(random: np.random.Generator) -> Boxes:
+def _scattered(random: np.random.Generator) -> tuple[Boxes, list[float]]:
     found: Boxes = []
     while len(found) < 10:
         x, y = random.uniform(-0.9, 0.9, 2).tolist()
         if x * x + y * y > 0.4**2:
             found.append([x, y, float(random.uniform(0.0, 0.9)), *random.uniform(0.04, 0.12, 3).tolist()])
-    return found
+    return found, found[0][:3]
 
 
-def _shelf(random: np.random.Generator) -> Boxes:
+def _shelf(random: np.random.Generator) -> tuple[Boxes, list[float]]:
     x, y = float(random.uniform(0.6, 0.75)), float(random.uniform(-0.1, 0.1))
     boards = [[x, y, z, 0.15, 0.4, 0.01] for z in (0.1, 0.4, 0.7, 1.0)]
     sides = [[x, y + side, 0.55, 0.15, 0.01, 0.45] for side in (-0.4, 0.0, 0.4)]
-    return [*boards, *sides, [x + 0.16, y, 0.55, 0.01, 0.4, 0.45]]
+    inside = [x, y + float(random.choice([-0.2, 0.2])), float(random.choice([0.25, 0.55]))]
+    return [*boards, *sides, [x + 0.16, y, 0.55, 0.01, 0.4, 0.45]], inside
 
 
-def _cage(random: np.random.Generator) -> Boxes:
+def _cage(random: np.random.Generator) -> tuple[Boxes, list[float]]:
     far, turn = float(random.uniform(0.55, 0.65)), float(random.uniform(0, 1))
     angles = [2 * np.pi * (number + turn) / 12 for number in range(12)]
     bars = [[far * np.cos(one), far * np.sin(one), 0.5, 0.02, 0.02, 0.5] for one in angles]
-    return [*bars, [0.0, 0.0, 1.25, 0.65, 0.65, 0.02]]
+    angle = 2 * np.pi * (turn + 0.5 + int(random.integers(12))) / 12
+    outside = [(far + 0.15) * np.cos(angle), (far + 0.15) * np.sin(angle), 0.5]
+    return [*bars, [0.0, 0.0, 1.25, 0.65, 0.65, 0.02]], outside
 
 
-def _table(random: np.random.Generator) -> Boxes:
+def _table(random: np.random.Generator) -> tuple[Boxes, list[float]]:
     height = float(random.uniform(0.15, 0.35))
     top = [0.6, 0.0, height, 0.25, 0.6, 0.02]
     legs = [[x, y, height / 2, 0.02, 0.02, height / 2 - 0.02] for x in (0.4, 0.8) for y in (-0.55, 0.55)]
-    return [top, *legs, [0.6, float(random.uniform(-0.3, 0.3)), height + 0.15, 0.1, 0.1, 0.12]]
+    box = [0.6, float(random.uniform(-0.3, 0.3)), height + 0.15, 0.1, 0.1, 0.12]
+    return [top, *legs, box], [0.6, 0.0, height - 0.1]
 
 
-def _tall(random: np.random.Generator) -> Boxes:
+def _tall(random: np.random.Generator) -> tuple[Boxes, list[float]]:
     x, width = float(random.uniform(0.45, 0.6)), float(random.uniform(0.12, 0.2))
     wall = 0.015
     sides = [[x + side * width, 0.0, 0.25, wall, width, 0.25] for side in (-1, 1)]
     ends = [[x, side * width, 0.25, width, wall, 0.25] for side in (-1, 1)]
-    return [*sides, *ends, [0.0, 0.6, 0.5, 0.3, 0.02, 0.5]]
+    return [*sides, *ends, [0.0, 0.6, 0.5, 0.3, 0.02, 0.5]], [x, 0.0, 0.25]
 
 
-_WORLDS: dict[str, Callable[[np.random.Generator], Boxes]] = {
+_WORLDS: dict[str, Callable[[np.random.Generator], tuple[Boxes, list[float]]]] = {
     "boxes": _scattered,
     "shelf": _shelf,
     "cage": _cage,
