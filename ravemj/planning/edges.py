@@ -63,7 +63,8 @@ def path_is_allowed(edges: Edges, points: Floats) -> bool:
     """Return whether a path of straight lines is allowed everywhere, shape (m, n)."""
     space = edges.space
     return edges.point(points[0]) and all(
-        edges.line(points[index], space.difference(points[index + 1], points[index])) for index in range(len(points) - 1)
+        edges.line(points[index], space.difference(points[index + 1], points[index]))
+        for index in range(len(points) - 1)
     )
 
 

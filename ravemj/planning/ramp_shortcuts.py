@@ -5,6 +5,7 @@ shortcuts", ICRA 2010.
 """
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -57,7 +58,7 @@ def lines(points: Floats, limits: Limits) -> list[Piece]:
         limits: What the motion may do.
     """
     motion: list[Piece] = []
-    for start, end in zip(points[:-1], points[1:], strict=True):
+    for start, end in pairwise(points):
         step = limits.coordinates.difference(end, start)
         moving = step != 0
         if not moving.any():
@@ -70,13 +71,13 @@ def lines(points: Floats, limits: Limits) -> list[Piece]:
         along = fit_ramps(one, rest, rest, duration, speed, acceleration) if np.isfinite(duration) else None
         if along is None:
             raise ValueError("a joint moves whose velocity or acceleration limit is 0")
-        motion += _pieces(along, np.zeros(1), lambda numbers, step=step: numbers * step, start)
+        motion += _pieces(along, lambda numbers, step=step: numbers * step, start)
     return motion
 
 
-def _pieces(ramps: Ramps, start: Floats, spread: Callable[[Floats], Floats], origin: Floats) -> list[Piece]:
+def _pieces(ramps: Ramps, spread: Callable[[Floats], Floats], origin: Floats) -> list[Piece]:
     times = np.concatenate([[0.0], ramps.changes(_SAME_TIME)])
-    values, velocities = start + ramps.values(times), ramps.velocities(times)
+    values, velocities = ramps.states(times)
     found: list[Piece] = []
     for index, duration in enumerate(np.diff(times).tolist()):
         if duration > 0:
@@ -107,8 +108,8 @@ def faster(
     for attempt in range(tries):
         if not motion or not proceed(attempt):
             break
-        ends = np.cumsum([piece.duration for piece in motion])
-        low, high = np.sort(random.random(2) * ends[-1])
+        ends: Floats = np.cumsum([piece.duration for piece in motion])
+        low, high = sorted((random.random() * float(ends[-1]), random.random() * float(ends[-1])))
         first, second = (min(int(np.searchsorted(ends, time)), len(motion) - 1) for time in (low, high))
         before = low - (ends[first] - motion[first].duration)
         behind = high - (ends[second] - motion[second].duration)
@@ -137,7 +138,7 @@ def _shortcut(
     beyond = (start[0] + least < limits.lower) | (start[0] + greatest > limits.upper)
     if (beyond & ~limits.coordinates.circular).any():
         return None
-    pieces = _pieces(ramps, start[0], lambda numbers: numbers, np.zeros_like(step))
+    pieces = _pieces(ramps, lambda numbers: numbers, start[0])
     return pieces if all(_is_allowed(edges, piece) for piece in pieces) else None
 
 
@@ -145,4 +146,6 @@ def _is_allowed(edges: Edges, piece: Piece) -> bool:
     """Return whether a piece is allowed everywhere, its start excluded; no joint moves farther than its resolution."""
     last = np.abs(piece.velocities + piece.accelerations * piece.duration)
     farthest = np.maximum(np.abs(piece.velocities), last) * piece.duration
-    return all(edges.point(piece.after(part * piece.duration)[0]) for part in bisection_order(edges.space.steps(farthest)))
+    return all(
+        edges.point(piece.after(part * piece.duration)[0]) for part in bisection_order(edges.space.steps(farthest))
+    )

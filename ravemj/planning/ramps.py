@@ -16,61 +16,47 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Ramps:
-    """A motion of several joints over one time.
+    """A motion of several joints over one time; both ramps of a joint have opposite accelerations.
 
     Attributes:
         duration: How long it takes [s].
         start: Velocities at its start [rad/s or m/s], shape (n,).
-        cruise: Velocities between the ramps, shape (n,).
-        end: Velocities at its end, shape (n,).
+        rate: Accelerations of the first ramps; those of the last are their negatives, shape (n,).
         first: When the first ramp of each joint ends [s], shape (n,).
         last: When its last ramp starts [s], shape (n,).
     """
 
     duration: float
     start: Floats
-    cruise: Floats
-    end: Floats
+    rate: Floats
     first: Floats
     last: Floats
 
     def changes(self, same: float) -> Floats:
         """Return when accelerations change [s], up to the end; ``same`` is how near [s] changes are at one time."""
-        moving = (self.start != 0) | (self.cruise != 0) | (self.end != 0)
-        inner = np.sort(np.concatenate([self.first[moving], self.last[moving]]))
-        inner = inner[(inner > same) & (inner < self.duration - same)]
-        apart = np.diff(inner, prepend=-1.0) > same
-        return np.append(inner[apart], self.duration)
+        moving = self.rate != 0
+        inner = np.concatenate([self.first[moving], self.last[moving], [self.duration]])
+        inner.sort()
+        kept = (inner > same) & (inner < self.duration - same)
+        kept[1:] &= inner[1:] - inner[:-1] > same
+        kept[-1] = True
+        return inner[kept]
 
-    def velocities(self, times: Floats) -> Floats:
-        """Return the velocities at some times [s], shape (len(times), n)."""
+    def states(self, times: Floats) -> tuple[Floats, Floats]:
+        """Return how far the joints are from their start, and velocities, at some times, shape (len(times), n) each."""
         t = times[:, None]
-        speeding, slowing = self._accelerations()
-        up = self.start + speeding * np.minimum(t, self.first)
-        return up + slowing * np.maximum(t - self.last, 0.0)
-
-    def values(self, times: Floats) -> Floats:
-        """Return how far the joints are from their start [rad or m], shape (len(times), n)."""
-        t = times[:, None]
-        speeding, slowing = self._accelerations()
-        ramp, rest = np.minimum(t, self.first), np.maximum(t - self.last, 0.0)
-        first = self.start * ramp + speeding * ramp**2 / 2
-        return first + self.cruise * np.maximum(t - self.first, 0.0) + slowing * rest**2 / 2
-
-    def _accelerations(self) -> tuple[Floats, Floats]:
-        tail = self.duration - self.last
-        speeding = np.where(self.first > 0, (self.cruise - self.start) / np.where(self.first > 0, self.first, 1.0), 0.0)
-        slowing = np.where(tail > 0, (self.end - self.cruise) / np.where(tail > 0, tail, 1.0), 0.0)
-        return speeding, slowing
+        ramp, cruise, rest = np.minimum(t, self.first), np.maximum(t - self.first, 0.0), np.maximum(t - self.last, 0.0)
+        values = self.start * t + self.rate * (ramp * (ramp / 2 + cruise) - rest * rest / 2)
+        return values, self.start + self.rate * (ramp - rest)
 
     def reach(self) -> tuple[Floats, Floats]:
         """Return the least and the greatest values that the joints pass, from their start [rad or m], shape (n,)."""
-        speeding, slowing = self._accelerations()
-        with np.errstate(divide="ignore", invalid="ignore"):
-            turns = np.nan_to_num(np.stack([-self.start / speeding, self.last - self.cruise / slowing]), posinf=0.0)
-        times = np.clip(turns, 0.0, self.duration)
-        times = np.vstack([times, self.first, self.last, np.full_like(self.first, self.duration)])
-        passed = np.stack([self.values(row)[np.arange(len(row)), np.arange(len(row))] for row in times])
+        divisor = np.where(self.rate != 0, self.rate, 1.0)
+        turns = np.stack([-self.start / divisor, self.last + self.start / divisor + self.first])
+        ends = np.stack([self.first, self.last, np.full_like(self.first, self.duration)])
+        times = np.clip(np.vstack([turns, ends]), 0.0, self.duration)
+        joints = np.arange(len(self.start))
+        passed = np.stack([self.states(row)[0][joints, joints] for row in times])
         return np.minimum(passed.min(axis=0), 0.0), np.maximum(passed.max(axis=0), 0.0)
 
 
@@ -125,20 +111,19 @@ def fit_ramps(
     # change of acceleration within the time.
     side = np.where(excess < 0, -1.0, 1.0)
     rate = (2 * excess + side * np.sqrt(4 * excess**2 + (duration * change) ** 2)) / duration**2
-    moving = rate != 0
-    divisor = np.where(moving, rate, 1.0)
-    first = np.where(moving, np.clip((duration + change / divisor) / 2, 0.0, duration), 0.0)
-    last, cruise = np.where(moving, first, duration), start + rate * first
+    divisor = np.where(rate != 0, rate, 1.0)
+    first = last = np.clip((duration + change / divisor) / 2, 0.0, duration)
+    cruise = start + rate * first
     too_fast = np.abs(cruise) > speed * (1 + _ROUNDING)
     if too_fast.any():
         limited = side * speed
         room = limited * duration - steps
         squares = (limited - start) ** 2 + (limited - end) ** 2
         rate = np.where(too_fast, squares / np.where(too_fast & (room != 0), 2 * room, 1.0), rate)
-        cruise, divisor = np.where(too_fast, limited, cruise), np.where(rate != 0, rate, 1.0)
+        divisor = np.where(rate != 0, rate, 1.0)
         first = np.where(too_fast, (limited - start) / divisor, first)
         last = np.where(too_fast, duration - (limited - end) / divisor, last)
     in_order = (first >= 0) & (last >= first - _ROUNDING * duration) & (last <= duration * (1 + _ROUNDING))
     if not in_order.all() or (np.abs(rate) > acceleration * (1 + _ROUNDING)).any():
         return None
-    return Ramps(duration, start, cruise, end, first, np.maximum(last, first))
+    return Ramps(duration, start, rate, first, np.maximum(last, first))

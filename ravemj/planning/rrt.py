@@ -104,43 +104,69 @@ def connect(
         random: Draws configurations.
         more_goals: Further goals.
     """
-    space = edges.space
-    trees = Tree(space), Tree(space)
-    for tree, roots in zip(trees, (starts, goals), strict=True):
-        for root in roots:
-            tree.add(root)
-    goal_roots = list(range(len(goals)))
-
-    def found(at_start: int, at_goal: int, iteration: int) -> Search:
-        path = np.array(trees[0].branch(at_start)[::-1] + trees[1].branch(at_goal))
-        start, goal = trees[0].root(at_start), goal_roots.index(trees[1].root(at_goal))
-        return Search(End.found, without_repetitions(path), start, goal, iteration, trees)
-
+    growth = _Growth(edges, starts, goals)
     stopped = budget.end(0)
-    if stopped is None:
-        line = _straight_line(edges, starts, goals)
-        if line is not None:
-            return found(*line, 0)
-    iteration, grown = 0, 0
+    if stopped is None and (found := growth.straight(starts, goals)) is not None:
+        return found
+    iteration = 0
     while stopped is None:
-        if more_goals is not None and (not trees[1].count or random.random() < more_goals.probability):
-            new = more_goals.sample()
-            if new is not None:
-                goal_roots.append(trees[1].add(new))
-        if trees[1].count:
-            near, far = trees[grown], trees[1 - grown]
-            added = _extend(edges, near, space.sample(random))
-            if added is not None:
-                met = _reach(edges, far, near.node(added))
-                if met is not None:
-                    return found(*((added, met) if grown == 0 else (met, added)), iteration + 1)
-            if near.count > far.count:
-                grown = 1 - grown
+        if more_goals is not None and (not growth.trees[1].count or random.random() < more_goals.probability):
+            growth.add_goal(more_goals.sample())
+        if growth.trees[1].count and (found := growth.grow(edges.space.sample(random), iteration + 1)) is not None:
+            return found
         iteration += 1
         stopped = budget.end(iteration)
-    if not trees[1].count and stopped is End.iterations:
+    if not growth.trees[1].count and stopped is End.iterations:
         stopped = End.no_goal
-    return Search(stopped, None, -1, -1, iteration, trees)
+    return Search(stopped, None, -1, -1, iteration, growth.trees)
+
+
+class _Growth:
+    """Trees from starts and goals.
+
+    Attributes:
+        trees: That from the starts, and that from the goals.
+    """
+
+    def __init__(self, edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats]) -> None:
+        self._edges = edges
+        self.trees = Tree(edges.space), Tree(edges.space)
+        for start in starts:
+            self.trees[0].add(start)
+        self._goals = [self.trees[1].add(goal) for goal in goals]
+        self._grown = 0
+
+    def add_goal(self, goal: Floats | None) -> None:
+        """Add a further goal, if it is one."""
+        if goal is not None:
+            self._goals.append(self.trees[1].add(goal))
+
+    def straight(self, starts: Sequence[Floats], goals: Sequence[Floats]) -> Search | None:
+        """Return the path of one line, nearest ends first, or None."""
+        space = self._edges.space
+        pairs = [(space.distance(goal, start), s, g) for s, start in enumerate(starts) for g, goal in enumerate(goals)]
+        for _, start, goal in sorted(pairs)[:_MOST_LINES]:
+            if self._edges.line(starts[start], space.difference(goals[goal], starts[start])):
+                return self._found(start, goal, 0)
+        return None
+
+    def grow(self, target: Floats, iteration: int) -> Search | None:
+        """Grow the smaller tree towards a configuration, and the other to where it got; return the path, or None."""
+        near, far = self.trees[self._grown], self.trees[1 - self._grown]
+        added = _extend(self._edges, near, target)
+        met = None if added is None else _reach(self._edges, far, near.node(added))
+        if added is not None and met is not None:
+            ends = (added, met) if self._grown == 0 else (met, added)
+            return self._found(*ends, iteration)
+        if near.count > far.count:
+            self._grown = 1 - self._grown
+        return None
+
+    def _found(self, at_start: int, at_goal: int, iteration: int) -> Search:
+        first, second = self.trees
+        path = np.array(first.branch(at_start)[::-1] + second.branch(at_goal))
+        start, goal = first.root(at_start), self._goals.index(second.root(at_goal))
+        return Search(End.found, without_repetitions(path), start, goal, iteration, self.trees)
 
 
 def single(
@@ -190,16 +216,6 @@ def explore(edges: Edges, starts: Sequence[Floats], size: int, budget: Budget, r
         _extend(edges, tree, edges.space.sample(random))
         iteration += 1
     return tree
-
-
-def _straight_line(edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats]) -> tuple[int, int] | None:
-    """Return a start and a goal that a straight line connects, nearest first, or None."""
-    space = edges.space
-    pairs = [(space.distance(goal, start), s, g) for s, start in enumerate(starts) for g, goal in enumerate(goals)]
-    for _, start, goal in sorted(pairs)[:_MOST_LINES]:
-        if edges.line(starts[start], space.difference(goals[goal], starts[start])):
-            return start, goal
-    return None
 
 
 def _extend(edges: Edges, tree: Tree, target: Floats) -> int | None:

@@ -39,8 +39,8 @@ def shorten(
             break
         steps = space.difference(np.array(path[1:]), np.array(path[:-1]))
         lengths = np.linalg.norm(space.weights * steps, axis=1)
-        ends = np.cumsum(lengths)
-        low, high = np.sort(random.random(2) * ends[-1])
+        ends: Floats = np.cumsum(lengths)
+        low, high = sorted((random.random() * float(ends[-1]), random.random() * float(ends[-1])))
         first, second = (min(int(np.searchsorted(ends, place)), len(steps) - 1) for place in (low, high))
         if first == second:
             continue

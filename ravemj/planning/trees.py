@@ -18,14 +18,14 @@ class Tree:
     def __init__(self, space: Space) -> None:
         self._space = space
         self.count = 0
-        self._nodes = np.empty((_FIRST_CAPACITY, len(space.lower)))
+        self._nodes: Floats = np.empty((_FIRST_CAPACITY, len(space.lower)))
         self._parents: list[int] = []
         self._weights = space.weights
 
     def add(self, configuration: Floats, parent: int = -1) -> int:
         """Add a configuration; return its number. -1 as parent makes it a root."""
         if self.count == len(self._nodes):
-            self._nodes = np.concatenate([self._nodes, np.empty_like(self._nodes)])
+            self._nodes = np.concatenate([self._nodes, np.empty(self._nodes.shape)])
         self._nodes[self.count] = configuration
         self._parents.append(parent)
         self.count += 1

@@ -322,7 +322,6 @@ class Interval(IntFlag):
     InterpolationMask = 0xFFFF0000
 
 
-
 class ConstraintFilterOptions(IntFlag):
     """What tests of configurations look at."""
 

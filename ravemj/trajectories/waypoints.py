@@ -8,7 +8,15 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.trajectories.conversion import FindBody, converted, nobody
 from ravemj.trajectories.extraction import time_column
-from ravemj.trajectories.groups import DELTATIME, IK, INTERPOLATIONS, JOINTS, Group, derived_interpolation, joint_indices
+from ravemj.trajectories.groups import (
+    DELTATIME,
+    IK,
+    INTERPOLATIONS,
+    JOINTS,
+    Group,
+    derived_interpolation,
+    joint_indices,
+)
 from ravemj.trajectories.interpolation import DERIVATIVES, HELD, ROUNDING, Ends, curve, differentiated, held, value
 from ravemj.trajectories.layout import copied, count, equal, find_shifted
 

@@ -1,5 +1,7 @@
 """Motions of joints and of the tool."""
 
+# ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
+
 from collections.abc import Sequence
 
 import numpy as np
@@ -203,7 +205,9 @@ class BaseManipulation(Helper):
         """
         del affinedofs, seedik, steplength, minimumgoalpaths, jittergoal, goalsampleprob, goalmaxtries, releasegil
         del freevalues, constrainterrorthresh
-        if any(one is not None for one in (constraintfreedoms, constraintmatrix, constrainttaskmatrix, constrainttaskpose)):
+        if any(
+            one is not None for one in (constraintfreedoms, constraintmatrix, constrainttaskmatrix, constrainttaskpose)
+        ):
             raise UnsupportedError("MoveToHandPosition with constraints", "planning with constraints of the tool")
         kind = IkParameterization.Type
         goals = [IkParameterization(checked_transform(one, "matrices"), kind.Transform6D) for one in matrices or ()]

@@ -1,5 +1,7 @@
 """Motions of fingers."""
 
+# ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
+
 from types import TracebackType
 
 import numpy as np
@@ -199,7 +201,9 @@ class TaskManipulation(Helper):
         errorthresh: object = None,
     ) -> None:
         """Refuse to project configurations onto constraints of the tool."""
-        raise UnsupportedError("interfaces.TaskManipulation.EvaluateConstraints", "planning with constraints of the tool")
+        raise UnsupportedError(
+            "interfaces.TaskManipulation.EvaluateConstraints", "planning with constraints of the tool"
+        )
 
     def SwitchModels(
         self,

@@ -85,10 +85,8 @@ def _record(joint: Joint, before: int, start: Floats, anchor: Floats, axis: Floa
         foot = anchor + axis * (float(np.cross(apart, z) @ normal) / sine**2)
         across = foot - origin - d * z
     a = float(np.linalg.norm(across))
-    if a > _PARALLEL:
-        new_x = across / a
-    else:
-        new_x = x if sine < _PARALLEL else normal / sine
+    meeting = x if sine < _PARALLEL else normal / sine
+    new_x = across / a if a > _PARALLEL else meeting
     theta = float(np.arctan2(np.cross(x, new_x) @ z, x @ new_x))
     alpha = float(np.arctan2(np.cross(z, axis) @ new_x, z @ axis))
     transform = np.eye(4)

@@ -1,5 +1,7 @@
 """Verifying of trajectories and lines, and configurations nearby without collisions."""
 
+# ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
+
 from typing import Any
 
 import numpy as np
@@ -145,8 +147,9 @@ class DynamicsCollisionConstraint(ApiObject):
                 parameters.resolved().problem(invalid, wanted, self._report)
         if not filterreturn:
             return code
-        line = np.linalg.norm(np.asarray(q1, dtype=float) - q0)
-        part = float(np.linalg.norm(invalid - q0) / line) if code and line > 0 else 0.0
+        start, end = checked_numbers(q0, "q0"), checked_numbers(q1, "q1")
+        line = np.linalg.norm(end - start)
+        part = float(np.linalg.norm(invalid - start) / line) if code and line > 0 else 0.0
         return {
             "returncode": code,
             "invalidvalues": invalid,

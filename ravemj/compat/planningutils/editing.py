@@ -17,6 +17,7 @@ from ravemj.trajectories.interpolation import HELD
 
 _ODD_DERIVATIVES = ("velocities", "jerks")
 
+
 def ConvertTrajectorySpecification(trajectory: Trajectory, spec: ConfigurationSpecification) -> None:
     """Change the layout of a trajectory in place; what the trajectory lacks is taken from the bodies as they are.
 
@@ -101,7 +102,9 @@ def GetTrajectorySegment(trajectory: Trajectory, starttime: float, endtime: floa
     duration = trajectory.GetDuration()
     start, end = max(0.0, float(starttime)), min(duration, float(endtime))
     if not start < duration or math.isnan(end):
-        raise ArgumentError(f"starttime: is {starttime}, and should be before the end of the trajectory, {duration:g} s")
+        raise ArgumentError(
+            f"starttime: is {starttime}, and should be before the end of the trajectory, {duration:g} s"
+        )
     times = np.cumsum(_deltas(trajectory))
     inner = times[(times > start) & (times < end)].tolist()
     chosen = [start] if end == start else [start, *inner, end if end > start else start]

@@ -1,5 +1,7 @@
 """Configurations that reach goals of inverse kinematics, one after the other."""
 
+# ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
+
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Further waypoints at the ends of trajectories with times."""
 
+# ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
+
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import checked_kind

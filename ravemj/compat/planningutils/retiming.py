@@ -132,7 +132,9 @@ def SmoothActiveDOFTrajectory(
         How it ended; the trajectory is as it was where it failed.
     """
     checked_kind(trajectory, Trajectory, "SmoothActiveDOFTrajectory: trajectory")
-    return run_planner(trajectory, _active(robot, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER)
+    return run_planner(
+        trajectory, _active(robot, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER
+    )
 
 
 def SmoothTrajectory(
@@ -152,7 +154,9 @@ def SmoothTrajectory(
         plannerparameters: Its parameters as XML text.
     """
     checked_kind(trajectory, Trajectory, "SmoothTrajectory: trajectory")
-    return run_planner(trajectory, of_bodies(trajectory, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER)
+    return run_planner(
+        trajectory, of_bodies(trajectory, plannerparameters, maxvelmult, maxaccelmult), plannername or _SMOOTHER
+    )
 
 
 def SmoothAffineTrajectory(
@@ -275,9 +279,7 @@ def _active(robot: Robot, extra: str, maxvelmult: float, maxaccelmult: float) ->
     return scaled(params, extra, maxvelmult, maxaccelmult)
 
 
-def _affine(
-    traj: Trajectory, maxvelocities: ArrayLike, maxaccelerations: ArrayLike, extra: str
-) -> PlannerParameters:
+def _affine(traj: Trajectory, maxvelocities: ArrayLike, maxaccelerations: ArrayLike, extra: str) -> PlannerParameters:
     params = of_bodies(traj, extra)
     dof = params.GetDOF()
     given: Sequence[tuple[str, ArrayLike]] = (("maxvelocities", maxvelocities), ("maxaccelerations", maxaccelerations))

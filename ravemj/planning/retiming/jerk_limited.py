@@ -7,7 +7,6 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.planning.retiming.segments import Limits, Rows, Segment
 
-
 _SAME_TIME = 1e-10
 """Changes of jerk this near [s] are at one time."""
 

@@ -49,4 +49,4 @@ class Parabolic:
         if ramps is None:
             return None
         times = ramps.changes(_SAME_TIME) if self._with_changes else np.array([duration])
-        return Rows(times, (ramps.values(times), ramps.velocities(times)))
+        return Rows(times, ramps.states(times))

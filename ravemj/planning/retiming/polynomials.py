@@ -1,5 +1,6 @@
 """One polynomial for each segment: cubic or quintic."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -117,13 +118,21 @@ class Quintic(Polynomial):
         rest = step - start * duration
         change = (end - start) * duration
         coefficients = np.stack(
-            [0 * step, start * duration, 0 * step, 10 * rest - 4 * change, 7 * change - 15 * rest, 6 * rest - 3 * change]
+            [
+                0 * step,
+                start * duration,
+                0 * step,
+                10 * rest - 4 * change,
+                7 * change - 15 * rest,
+                6 * rest - 3 * change,
+            ]
         )
         bounds = (limits.velocity, limits.acceleration, limits.jerk)
         part = np.linspace(0.0, 1.0, 101)
         for order, bound in enumerate(bounds, start=1):
-            rates: Any = np.polynomial.polynomial.polyder(coefficients, order)
-            fastest = np.abs(np.polynomial.polynomial.polyval(part, rates)).max(axis=1) / duration**order
+            powers = np.arange(order, 6)
+            rates = coefficients[order:] * np.array([math.perm(power, order) for power in powers.tolist()])[:, None]
+            fastest = np.abs(part[:, None] ** (powers - order) @ rates).max(axis=0) / duration**order
             if (fastest > bound * (1 + _SLACK)).any():
                 return False
         return True

@@ -162,7 +162,7 @@ def retime(
         raise RetimingError("there are no waypoints")
     path = _Path(profile, points[0], np.zeros_like(points[0]) if velocities is None else velocities[0])
     if deltas is not None and not profile.merges:
-        path.deltas[0] = float(deltas[0])
+        path.start_at(float(deltas[0]))
     for index in range(1, len(points)):
         step = limits.coordinates.difference(points[index], points[index - 1])
         ends = np.zeros((2, len(step))) if velocities is None else velocities[index - 1 : index + 1]
@@ -184,21 +184,24 @@ def _driven(profile: Profile, segment: Segment, limits: Limits, given: float | N
     if not math.isfinite(needed):
         raise RetimingError("a joint moves whose velocity or acceleration limit is 0")
     if given is not None:
-        if not given >= needed - ENOUGH:
-            raise RetimingError(f"the given time is {given:.6g} s, and the limits ask for {needed:.6g} s at least")
-        duration = max(given, needed)
-    elif time_step > 0:
-        duration = max(1, math.ceil(needed / time_step - ENOUGH)) * time_step
-    else:
-        duration = needed
+        return _kept(profile, segment, limits, given, needed)
+    duration = max(1, math.ceil(needed / time_step - ENOUGH)) * time_step if time_step > 0 else needed
     for _ in range(_MOST_ATTEMPTS):
         rows = profile.drive(segment, duration, limits)
         if rows is not None:
             return rows
-        if given is not None:
-            break
-        duration = duration * _LONGER
+        duration *= _LONGER
     raise RetimingError(f"no motion of {duration:.6g} s keeps the limits with the velocities at the waypoints")
+
+
+def _kept(profile: Profile, segment: Segment, limits: Limits, given: float, needed: float) -> Rows:
+    """Return the motion of a segment in a given time."""
+    if not given >= needed - ENOUGH:
+        raise RetimingError(f"the given time is {given:.6g} s, and the limits ask for {needed:.6g} s at least")
+    rows = profile.drive(segment, max(given, needed), limits)
+    if rows is None:
+        raise RetimingError(f"no motion of {given:.6g} s keeps the limits with the velocities at the waypoints")
+    return rows
 
 
 class _Path:
@@ -207,23 +210,29 @@ class _Path:
     def __init__(self, profile: Profile, first: Floats, velocity: Floats) -> None:
         self._profile = profile
         rest = np.zeros_like(first)
-        self.deltas = [0.0]
-        self.orders = [[order] for order in (first, velocity, *[rest] * (profile.order - 1))[: profile.order + 1]]
-        self.is_point = [True]
+        self._deltas = [np.zeros(1)]
+        orders = (first, velocity, *[rest] * (profile.order - 1))[: profile.order + 1]
+        self._orders = [[order[None]] for order in orders]
+        self._is_point = [np.ones(1, dtype=bool)]
+
+    def start_at(self, time: float) -> None:
+        """Let time pass before the first waypoint [s]."""
+        self._deltas[0][0] = time
 
     def append(self, rows: Rows, start: Floats, end: Floats) -> None:
         """Append a segment; its last row is the waypoint itself."""
-        if self._profile.merges and rows.times[-1] <= 0:
+        times = rows.times
+        if self._profile.merges and times[-1] <= 0:
             return
-        before = 0.0
-        for index, time in enumerate(rows.times.tolist()):
-            is_last = index == len(rows.times) - 1
-            self.deltas.append(time - before)
-            self.orders[0].append(end if is_last else start + rows.orders[0][index])
-            for order in range(1, self._profile.order + 1):
-                self.orders[order].append(rows.orders[order][index])
-            self.is_point.append(is_last)
-            before = time
+        self._deltas.append(np.concatenate([times[:1], times[1:] - times[:-1]]))
+        values = start + rows.orders[0]
+        values[-1] = end
+        for known, fresh in zip(self._orders, (values, *rows.orders[1:]), strict=True):
+            known.append(fresh)
+        is_point = np.zeros(len(times), dtype=bool)
+        is_point[-1] = True
+        self._is_point.append(is_point)
 
     def timed(self) -> Timed:
-        return Timed(np.array(self.deltas), [np.array(rows) for rows in self.orders], np.array(self.is_point))
+        orders = [np.concatenate(rows) for rows in self._orders]
+        return Timed(np.concatenate(self._deltas), orders, np.concatenate(self._is_point))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.modules.base_manipulation import BaseManipulation
-from ravemj.rave.modules.commands import base_commands, task_commands
+from ravemj.rave.modules.commands import BaseCommands, TaskCommands, answering
 from ravemj.rave.modules.module import Command, Module
 from ravemj.rave.modules.motions import Mover
 from ravemj.rave.modules.task_manipulation import TaskManipulation
@@ -29,13 +29,13 @@ MODULES = ("BaseManipulation", "TaskManipulation")
 def base_module(env: "Environment", xmlid: str = "BaseManipulation") -> tuple[Module, BaseManipulation]:
     """Make a module that moves arms, and return it with what it runs."""
     mover = BaseManipulation(env)
-    return _module(env, xmlid, mover, base_commands(mover)), mover
+    return _module(env, xmlid, mover, answering(BaseCommands(mover).named())), mover
 
 
 def task_module(env: "Environment", xmlid: str = "TaskManipulation") -> tuple[Module, TaskManipulation]:
     """Make a module that moves grippers, and return it with what it runs."""
     mover = TaskManipulation(env)
-    return _module(env, xmlid, mover, task_commands(mover)), mover
+    return _module(env, xmlid, mover, answering(TaskCommands(mover).named())), mover
 
 
 def made_module(env: "Environment", name: str) -> Module | None:

@@ -182,9 +182,7 @@ class BaseManipulation(Mover):
     def _arm_groups(self, manip: Manipulator) -> Any:  # noqa: ANN401 - groups
         return manip.GetArmConfigurationSpecification().GetGroups()
 
-    def _next(
-        self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool, jumps: bool
-    ) -> Floats | None:
+    def _next(self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool, jumps: bool) -> Floats | None:
         """Return the solution next to joint values, or None where there is none nearby without collisions."""
         self.robot.SetDOFValues(before, manip.GetArmIndices())
         options = IkFilterOptions.CheckEnvCollisions if check else IkFilterOptions.IgnoreSelfCollisions

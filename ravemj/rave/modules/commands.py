@@ -35,9 +35,15 @@ def effort_of(options: Mapping[str, Any], default: Effort) -> Effort:
     return default._replace(**{names[name]: value for name, value in options.items() if name in names})
 
 
-def _or_none(command: Command) -> Command:
-    """Answer None where no motion is found, as OpenRAVE's commands do."""
+Named = Mapping[str, Callable[[str], str | None]]
 
+
+def answering(named: Named) -> dict[str, Command]:
+    """Return commands that answer None where no motion is found, as OpenRAVE's do."""
+    return {name: _or_none(command) for name, command in named.items()}
+
+
+def _or_none(command: Command) -> Command:
     @wraps(command)
     def run(arguments: str) -> str | None:
         try:
@@ -48,12 +54,39 @@ def _or_none(command: Command) -> Command:
     return run
 
 
-def base_commands(mover: BaseManipulation) -> dict[str, Command]:
-    """Return the commands of ``BaseManipulation``."""
+class _Commands:
+    """Commands for one robot."""
 
-    def move_active_joints(arguments: str) -> str:
+    def __init__(self, mover: Mover) -> None:
+        self._any = mover
+
+    def set_robot(self, arguments: str) -> str | None:
+        """Chooses the robot by its name."""
+        return "" if self._any.choose(arguments.strip()) else None
+
+
+class BaseCommands(_Commands):
+    """The commands of ``BaseManipulation``."""
+
+    def __init__(self, mover: BaseManipulation) -> None:
+        super().__init__(mover)
+        self._mover = mover
+
+    def named(self) -> Named:
+        """Return the commands by their names."""
+        return {
+            "MoveActiveJoints": self.move_active_joints,
+            "MoveManipulator": self.move_manipulator,
+            "MoveToHandPosition": self.move_to_hand_position,
+            "MoveHandStraight": self.move_hand_straight,
+            "MoveUnsyncJoints": self.move_unsync_joints,
+            "JitterActive": self.jitter_active,
+            "SetRobot": self.set_robot,
+        }
+
+    def move_active_joints(self, arguments: str) -> str:
         """Moves the active DOFs to one of several goals without collisions."""
-        dof = mover.robot.GetActiveDOF()
+        dof = self._mover.robot.GetActiveDOF()
         readers = {**_OUTPUT, **_EFFORT, **_goals(dof), "steplength": Words.number}
         readers |= {"initialconfigs": lambda words: words.rows(dof), "postprocessingplanner": text}
         options = read_options(arguments, readers)
@@ -61,16 +94,18 @@ def base_commands(mover: BaseManipulation) -> dict[str, Command]:
         post = (options["postprocessingplanner"], "") if "postprocessingplanner" in options else None
         goals = [*options.get("goal", ()), *options.get("goals", ())]
         effort = effort_of(options, Effort())
-        return reply(mover, mover.move_active_joints(goals, effort, starts=starts, postprocessing=post), options)
+        return reply(
+            self._mover, self._mover.move_active_joints(goals, effort, starts=starts, postprocessing=post), options
+        )
 
-    def move_manipulator(arguments: str) -> str:
+    def move_manipulator(self, arguments: str) -> str:
         """Moves the arm of the active manipulator to one of several goals without collisions."""
-        dof = mover.arm().GetArmDOF()
+        dof = self._mover.arm().GetArmDOF()
         options = read_options(arguments, {**_OUTPUT, **_EFFORT, **_goals(dof), "steplength": Words.number})
         goals = [*options.get("goal", ()), *options.get("goals", ())]
-        return reply(mover, mover.move_manipulator(goals, effort_of(options, Effort())), options)
+        return reply(self._mover, self._mover.move_manipulator(goals, effort_of(options, Effort())), options)
 
-    def move_to_hand_position(arguments: str) -> str:
+    def move_to_hand_position(self, arguments: str) -> str:
         """Moves the tool of the active manipulator to one of several poses without collisions."""
         readers: dict[str, Reader] = {**_OUTPUT, **_EFFORT, "matrix": Words.matrix, "matrices": _matrices}
         readers |= {"goalsamples": Words.integer, "goalmaxsamples": Words.integer, "steplength": Words.number}
@@ -79,92 +114,80 @@ def base_commands(mover: BaseManipulation) -> dict[str, Command]:
         poses = [*([options["matrix"]] if "matrix" in options else []), *options.get("matrices", ())]
         goals = [IkParameterization(pose, IkParameterization.Type.Transform6D) for pose in poses]
         samples = options.get("goalsamples", options.get("goalmaxsamples", 40))
-        traj = mover.move_to_hand_position(goals, effort_of(options, HAND_EFFORT), samples=samples)
-        return reply(mover, traj, options, "1" if not options.get("outputtraj") else "1 ")
+        traj = self._mover.move_to_hand_position(goals, effort_of(options, HAND_EFFORT), samples=samples)
+        return reply(self._mover, traj, options, "1" if not options.get("outputtraj") else "1 ")
 
-    def move_hand_straight(arguments: str) -> str:
+    def move_hand_straight(self, arguments: str) -> str:
         """Moves the tool of the active manipulator along a straight line."""
         readers: dict[str, Reader] = {**_OUTPUT, "direction": lambda words: words.numbers(3), "greedysearch": flag}
         readers |= {"minsteps": Words.integer, "maxsteps": Words.integer, "starteematrix": Words.matrix}
         readers |= dict.fromkeys(("stepsize", "ignorefirstcollision", "maxdeviationangle", "steplength"), Words.number)
         options = read_options(arguments, {**readers, "planner": text})
-        return reply(mover, straight(mover, options), options)
+        return reply(self._mover, straight(self._mover, options), options)
 
-    def move_unsync_joints(arguments: str) -> str:
+    def move_unsync_joints(self, arguments: str) -> str:
         """Moves the active DOFs to where other joints can move to values without collisions."""
         readers: dict[str, Reader] = {**_OUTPUT, "handjoints": _hand, "planner": text}
         readers |= {"maxtries": Words.integer, "maxdivision": Words.integer}
         options = read_options(arguments, readers)
-        return reply(mover, unsync(mover, *options.get("handjoints", (np.zeros(0), [])), options), options)
+        hand, indices = options.get("handjoints", (np.zeros(0), []))
+        return reply(self._mover, unsync(self._mover, hand, indices, options), options)
 
-    def jitter_active(arguments: str) -> str:
+    def jitter_active(self, arguments: str) -> str:
         """Moves the active DOFs a little, out of collision."""
         readers: dict[str, Reader] = {**_OUTPUT, "maxiter": Words.integer, "jitter": Words.number}
         options = read_options(arguments, {**readers, "outputfinal": switch})
-        final, traj = mover.jitter_active(options.get("maxiter", 5000), options.get("jitter", 0.03))
-        return reply(mover, traj, options, _numbers(final) if options.get("outputfinal") else "")
-
-    named: dict[str, Callable[[str], str]] = {
-        "MoveActiveJoints": move_active_joints,
-        "MoveManipulator": move_manipulator,
-        "MoveToHandPosition": move_to_hand_position,
-        "MoveHandStraight": move_hand_straight,
-        "MoveUnsyncJoints": move_unsync_joints,
-        "JitterActive": jitter_active,
-    }
-    return {**{name: _or_none(command) for name, command in named.items()}, **_common(mover)}
+        final, traj = self._mover.jitter_active(options.get("maxiter", 5000), options.get("jitter", 0.03))
+        return reply(self._mover, traj, options, _numbers(final) if options.get("outputfinal") else "")
 
 
-def task_commands(mover: TaskManipulation) -> dict[str, Command]:
-    """Return the commands of ``TaskManipulation``."""
+class TaskCommands(_Commands):
+    """The commands of ``TaskManipulation``."""
 
-    def fingers(arguments: str) -> dict[str, Any]:
-        readers: dict[str, Reader] = {**_OUTPUT, "outputfinal": switch, "movingdir": _directions, "offset": _directions}
-        readers |= dict.fromkeys(("coarsestep", "finestep", "translationstepmult"), Words.number)
-        return read_options(arguments, {**readers, "target": text})
+    def __init__(self, mover: TaskManipulation) -> None:
+        super().__init__(mover)
+        self._mover = mover
 
-    def _directions(words: Words) -> Floats:
-        manip = mover.robot.GetActiveManipulator()
-        return words.numbers(manip.GetGripperDOF() if manip else 0)
+    def named(self) -> Named:
+        """Return the commands by their names."""
+        return {
+            "CloseFingers": self.close_fingers,
+            "ChuckFingers": self.close_fingers,
+            "ReleaseFingers": self.release_fingers,
+            "UnchuckFingers": self.release_fingers,
+            "ReleaseActive": self.release_active,
+            "SetRobot": self.set_robot,
+        }
 
-    def answer(found: tuple[Floats, Trajectory], options: Mapping[str, Any]) -> str:
-        return reply(mover, found[1], options, _numbers(found[0]) if options.get("outputfinal") else "")
-
-    def close_fingers(arguments: str) -> str:
+    def close_fingers(self, arguments: str) -> str:
         """Closes the gripper until its fingers touch something."""
-        options = fingers(arguments)
-        return answer(mover.close_fingers(options.get("movingdir"), options.get("offset")), options)
+        options = self._options(arguments)
+        return self._answer(self._mover.close_fingers(options.get("movingdir"), options.get("offset")), options)
 
-    def release_fingers(arguments: str) -> str:
+    def release_fingers(self, arguments: str) -> str:
         """Opens the gripper, and lets go of a body."""
-        options = fingers(arguments)
-        target = mover.env.GetKinBody(options["target"]) if "target" in options else None
-        return answer(mover.release_fingers(options.get("movingdir"), target), options)
+        options = self._options(arguments)
+        target = self._mover.env.GetKinBody(options["target"]) if "target" in options else None
+        return self._answer(self._mover.release_fingers(options.get("movingdir"), target), options)
 
-    def release_active(arguments: str) -> str:
+    def release_active(self, arguments: str) -> str:
         """Moves the active joints to one side until they touch something."""
-        dof = mover.robot.GetActiveDOF()
+        dof = self._mover.robot.GetActiveDOF()
         readers: dict[str, Reader] = {**_OUTPUT, "outputfinal": switch, "movingdir": lambda words: words.numbers(dof)}
         readers |= dict.fromkeys(("finestep", "translationstepmult"), Words.number)
         options = read_options(arguments, readers)
-        return answer(mover.release_active(options.get("movingdir", np.zeros(dof))), options)
+        return self._answer(self._mover.release_active(options.get("movingdir", np.zeros(dof))), options)
 
-    named: dict[str, Callable[[str], str]] = {
-        "CloseFingers": close_fingers,
-        "ChuckFingers": close_fingers,
-        "ReleaseFingers": release_fingers,
-        "UnchuckFingers": release_fingers,
-        "ReleaseActive": release_active,
-    }
-    return {**{name: _or_none(command) for name, command in named.items()}, **_common(mover)}
+    def _options(self, arguments: str) -> dict[str, Any]:
+        manip = self._mover.robot.GetActiveManipulator()
+        dof = manip.GetGripperDOF() if manip else 0
+        readers: dict[str, Reader] = {**_OUTPUT, "outputfinal": switch, "target": text}
+        readers |= dict.fromkeys(("movingdir", "offset"), lambda words: words.numbers(dof))
+        readers |= dict.fromkeys(("coarsestep", "finestep", "translationstepmult"), Words.number)
+        return read_options(arguments, readers)
 
-
-def _common(mover: Mover) -> dict[str, Command]:
-    def set_robot(arguments: str) -> str | None:
-        """Chooses the robot by its name."""
-        return "" if mover.choose(arguments.strip()) else None
-
-    return {"SetRobot": set_robot}
+    def _answer(self, found: tuple[Floats, Trajectory], options: Mapping[str, Any]) -> str:
+        return reply(self._mover, found[1], options, _numbers(found[0]) if options.get("outputfinal") else "")
 
 
 def straight(mover: BaseManipulation, options: Mapping[str, Any]) -> Trajectory:

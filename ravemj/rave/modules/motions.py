@@ -12,8 +12,9 @@ from ravemj.planning.jitter import nearby
 from ravemj.rave.enums import SaveParameters
 from ravemj.rave.planning.end_waypoints import EndWaypoint
 from ravemj.rave.planning.names import PLANNERS, needed_planner, retimed
-from ravemj.rave.planning.parameters import PlannerParameters, Values
+from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlannerStatus, PlanningError
+from ravemj.rave.planning.values import Values
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
 

@@ -1,6 +1,6 @@
 """The bodies that a planner moves: their configuration, its limits, its collisions."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ravemj.core.transforms import Floats, Vec3
+from ravemj.engine.collision.moving import moving_test
 from ravemj.engine.collision.questions import body_and_others, itself
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
@@ -144,6 +145,16 @@ class Bodies:
                 for (state, configuration), stamp in zip(saved, stamps, strict=True):
                     state.restore(configuration)
                     state.stamp = stamp
+
+    def fast_test(self) -> Callable[[Floats], bool] | None:
+        """Return a fast test whether the bodies collide in a configuration, or None where ``move`` has to be called.
+
+        It is for use within ``kept``; the world has to stay as it is meanwhile.
+        """
+        is_plain = type(self._env.GetCollisionChecker()) is CollisionChecker and not self._env.collision_callbacks
+        if not is_plain or len(self._parts) != 1 or not self._parts[0].dofs:
+            return None
+        return moving_test(self._parts[0].body.simulation_state, self._parts[0].dofs)
 
     def collision(self, report: CollisionReport | None = None) -> int:
         """Return how the bodies collide as they are: ``FREE``, ``ENV_COLLISION`` or ``SELF_COLLISION``."""

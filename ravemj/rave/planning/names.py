@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,11 +9,10 @@ import numpy as np
 from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.rave.interface import checked_environment
-from ravemj.rave.planning.parameters import PlannerParameters, Values
+from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt
 from ravemj.rave.planning.planner import Planner
-from ravemj.rave.planning.retimers import RETIMERS, Retimer
-from ravemj.rave.planning.smoothers import SMOOTHERS, Smoother
+from ravemj.rave.planning.processing import TRAJECTORY_PLANNERS
 from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
@@ -29,8 +27,7 @@ PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
     "birrt": BiRrt,
     "basicrrt": BasicRrt,
     "explorationrrt": ExplorationRrt,
-    **dict.fromkeys(RETIMERS, Retimer),
-    **dict.fromkeys(SMOOTHERS, Smoother),
+    **TRAJECTORY_PLANNERS,
 }
 """What plans, by names in lower case."""
 
@@ -73,33 +70,6 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
         _LOG.warning("there is no planner '%s'", name)
         return None
     return make(env, word)
-
-
-def post_process(env: "Environment", values: Values, traj: Trajectory) -> PlannerStatus | None:
-    """Let the planners that parameters name for it work on a path, one after the other.
-
-    Args:
-        env: The environment.
-        values: The parameters of the planner that found the path.
-        traj: The path, which is processed in place.
-
-    Returns:
-        How a planner failed, or None.
-    """
-    name, text = values.postprocessing
-    if name and traj.GetNumWaypoints() == 1:
-        name, text = "LinearTrajectoryRetimer", ""  # nothing to smooth
-    numbers = {**values.numbers, "_nmaxiterations": 0.0, "_fsteplength": 0.0}
-    while name:
-        planner = RaveCreatePlanner(env, name)
-        if planner is None:
-            return PlannerStatus(f"there is no planner '{name}' to process the path", errorOrigin=name)
-        own = replace(values, numbers=numbers, tags={}, postprocessing=("", "")).with_tags(text)
-        status = planner.run(own, traj)
-        if not status:
-            return status
-        name, text = own.postprocessing
-    return None
 
 
 def needed_planner(env: "Environment", name: str) -> Planner:

@@ -2,6 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,9 +13,10 @@ from ravemj.planning.edges import Edges
 from ravemj.planning.rrt import Budget, End, MoreGoals, Search, connect, explore, single
 from ravemj.rave.enums import ConstraintFilterOptions, PlannerAction, PlannerStatusCode
 from ravemj.rave.planning.bodies import USER
-from ravemj.rave.planning.parameters import Values
 from ravemj.rave.planning.planner import Planner
+from ravemj.rave.planning.processing import post_process
 from ravemj.rave.planning.status import PlannerStatus
+from ravemj.rave.planning.values import Values
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
@@ -123,8 +125,6 @@ class PathPlanner(Planner):
 
     def _processed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:
         """Let the chain of smoothers and retimers work on a path."""
-        from ravemj.rave.planning.names import post_process  # noqa: PLC0415 - that names this planner, too
-
         problem = post_process(self._env, values, traj)
         if problem is not None:
             return problem
@@ -221,7 +221,7 @@ def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
     """Return a path with more points on its lines."""
     space = edges.space
     rows = [path[:1]]
-    for start, end in zip(path[:-1], path[1:], strict=True):
+    for start, end in pairwise(path):
         far = space.distance(end, start)
         count = max(1, int(np.ceil(far / (_SPACING * step_length)))) if step_length > 0 else 1
         parts = np.arange(1, count)[:, None] / count

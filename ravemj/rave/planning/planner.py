@@ -9,8 +9,9 @@ from ravemj.core.handles import Handle
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import InterfaceType, PlannerAction, PlannerStatusCode
 from ravemj.rave.interface import Annotations, Interface
-from ravemj.rave.planning.parameters import PlannerParameters, Values
+from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlannerProgress, PlannerStatus
+from ravemj.rave.planning.values import Values
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
 

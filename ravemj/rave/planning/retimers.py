@@ -12,9 +12,9 @@ from ravemj.planning.retiming.linear import Linear
 from ravemj.planning.retiming.parabolic import Parabolic
 from ravemj.planning.retiming.polynomials import Cubic, Quintic
 from ravemj.planning.retiming.segments import OutsideLimitsError, Profile, RetimingError, Timed, retime
-from ravemj.rave.planning.parameters import Values
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.status import PlannerStatus
+from ravemj.rave.planning.values import Values
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.groups import DELTATIME

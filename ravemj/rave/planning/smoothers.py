@@ -13,10 +13,10 @@ from ravemj.planning.retiming.parabolic import Parabolic
 from ravemj.planning.retiming.polynomials import Cubic, Quintic
 from ravemj.planning.retiming.segments import OutsideLimitsError, Profile, RetimingError, Timed, retime
 from ravemj.planning.shortcuts import shorten
-from ravemj.rave.planning.parameters import Values
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.retimers import fill, flag
 from ravemj.rave.planning.status import PlannerStatus
+from ravemj.rave.planning.values import Values
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
 

@@ -1,0 +1,131 @@
+"""The numbers of a problem, and what bodies they are about."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.planning.edges import Allowed
+from ravemj.planning.retiming.segments import Limits
+from ravemj.planning.space import Coordinates, Space
+from ravemj.rave.enums import ConstraintFilterOptions
+from ravemj.rave.planning.bodies import FREE, USER, Bodies, space_of
+from ravemj.rave.planning.parameter_text import CHAIN, NUMBERS, VECTORS, read_tags
+from ravemj.rave.report import CollisionReport
+from ravemj.trajectories.groups import Group
+from ravemj.trajectories.layout import count
+
+_STEP_LENGTH = float(np.float32(0.04))
+"""OpenRAVE's default, which it keeps in single precision."""
+
+ALL = int(ConstraintFilterOptions.RecommendedOptions)
+"""What tests of configurations look at."""
+
+Constraint = Callable[[Floats], bool]
+"""A function of a configuration that returns whether it is allowed."""
+
+
+def _empty() -> Floats:
+    return np.zeros(0)
+
+
+@dataclass
+class Values:
+    """The numbers of a problem, and what bodies they are about.
+
+    Attributes:
+        vectors: By the names of ``parameter_text.VECTORS``.
+        numbers: By the names of ``parameter_text.NUMBERS``.
+        groups: What a configuration is.
+        weights: Of each value in distances.
+        postprocessing: Name of the planner that processes the result, and its parameters as text.
+        bodies: What moves; None for problems that are read from text.
+        constraints: Functions that configurations have to pass.
+        goal_sampler: Function that returns a further goal, or None if there is none now; and the part of iterations in
+            which it is asked.
+        tags: Further parameters, for one kind of planner.
+    """
+
+    vectors: dict[str, Floats] = field(default_factory=lambda: {name: np.zeros(0) for name in VECTORS})
+    numbers: dict[str, float] = field(
+        default_factory=lambda: {**dict.fromkeys(NUMBERS, 0.0), "_fsteplength": _STEP_LENGTH}
+    )
+    groups: Sequence[Group] = ()
+    weights: Floats = field(default_factory=_empty)
+    postprocessing: tuple[str, str] = CHAIN
+    bodies: Bodies | None = None
+    constraints: list[Constraint] = field(default_factory=lambda: [])
+    goal_sampler: tuple[Callable[[], Floats | None], float] | None = None
+    tags: dict[str, str] = field(default_factory=lambda: {})
+
+    def with_tags(self, text: str) -> "Values":
+        """Return a copy with the tags of a text."""
+        numbers, vectors = dict(self.numbers), dict(self.vectors)
+        read = read_tags(text)
+        tags = {**self.tags, **read.others}
+        numbers.update(read.numbers)
+        vectors.update(read.vectors)
+        groups = read.groups if read.groups is not None else self.groups
+        post = read.postprocessing or self.postprocessing
+        return replace(self, numbers=numbers, vectors=vectors, tags=tags, groups=groups, postprocessing=post)
+
+    def coordinates(self) -> Coordinates:
+        """Return what the numbers of a configuration are."""
+        return self.bodies.coordinates() if self.bodies else Coordinates(np.zeros(count(self.groups), dtype=bool))
+
+    def space(self) -> Space:
+        """Return the space of configurations."""
+        vector = self.vectors
+        limits = vector["_vconfiglowerlimit"], vector["_vconfigupperlimit"]
+        return space_of(self.coordinates(), *limits, self.weights, vector["_vconfigresolution"])
+
+    def limits(self) -> Limits:
+        """Return what motions may do.
+
+        Raises:
+            ArgumentError: there are not as many limits as values.
+        """
+        names = ("lower", "upper", "velocity", "acceleration", "jerk")
+        dof, found = count(self.groups), [self.vectors[f"_vconfig{name}limit"] for name in names]
+        if not len(found[4]):
+            found[4] = np.full(dof, np.inf)
+        for name, numbers in zip(names, found, strict=True):
+            if numbers.shape != (dof,):
+                raise ArgumentError(f"{name} limits: are {len(numbers)}, and there are {dof} values")
+        return Limits(self.coordinates(), *found)
+
+    def configurations(self, name: str) -> Floats:
+        """Return starts or goals, one in each row.
+
+        Raises:
+            ArgumentError: their numbers are no multiple of those of a configuration.
+        """
+        dof, numbers = count(self.groups), self.vectors[name]
+        if not dof or numbers.size % dof:
+            raise ArgumentError(f"{name}: has {numbers.size} numbers, and should have a multiple of {dof}")
+        return numbers.reshape(-1, dof)
+
+    def allowed(self) -> Allowed:
+        """Return the test of configurations, for use within ``bodies.kept``; it may move the bodies."""
+        fast = None if self.bodies is None or self.constraints else self.bodies.fast_test()
+        if fast is not None:
+            return lambda values: not fast(values)
+        return lambda values: not self.problem(values, ALL)
+
+    def problem(self, values: Floats, options: int, report: CollisionReport | None = None) -> int:
+        """Return what is wrong with a configuration, a bit of ``ConstraintFilterOptions``; 0: nothing.
+
+        Args:
+            values: The configuration; the bodies go there.
+            options: What is looked at, ``ConstraintFilterOptions``.
+            report: Filled with the collision.
+        """
+        if self.bodies is None:
+            return FREE
+        self.bodies.move(values)
+        found = self.bodies.collision(report) & options
+        if not found and options & USER and not all(constraint(values) for constraint in self.constraints):
+            return USER
+        return found
