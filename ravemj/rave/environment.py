@@ -16,6 +16,7 @@ from ravemj.rave.env.collision import Collision
 from ravemj.rave.env.contents import Contents
 from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
+from ravemj.rave.env.saving import Saving
 from ravemj.rave.env.simulation import Simulating
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment
@@ -26,7 +27,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Contents, Loading, Collision, Simulating, Drawing, Viewing):
+class Environment(Contents, Loading, Saving, Collision, Simulating, Drawing, Viewing):
     """A world with robots and other bodies.
 
     Example:
