@@ -22,7 +22,7 @@ SCRIPT = "import openravepy\nenv = openravepy.Environment()\nenv.Load('env.xml')
 def main() -> None:
     """Try every command that the parser knows."""
     assert Path(ravemj.__file__).is_relative_to(sys.prefix), f"{ravemj.__file__} is not in {sys.prefix}"
-    trials = (view, play, render, convert, check, info, run, shell, alias, doctor)
+    trials = (view, play, render, convert, check, diff, info, run, shell, alias, doctor)
     commands = make_parser()._actions[-1].choices  # argparse has no public way to them
     assert {trial.__name__ for trial in trials} == set(commands or ()), "every command has a trial of its own"
     for trial in trials:
@@ -80,6 +80,12 @@ def convert() -> None:
 def check() -> None:
     """Find nothing wrong."""
     assert do("check", "env.xml") == "0 errors, 0 warnings in 1 file\n"
+
+
+def diff() -> None:
+    """Find no difference between a robot and what is saved of it."""
+    do("convert", "puma560.xml", "-o", "puma560.dae")
+    assert do("diff", "puma560.xml", "puma560.dae") == "no differences in 1 body\n"
 
 
 def info() -> None:

@@ -33,7 +33,7 @@ from ravemj.graphics.rendering import contexts
 
 DATA = Path(__file__).resolve().parent / "data"
 MODELS = DATA.parent.parent / "models"
-COMMANDS = ["play", "render", "convert", "check", "info", "run", "shell", "alias", "doctor"]
+COMMANDS = ["play", "render", "convert", "check", "diff", "info", "run", "shell", "alias", "doctor"]
 SMALL = ("--size", "96x72")
 CSV = "time,Joint1,Joint0\n0,0,0\n0.5,0,1.5707963267948966\n1,0,3.141592653589793\n"
 

@@ -4,29 +4,38 @@ import argparse
 import os
 import sys
 import warnings
+from collections.abc import Sequence
+from pathlib import Path
 
 from ravemj.cli.console import print_findings
 from ravemj.cli.models import failure_of, load_model
 from ravemj.engine.export import is_folder, marked, translate, write_file, write_folder
-from ravemj.errors import Diagnostics, OutputError, RavemjWarning
+from ravemj.errors import Diagnostic, Diagnostics, OutputError, RavemjWarning
 from ravemj.formats.mjcf import Options
+from ravemj.rave import Environment
 
 TO_STANDARD_OUTPUT = "-"
 
+_FORMATS = {
+    (".dae", ".zae"): "collada",
+    (".robot.xml", ".kinbody.xml", ".env.xml"): "openrave",
+}
+"""Formats by the ends of names; other names stand for MJCF."""
+
 
 def convert(options: argparse.Namespace) -> int:
-    """Translate a model to MJCF."""
+    """Translate a model to MJCF, or write it as COLLADA or OpenRAVE XML."""
+    kind = options.format or next((form for ends, form in _FORMATS.items() if _ends(options.output, ends)), "mjcf")
     env = load_model(options)
+    if kind != "mjcf":
+        return _save(env, options, kind)
     found = Diagnostics()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)
         mjcf = translate(
             env.simulation, found, Options(options.base == "openrave", options.actuators, options.decompose)
         )
-    more = [finding for finding in found if finding not in env.diagnostics]
-    if more and options.strict:
-        raise failure_of(more)
-    print_findings(more)
+    _report([finding for finding in found if finding not in env.diagnostics], options)
     if options.output == TO_STANDARD_OUTPUT:
         if mjcf.assets:
             raise OutputError("the model has meshes, which standard output cannot take; write -o FOLDER")
@@ -36,6 +45,33 @@ def convert(options: argparse.Namespace) -> int:
     written = write(options.output, options.model, mjcf, env.files)
     print(f"wrote {os.fspath(written)}{_meshes(len(mjcf.assets))}")
     return 0
+
+
+def _save(env: Environment, options: argparse.Namespace, kind: str) -> int:
+    """Write a model in one of OpenRAVE's formats."""
+    if options.output == TO_STANDARD_OUTPUT:
+        raise OutputError(f"a model in the format {kind} needs a file; write -o FILE")
+    if options.base != "fixed" or options.actuators or options.decompose:
+        raise OutputError("--base, --actuators and --decompose are for MJCF; leave them out")
+    if any(Path(file).exists() and Path(options.output).resolve() == Path(file).resolve() for file in env.files):
+        raise OutputError(f"cannot write {options.output}: the model was read from it")
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always", RavemjWarning)
+        env.Save(options.output, atts={"format": kind, "meshes": options.meshes})
+    _report([item.message.diagnostic for item in found if isinstance(item.message, RavemjWarning)], options)
+    print(f"wrote {options.output}")
+    return 0
+
+
+def _ends(name: str, ends: tuple[str, ...]) -> bool:
+    return name.lower().endswith(ends)
+
+
+def _report(findings: Sequence[Diagnostic], options: argparse.Namespace) -> None:
+    """Print findings; with ``--strict`` they are errors."""
+    if findings and options.strict:
+        raise failure_of(findings)
+    print_findings(findings)
 
 
 def _meshes(count: int) -> str:

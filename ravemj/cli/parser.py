@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NoReturn, TypeAlias
 
-from ravemj.cli import check, convert, info, pictures, sessions, view
+from ravemj.cli import check, convert, diff, info, pictures, sessions, view
 from ravemj.formats.shipped import SHIPPED_MODELS
+from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
 
 
 class _Parser(argparse.ArgumentParser):
@@ -54,6 +55,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_render(commands)
     _add_convert(commands)
     _add_check(commands)
+    _add_diff(commands)
     _add_info(commands)
     _add_run(commands)
     _add_shell(commands)
@@ -183,9 +185,11 @@ def _add_convert(commands: Commands) -> None:
     parser = _command(
         commands,
         "convert",
-        "translate a model to MJCF, MuJoCo's format",
+        "translate a model to MJCF, MuJoCo's format, to COLLADA or to OpenRAVE XML",
         "ravemj convert robot.xml -o robot/      # robot/robot.xml, and assets/ for meshes",
         "ravemj convert puma560 -o puma.mjcf.xml --actuators position",
+        "ravemj convert puma560 -o puma560.dae",
+        "ravemj convert scara -o scara.robot.xml      # OpenRAVE XML, and meshes/ for meshes",
         "ravemj convert pendulum | less",
     )
     _add_model(parser)
@@ -197,6 +201,18 @@ def _add_convert(commands: Commands) -> None:
         metavar="TARGET",
         help="a folder (no suffix, or a final /), or the MJCF file itself, with meshes in assets/ beside it; "
         "default: standard output, for models without meshes",
+    )
+    parser.add_argument(
+        "--format",
+        choices=["mjcf", "collada", "openrave"],
+        help="what to write; default: collada for .dae and .zae, openrave for .robot.xml, .kinbody.xml and .env.xml, "
+        "else mjcf",
+    )
+    parser.add_argument(
+        "--meshes",
+        choices=["stl", "obj"],
+        default="stl",
+        help="files of the meshes of OpenRAVE XML, in meshes/ beside it (stl)",
     )
     parser.add_argument(
         "--base",
@@ -228,6 +244,28 @@ def _add_check(commands: Commands) -> None:
     parser.add_argument("--strict", action="store_true", help="exit with 1 for warnings, too")
     parser.add_argument("--json", action="store_true", help="print the findings as JSON, each place by itself")
     parser.set_defaults(run=check.check_models)
+
+
+def _add_diff(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "diff",
+        "compare two models by their numbers; exit with 1 where they differ",
+        "ravemj diff models/puma560.xml puma560.dae",
+        "ravemj diff old.robot.xml new.robot.xml --json      # a list of part, quantity, first, second, difference",
+    )
+    for name in ("first", "second"):
+        parser.add_argument(name, metavar=name.upper(), help="OpenRAVE XML or COLLADA file")
+    parser.add_argument(
+        "--tolerance",
+        type=_positive,
+        default=TOLERANCE,
+        metavar="T",
+        help=f"largest difference of two numbers that counts as none ({TOLERANCE:g}); corners of meshes have "
+        f"{MESH_TOLERANCE:g}",
+    )
+    parser.add_argument("--json", action="store_true", help="print the differences as JSON")
+    parser.set_defaults(run=diff.diff)
 
 
 def _add_info(commands: Commands) -> None:

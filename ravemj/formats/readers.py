@@ -14,6 +14,8 @@ from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.model.builder import BodyBuilder
 from ravemj.model.scene import KinBody, Scene
 
+_COLLADA, _HEAD = b"<COLLADA", 1000  # the root element, and the bytes that it is looked for in
+
 
 def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING) -> Reading:
     """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
@@ -36,7 +38,7 @@ def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING) -> Read
     elif not os.path.isfile(found):
         kind = "folder" if os.path.isdir(found) else "device or pipe"
         failure = SourceError(f"this is a {kind}, not a model file", Source(found))
-    elif found.lower().endswith(collada.SUFFIXES):
+    elif found.lower().endswith(collada.SUFFIXES) or _holds_collada(found):
         uri = f"{found}#{wanted}" if wanted else found
         return _read_collada(
             found, given, lambda context, scale: collada.read_file(uri, context.diagnostics, context.files, scale=scale)
@@ -48,8 +50,8 @@ def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING) -> Read
 
 def read_data(data: str | bytes, given: Attributes = NOTHING) -> Reading:
     """Read the text of an OpenRAVE XML or COLLADA document, as ``read_file`` reads a file."""
-    head = data[:1000] if isinstance(data, bytes) else data[:1000].encode()
-    if b"<COLLADA" in head:
+    head = data[:_HEAD] if isinstance(data, bytes) else data[:_HEAD].encode()
+    if _COLLADA in head:
         text = data if isinstance(data, bytes) else data.encode()
         return _read_collada(
             "data",
@@ -57,6 +59,17 @@ def read_data(data: str | bytes, given: Attributes = NOTHING) -> Reading:
             lambda context, scale: collada.read_text(text, "data", context.diagnostics, context.files, scale),
         )
     return read_text(data, "data", given)
+
+
+def _holds_collada(path: str) -> bool:
+    """Tell whether a file of another name holds COLLADA, as ``Environment.Save`` writes it."""
+    if is_mesh(path):
+        return False
+    try:
+        with open(path, "rb") as file:
+            return _COLLADA in file.read(_HEAD)
+    except OSError:  # the reader will say why
+        return False
 
 
 def _read_collada(path: str, given: Attributes, read_content: Callable[[Context, float], collada.Content]) -> Reading:

@@ -15,7 +15,7 @@ from ravemj.model.mimic import MimicJoints
 from ravemj.model.scene import AttachedSensor, Axis, Geometry, Joint, KinBody, Link, Manipulator, Mesh, Scene
 
 TOLERANCE = 1e-9
-"""Of numbers, relative to those above 1."""
+"""Of numbers, relative to the largest above 1."""
 MESH_TOLERANCE = 1e-6
 """Of the corners of triangles, which files keep in single precision."""
 CONFIGURATIONS = 5
@@ -36,7 +36,7 @@ class Difference(NamedTuple):
         quantity: What differs about it.
         first: What the first model has.
         second: What the second model has.
-        error: The largest difference of two numbers, relative to those above 1; None where it is no matter of numbers.
+        error: The largest difference of two numbers, relative to the largest above 1; None where it is no matter of numbers.
     """
 
     part: str
@@ -180,7 +180,7 @@ class _Comparison:
             yield Difference(part, quantity, one.tolist(), other.tolist())
             return
         with np.errstate(invalid="ignore"):
-            errors = np.abs(one - other) / np.maximum(1.0, np.abs(one))
+            errors = np.abs(one - other) / max(1.0, np.abs(one).max(initial=0.0))
         is_same = (one == other) | (np.isnan(one) & np.isnan(other))
         error = float(np.where(is_same, 0.0, errors).max(initial=0.0))
         if not error <= self.tolerance:

@@ -19,6 +19,7 @@ from ravemj.rave.env.description import Description
 from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.publishing import Publishing
+from ravemj.rave.env.saving import Saving
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
@@ -28,7 +29,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Contents, Loading, Collision, Publishing, Drawing, Viewing, Description):
+class Environment(Contents, Loading, Saving, Collision, Publishing, Drawing, Viewing, Description):
     """A world with robots and other bodies.
 
     Example:

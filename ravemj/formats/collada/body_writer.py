@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from ravemj.core.transforms import ZERO, Pose, Vec3, add, conjugate, rotate, scale
+from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose, Vec3, add, conjugate, rotate, scale
 from ravemj.errors import Diagnostics, OutputError
 from ravemj.formats import settled
 from ravemj.formats.collada.geometry_writer import write_pose
@@ -39,7 +39,8 @@ class BodyWriter:
         nodes = self._sections.nodes
         for tree in self._trees:
             with nodes.inside("node", id=f"visual{tree.number}", name=self._body.name):
-                write_pose(nodes, settled.pose(self._body.links[tree.root].T_world_link))
+                if tree.links:
+                    write_pose(nodes, settled.pose(self._body.links[tree.root].T_world_link))
                 self._write_model(tree)
             self._write_physics(tree)
         SystemWriter(self._sections, self._diagnostics, self._body, self._number, self._trees).write()
@@ -50,7 +51,8 @@ class BodyWriter:
             with out.inside("technique_common"):
                 for index in tree.joints:
                     self._write_joint(index, self._body.all_joints[index])
-                self._write_link(tree, tree.root, None, 0)
+                if tree.links:
+                    self._write_link(tree, tree.root, None, 0)
                 for index in tree.joints:
                     self._write_formula(index, self._body.all_joints[index].mimic)
 
@@ -99,17 +101,21 @@ class BodyWriter:
     def _write_joint(self, index: int, joint: Joint) -> None:
         """Write the kind of a joint and its axes in its own frame, which has the axes of its parent link."""
         out = self._sections.kinematics_models
-        # OpenRAVE turns the axes of a weld with its child, but for those of a slider.
-        turns_with_child = joint.static and len(self._body.joints) > 0 and joint.kind != "slider"
-        turn = conjugate(joint.T_parent_child.wxyz) if turns_with_child else Pose().wxyz
         with out.inside("joint", sid=f"joint{index}", name=joint.name):
-            for place, axis in enumerate(joint.axes):
+            for place, direction in enumerate(self._directions(joint)):
                 with out.inside("prismatic" if joint.kind == "slider" else "revolute", sid=f"axis{place}"):
-                    direction = rotate(turn, axis.direction)
-                    out.element("axis", direction if direction == ZERO else settled.direction(direction))
+                    out.element("axis", direction)
             if joint.kind == "spherical":
                 with out.inside("extra", type=PROFILE):
                     out.element("technique", profile=PROFILE)
+
+    def _directions(self, joint: Joint) -> list[Vec3]:
+        """Return the directions of a joint's axes in its own frame."""
+        # OpenRAVE turns the axes of a weld with its child, but for those of a slider.
+        turns_with_child = joint.static and len(self._body.joints) > 0 and joint.kind != "slider"
+        turn = conjugate(joint.T_parent_child.wxyz) if turns_with_child else UNIT_WXYZ
+        directions = [rotate(turn, axis.direction) for axis in joint.axes]
+        return [direction if direction == ZERO else settled.direction(direction) for direction in directions]
 
     def _write_link(self, tree: Tree, index: int, joint: int | None, depth: int) -> None:
         """Write a link and its node, with what its joints carry."""
@@ -129,9 +135,12 @@ class BodyWriter:
             if joint is not None:
                 write_pose(links, T_frame_link)
                 nodes.element("translate", anchor)
-                for place, axis in enumerate(body.all_joints[joint].axes):
-                    still = ("translate", ZERO) if body.all_joints[joint].kind == "slider" else ("rotate", (*axis.direction, 0.0))
-                    nodes.element(*still, sid=f"joint{self._number}.{joint}_axis{place}")
+                for place, direction in enumerate(self._directions(body.all_joints[joint])):
+                    sid = f"joint{self._number}.{joint}_axis{place}"
+                    if body.all_joints[joint].kind == "slider":
+                        nodes.element("translate", ZERO, sid=sid)
+                    else:
+                        nodes.element("rotate", (*direction, 0.0), sid=sid)
                 write_pose(nodes, T_frame_link)
             for place, geometry in enumerate(link.geometries):
                 self._sections.geometry.write(geometry, f"geometry{self._number}.{index}.{place}", nodes)

@@ -148,15 +148,19 @@ class ModelReader:
 
     def _close_loops(self) -> None:
         """Read the joints that close loops; OpenRAVE's reader, and so that of its files, leaves them out."""
-        for ends in self._ends.values():
-            start, end = ends[0][0], ends[-1][0]
-            if len(ends) != 2 or next(own_techniques(start), None) is None:
+        for attachments in self._ends.values():
+            start, end = (
+                next(((item, link) for item, link in attachments if local_name(item) == f"attachment_{kind}"), None)
+                for kind in ("start", "end")
+            )
+            if start is None or end is None or next(own_techniques(start[0]), None) is None:
                 message = "OpenRAVE does not close the loop of this attachment, and neither does ravemj"
-                for attachment, _ in ends:
+                for attachment, _ in attachments:
                     self._library.warn("ignored-tag", message, attachment)
                 continue
-            T_parent_frame = self._pose(start)
-            self._add_joint(start, (ends[0][1], ends[1][1]), T_parent_frame, T_parent_frame @ self._pose(end).inverse())
+            T_parent_frame = self._pose(start[0])
+            T_parent_child = T_parent_frame @ self._pose(end[0]).inverse()
+            self._add_joint(start[0], (start[1], end[1]), T_parent_frame, T_parent_child)
 
     def _settle_joints(self) -> None:
         """Give the joints to the body, those with an index of OpenRAVE's in its order."""

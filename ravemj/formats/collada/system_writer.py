@@ -99,7 +99,7 @@ class SystemWriter:
             for tree in self._trees:
                 self._write_parameters(out, scope, tree, f"{self._name}_motion")
         out = self._sections.bindings
-        for tree in self._trees:
+        for tree in self._trees if self._body.links else ():
             with out.inside("bind_kinematics_model", node=f"visual{tree.number}/node{tree.root}"):
                 out.element("param", f"{scope}_{tree.model}_inst")
             for index in tree.joints:
@@ -122,8 +122,7 @@ class SystemWriter:
         with _extra(out, "interface_type"):
             out.element("interface", kind[1], type=kind[0])
         for manipulator in body.manipulators:
-            with _extra(out, "manipulator", manipulator.name):
-                self._write_manipulator(manipulator)
+            self._write_manipulator(manipulator)
         for number, sensor in enumerate(body.sensors):
             with _extra(out, "attach_sensor", sensor.name):
                 self._write_sensor(number, sensor)
@@ -146,17 +145,18 @@ class SystemWriter:
             message = f"the manipulator '{manipulator.name}' lacks its first or last link; readers leave it out"
             self._diagnostics.warn("not-written", message, manipulator.source)
             return
-        out.element("frame_origin", link=self._link_path(manipulator.base))
-        with out.inside("frame_tip", link=self._link_path(manipulator.effector)):
-            write_pose(out, settled.pose(manipulator.T_effector_tool))
-            out.element("direction", settled.direction(manipulator.direction))
-        signs = iter(manipulator.chucking_direction)
-        for index in manipulator.gripper_joints:
-            closing = [next(signs) for _ in body.joints[index].axes]
-            with out.inside("gripper_joint", joint=self._joint_path(index)):
-                for place, sign in enumerate(closing):
-                    with out.inside("closing_direction", axis=f"./axis{place}"):
-                        out.element("float", sign)
+        with _extra(out, "manipulator", manipulator.name):
+            out.element("frame_origin", link=self._link_path(manipulator.base))
+            with out.inside("frame_tip", link=self._link_path(manipulator.effector)):
+                write_pose(out, settled.pose(manipulator.T_effector_tool))
+                out.element("direction", settled.direction(manipulator.direction))
+            signs = iter(manipulator.chucking_direction)
+            for index in manipulator.gripper_joints:
+                closing = [next(signs) for _ in body.joints[index].axes]
+                with out.inside("gripper_joint", joint=self._joint_path(index)):
+                    for place, sign in enumerate(closing):
+                        with out.inside("closing_direction", axis=f"./axis{place}"):
+                            out.element("float", sign)
 
     def _write_sensor(self, number: int, sensor: AttachedSensor) -> None:
         out, name = self._sections.systems, f"{self._name}_sensor{number}"

@@ -31,7 +31,7 @@ class Tree(NamedTuple):
 
 
 def trees_of(body: KinBody, first: int) -> list[Tree]:
-    """Return the trees of a body, numbered from a number on."""
+    """Return the trees of a body, numbered from a number on; an empty one for a body without links."""
     joints = body.all_joints
     placing: dict[int, list[int]] = {}
     placed: set[int] = set()
@@ -47,4 +47,4 @@ def trees_of(body: KinBody, first: int) -> list[Tree]:
         own = [index for index, joint in enumerate(joints) if joint.parent in links]
         closing = [index for index in own if not joints[index].places_child]
         trees.append(Tree(first + len(trees), root, tuple(links), tuple(own), tuple(closing), placing))
-    return trees
+    return trees or [Tree(first, 0, (), (), (), {})]

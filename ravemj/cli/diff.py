@@ -1,0 +1,59 @@
+"""The command ``diff``."""
+
+import argparse
+import json
+
+from ravemj.cli.console import console, table
+from ravemj.cli.models import load_model
+from ravemj.model.comparison import Difference, compare
+from ravemj.model.scene import Scene
+
+_LONGEST = 60
+
+
+def diff(options: argparse.Namespace) -> int:
+    """Compare two models by their numbers; return 1 where they differ."""
+    first, second = (_scene(model) for model in (options.first, options.second))
+    found = compare(first, second, options.tolerance)
+    if options.json:
+        print(json.dumps([_entry(difference) for difference in found], indent=1))
+    elif found:
+        rows = table(f"{options.first} and {options.second}", "part", "quantity", "first", "second", "difference>")
+        for difference in found:
+            error = "" if difference.error is None else f"{difference.error:.3g}"
+            values = (_short(difference.first), _short(difference.second))
+            rows.add_row(difference.part, difference.quantity, *values, error)
+        console().print(rows)
+    else:
+        print(f"no differences in {len(first.bodies)} {'body' if len(first.bodies) == 1 else 'bodies'}")
+    return 1 if found else 0
+
+
+def _scene(model: str) -> Scene:
+    env = load_model(argparse.Namespace(model=model, strict=False))
+    return Scene(tuple(state.scene for state in env.simulation.bodies), gravity=env.simulation.gravity)
+
+
+def _entry(difference: Difference) -> dict[str, object]:
+    """Return a difference as JSON has it; these keys stay."""
+    return {
+        "part": difference.part,
+        "quantity": difference.quantity,
+        "first": difference.first,
+        "second": difference.second,
+        "difference": difference.error,
+    }
+
+
+def _short(value: object) -> str:
+    """Return a value as a cell of the table has it, numbers with a few digits."""
+    text = _digits(value)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+
+
+def _digits(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    if isinstance(value, list | tuple):
+        return " ".join(_digits(part) for part in value)
+    return str(value)

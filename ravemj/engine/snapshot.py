@@ -1,0 +1,46 @@
+"""Bodies as they are now: a scene with their values, poses and enabled links."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ravemj.core.transforms import Pose, pose_of
+from ravemj.engine.kinematics.displacement import ROUNDING
+from ravemj.engine.simulation import BodyState
+from ravemj.model.joints import relative_pose
+from ravemj.model.scene import Joint, KinBody
+
+
+def snapshot(body: BodyState) -> KinBody:
+    """Return the description of a body as it is now.
+
+    A joint whose link a script put elsewhere gets the pose of that link for its own.
+    """
+    scene = body.scene
+    links = [replace(link, enabled=enabled) for link, enabled in zip(scene.links, body.link_enabled, strict=True)]
+    if not body.is_compiled:  # it is where its description has it
+        return replace(scene, links=tuple(links))
+    poses = [pose_of(transform) for transform in body.link_transforms()]
+    kinematics = body.own_kinematics
+    rest = iter(kinematics.values().tolist())
+    values: list[Sequence[float]] = [[next(rest) for _ in joint.axes] for joint in scene.joints]
+    values += [kinematics.passive_values(index).tolist() for index in range(len(scene.passive_joints))]
+    joints = [_settled(joint, given, poses) for joint, given in zip(scene.all_joints, values, strict=True)]
+    count = len(scene.joints)
+    return replace(
+        scene,
+        links=tuple(replace(link, T_world_link=pose) for link, pose in zip(links, poses, strict=True)),
+        joints=tuple(joints[:count]),
+        passive_joints=tuple(joints[count:]),
+    )
+
+
+def _settled(joint: Joint, values: Sequence[float], poses: Sequence[Pose]) -> Joint:
+    """Return a joint with its values, and with the pose of its child where the values do not put it."""
+    axes = tuple(replace(axis, value=value) for axis, value in zip(joint.axes, values, strict=True))
+    expected = relative_pose(joint, values)
+    found = poses[joint.parent].inverse() @ poses[joint.child]
+    if not joint.places_child or np.abs(expected.matrix() - found.matrix()).max() <= ROUNDING:
+        return replace(joint, axes=axes)
+    return replace(joint, axes=axes, T_parent_child=joint.T_parent_child @ expected.inverse() @ found)
