@@ -94,7 +94,7 @@ class Judge:
         self._state.simulation.lock.acquire()
         self._saved = self._state.configuration()
         self._chosen = self._question.robot.active_choice
-        self._question.robot.active_choice = ActiveChoice(self._question.description.arm_dofs)
+        self._question.robot.active_choice = ActiveChoice(np.array(self._question.description.arm_dofs, dtype=int))
         self._values = self._state.kinematics.values()
         return self
 
