@@ -22,7 +22,7 @@ SCRIPT = "import openravepy\nenv = openravepy.Environment()\nenv.Load('env.xml')
 def main() -> None:
     """Try every command that the parser knows."""
     assert Path(ravemj.__file__).is_relative_to(sys.prefix), f"{ravemj.__file__} is not in {sys.prefix}"
-    trials = (view, play, render, convert, check, diff, info, run, shell, alias, doctor)
+    trials = (view, play, render, convert, check, diff, info, ik, run, shell, alias, doctor)
     commands = make_parser()._actions[-1].choices  # argparse has no public way to them
     assert {trial.__name__ for trial in trials} == set(commands or ()), "every command has a trial of its own"
     for trial in trials:
@@ -93,6 +93,13 @@ def info() -> None:
     assert [body["dof"] for body in json.loads(do("info", "scara.dae", "--json"))["bodies"]] == [4]
     assert Path(ravemj.model_path("puma560")).is_relative_to(sys.prefix)
     assert [body["dof"] for body in json.loads(do("info", "puma560", "--json"))["bodies"]] == [6]
+
+
+def ik() -> None:
+    """Find all joint values for a pose."""
+    solutions = json.loads(do("ik", "puma560", "--to", "0.3,0.3,0.9,0.7071,0,0.7071,0", "--json"))
+    assert len(solutions) > 1
+    assert any(solution["valid"] for solution in solutions)
 
 
 def run() -> None:

@@ -28,12 +28,13 @@ from command_line import (
 from PIL import Image, ImageSequence
 from waiting import PATIENCE, await_that
 
+import ravemj
 from ravemj.cli import main
 from ravemj.graphics.rendering import contexts
 
 DATA = Path(__file__).resolve().parent / "data"
 MODELS = DATA.parent.parent / "models"
-COMMANDS = ["play", "render", "convert", "check", "diff", "info", "run", "shell", "alias", "doctor"]
+COMMANDS = ["play", "render", "convert", "check", "diff", "info", "ik", "run", "shell", "alias", "doctor"]
 SMALL = ("--size", "96x72")
 CSV = "time,Joint1,Joint0\n0,0,0\n0.5,0,1.5707963267948966\n1,0,3.141592653589793\n"
 
@@ -332,6 +333,59 @@ def test_convert_writes_what_mujoco_loads(folder):
     assert [model.joint(index).name for index in range(2)] == ["Joint0", "Joint1"]
 
 
+REACHED = "0.3,0.3,0.9,0.7071,0,0.7071,0"
+
+
+def test_ik_finds_all_that_reach_a_pose_and_says_what_speaks_against_them(folder):
+    found = json.loads(said(ravemj_command(folder, "ik", "puma560", "--to", REACHED, "--json")))
+    robot = ravemj.load(ravemj.model_path("puma560")).GetRobots()[0]
+    arm = robot.GetActiveManipulator()
+    goal = ravemj.matrixFromPose([0.5**0.5, 0, 0.5**0.5, 0, 0.3, 0.3, 0.9])
+    assert len(found) == 8
+    assert sorted(len(solution["trouble"]) > 0 for solution in found) == [False] * 2 + [True] * 6
+    distances = [np.linalg.norm(solution["values"]) for solution in found]
+    assert distances == sorted(distances), "the nearest first"
+    for solution in found:
+        robot.SetDOFValues(solution["values"], checklimits=0)
+        assert np.allclose(arm.GetTransform(), goal, atol=1e-9)
+        lower, upper = robot.GetDOFLimits()
+        within = (lower <= solution["values"]).all() and (solution["values"] <= upper).all()
+        assert within == (not any(word.startswith("beyond limits") for word in solution["trouble"]))
+        assert robot.CheckSelfCollision() == any(" hits " in word for word in solution["trouble"])
+        assert solution["valid"] == (not solution["trouble"])
+
+
+def test_ik_prints_a_table_describes_the_solver_and_draws_every_solution(folder):
+    done = ravemj_command(folder, "ik", "puma560", "--to", REACHED, "-o", "arms.png", "--size", "80x60")
+    assert done.returncode == 0
+    assert done.stdout.count("°") == 48
+    assert "wrote arms.png" in done.stdout
+    with Image.open(folder / "arms.png") as picture:
+        assert picture.size == (80, 60)
+    described = said(ravemj_command(folder, "ik", "puma560", "--describe"))
+    assert "spherical wrist" in described
+    assert "64 of 64" in described
+
+
+def test_ik_starts_from_values_of_a_file_and_takes_other_types(folder):
+    (folder / "start.json").write_text('{"joint1": -2.6, "joint2": 1.5}')
+    words = ("ik", "puma560", "--to", REACHED, "--json", "--from", "start.json")
+    first, *_ = json.loads(said(ravemj_command(folder, *words)))
+    assert first["values"][0] == pytest.approx(-2.65, abs=0.01)
+    flat = json.loads(
+        said(ravemj_command(folder, "ik", "scara", "--to", "0.3,0.2", "--type", "TranslationXY2D", "--json"))
+    )
+    robot = ravemj.load(ravemj.model_path("scara")).GetRobots()[0]
+    robot.SetDOFValues(flat[0]["values"], robot.GetActiveManipulator().GetArmIndices())
+    assert robot.GetActiveManipulator().GetTransform()[:2, 3] == pytest.approx([0.3, 0.2], abs=1e-9)
+
+
+def test_ik_out_of_reach(folder):
+    done = ravemj_command(folder, "ik", "puma560", "--to", "9,9,9,1,0,0,0")
+    assert (done.returncode, done.stderr) == (1, "")
+    assert "out of reach" in done.stdout
+
+
 def test_doctor_says_what_draws_here(folder):
     printed = said(ravemj_command(folder, "doctor"))
     assert "display: none" in printed
@@ -468,6 +522,13 @@ BAD_WORDS = [
     ("render env.xml -o a.png --q 1,2,3", 1, "ravemj: error: --q has 3 values.*2 DOFs: Joint0, Joint1$"),
     ("convert env.xml -o gone/a.xml", 1, "ravemj: error: .*gone"),
     ("convert env.xml -o .", 1, "ravemj: error: "),
+    ("ik puma560 --to 1,2", 1, "ravemj: error: --to has 2 values.*x,y,z,qw,qx,qy,qz"),
+    ("ik puma560 --to 0,0,1,0,0,0,0", 1, "ravemj: error: --to: the quaternion"),
+    ("ik env.xml --to 0,0,1", 1, "ravemj: error: there is no manipulator"),
+    ("ik puma560 --manip leg --to 0,0,1", 1, "ravemj: error: there is no manipulator 'leg'; the model has arm"),
+    ("ik puma560 --to 0,0,1 --from gone.json", 1, "gone.json: error: "),
+    ("ik puma560 --to 0,0,1 --from three.json", 1, "three.json: error: these are no 6 joint values"),
+    ("ik puma560", 2, "ravemj ik: error: .*--to"),
     ("run gone.py", 1, "gone.py: error: "),
 ]
 

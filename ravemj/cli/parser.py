@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NoReturn, TypeAlias
 
-from ravemj.cli import check, convert, diff, info, pictures, sessions, view
+from ravemj.cli import check, convert, diff, ik, info, pictures, sessions, view
 from ravemj.formats.shipped import SHIPPED_MODELS
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
 
@@ -57,6 +57,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_check(commands)
     _add_diff(commands)
     _add_info(commands)
+    _add_ik(commands)
     _add_run(commands)
     _add_shell(commands)
     _add_alias(commands)
@@ -251,7 +252,7 @@ def _add_diff(commands: Commands) -> None:
         commands,
         "diff",
         "compare two models by their numbers; exit with 1 where they differ",
-        "ravemj diff models/puma560.xml puma560.dae",
+        "ravemj diff puma560 arm.xml",
         "ravemj diff old.robot.xml new.robot.xml --json      # a list of part, quantity, first, second, difference",
     )
     for name in ("first", "second"):
@@ -279,6 +280,47 @@ def _add_info(commands: Commands) -> None:
     _add_model(parser)
     parser.add_argument("--json", action="store_true", help="print all numbers as JSON")
     parser.set_defaults(run=info.info)
+
+
+def _add_ik(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "ik",
+        "find the joint values that take the tool of an arm to a goal",
+        'ravemj ik puma560 --to "0.3,0.3,0.9,0.7071,0,0.7071,0"',
+        'ravemj ik puma560 --to "0.3,0.3,0.9,0.7071,0,0.7071,0" -o arms.png',
+        'ravemj ik scara --to "0.3,0.2" --type TranslationXY2D --json',
+        "ravemj ik panda --describe",
+    )
+    _add_model(parser)
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument(
+        "--to",
+        type=_vector,
+        metavar="GOAL",
+        help="the goal in the world: x,y,z, or x,y,z,qw,qx,qy,qz, or the values of another type of goal; m and rad",
+    )
+    what.add_argument("--describe", action="store_true", help="say how the arm is solved, and how well that was proved")
+    parser.add_argument(
+        "--type",
+        choices=ik.TYPE_NAMES,
+        metavar="TYPE",
+        help="type of goal, as in OpenRAVE: Translation3D for three values, else Transform6D; "
+        f"or {', '.join(name for name in ik.TYPE_NAMES if name not in {'Transform6D', 'Translation3D'})}",
+    )
+    parser.add_argument("--manip", metavar="NAME", help="which manipulator; default: the active one")
+    parser.add_argument(
+        "--from",
+        dest="start",
+        metavar="FILE",
+        help="joint values to start from, as JSON: a list, or an object with names of joints; default: the model's",
+    )
+    parser.add_argument("--json", action="store_true", help="print all solutions as JSON, not the nearest ones alone")
+    parser.add_argument(
+        "-o", "--output", type=_target, metavar="FILE", help="picture with an arm at each solution; .png, .jpg or .webp"
+    )
+    parser.add_argument("--size", type=_size, default=(640, 480), metavar="WxH", help="size of the picture (640x480)")
+    parser.set_defaults(run=ik.ik)
 
 
 def _add_run(commands: Commands) -> None:
