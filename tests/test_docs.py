@@ -56,14 +56,16 @@ def commands_that_end():
 @pytest.mark.parametrize("words", commands_that_end(), ids=" ".join)
 def test_commands_work(tmp_path, words):
     (tmp_path / "models").symlink_to(ROOT / "models")
-    for source, name in {
-        "models/env.xml": "env.xml",
-        "models/double-pendulum.xml": "double-pendulum.xml",
-        "models/panda.xml": "robot.xml",
-        "models/puma560.xml": "arm.xml",
-        "models/tutorial-camera.json": "camera.json",
+    for name, source in {
+        "env.xml": "env.xml",
+        "double-pendulum.xml": "double-pendulum.xml",
+        "arm.xml": "puma560.xml",
+        "robot.xml": "panda.xml",
+        "old.robot.xml": "panda.xml",
+        "new.robot.xml": "panda.xml",
+        "camera.json": "tutorial-camera.json",
     }.items():
-        (tmp_path / name).write_bytes((ROOT / source).read_bytes())
+        (tmp_path / name).write_bytes((ROOT / "models" / source).read_bytes())
     (tmp_path / "swing.csv").write_text("time,Joint0,Joint1\n0,0,0\n0.2,1,-1\n")
     for script in ("myscript.py", "oldscript.py"):
         (tmp_path / script).write_text("import openravepy\nassert openravepy.Environment().Load('env.xml')\n")
