@@ -58,6 +58,20 @@ def test_no_search_finds_what_the_closed_form_misses(kind):
     assert searched >= len(T)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_general_arms_of_six_joints(seed):
+    chain = arm(np.random.default_rng(1000 + seed), "RRRRRR")
+    assert derive(chain) is None
+    solver, certificate = derive(chain, general=True)
+    assert certificate.holds
+    values = random_values(chain, 30, np.random.default_rng(1))
+    T = chain.forward(values)
+    found = solver.solve(T)
+    assert (same(chain, found.values, values[:, None]) & found.valid).any(axis=1).all()
+    for row in NumericSolver(chain, starts=25).solve_all(T[0]):
+        assert same(chain, found.of(0), row).any()
+
+
 @pytest.mark.parametrize(
     ("chain", "free", "family"),
     [(PUMA, (), "wrist"), (UR5, (), "parallel"), (PANDA, (6,), "wrist"), (WAM, (2,), "wrist")],

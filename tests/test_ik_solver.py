@@ -302,6 +302,28 @@ class TestNumeric:
         turned = solver.nearest(far, start, np.array([1, 1, 1, 100, 100, 100.0]))
         assert np.abs(UR5.forward(turned.values)[:3, :3] - far[:3, :3]).max() < 0.02
 
+    @pytest.mark.parametrize("chain", [LIMITED, PANDA_LIMITED])
+    def test_it_comes_nearer_to_goals_out_of_reach_wherever_they_are(self, chain):
+        """Among them postures in which the arm is stretched, where seven joints have one motion less."""
+        solver, rng = NumericSolver(chain), np.random.default_rng(3)
+        for _ in range(150):
+            values = rng.uniform(chain.lower, chain.upper)
+            far, weights = chain.forward(values), rng.uniform(0.2, 3, 6)
+            far[:3, 3] *= rng.choice([1, 1.3, 2])
+            seed = np.clip(values + rng.uniform(-0.5, 0.5, chain.dof), chain.lower, chain.upper)
+            found = solver.nearest(far, seed, weights)
+            assert inside(chain, found.values)
+            again = solver.nearest(far, found.values, weights)
+            assert found.error < 1e-9 or again.error > 0.98 * found.error
+
+    @pytest.mark.parametrize("seed", [48, 127, 214])
+    def test_nothing_missing_and_a_joint_too_many(self, seed):
+        """Where damping vanishes with the error, the equations of seven joints would be singular."""
+        rng = np.random.default_rng(seed)
+        values = rng.uniform(PANDA_LIMITED.lower, PANDA_LIMITED.upper)
+        start = np.clip(values + rng.uniform(-0.5, 0.5, 7), PANDA_LIMITED.lower, PANDA_LIMITED.upper)
+        assert NumericSolver(PANDA_LIMITED).nearest(PANDA_LIMITED.forward(values), start).error < 1e-9
+
     @pytest.mark.parametrize("kind", ["RPRRRR", "PRRRR", "RRPRPRR"])
     def test_arms_without_a_closed_form(self, kind):
         chain = arm(np.random.default_rng(0), kind)

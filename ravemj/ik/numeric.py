@@ -1,14 +1,16 @@
 """Numeric inverse kinematics: damped least squares within limits, from many starts.
 
 A step is that of K. Levenberg and D. Marquardt with a damping in proportion to the error that is left (T. Sugihara,
-"Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method", 2011). A joint that a step would push
-beyond a limit stays there. One start finds a solution in 40 to 80 of 100 cases, so starts follow each other in a
-sequence that fills the space of joint values evenly (M. Roberts, 2018, after R. Kronecker).
+"Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method", 2011). A step that would go beyond limits
+is the best one within them instead, by MuJoCo's solver of quadratic programs. One start finds a solution in 60 to 90 of
+100 cases, so starts follow each other in a sequence that fills the space of joint values evenly (M. Roberts, 2018,
+after R. Kronecker).
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import mujoco
 import numpy as np
 
 from ravemj.ik.chain import Chain
@@ -100,20 +102,14 @@ class NumericSolver:
         return missing * scale, jacobian * scale[:, None]
 
     def _step(self, values: Floats, error: Floats, slope: Floats, damping: float) -> Floats:
-        """Return the values after a damped step within the limits."""
+        """Return the values after a damped step, the best one within the limits."""
         pull = slope.T @ error
         matrix = slope.T @ slope + damping * self._identity
-        moved = np.linalg.solve(matrix, pull)
-        ahead = values + moved
-        beyond = (ahead < self._lowest) | (ahead > self._highest)
-        if beyond.any():
-            held = beyond & ((values <= self._lowest) | (values >= self._highest))
-            if held.any() and not held.all():
-                free = ~held
-                moved = np.zeros_like(values)
-                moved[free] = np.linalg.solve(matrix[np.ix_(free, free)], pull[free])
-                ahead = values + moved
-            ahead = np.minimum(np.maximum(ahead, self._lowest), self._highest)
+        ahead = values + np.linalg.solve(matrix, pull)
+        if ((ahead < self._lowest) | (ahead > self._highest)).any():
+            moved, factor = np.zeros(len(values)), np.empty((len(values), len(values) + 7))
+            mujoco.mju_boxQP(moved, factor, None, matrix, -pull, self._lowest - values, self._highest - values)
+            ahead = np.minimum(np.maximum(values + moved, self._lowest), self._highest)
         return ahead
 
     def start(self, number: int) -> Floats:
@@ -167,7 +163,7 @@ class NumericSolver:
         error, slope = self._linear(pose, values, scale)
         square, damping, step = float(error @ error), 1e-3, 0
         for step in range(_NEAREST_STEPS):  # noqa: B007 - it is in the answer
-            ahead = self._step(values, error, slope, damping * (1e-9 + square))
+            ahead = self._step(values, error, slope, damping * (1e-9 + square) + 1e-12)
             error_ahead, slope_ahead = self._linear(pose, ahead, scale)
             square_ahead = float(error_ahead @ error_ahead)
             if square_ahead < square:
