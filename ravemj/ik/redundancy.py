@@ -14,8 +14,6 @@ from ravemj.ik.vectors import Floats, Screw, constant
 SINGULAR_STEP = np.pi / 8
 """Where two joints turn about one line, the first of them is shown at every such angle."""
 _COAXIAL = 1e-9
-_MOST = 100_000
-"""So many samples of more than two joints, about: with all of OpenRAVE's default steps they would fill the memory."""
 _POSTURES = 4
 
 
@@ -57,20 +55,17 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
     Args:
         chain: The arm.
         free: The free joints, k of them.
-        steps: A step for each [rad or m]; that of more than two joints grows where there would be too many samples.
+        steps: A step for each [rad or m].
         start: Values to start at, shape (k,).
 
     Returns:
         Values, shape (K, k); one row of no values if there is no free joint. The last of several joints changes first.
     """
     columns: list[list[float]] = []
-    ranges = [_sampled_range(chain, joint) for joint in free]
-    coarser = 1.0
-    if len(free) > 2:
-        count = np.prod([(high - low) / step + 1 for (low, high), step in zip(ranges, steps, strict=True)])
-        coarser = max(1.0, float(count / _MOST) ** (1 / len(free)))
-    for index, ((low, high), size) in enumerate(zip(ranges, steps, strict=True)):
-        step = size * coarser
+    for index, (joint, step) in enumerate(zip(free, steps, strict=True)):
+        low, high = chain.lower[joint], chain.upper[joint]
+        if chain.circular[joint] or (not chain.prismatic[joint] and high - low > 2 * np.pi):
+            low, high = -np.pi, np.pi
         centre = float(np.clip(0.0 if start is None else start[index], low, high))
         up = centre + step * np.arange(1, int((high - centre) / step + 1e-9) + 1)
         down = centre - step * np.arange(1, int((centre - low) / step + 1e-9) + 1)
@@ -78,13 +73,6 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
         columns.append([centre, *(value for pair in both for value in pair if value is not None)])
     rows = list(itertools.product(*columns))
     return np.array(rows, dtype=float).reshape(len(rows), len(columns))
-
-
-def _sampled_range(chain: Chain, joint: int) -> tuple[float, float]:
-    low, high = float(chain.lower[joint]), float(chain.upper[joint])
-    if chain.circular[joint] or (not chain.prismatic[joint] and high - low > 2 * np.pi):
-        return -np.pi, np.pi
-    return low, high
 
 
 def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, float]]:
