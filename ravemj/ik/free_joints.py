@@ -8,6 +8,8 @@ from ravemj.ik.chain import Chain
 from ravemj.ik.solver import ANGLE_STEP, SLIDE_STEP
 
 _ALONG = 1e-6
+_MOST = 100_000
+"""Samples of more than two joints, about; with OpenRAVE's steps they would fill the memory."""
 
 
 def default_free(chain: Chain, name: str, dof: int) -> list[int]:
@@ -42,6 +44,8 @@ def default_steps(
 ) -> tuple[float, ...]:
     """Return a step for each free joint [rad or m].
 
+    Those of more than two joints are larger where there would be too many samples.
+
     Args:
         chain: The arm.
         free: The joints.
@@ -49,4 +53,10 @@ def default_steps(
         slide: The step of prismatic ones, in units of the length of the arm.
     """
     length = arm_length(chain) or 1.0
-    return tuple(slide * length if chain.prismatic[joint] else angle for joint in free)
+    steps = np.array([slide * length if chain.prismatic[joint] else angle for joint in free])
+    if len(free) > 2:
+        joints = list(free)
+        spans = np.where(chain.circular[joints], 2 * np.pi, (chain.upper - chain.lower)[joints])
+        spans = np.where(chain.prismatic[joints], spans, np.minimum(spans, 2 * np.pi))
+        steps *= max(1.0, float(np.prod(spans / steps + 1) / _MOST) ** (1 / len(free)))
+    return tuple(steps.tolist())

@@ -186,20 +186,20 @@ class InverseKinematicsModel(SolvedJoints):
         if self.iksolver is None:
             return False
         free = self.freeindices or []
-        if freeinc is not None and free:
-            steps = [float(step) for step in np.array(freeinc, dtype=float)]
-            if len(steps) != len(free) or not all(step > 0 for step in steps):
-                raise InverseKinematicsError(f"freeinc {steps} for the free joints {free}: give one above 0 for each")
-            self.freeinc = steps
-        if self.freeinc is None or len(self.freeinc) != len(free):
-            self.freeinc = self.getDefaultFreeIncrements(0.1, 0.01)
-        self.iksolver.set_steps([step for _, step in sorted(zip(free, self.freeinc, strict=True))])
+        if freeinc is None or not free:
+            self.freeinc = self.freeinc or self.getDefaultFreeIncrements(0.1, 0.01)
+            return True
+        steps = [float(step) for step in np.array(freeinc, dtype=float)]
+        if len(steps) != len(free) or not all(step > 0 for step in steps):
+            raise InverseKinematicsError(f"freeinc {steps} for the free joints {free}: give one above 0 for each")
+        self.freeinc = steps
+        self.iksolver.set_steps([step for _, step in sorted(zip(free, steps, strict=True))])
         return True
 
     setFreeIncrements = setrobot
 
     def clone(self, envother: Environment) -> "InverseKinematicsModel":
-        """Return a model of the same arm in another environment, loaded if this one is.
+        """Return a model of the same arm in another environment, loaded if this one is, with the default steps.
 
         Args:
             envother: A clone of the environment.
@@ -210,7 +210,7 @@ class InverseKinematicsModel(SolvedJoints):
             raise InverseKinematicsError(f"the environment has no robot '{self.robot.GetName()}' with such an arm")
         other = InverseKinematicsModel(iktype=self.iktype, freeindices=self.freeindices, manip=arm)
         if self.has():
-            other.load(self.freeinc)
+            other.load()
         return other
 
     # Trials
