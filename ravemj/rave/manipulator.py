@@ -40,11 +40,13 @@ class Tool(NamedTuple):
     Attributes:
         arm: The description that it was made of.
         T_effector_tool: Pose of the tool in the effector, shape (4, 4).
+        origin: Its last column.
         dofs: DOF indices of the joints, shape (n,).
     """
 
     arm: scene.Manipulator
     T_effector_tool: Floats
+    origin: Floats
     dofs: Ints
 
 
@@ -127,7 +129,9 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
         """Return the tool and the joints as arrays, which are made anew when the description is another one."""
         arm = self._scene
         if self._known is None or self._known.arm is not arm:
-            self._known = Tool(arm, arm.T_effector_tool.matrix(), np.array(arm.arm_dofs, dtype=np.int_))
+            T_effector_tool = arm.T_effector_tool.matrix()
+            dofs = np.array(arm.arm_dofs, dtype=np.int_)
+            self._known = Tool(arm, T_effector_tool, T_effector_tool[:, 3].copy(), dofs)
         return self._known
 
     def GetVelocity(self) -> Floats:
@@ -152,7 +156,7 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
         effector = self._checked_effector()
         with self._state.simulation.lock:
             state, tool = self._state, self._tool()
-            point = state.link_transform(effector)[:3].dot(tool.T_effector_tool[:, 3])
+            point = state.link_transform(effector).dot(tool.origin)[:3]
             return state.dynamics.translation_jacobian(effector, point).take(tool.dofs, 1)
 
     def CalculateAngularVelocityJacobian(self) -> Floats:

@@ -29,7 +29,7 @@ class Bare:
         self.model = robot.GetEnv().model
         self.data = mujoco.MjData(self.model)
         self.data.qpos[:] = robot.GetEnv().data.qpos
-        self.qpos = self.data.qpos
+        self.qpos, self.qvel, self.qacc = self.data.qpos, self.data.qvel, self.data.qacc
         self.moving, self.turning = np.zeros((3, self.model.nv)), np.zeros((3, self.model.nv))
         self.forces = np.zeros(self.model.nv)
         self.body = self.model.nbody - 1
@@ -59,7 +59,7 @@ def _of(what: str, robot: ravemj.Robot) -> Iterator[Row]:
     rates = np.full(dof, 0.1)
     values = robot.GetDOFValues()
     robot.SetDOFVelocities(rates)
-    bare.data.qvel[:] = 0.1
+    bare.qvel[:] = 0.1
     push = {last: np.array([1.0, 2, 3, 4, 5, 6])}
 
     def set_and_inverse() -> None:
@@ -76,6 +76,12 @@ def _of(what: str, robot: ravemj.Robot) -> Iterator[Row]:
         (
             "ComputeJacobianAxisAngle : mj_jac",
             lambda: robot.ComputeJacobianAxisAngle(last),
+            lambda: bare.jacobian(point),
+            5.0,
+        ),
+        (
+            "CalculateActiveJacobian : mj_jac",
+            lambda: robot.CalculateActiveJacobian(last, point),
             lambda: bare.jacobian(point),
             5.0,
         ),
@@ -105,6 +111,11 @@ def _of(what: str, robot: ravemj.Robot) -> Iterator[Row]:
             5.0,
         ),
     ]
+    arm = robot.GetActiveManipulator()
+    if arm is not None:
+        calls.append(
+            ("CalculateJacobian of an arm : mj_jac", arm.CalculateJacobian, lambda: bare.jacobian(point), 10.0)
+        )
     for label, ours, floor, limit in calls:
         measured, bared = take_turns([microseconds(ours, 50), microseconds(floor, 50)], 200)
         yield Row(f"{what}: {label}", "µs", measured, bared, limit)
@@ -133,7 +144,8 @@ def _many(what: str, robot: ravemj.Robot, bare: Bare) -> Iterator[Row]:
 
     def loop_inverse() -> None:
         for own, out in zip(qpos, torques, strict=True):
-            bare.qpos[:] = own
+            bare.qpos[:] = bare.qacc[:] = own
+            bare.qvel[:] = 0.1 * own
             bare.inverse()
             out[moving] = bare.forces
 

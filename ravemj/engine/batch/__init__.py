@@ -14,14 +14,14 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.batch.chain import Chain
 from ravemj.engine.batch.kinematic_state import KinematicState, cross
 from ravemj.engine.dynamics import BodyDynamics
-from ravemj.engine.kinematics import BodyKinematics
+from ravemj.engine.kinematics import BodyKinematics, fixed_view
 from ravemj.model.inertia import Inertias
 
 POSES, MOTIONS = 60_000, 8_000
 """Poses of links, and their motions, that are worked out together: few enough for the cache, enough for numpy."""
 
 
-FEW_LINKS = 30
+FEW_LINKS = 12
 """Up to so many links numpy is faster than MuJoCo called for each configuration."""
 
 
@@ -150,18 +150,25 @@ class Batch:
         model, data = kinematics.model, self._data
         model.opt.gravity[:] = gravity
         data.qpos[:] = kinematics.qpos
-        dofs, forces = coupling.dofs, np.zeros(model.nv)
-        places = kinematics.qpos_indices[dofs]
-        columns = np.arange(model.nv)[kinematics.inner_qvel][coupling.coordinates]
-        qpos, qvel, qacc = data.qpos, data.qvel, data.qacc
+        dofs, columns = coupling.dofs, np.arange(model.nv)[kinematics.inner_qvel][coupling.coordinates]
+        # What is looked up here is not looked up for each configuration.
+        place, place_coms, move, find_forces = mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_comVel, mujoco.mj_rne
+        (qpos, places), (qvel, moved), (qacc, pushed) = (
+            fixed_view(data.qpos, kinematics.qpos_indices[dofs]),
+            fixed_view(data.qvel, columns),
+            fixed_view(data.qacc, columns),
+        )
         out[:] = 0.0
-        for row, now, speed, change in zip(out, values[:, dofs], rates[:, dofs], accelerations[:, dofs], strict=True):
-            qpos[places], qvel[columns], qacc[columns] = now, speed, change
-            mujoco.mj_kinematics(model, data)
-            mujoco.mj_comPos(model, data)
-            mujoco.mj_comVel(model, data)
-            mujoco.mj_rne(model, data, 1, forces)
-            row[dofs] = forces[columns]
+        for part in self._chunks(len(values), MOTIONS):
+            forces = np.empty((part.stop - part.start, model.nv))
+            given = (one[part].take(dofs, 1) for one in (values, rates, accelerations))
+            for row, now, speed, change in zip(forces, *given, strict=True):
+                qpos[places], qvel[moved], qacc[pushed] = now, speed, change
+                place(model, data)
+                place_coms(model, data)
+                move(model, data)
+                find_forces(model, data, 1, row)
+            out[part, dofs] = forces[:, columns]
         return True
 
     @cached_property

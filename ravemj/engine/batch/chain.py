@@ -68,7 +68,6 @@ class Chain:
             else:
                 self._hang(placing[link], joints[placing[link]])
             self.steps[self._step_of[link]].links.append(link)
-        self._crosswise = [_crosswise(step.T_parent_frame) for step in self.steps]
 
     def _hang(self, index: int, joint: Joint) -> None:
         """Add the steps of a joint, and place its child behind them."""
@@ -128,7 +127,7 @@ class Chain:
                 elif step.kind == "slider":
                     frame = _slid(parent, step.T_parent_frame, ways[row])
                 else:
-                    frame = _hinged(parent, *self._crosswise[index], cosines[row], sines[row])
+                    frame = _hinged(parent, step.T_parent_frame, cosines[row], sines[row])
                 if self.steps[step.parent].last == index:
                     del frames[step.parent]
             frames[index] = frame
@@ -162,12 +161,6 @@ class Chain:
         return known
 
 
-def _crosswise(T_parent_frame: Floats) -> tuple[Floats, Floats]:
-    """Return a frame's axes in the order in which ``_hinged`` wants them: x, y, y, -x; z and the origin."""
-    x, y, z, origin = T_parent_frame.T
-    return np.array((x, y, y, -x)), np.array((z, origin))
-
-
 def _axis_frame(joint: Joint, axis: int) -> Floats:
     """Return the frame of a joint's axis in its parent link: at the anchor, with z along the axis, shape (4, 4)."""
     frame = np.eye(4)
@@ -188,14 +181,13 @@ def _cosines_and_sines(angles: Floats) -> tuple[Floats, Floats]:
     return (1 - squares) * factors, 2 * tangents * factors
 
 
-def _hinged(parent: Floats, crosswise: Floats, lengthwise: Floats, cosines: Floats, sines: Floats) -> Floats:
+def _hinged(parent: Floats, T_parent_frame: Floats, cosines: Floats, sines: Floats) -> Floats:
     """Return frames behind a hinge: parents of shape (4, 3 N) to (4, 3, N)."""
-    frames = np.empty((4, 3, len(cosines)))
-    across = (crosswise @ parent).reshape(2, 2, 3, -1)
-    np.multiply(across[0], cosines, out=frames[:2])
-    np.multiply(across[1], sines, out=across[1])
-    frames[:2] += across[1]
-    np.matmul(lengthwise, parent, out=frames.reshape(4, -1)[2:])
+    frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
+    x_part, y_part = frames[:2] * sines
+    frames[:2] *= cosines
+    frames[0] += y_part
+    frames[1] -= x_part
     return frames
 
 

@@ -1,6 +1,7 @@
 """Joint values and link poses of one body, in a MuJoCo model of this body alone."""
 
 import itertools
+from types import EllipsisType
 from typing import NamedTuple
 
 import mujoco
@@ -85,7 +86,7 @@ class BodyKinematics:
         (names,) = compiled.mjcf.names
         self.body_ids = np.array([mujoco.mj_name2id(model, _BODY, name) for name in names.links], dtype=int)
         self._body_ids: list[int] = self.body_ids.tolist()
-        self._links = index_range(self.body_ids)
+        self._links = _index_range(self.body_ids)
         self.roots: list[int] = np.flatnonzero(model.body_parentid[self.body_ids] == 0).tolist()
         free = model.body_jntadr[self.body_ids[self.roots]]
         self.root_qpos: list[int] = model.jnt_qposadr[free].tolist()
@@ -122,11 +123,7 @@ class BodyKinematics:
         self.qpos_indices = np.array(indices, dtype=int)
         self._moving = np.flatnonzero(self.qpos_indices != NO_QPOS)
         self._all_move = len(self._moving) == len(indices)
-        moving_qpos = index_range(self.qpos_indices[self._moving])
-        # The slice itself is made once, too: ``_written[_places]`` are the values of the DOFs that move.
-        self._written, self._places = (
-            (self.qpos[moving_qpos], ...) if isinstance(moving_qpos, slice) else (self.qpos, moving_qpos)
-        )
+        self._written, self._places = fixed_view(self.qpos, self.qpos_indices[self._moving])
         self._is_plain = not self.spherical and all(joint.mimic is None for joint in body.all_joints)
         self._loops = [
             (first, joint)
@@ -355,10 +352,19 @@ class BodyKinematics:
 def _others(count: int, first: list[int], width: int) -> slice | Ints:
     """Return the indices below a count that are in none of some ranges of one width."""
     taken = {index for start in first for index in range(start, start + width)}
-    return index_range(np.array([index for index in range(count) if index not in taken], dtype=int))
+    return _index_range(np.array([index for index in range(count) if index not in taken], dtype=int))
 
 
-def index_range(indices: Ints) -> slice | Ints:
+def fixed_view(numbers: Floats, indices: Ints) -> tuple[Floats, EllipsisType | Ints]:
+    """Return an array and an index into it for some of the numbers, which are often written.
+
+    Where the indices follow one another they are a view, made once, and the index is ``...``, which is fastest.
+    """
+    some = _index_range(indices)
+    return (numbers[some], ...) if isinstance(some, slice) else (numbers, some)
+
+
+def _index_range(indices: Ints) -> slice | Ints:
     """Return the indices as a slice if they follow one another, since slices are faster."""
     plain = indices.tolist()
     first = plain[0] if plain else 0
