@@ -239,7 +239,7 @@ def test_meshes_report_where_they_are_deepest_in_each_other(env):
     # Two open wedges above the floor of the U, whose edges along y are 0.02 and 0.06 deep in it.
     wedge = np.array([[0, y, 0] for y in (-1.0, 1.0)] + [[x, y, 1] for x in (-0.1, 0.1) for y in (-1.0, 1.0)])
     faces = np.array([[0, 1, 3], [0, 3, 2], [0, 5, 1], [0, 4, 5]])
-    both = np.vstack([wedge + (-0.4, 0, -0.92), wedge + (0.4, 0, -0.96)])
+    both = np.vstack([wedge + np.array([-0.4, 0, -0.92]), wedge + np.array([0.4, 0, -0.96])])
     wedges = mesh(env, "wedges", both, np.vstack([faces, faces + 6]))
     report = CollisionReport()
     assert env.CheckCollision(wedges, one, report)
@@ -627,7 +627,7 @@ SNAKE = "".join(
     <Geom type="box"><Translation>.2 0 0</Translation><extents>.15 .05 .04</extents></Geom></Body>"""
     for n in range(9)
 ) + "".join(
-    f"""<Joint name="j{n}" type="hinge" enable="{'false' if n == 4 else 'true'}"><Body>l{n}</Body><Body>l{n + 1}</Body>
+    f"""<Joint name="j{n}" type="hinge" enable="{"false" if n == 4 else "true"}"><Body>l{n}</Body><Body>l{n + 1}</Body>
     <offsetfrom>l{n + 1}</offsetfrom><axis>{("0 0 1", "0 1 0")[n % 2]}</axis><limitsrad>{limits}</limitsrad></Joint>"""
     for n in range(8)
     for limits in ["0 0" if n == 4 else "-3 3"]

@@ -10,7 +10,7 @@ from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.transforms import Ints
 from ravemj.engine.collision import questions
-from ravemj.engine.collision.findings import GeometryOf, Listed, find_collisions
+from ravemj.engine.collision.findings import Collision, GeometryOf, Listed, Wanted, find
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.questions import LinkOf, Links, MovedBy
 from ravemj.engine.collision.world import CollisionWorld
@@ -18,6 +18,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import Ray
 from ravemj.rave.body.base import BodyPart
+from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
 from ravemj.rave.interface import Annotations, Interface, checked_environment
 from ravemj.rave.link import Link
@@ -29,11 +30,6 @@ if TYPE_CHECKING:
 # Plain numbers: operators of flags take longer than tests of collision.
 _ACTIVE_DOFS = int(CollisionOptions.ActiveDOFs)
 _IGNORE_CALLBACKS = int(CollisionOptions.IgnoreCallbacks)
-_DISTANCE = int(CollisionOptions.Distance)
-_USE_TOLERANCE = int(CollisionOptions.UseTolerance)
-_ALL_GEOMETRIES = int(CollisionOptions.AllGeometryCollisions)
-_ALL_LINKS = int(CollisionOptions.AllLinkCollisions)
-_CONTACTS = int(CollisionOptions.Contacts | CollisionOptions.AllGeometryContacts)
 
 _NO_BODIES: frozenset[BodyState] = frozenset()
 _NO_LINKS: frozenset[LinkOf] = frozenset()
@@ -60,7 +56,7 @@ class CollisionChecker(Interface):
         self._name = name
         self._simulation = env.simulation
         self._options = 0
-        self._listed: Listed = "first pair"
+        self._wanted = Wanted()
         self._tolerance = 0.0
 
     def GetXMLId(self) -> str:
@@ -86,11 +82,19 @@ class CollisionChecker(Interface):
         if not 0 <= int(collisionoptions) < 2 * CollisionOptions.IgnoreCallbacks:
             return False
         self._options = int(collisionoptions)
-        if self._options & _ALL_GEOMETRIES:
-            self._listed = "geometries"
-        else:
-            self._listed = "links" if self._options & _ALL_LINKS else "first pair"
+        self._choose()
         return True
+
+    def _choose(self) -> None:
+        """Work out what reports should tell."""
+        options = CollisionOptions(self._options)
+        listed: Listed = "links" if options & CollisionOptions.AllLinkCollisions else "first pair"
+        self._wanted = Wanted(
+            "geometries" if options & CollisionOptions.AllGeometryCollisions else listed,
+            bool(options & (CollisionOptions.Contacts | CollisionOptions.AllGeometryContacts)),
+            bool(options & CollisionOptions.Distance),
+            self._tolerance if options & CollisionOptions.UseTolerance else None,
+        )
 
     def GetCollisionOptions(self) -> int:
         """Return the chosen ``CollisionOptions``."""
@@ -103,6 +107,7 @@ class CollisionChecker(Interface):
             tolerance: The distance [m].
         """
         self._tolerance = float(tolerance)
+        self._choose()
 
     def GetTolerance(self) -> float:
         """Return the distance [m] of ``CollisionOptions.UseTolerance``."""
@@ -124,7 +129,7 @@ class CollisionChecker(Interface):
                 return self._check_ray(world, ray, arguments[1:], report)
             return self.answer(world, self._pairs(world, arguments), report)
 
-    def CheckSelfCollision(self, linkbody: "BodyPart | Link", report: CollisionReport | None = None) -> bool:
+    def CheckSelfCollision(self, linkbody: "BodyCollision | Link", report: CollisionReport | None = None) -> bool:
         """Return whether a body collides with itself; see ``body.CheckSelfCollision``.
 
         Args:
@@ -138,9 +143,10 @@ class CollisionChecker(Interface):
             if isinstance(linkbody, Link):
                 pairs = questions.link_and_own_body(world, _link(linkbody))
             else:
-                active = self._options & _ACTIVE_DOFS
                 state = _state(linkbody)
-                pairs = questions.itself(world, state, MovedBy(self._env.wrap(state).active_dofs()) if active else None)
+                pairs = questions.itself(
+                    world, state, MovedBy(linkbody.active_dofs()) if self._options & _ACTIVE_DOFS else None
+                )
             return self.answer(world, pairs, report)
 
     def _pairs(self, world: CollisionWorld, arguments: Sequence[object]) -> Pairs:
@@ -153,14 +159,9 @@ class CollisionChecker(Interface):
                 return self._pairs_with_others(
                     world, thing, frozenset(map(_state, bodies)), frozenset(map(_link, links))
                 )
-            case (BodyPart() | Link(), BodyPart() | Link()):
-                first, second = map(_thing, arguments)
-                self._check_added(first, second)
-                if isinstance(first, BodyState) and not isinstance(second, BodyState):
-                    pairs = questions.each_other(world, second, first, None)
-                    return world.make_pairs(pairs.second, pairs.first)  # reports name the first argument first
-                links = self._active_links(first) if isinstance(first, BodyState) else None
-                return questions.each_other(world, first, second, links)
+            case (BodyPart() | Link() as one, BodyPart() | Link() as other):
+                first, second = self._added(one), self._added(other)
+                return questions.each_other(world, first, second, self._active_links(one))
             case _:
                 raise _not_understood(arguments)
 
@@ -172,60 +173,51 @@ class CollisionChecker(Interface):
         without_links: frozenset[LinkOf] = _NO_LINKS,
     ) -> Pairs:
         thing = _thing(argument)
-        state = questions.body_of(thing)
-        if state.simulation is not self._simulation:
+        if (state := questions.body_of(thing)).simulation is not self._simulation:
             raise ArgumentError(f"CheckCollision: '{state.scene.name}' was made for another environment")
-        links = self._active_links(thing) if isinstance(thing, BodyState) and self._options else None
-        return questions.body_and_others(world, thing, links, without_bodies, without_links)
+        return questions.body_and_others(world, thing, self._active_links(argument), without_bodies, without_links)
 
-    def _check_added(self, *things: BodyState | LinkOf) -> None:
-        for state in map(questions.body_of, things):
-            if not self._simulation.holds(state):
-                message = f"CheckCollision: '{state.scene.name}' is not in this environment; add it first"
-                raise RavemjError(message, ErrorCode.Assert)
+    def _added(self, argument: object) -> BodyState | LinkOf:
+        thing = _thing(argument)
+        if not self._simulation.holds(state := questions.body_of(thing)):
+            message = f"CheckCollision: '{state.scene.name}' is not in this environment; add it first"
+            raise RavemjError(message, ErrorCode.Assert)
+        return thing
 
-    def _active_links(self, state: BodyState) -> Links:
-        """Return the links to which the option ``ActiveDOFs`` restricts the tests; None: all."""
-        if not self._options & _ACTIVE_DOFS:
+    def _active_links(self, argument: object) -> Links:
+        """Return the links to which the option ``ActiveDOFs`` restricts the tests of a body; None: all."""
+        if not self._options & _ACTIVE_DOFS or not isinstance(argument, BodyCollision) or argument.moves_as_a_whole():
             return None
-        body = self._env.wrap(state)
-        return None if body.moves_as_a_whole() else MovedBy(body.active_dofs())
+        return MovedBy(argument.active_dofs())
 
     def answer(self, world: CollisionWorld, pairs: Pairs, report: CollisionReport | None) -> bool:
         """Test pairs of geoms as the options say, fill the report, and return whether there is a collision.
 
         The caller holds the lock.
         """
-        has_callbacks = bool(self._env.collision_callbacks) and not self._options & _IGNORE_CALLBACKS
-        if report is None and not has_callbacks:
+        counts = self._counts if self._env.collision_callbacks and not self._options & _IGNORE_CALLBACKS else None
+        if report is None and counts is None:
             return world.collide(pairs)
         report = report or CollisionReport()
         report.Reset(self._options)
-        contacts = bool(self._options & _CONTACTS)
-        found = find_collisions(world, pairs, self._listed, contacts, self._counts if has_callbacks else None)
-        for one in found:
-            info = CollisionPairInfo(self._part(one.first), self._part(one.second), one.contacts)
-            report.collisionInfos.append(info)
-        if self._options & _DISTANCE:
-            self._measure(world, pairs, report)
-        if self._options & _USE_TOLERANCE:
-            report.numWithinTol += world.count_within(pairs, self._tolerance)
-        return bool(found)
+        found = find(world, pairs, self._wanted, report.minDistance, counts)
+        report.collisionInfos += map(self._info, found.collisions)
+        report.minDistance = found.distance
+        report.numWithinTol += found.within
+        if found.nearest is not None and not report.numCols:
+            report.collisionInfos = [self._info(found.nearest, collides=False)]
+        return bool(found.collisions)
 
-    def _measure(self, world: CollisionWorld, pairs: Pairs, report: CollisionReport) -> None:
-        """Put the least distance into the report and, where nothing collides, the pair that is so near."""
-        distance, nearest = world.nearest(pairs, report.minDistance)
-        report.minDistance = max(distance, 0.0)
-        if nearest is not None and not report.numCols:
-            first, second = (self._part(GeometryOf.of(world, geom)) for geom in nearest)
-            report.collisionInfos = [CollisionPairInfo(first, second, collides=False)]
-
-    def _counts(self, first: GeometryOf, second: GeometryOf) -> bool:
+    def _counts(self, collision: Collision) -> bool:
         """Ask the registered functions whether a collision counts."""
         report = CollisionReport()
         report.Reset(self._options)
-        report.collisionInfos.append(CollisionPairInfo(self._part(first), self._part(second)))
+        report.collisionInfos.append(self._info(collision))
         return all(callback(report, False) != CollisionAction.Ignore for callback in self._env.collision_callbacks)
+
+    def _info(self, collision: Collision, *, collides: bool = True) -> CollisionPairInfo:
+        first, second, contacts = collision
+        return CollisionPairInfo(self._part(first), self._part(second), contacts, collides=collides)
 
     def _part(self, geometry: GeometryOf) -> Part:
         link = Link(self._env.wrap(geometry.body), geometry.body, geometry.link)
@@ -255,8 +247,7 @@ class CollisionChecker(Interface):
             return None
         if not isinstance(target, BodyPart | Link):
             raise _not_understood((Ray(np.zeros(3), np.zeros(3)), target))
-        thing = _thing(target)
-        self._check_added(thing)
+        thing = self._added(target)
         return world.geoms_of_group(thing) if isinstance(thing, BodyState) else world.geoms_of_link(*thing)
 
     def __repr__(self) -> str:

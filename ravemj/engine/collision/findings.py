@@ -1,4 +1,4 @@
-"""Collisions as reports list them: one for each pair of links or of geometries, with its contact points."""
+"""What reports tell of a question: the pairs of links or geometries that collide, contact points, distances."""
 
 from collections.abc import Callable
 from typing import Literal, NamedTuple
@@ -45,22 +45,63 @@ class Collision(NamedTuple):
     contacts: list[Contact]
 
 
-def find_collisions(
-    world: CollisionWorld,
-    pairs: Pairs,
-    listed: Listed,
-    contacts: bool = False,
-    counts: Callable[[GeometryOf, GeometryOf], bool] | None = None,
-) -> list[Collision]:
-    """Return the collisions of pairs of geoms.
+Counts = Callable[[Collision], bool]
+"""Decides whether a collision counts."""
+
+
+class Wanted(NamedTuple):
+    """What a report should tell.
+
+    Attributes:
+        listed: Which collisions.
+        contacts: Whether it has their contact points; without them, the search for the first pair ends sooner.
+        distance: Whether it has the least distance.
+        tolerance: It has the number of pairs that are no farther apart than this [m]; None: it has not.
+    """
+
+    listed: Listed = "first pair"
+    contacts: bool = False
+    distance: bool = False
+    tolerance: float | None = None
+
+
+class Findings(NamedTuple):
+    """What was found of what is wanted.
+
+    Attributes:
+        collisions: Those that count.
+        distance: The least distance [m], not negative, or the one that was given where none is less.
+        nearest: The geometries that are so near, where there are any.
+        within: Number of pairs within the tolerance.
+    """
+
+    collisions: list[Collision]
+    distance: float
+    nearest: Collision | None = None
+    within: int = 0
+
+
+def find(world: CollisionWorld, pairs: Pairs, wanted: Wanted, distance: float, counts: Counts | None) -> Findings:
+    """Return what a report should tell of pairs of geoms.
 
     Args:
         world: Where the geoms are.
         pairs: The pairs.
-        listed: What is listed.
-        contacts: Whether contact points are wanted; without them, the search for the first pair ends sooner.
+        wanted: What the report should tell.
+        distance: Greater distances are of no interest [m].
         counts: Decides whether a collision counts; None: all do.
     """
+    collisions, nearest = _collisions(world, pairs, wanted, counts), None
+    if wanted.distance:
+        distance, near = world.nearest(pairs, distance)
+        distance = max(distance, 0.0)
+        nearest = near and Collision(GeometryOf.of(world, near[0]), GeometryOf.of(world, near[1]), [])
+    within = 0 if wanted.tolerance is None else world.count_within(pairs, wanted.tolerance)
+    return Findings(collisions, distance, nearest, within)
+
+
+def _collisions(world: CollisionWorld, pairs: Pairs, wanted: Wanted, counts: Counts | None) -> list[Collision]:
+    listed, contacts = wanted.listed, wanted.contacts
     found: dict[object, Collision] = {}
     for pair in world.hits(pairs):
         first, second = (GeometryOf.of(world, geom) for geom in pair)
@@ -68,9 +109,10 @@ def find_collisions(
         if key not in found:
             if found and listed == "first pair":
                 break
-            if counts is not None and not counts(first, second):
+            collision = Collision(first, second, [])
+            if counts is not None and not counts(collision):
                 continue
-            found[key] = Collision(first, second, [])
+            found[key] = collision
         if contacts:
             found[key].contacts.append(world.shapes.contact(*pair))
         elif listed == "first pair":

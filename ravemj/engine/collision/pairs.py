@@ -50,7 +50,7 @@ class Detection:
         self.positions, self.radii = model.data.geom_xpos, model.model.geom_rbound
         self.is_overruled = False
         self._stamp = -1
-        self._keys = _NO_KEYS
+        self._keys: list[int] = _NO_KEYS
         self._found: bytes = b""
         self._option = self._model.opt
         self._option.o_margin = _MARGIN  # only ``_OVERRIDE`` lets it count
@@ -98,7 +98,9 @@ class Detection:
         geoms = self._data.contact.geom
         found = geoms.tobytes()
         if found != self._found:
-            self._keys, self._found = [key(*pair, self._model.ngeom) for pair in geoms.tolist()], found
+            touching: list[list[int]] = geoms.tolist()
+            self._keys = [key(one, other, self._model.ngeom) for one, other in touching]
+            self._found = found
 
 
 class Pairs:

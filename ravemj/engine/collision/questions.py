@@ -80,7 +80,7 @@ def each_other(
         world: Where they are.
         first: A body, or a link.
         second: Another one.
-        links: Only these links of a first body, and what they hold.
+        links: Only these links of the first of two bodies, and what they hold.
     """
 
     def find() -> tuple[Ints, Ints]:
@@ -88,7 +88,12 @@ def each_other(
             together = body_of(second) in world.group(body_of(first))
         else:
             together = first == second
-        return cross(_geoms(world, first, links), _nothing() if together else _geoms(world, second))
+        if together:
+            return _nothing(), _nothing()
+        if isinstance(first, BodyState) and not isinstance(second, BodyState):  # the link's geoms in turn
+            others, ours = cross(_geoms(world, second), _geoms(world, first))
+            return ours, others
+        return cross(_geoms(world, first, links), _geoms(world, second))
 
     return world.pairs(("each other", first, second, links), find)
 
