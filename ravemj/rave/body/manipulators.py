@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, cast
 
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, Diagnostics, send_warnings
+from ravemj.errors import ArgumentError, Diagnostics, ErrorCode, RavemjError, send_warnings
 from ravemj.model import hashes
 from ravemj.model.manipulators import check_reach, freeze_manipulator
 from ravemj.rave.body.base import BodyPart
@@ -122,6 +122,8 @@ class Manipulators(BodyPart):
             >>> manipulator = robot.SetActiveManipulator("arm")
             >>> robot.SetActiveDOFs(manipulator.GetArmIndices())
         """
+        if manip is None:
+            raise RavemjError("SetActiveManipulator: is None, and should be a name; '' means none", ErrorCode.Assert)
         names = [one.name for one in self._state.scene.manipulators]
         name = manip.GetName() if isinstance(manip, Manipulator) else manip
         if isinstance(name, int):
