@@ -113,7 +113,7 @@ class TestJacobians:
 
     @pytest.mark.parametrize("call", [(5, [0, 0, 0]), (-1, [0, 0, 0]), (1, [0, 0]), (1, [0, 0, np.inf])])
     def test_nonsense_is_refused(self, robot, call):
-        with pytest.raises(ravemj.openrave_exception):
+        with pytest.raises((ravemj.openrave_exception, ValueError)):
             robot.ComputeJacobianTranslation(*call)
 
     def test_quaternion(self, robot):
@@ -175,7 +175,7 @@ class TestVelocities:
     def test_a_refused_call_changes_nothing(self, robot, call):
         robot.SetDOFVelocities([0.5, -0.25])
         before = robot.GetLinkVelocities()
-        with pytest.raises(ravemj.openrave_exception):
+        with pytest.raises((ravemj.openrave_exception, ValueError)):
             robot.SetDOFVelocities(*call)
         np.testing.assert_array_equal(robot.GetLinkVelocities(), before)
 

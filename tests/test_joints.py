@@ -67,7 +67,7 @@ class TestSetters:
     )
     def test_what_is_refused_changes_nothing(self, tree, call):
         before = tree.simulation_state.scene
-        with pytest.raises(ravemj.ArgumentError):
+        with pytest.raises(ravemj.openrave_exception):
             call(tree.GetJoint("h"))
         assert tree.simulation_state.scene is before
 

@@ -64,6 +64,29 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     return vector
 
 
+def checked_first(values: ArrayLike, length: int, name: str) -> Floats:
+    """Return the first numbers of a vector, which may have more, as OpenRAVE takes velocities and accelerations.
+
+    Raises:
+        ArgumentError: it has fewer, or one of them is no finite number.
+    """
+    given = checked_numbers(values, name)
+    return checked_vector(given[:length] if given.ndim == 1 else given, length, name)
+
+
+def checked_point(values: ArrayLike, name: str) -> Floats:
+    """Return a point, shape (3,).
+
+    Raises:
+        ValueError: it has another shape, as in OpenRAVE, whose bindings let Python's own error through.
+        ArgumentError: something in it is no finite number.
+    """
+    given = checked_numbers(values, name)
+    if given.shape != (3,):
+        raise ValueError(f"{name}: has shape {given.shape}, and should have shape (3,)")
+    return checked_vector(given, 3, name)
+
+
 def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "DOF indices") -> Ints:
     """Return indices as an array; None stands for none, ``...`` for all.
 
@@ -103,7 +126,8 @@ def checked_transform(transform: ArrayLike, name: str) -> Floats:
         name: What to call it in errors.
 
     Raises:
-        ArgumentError: it has another shape, is not finite, or its rotation is none.
+        ValueError: it has another shape, as in OpenRAVE, whose bindings let Python's own error through.
+        ArgumentError: it is not finite, or its rotation is none.
     """
     given = checked_numbers(transform, name)
     if not math.isfinite(sum(given.ravel().tolist())) and not np.isfinite(given).all():
@@ -120,7 +144,7 @@ def checked_transform(transform: ArrayLike, name: str) -> Floats:
         if not _is_exact(rows, name):
             matrix[:3, :3] = rows_from_wxyz(wxyz_from_rows(rows))  # with the scale, as OpenRAVE does
     else:
-        raise ArgumentError(f"{name}: has shape {given.shape}, and should have (4, 4), (3, 4) or (7,)")
+        raise ValueError(f"{name}: has shape {given.shape}, and should have (4, 4), (3, 4) or (7,)")
     return matrix
 
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats
-from ravemj.errors import ArgumentError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.model import scene
 from ravemj.rave.member import Member
 
@@ -36,6 +36,11 @@ class JointLimits(Member):
         Raises:
             ArgumentError: there are too few or too many. Nothing has changed then.
         """
+        if not np.size(lower) == np.size(upper) == len(self._scene.axes):
+            message = (
+                f"SetLimits: there are {np.size(lower)} and {np.size(upper)} limits for {len(self._scene.axes)} axes"
+            )
+            raise RavemjError(message, ErrorCode.Failed)
         self._set_axes("SetLimits", lower=lower, upper=upper)
 
     def GetVelocityLimits(self) -> tuple[Floats, Floats]:
@@ -206,7 +211,7 @@ class JointLimits(Member):
             weights: Weights, shape (axes,).
         """
         if not np.all(checked_numbers(weights, "SetWeights: weights") > 0):
-            raise ArgumentError(f"SetWeights: weights are {weights}, and should be positive")
+            raise RavemjError(f"SetWeights: weights are {weights}, and should be positive", ErrorCode.Assert)
         self._set_axes("SetWeights", weight=weights)
 
     def GetResolutions(self) -> Floats:

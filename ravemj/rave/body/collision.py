@@ -11,7 +11,7 @@ from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.configurations import batch_collides
 from ravemj.engine.collision.questions import moved_apart
 from ravemj.engine.collision.resting import tested_pairs
-from ravemj.errors import ArgumentError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import AABB, OrientedBox, OrientedBoxFromAABB
 from ravemj.model.bounds import enclosing_box, links_bounds
 from ravemj.rave.body.base import BodyPart
@@ -122,7 +122,7 @@ class BodyCollision(BodyPart, Interface):
         count = len(self._state.link_enabled)
         if states.shape != (count,):
             message = f"SetLinkEnableStates: enablestates have shape {states.shape}, and should have shape ({count},)"
-            raise ArgumentError(message)
+            raise RavemjError(message, ErrorCode.Assert)
         self._state.link_enabled = states != 0
 
     def GetLinkEnableStatesMasks(self) -> NDArray[np.uint64]:
@@ -184,9 +184,10 @@ class BodyCollision(BodyPart, Interface):
         count, added = len(self._state.scene.links), set(self._state.scene.adjacent)
         for first, second in pairs:
             if not (0 <= first < count and 0 <= second < count and first != second):
-                raise ArgumentError(
+                message = (
                     f"SetAdjacentLinks: ({first}, {second}) should be two of the {count} links of '{self.GetName()}'"
                 )
+                raise RavemjError(message, ErrorCode.Assert)
             added.add((min(first, second), max(first, second)))
         with self._simulation.lock:
             self._simulation.forget_model()  # it excludes these pairs, too

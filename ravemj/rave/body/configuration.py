@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import FLOAT, checked_indices, checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Ints, pose_of
 from ravemj.engine.kinematics import BodyKinematics
-from ravemj.errors import ArgumentError, Diagnostic, RavemjError, send_warning
+from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, send_warning
 from ravemj.geometry_functions import DOFAffine
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import CheckLimitsAction
@@ -191,8 +191,14 @@ class Configuration(BodyPart):
             transform: ``T_world_link0``, as ``SetTransform`` takes it.
             values: Joint values [rad or m], shape (dof,).
             checklimits: As in ``SetDOFValues``.
+
+        Raises:
+            openrave_exception: there are too few or too many values. Nothing has changed then.
         """
         checked = checked_transform(transform, "SetTransformWithDOFValues: transform")
+        if np.size(values) != self.GetDOF():
+            message = f"SetTransformWithDOFValues: there are {np.size(values)} values for {self.GetDOF()} DOFs"
+            raise RavemjError(message, ErrorCode.Failed)
         with self._simulation.lock:
             self.SetDOFValues(values, None, checklimits)
             self._state.set_transform(checked)

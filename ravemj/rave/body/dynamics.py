@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_vector
+from ravemj.core.arrays import checked_first, checked_point, checked_vector
 from ravemj.core.transforms import Floats, wxyz_jacobian
 from ravemj.errors import ArgumentError
 from ravemj.rave.body.base import BodyPart
@@ -36,14 +36,14 @@ class Dynamics(BodyPart):
             return self._state.dynamics.com_jacobian()
 
     def ComputeJacobianTranslation(
-        self, linkindex: int, position: ArrayLike, dofindices: "ArrayLike | None" = None
+        self, linkindex: int, position: ArrayLike, indices: "ArrayLike | None" = None
     ) -> Floats:
         """Return how a point of a link moves with the joint values.
 
         Args:
             linkindex: Index of the link.
             position: The point, in world coordinates [m], shape (3,).
-            dofindices: The columns, in this order; None and []: all. As in OpenRAVE, an index of no DOF gives zeros.
+            indices: The columns, in this order; None and []: all. As in OpenRAVE, an index of no DOF gives zeros.
 
         Returns:
             Derivative of the point's position in the world by the DOF values, shape (3, dof).
@@ -55,17 +55,17 @@ class Dynamics(BodyPart):
             >>> tip = robot.GetLink("Arm1").GetTransform()[0:3, 3]
             >>> robot.ComputeJacobianTranslation(2, tip) @ robot.GetDOFVelocities()  # the tip's velocity
         """
-        link, point = self._checked_link(linkindex), checked_vector(position, 3, "position")
+        link, point = self._checked_link(linkindex), checked_point(position, "position")
         with self._simulation.lock:
             jacobian = self._state.dynamics.translation_jacobian(link, point)
-        return jacobian if dofindices is None else _columns(jacobian, dofindices)
+        return jacobian if indices is None else _columns(jacobian, indices)
 
-    def ComputeJacobianAxisAngle(self, linkindex: int, dofindices: "ArrayLike | None" = None) -> Floats:
+    def ComputeJacobianAxisAngle(self, linkindex: int, indices: "ArrayLike | None" = None) -> Floats:
         """Return how a link turns with the joint values.
 
         Args:
             linkindex: Index of the link.
-            dofindices: The columns, as in ``ComputeJacobianTranslation``.
+            indices: The columns, as in ``ComputeJacobianTranslation``.
 
         Returns:
             Angular velocity of the link, in world axes, per unit of DOF velocity, shape (3, dof).
@@ -73,7 +73,7 @@ class Dynamics(BodyPart):
         link = self._checked_link(linkindex)
         with self._simulation.lock:
             jacobian = self._state.dynamics.rotation_jacobian(link)
-        return jacobian if dofindices is None else _columns(jacobian, dofindices)
+        return jacobian if indices is None else _columns(jacobian, indices)
 
     def CalculateJacobian(self, linkindex: int, position: ArrayLike) -> Floats:
         """Return ``ComputeJacobianTranslation`` for all DOFs; its older name.
@@ -106,27 +106,27 @@ class Dynamics(BodyPart):
         return rates.dot(self.ComputeJacobianAxisAngle(linkindex))  # faster than @ for small matrices
 
     def ComputeHessianTranslation(
-        self, linkindex: int, position: ArrayLike, dofindices: "ArrayLike | None" = None
+        self, linkindex: int, position: ArrayLike, indices: "ArrayLike | None" = None
     ) -> Floats:
         """Return the second derivatives of a link's point by the joint values.
 
         Args:
             linkindex: Index of the link.
             position: The point, in world coordinates [m], shape (3,).
-            dofindices: Which DOFs, as in ``ComputeJacobianTranslation``.
+            indices: Which DOFs, as in ``ComputeJacobianTranslation``.
 
         Returns:
             Shape (dof, 3, dof): ``[i, :, j]`` is the derivative by DOFs i and j. Twice contracted with the joint
             velocities it is the part of the point's acceleration that the velocities make.
         """
-        return _both_columns(self._hessian(linkindex, position)[0], dofindices)
+        return _both_columns(self._hessian(linkindex, position)[0], indices)
 
-    def ComputeHessianAxisAngle(self, linkindex: int, dofindices: "ArrayLike | None" = None) -> Floats:
+    def ComputeHessianAxisAngle(self, linkindex: int, indices: "ArrayLike | None" = None) -> Floats:
         """Return the derivatives of a link's angular velocity, in OpenRAVE's symmetric form.
 
         Args:
             linkindex: Index of the link.
-            dofindices: Which DOFs, as in ``ComputeJacobianTranslation``.
+            indices: Which DOFs, as in ``ComputeJacobianTranslation``.
 
         Returns:
             Shape (dof, 3, dof): ``[i, :, j]`` is the derivative of the Jacobian's column j by DOF i plus that of
@@ -134,7 +134,7 @@ class Dynamics(BodyPart):
             acceleration that the velocities make.
         """
         derivatives = self._hessian(linkindex, np.zeros(3))[1]
-        return _both_columns(derivatives + derivatives.transpose(2, 1, 0), dofindices)
+        return _both_columns(derivatives + derivatives.transpose(2, 1, 0), indices)
 
     def _hessian(self, link: int, point: ArrayLike) -> tuple[Floats, Floats]:
         checked = self._checked_link(link), checked_vector(point, 3, "position")
@@ -150,7 +150,8 @@ class Dynamics(BodyPart):
         errs, about joints that follow others, this is right.
 
         Args:
-            dofaccelerations: Accelerations of the DOFs [rad/s^2, for sliders m/s^2], shape (dof,); None: none.
+            dofaccelerations: Accelerations of the DOFs [rad/s^2, for sliders m/s^2], shape (dof,); further numbers do
+                not count. None and []: none.
             externalaccelerations: Further accelerations of the first link, and of others that no joint places: link
                 index to [linear, angular], six numbers in world axes.
 
@@ -198,7 +199,8 @@ class Dynamics(BodyPart):
         spherical joints; this is right about all of them.
 
         Args:
-            dofaccelerations: Accelerations [rad/s^2, for sliders m/s^2], shape (dof,); None: none.
+            dofaccelerations: Accelerations [rad/s^2, for sliders m/s^2], shape (dof,); further numbers do not count.
+                None and []: none.
             externalforcetorque: What acts on links besides: link index to [force, torque], six numbers [N, N m] in
                 world axes, at the link's centre of mass. As in OpenRAVE it is added like the weight of a mass: to hold
                 against a push, give it with the opposite sign.
@@ -222,8 +224,12 @@ class Dynamics(BodyPart):
             return state.dynamics.inverse(state.present_velocities, accelerations, gravity, pushes)
 
     def _checked_accelerations(self, accelerations: "ArrayLike | None", name: str) -> Floats:
-        dof = self._state.dof
-        return np.zeros(dof) if accelerations is None else checked_vector(accelerations, dof, name)
+        dof, count = self._state.dof, 0 if accelerations is None else np.size(accelerations)
+        if accelerations is None or not count:
+            return np.zeros(dof)
+        if count < dof:
+            raise IndexError(f"{name}: has {count} accelerations for {dof} DOFs")
+        return checked_first(accelerations, dof, name)
 
     def _checked_pushes(self, pushes: "Mapping[int, ArrayLike] | None", name: str) -> dict[int, Floats]:
         if not pushes:
@@ -326,9 +332,9 @@ class Dynamics(BodyPart):
         return checked
 
 
-def _columns(jacobian: Floats, dofindices: "ArrayLike | None") -> Floats:
+def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
     """Return columns of a Jacobian, along the last axis; zeros for an index of no DOF."""
-    chosen = np.array([] if dofindices is None else dofindices, dtype=np.int_).reshape(-1)
+    chosen = np.array([] if indices is None else indices, dtype=np.int_).reshape(-1)
     if not chosen.size:
         return jacobian
     count = jacobian.shape[-1]
@@ -338,8 +344,8 @@ def _columns(jacobian: Floats, dofindices: "ArrayLike | None") -> Floats:
     return columns
 
 
-def _both_columns(hessian: Floats, dofindices: "ArrayLike | None") -> Floats:
-    return _columns(_columns(hessian, dofindices).T, dofindices).T
+def _both_columns(hessian: Floats, indices: "ArrayLike | None") -> Floats:
+    return _columns(_columns(hessian, indices).T, indices).T
 
 
 def _checked_out(out: Floats | None, shape: tuple[int, ...]) -> Floats:

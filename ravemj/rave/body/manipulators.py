@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, cast
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import also_named, checked_kind
-from ravemj.errors import ArgumentError, Diagnostics, RavemjError, send_warnings
+from ravemj.errors import ArgumentError, Diagnostics, ErrorCode, RavemjError, send_warnings
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.model import hashes
 from ravemj.model.manipulators import check_reach, freeze_manipulator
@@ -164,6 +164,8 @@ class Manipulators(BodyPart):
             >>> manipulator = robot.SetActiveManipulator("arm")
             >>> robot.SetActiveDOFs(manipulator.GetArmIndices())
         """
+        if manipname is None:
+            raise RavemjError("SetActiveManipulator: is None, and should be a name; '' means none", ErrorCode.Assert)
         names = [one.name for one in self._state.scene.manipulators]
         name = manipname.GetName() if isinstance(manipname, Manipulator) else manipname
         if isinstance(name, int):

@@ -5,7 +5,7 @@ from types import EllipsisType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector
+from ravemj.core.arrays import checked_first, checked_indices, checked_numbers, checked_point, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, send_warning
 from ravemj.rave.body.limits import Limits
@@ -53,7 +53,8 @@ class Velocities(Limits, Interface):
         ``(dofvelocities, linear, angular, checklimits)``. In the first two the base keeps its velocity.
 
         Args:
-            dofvelocities: Velocities [rad/s, for sliders m/s], as many as there are DOFs, or as there are indices.
+            dofvelocities: Velocities [rad/s, for sliders m/s], as many as there are DOFs, or as there are indices;
+                without indices further numbers do not count.
             linear: Velocity of the first link's origin in the world [m/s], shape (3,); a number is ``checklimits``.
             angular: Angular velocity of the first link in the world [rad/s], shape (3,); behind a number it is
                 ``indices``.
@@ -76,9 +77,9 @@ class Velocities(Limits, Interface):
             velocities = self._state.link_velocities()
             base = np.zeros(6) if not len(velocities) else velocities[0]
             if linear is not None:
-                base[:3] = checked_vector(linear, 3, "SetDOFVelocities: linear")
+                base[:3] = checked_point(linear, "SetDOFVelocities: linear")
             if angular is not None:
-                base[3:] = checked_vector(angular, 3, "SetDOFVelocities: angular")
+                base[3:] = checked_point(angular, "SetDOFVelocities: angular")
             rates = self._limited_rates(self._full_rates(dofvelocities, indices), checklimits)
             if len(velocities):
                 self._state.set_link_velocities(self._state.dynamics.link_velocities(rates, base))
@@ -87,7 +88,7 @@ class Velocities(Limits, Interface):
         """Return one velocity for each DOF."""
         dof = self.GetDOF()
         if indices is None:
-            return checked_vector(dofvelocities, dof, "SetDOFVelocities") if dof else np.zeros(0)
+            return checked_first(dofvelocities, dof, "SetDOFVelocities") if dof else np.zeros(0)
         chosen = checked_indices(indices, dof)
         rates = self.GetDOFVelocities()
         rates[chosen] = checked_vector(dofvelocities, len(chosen), "SetDOFVelocities")
