@@ -235,7 +235,7 @@ def test_retimed_trajectories_pass_the_strict_check(robot, name):
     assert planningutils.RetimeActiveDOFTrajectory(trajectory, robot, plannername=planner)
     planningutils.VerifyTrajectory(None, trajectory, 0.003)
     robot.SetDOFVelocityLimits([0.1, 0.1])
-    with pytest.raises(ravemj.openrave_exception, match="speed of value . is") as caught:
+    with pytest.raises(ravemj.openrave_exception, match=r"speed of value . is") as caught:
         planningutils.VerifyTrajectory(None, trajectory, 0.003)
     assert caught.value.GetCode() == "InconsistentConstraints"
 

@@ -1,5 +1,7 @@
 """Spaces, trees, shortcuts, ramps: planning without the API. Truth is geometry, and the formulas of motion."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -66,7 +68,7 @@ def test_paths_are_allowed_everywhere_and_join_start_and_goal(allowed, seed):
     assert search.path[0].tolist() == START.tolist()
     assert search.path[-1].tolist() == GOAL.tolist()
     assert path_is_allowed(Edges(space(), allowed), search.path)
-    for first, second in zip(search.path[:-1], search.path[1:], strict=True):
+    for first, second in pairwise(search.path):
         for part in np.linspace(0, 1, 200):
             assert allowed(first + part * (second - first)) or np.abs(second - first).max() < 0.05
 
@@ -184,7 +186,7 @@ def test_smoothed_motions_are_allowed_within_limits_and_faster(seed):
     samples = [(piece.duration * part, *piece.after(piece.duration * part)) for piece in quick for part in (0, 0.5)]
     assert quick[0].values.tolist() == START.tolist()
     assert quick[-1].after(quick[-1].duration)[0] == pytest.approx(GOAL)
-    for before, after in zip(quick[:-1], quick[1:], strict=True):
+    for before, after in pairwise(quick):
         assert before.after(before.duration)[0] == pytest.approx(after.values)
         assert before.after(before.duration)[1] == pytest.approx(after.velocities)
     for _, values, velocities in samples:
