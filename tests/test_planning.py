@@ -241,6 +241,8 @@ def test_verification_finds_what_is_wrong_and_when():
     hasty = samples([0.0, 0.1], [[0.0], [0.05]], np.array([[0.0], [1.0]]))
     assert "acceleration of value 0 is 10 at 0.1 s" in flaw(hasty, bounds, free)
     assert flaw(samples([0.0, 1.0], [[0.0], [1.0 + 1e-12]]), bounds, free) is None
+    close = samples([0.0, 0.21, 0.21 + 1e-16, 1.0], [[0.0], [0.2], [0.2 + 1e-15], [0.9]])
+    assert flaw(close, bounds, free) is None  # rounding is no speed
 
 
 def test_jitter_stays_near_and_gives_up():
