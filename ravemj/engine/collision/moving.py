@@ -13,8 +13,8 @@ from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 
-
 _KEY = 1 << 31
+"""More than the number of geoms: makes one number of a pair."""
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
@@ -107,14 +107,13 @@ def _carried(world: CollisionWorld, body: BodyState, grab: GrabbedBody) -> list[
     """Return the root links of a held body, and of what it holds."""
     model, data = world.model.model, world.model.data
     carrier = int(world.model.part(body).body_ids[grab.link])
-    wxyz_inverse, found = np.empty(4), list[_Held]()
-    mujoco.mju_negQuat(wxyz_inverse, data.xquat[carrier])
+    conjugate, found = data.xquat[carrier] * [1, -1, -1, -1], list[_Held]()
     for one in held_with(grab.body):
         for root in world.model.part(one).body_ids.tolist():
             if model.body_parentid[root] == 0:
                 offset = data.xmat[carrier].reshape(3, 3).T @ (data.xpos[root] - data.xpos[carrier])
                 wxyz = np.empty(4)
-                mujoco.mju_mulQuat(wxyz, wxyz_inverse, data.xquat[root])
+                mujoco.mju_mulQuat(wxyz, conjugate, data.xquat[root])
                 found.append(_Held(root, carrier, offset, wxyz))
     return found
 

@@ -492,6 +492,7 @@ class MjModel:
     body_treeid: Ints
     body_user: Floats
     body_weldid: Ints
+    exclude_signature: Ints
     cam_bodyid: Ints
     cam_fovy: Floats
     cam_intrinsic: Floats32
