@@ -47,8 +47,9 @@ def test_names_of_the_api_are_found_where_they_are():
     assert found["plot4"] == []
     assert found["GetRobots"] == [("Environment", "")]
     assert found["DrawAxes"] == [("misc", "")]
-    assert found["BaseManipulation"] == [("interfaces", "motion planning")]
-    assert found["RetimeTrajectory"] == [("planningutils", "retiming of trajectories")]
+    assert found["BaseManipulation"] == [("interfaces", "")]
+    assert found["RetimeTrajectory"] == [("planningutils", "")]
+    assert found["ReachabilityModel"] == [("databases.kinematicreachability", "maps of what arms reach")]
     assert {"Link", "KinBody", "Manipulator"} <= {owner for owner, _ in found["GetTransform"]}
 
 

@@ -11,6 +11,7 @@ import pytest
 import ravemj
 from ravemj.compat import alias, legacy, metaclass, names
 from ravemj.rave import environment, library, plugins
+from ravemj.rave.planning.names import MISSING as MISSING_PLANNERS
 
 
 @pytest.fixture
@@ -92,10 +93,11 @@ def test_enumerations_are_numbers_with_names():
 
 @pytest.mark.parametrize("name", ["Failed", "HasSolution", "Interrupted", "InterruptedWithSolution"])
 def test_a_planner_status_is_old_and_new(name):
-    status = ravemj.PlannerStatus[name]
+    status = getattr(ravemj.PlannerStatus, name)
     assert status.statusCode is ravemj.PlannerStatusCode[name]
+    assert status == getattr(ravemj.Planner.PlannerStatus, name) == ravemj.PlannerStatusCode[name]
     assert bool(status & ravemj.PlannerStatus.HasSolution) == ("Solution" in name)
-    assert bool(status) == (name != "Failed")
+    assert bool(status) == ("Solution" in name)
 
 
 def test_initialize_and_destroy():
@@ -154,7 +156,11 @@ def test_native_plugins_and_unknown_things_fail_softly(env, caplog):
 
 @pytest.mark.parametrize(
     ("kind", "name", "capability"),
-    [(kind, name, capability) for kind, names in plugins.MISSING.items() for name, capability in names.items()],
+    [
+        (kind, name, capability)
+        for kind, names in {**plugins.MISSING, ravemj.InterfaceType.planner: MISSING_PLANNERS}.items()
+        for name, capability in names.items()
+    ],
 )
 def test_openraves_own_plugins_say_what_is_missing(env, kind, name, capability):
     create = {
@@ -269,20 +275,13 @@ def test_convex_decomposition_does_nothing(robot):
     assert model.load() is True
 
 
-@pytest.mark.parametrize("name", ["BaseManipulation", "TaskManipulation", "TaskCaging", "VisualFeedback", "Grasper"])
+@pytest.mark.parametrize("name", ["TaskCaging", "VisualFeedback", "Grasper"])
 def test_interfaces_say_what_is_missing(name, robot):
     with pytest.raises(NotImplementedError, match=f"interfaces.{name}: ravemj does no"):
         getattr(ravemj.interfaces, name)(robot)
 
 
-def test_planning_says_what_is_missing(robot):
-    for call in (
-        ravemj.Planner.PlannerParameters,
-        lambda: ravemj.planningutils.RetimeActiveDOFTrajectory(None, robot),
-        lambda: ravemj.planningutils.SmoothActiveDOFTrajectory(None, robot, plannername="parabolicsmoother"),
-    ):
-        with pytest.raises(NotImplementedError, match=r"planning|retiming|smoothing"):
-            call()
+def test_planning_errors_are_no_openrave_exceptions():
     with pytest.raises(ravemj.PlanningError):
         raise legacy.planning_error("no way")
     assert not issubclass(ravemj.PlanningError, ravemj.openrave_exception)

@@ -82,8 +82,7 @@ EXPECTED = {
         quat -1 0 0 0 1 0 0\naffine 3 True\nstatus True True robot\nnames 'other', 'ball' 0.03""",
     "physics_fall": f"""fallen {9.8 / 2 * 0.2 * (0.2 + STEP):.2f} time 200000\nspeed {-9.8 * 0.2:.2f}
         rests 0.10 gravity 0 0 -9.8""",
-    "plan": """basemanip - motion planning\ntaskmanip - motion planning\nplanner - motion planning
-        parameters - motion planning\nretime - retiming of trajectories\nsmooth - smoothing of trajectories
+    "plan": """basemanip worked\ntaskmanip worked\nplanner worked\nparameters worked\nretime worked\nsmooth worked
         grasping - planning of grasps\nreachability - maps of what arms reach\nsampler - sampling of spaces\nNone""",
     "play_trajectory": "points 3 duration 0.3\nmiddle 0.1 -0.05\narrived True\nvalues 0.1 0.3 True",
     "plotting": "without None None\nhandles 9 0\nwrong Failed\ncamera (4, 4)",
@@ -101,7 +100,7 @@ EXPECTED = {
     "trajectory_file": f"""{"at 0.5 0.125 0.5" + chr(10)}{"at 0.5 0.125 0.5" + chr(10)}at 0.5 0.125 0.5
         at 0.5 0.875 -0.5""",
     "uncaught": "before",
-    "urdf_module": "no urdf plugin\nInvalidArguments\nInvalidArguments\n\nmotion planning",
+    "urdf_module": "no urdf plugin\nInvalidArguments\nInvalidArguments\n\nbasemanipulation",
     "velocity_play": "values 0.5 -0.25",
 }
 STATUS = {"exceptions": 3, "uncaught": 1}

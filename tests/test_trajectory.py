@@ -251,7 +251,7 @@ def test_many_samples_are_single_ones(trajectory, times, step):
 def test_ranges_of_samples():
     trajectory = trajectory_of(TIMED, [[0, 0, 0], [1, 2, 1]])
     assert trajectory.SampleRangeSameDeltaTime2D(0.25, 0.25, 0.75, False)[:, 0].tolist() == [0.25, 0.5]
-    assert trajectory.SampleRangeSameDeltaTime2D(0.25, 0.25, 0.75, True)[:, 0].tolist() == [0.25, 0.5, 0.75]
+    assert trajectory.SampleRangeSameDeltaTime2D(0.25, 0.25, 0.75, True)[:, 0].tolist() == [0.25, 0.5, 1.0]
 
 
 def test_samples_in_another_layout():

@@ -33,7 +33,7 @@ def shorten(
         Shape (k, n).
     """
     space = edges.space
-    path = [point.copy() for point in points]
+    path = list(_without_straight_corners(edges, points))
     for attempt in range(tries):
         if len(path) < 3 or not proceed(attempt):
             break

@@ -11,6 +11,9 @@ from ravemj.planning.retiming.segments import Limits
 EXACT = 1e-9
 """How much values, speeds and accelerations may be beyond their limits, relative to them: rounding."""
 
+_ROUNDING = 1e-12
+"""How much values may jump, relative to them: rounding, which counts where times are close to each other."""
+
 
 class Samples(NamedTuple):
     """A motion at some times.
@@ -62,11 +65,12 @@ def _outside(samples: Samples, limits: Limits) -> str | None:
 
 def _speeds(samples: Samples, limits: Limits) -> list[Floats]:
     elapsed = np.diff(samples.times)
-    moved = limits.coordinates.difference(samples.values[1:], samples.values[:-1])
+    moved = np.abs(limits.coordinates.difference(samples.values[1:], samples.values[:-1]))
+    moved = np.maximum(moved - _ROUNDING * np.maximum(1.0, np.abs(samples.values[1:])), 0.0)
     passed = elapsed > 0
     speeds = np.zeros_like(samples.values)
     speeds[1:][passed] = moved[passed] / elapsed[passed][:, None]
-    speeds[1:][~passed] = np.where(np.abs(moved[~passed]) > EXACT, np.inf, 0.0)  # a jump
+    speeds[1:][~passed] = np.where(moved[~passed] > 0, np.inf, 0.0)  # a jump
     return [speeds] if samples.velocities is None else [speeds, samples.velocities]
 
 

@@ -87,7 +87,9 @@ def _modules() -> Mapping[str, Mapping[str, object]]:
     modules |= {f"databases.{name}": getattr(databases, name) for name in databases.__all__ if name.islower()}
     own = {
         title: {
-            name: thing for name, thing in vars(module).items() if getattr(thing, "__module__", "") == module.__name__
+            name: thing
+            for name, thing in vars(module).items()
+            if f"{getattr(thing, '__module__', '')}.".startswith(f"{module.__name__}.")
         }
         for title, module in modules.items()
     }

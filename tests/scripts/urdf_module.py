@@ -14,7 +14,6 @@ if module is None:
     except openrave_exception as e:
         print(e.GetCode())
 print(env.GetModules(), env.GetLoadedProblems())
-try:
-    env.LoadProblem(RaveCreateProblem(env, 'BaseManipulation'), 'arm')
-except NotImplementedError as e:
-    print(e.capability)
+module = RaveCreateProblem(env, 'basemanipulation')
+env.LoadProblem(module, 'arm')
+print(*[one.GetXMLId() for one in env.GetLoadedProblems()])

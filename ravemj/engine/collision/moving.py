@@ -13,6 +13,9 @@ from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 
+_KEY = 1 << 31
+"""More than the number of geoms: makes one number of a pair."""
+
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
     """Return a fast test of values of some joints, or None where joints have to be set one by one.
@@ -45,7 +48,7 @@ def _pairs(world: CollisionWorld, body: BodyState, moved: MovedBy | None) -> Int
 
 def _keys(pairs: Ints) -> Ints:
     """Return a number for each pair."""
-    return pairs[:, 0] * (1 << 31) + pairs[:, 1]
+    return pairs[:, 0] * _KEY + pairs[:, 1]
 
 
 class _MovingTest:
@@ -55,7 +58,8 @@ class _MovingTest:
         self._model, self._data = world.model.model, world.model.data
         self._qpos, self._places, self._world = self._data.qpos, places, world
         tested = _tested_by_mujoco(self._model, pairs)
-        self._meant = {pair for one in pairs[tested].tolist() for pair in ((one[0], one[1]), (one[1], one[0]))}
+        meant = pairs[tested]
+        self._meant = {*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()}
         rest = pairs[~tested]
         self._rest = world.make_pairs(rest[:, 0], rest[:, 1]) if len(rest) else None
         self._held = [held for grab in body.grabs for held in _carried(world, body, grab)]
@@ -73,7 +77,7 @@ class _MovingTest:
         if data.ncon:
             touch = self._world.shapes.touch  # of meshes, MuJoCo takes the hulls
             for first, second in data.contact.geom.tolist():
-                if (first, second) in self._meant and touch(first, second):
+                if first * _KEY + second in self._meant and touch(first, second):
                     return True
         return self._rest is not None and self._world.collide(self._rest)
 
@@ -103,14 +107,13 @@ def _carried(world: CollisionWorld, body: BodyState, grab: GrabbedBody) -> list[
     """Return the root links of a held body, and of what it holds."""
     model, data = world.model.model, world.model.data
     carrier = int(world.model.part(body).body_ids[grab.link])
-    wxyz_inverse, found = np.empty(4), list[_Held]()
-    mujoco.mju_negQuat(wxyz_inverse, data.xquat[carrier])
+    conjugate, found = data.xquat[carrier] * [1, -1, -1, -1], list[_Held]()
     for one in held_with(grab.body):
         for root in world.model.part(one).body_ids.tolist():
             if model.body_parentid[root] == 0:
                 offset = data.xmat[carrier].reshape(3, 3).T @ (data.xpos[root] - data.xpos[carrier])
                 wxyz = np.empty(4)
-                mujoco.mju_mulQuat(wxyz, wxyz_inverse, data.xquat[root])
+                mujoco.mju_mulQuat(wxyz, conjugate, data.xquat[root])
                 found.append(_Held(root, carrier, offset, wxyz))
     return found
 

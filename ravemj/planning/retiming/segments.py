@@ -58,7 +58,7 @@ class Limits:
         wrong[:, self.coordinates.circular] &= ~np.isfinite(points[:, self.coordinates.circular])
         for row, column in np.argwhere(wrong):
             value, lower, upper = points[row, column], self.lower[column], self.upper[column]
-            message = f"value {column} of waypoint {row} is {value:.12g}, outside its limits [{lower:g}, {upper:g}]"
+            message = f"value {column} of waypoint {row} is {value:.15g}, outside its limits [{lower:g}, {upper:g}]"
             raise OutsideLimitsError(message)
 
 

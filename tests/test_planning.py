@@ -1,0 +1,256 @@
+"""Spaces, trees, shortcuts, ramps: planning without the API. Truth is geometry, and the formulas of motion."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from ravemj.planning.edges import Edges, bisection_order, length, path_is_allowed
+from ravemj.planning.jitter import nearby
+from ravemj.planning.ramp_shortcuts import faster, lines
+from ravemj.planning.ramps import fit_ramps, shortest_ramps
+from ravemj.planning.retiming.jerk_limited import JerkLimited
+from ravemj.planning.retiming.linear import Linear
+from ravemj.planning.retiming.parabolic import Parabolic
+from ravemj.planning.retiming.polynomials import Cubic, Quintic
+from ravemj.planning.retiming.segments import Limits, OutsideLimitsError, RetimingError, retime
+from ravemj.planning.rrt import Budget, End, MoreGoals, connect, explore, single
+from ravemj.planning.shortcuts import shorten
+from ravemj.planning.space import Coordinates, Space
+from ravemj.planning.verification import Samples, flaw
+
+START, GOAL = np.array([-1.0, 0.0]), np.array([1.0, 0.0])
+PROFILES = [Linear(), Parabolic(), Cubic(), Quintic(), JerkLimited()]
+
+
+def plain(dof: int) -> Coordinates:
+    return Coordinates(np.zeros(dof, dtype=bool))
+
+
+def space(dof: int = 2, size: float = 2.0) -> Space:
+    ones = np.ones(dof)
+    return Space(plain(dof), -size * ones, size * ones, ones, 0.05 * ones)
+
+
+def limits(dof: int, velocity=2.0, acceleration=5.0, jerk=100.0) -> Limits:
+    ones = np.ones(dof)
+    return Limits(plain(dof), -10 * ones, 10 * ones, velocity * ones, acceleration * ones, jerk * ones)
+
+
+def round_a_wall(values) -> bool:
+    """A wall between start and goal with a way round above."""
+    return not (abs(values[0]) < 0.2 and values[1] < 1.5)
+
+
+def in_a_tunnel(values) -> bool:
+    """Start and goal are in boxes; a narrow tunnel joins them."""
+    x, y = values
+    return abs(y) < 0.04 if abs(x) < 0.5 else abs(y) < 1.5
+
+
+def nowhere(values) -> bool:
+    return abs(values[0]) > 0.2
+
+
+def budget(iterations: int = 20000, **options) -> Budget:
+    return Budget(iterations, **options)
+
+
+def found(allowed, *, starts=(START,), goals=(GOAL,), seed=0, **options):
+    return connect(Edges(space(), allowed), starts, goals, budget(), np.random.default_rng(seed), **options)
+
+
+@pytest.mark.parametrize("allowed", [round_a_wall, in_a_tunnel, lambda values: True])
+@pytest.mark.parametrize("seed", range(5))
+def test_paths_are_allowed_everywhere_and_join_start_and_goal(allowed, seed):
+    search = found(allowed, seed=seed)
+    assert search.end is End.found
+    assert search.path[0].tolist() == START.tolist()
+    assert search.path[-1].tolist() == GOAL.tolist()
+    assert path_is_allowed(Edges(space(), allowed), search.path)
+    for first, second in pairwise(search.path):
+        for part in np.linspace(0, 1, 200):
+            assert allowed(first + part * (second - first)) or np.abs(second - first).max() < 0.05
+
+
+def test_the_smaller_tree_is_grown_so_that_none_is_fed_in_vain():
+    search = found(nowhere)
+    first, second = (tree.count for tree in search.trees)
+    assert (search.end, search.path, search.iterations) == (End.iterations, None, 20000)
+    assert min(first, second) > 0.4 * max(first, second)
+
+
+def test_one_of_several_starts_leads_to_one_of_several_goals():
+    search = found(nowhere, starts=[START, np.array([0.9, 0.9])], goals=[GOAL, np.array([1.5, 1.5])])
+    assert (search.end, search.start) == (End.found, 1)
+    assert search.path[0].tolist() == [0.9, 0.9]
+    assert search.path[-1].tolist() == [GOAL.tolist(), [1.5, 1.5]][search.goal]
+
+
+def test_goals_come_while_a_search_is_under_way():
+    coming = [None] * 5 + [np.array([0.5, 0.5])]
+    search = found(round_a_wall, goals=(), more_goals=MoreGoals(lambda: coming.pop(0) if coming else None, 1.0))
+    assert (search.end, search.goal) == (End.found, 0)
+    assert search.path[-1].tolist() == [0.5, 0.5]
+    never = connect(
+        Edges(space(), round_a_wall), [START], [], budget(30), np.random.default_rng(0), MoreGoals(lambda: None, 1.0)
+    )
+    assert (never.end, never.iterations) == (End.no_goal, 30)
+
+
+def test_searches_end_when_they_should():
+    assert found(lambda values: True).iterations == 0  # a straight line needs no tree
+    asked = []
+    stopping = budget(proceed=lambda iteration: asked.append(iteration) or iteration < 3)
+    search = connect(Edges(space(), nowhere), [START], [GOAL], stopping, np.random.default_rng(0))
+    assert (search.end, asked) == (End.interrupted, [0, 1, 2, 3])
+    late = budget(10**9, seconds=0.05)
+    assert connect(Edges(space(), nowhere), [START], [GOAL], late, np.random.default_rng(0)).end is End.time
+
+
+def test_a_search_with_one_seed_is_repeatable():
+    assert np.array_equal(found(round_a_wall, seed=4).path, found(round_a_wall, seed=4).path)
+
+
+def test_one_tree_finds_goals_and_explores():
+    edges = Edges(space(), round_a_wall)
+    search = single(edges, [START], [GOAL], budget(), np.random.default_rng(0), 0.05)
+    assert path_is_allowed(edges, search.path)
+    assert search.path[-1].tolist() == GOAL.tolist()
+    tree = explore(edges, [START], 50, budget(), np.random.default_rng(0))
+    assert tree.count == 50
+    assert len(tree.lines()) == 49
+
+
+@pytest.mark.parametrize("steps", [1, 2, 3, 7, 64, 101])
+def test_lines_are_tested_at_each_step_with_the_end_and_the_middle_first(steps):
+    order = bisection_order(steps)
+    assert sorted(round(part * steps) for part in order) == list(range(1, steps + 1))
+    assert order[0] == 1
+    assert steps < 2 or abs(order[1] - 0.5) <= 0.5 / steps + 1e-12
+
+
+def test_no_step_is_longer_than_the_resolution():
+    one = Space(plain(2), -np.ones(2), np.ones(2), np.ones(2), np.array([0.1, 0.01]))
+    assert [one.steps(np.array(step)) for step in ([0.0, 0.0], [0.1, 0.0], [0.11, 0.0], [0.1, 0.1])] == [1, 1, 2, 10]
+
+
+def test_distances_are_weighted_and_angles_go_the_short_way_round():
+    one = Space(Coordinates(np.array([True, False])), -np.pi * np.ones(2), np.ones(2), np.array([2.0, 1.0]), np.ones(2))
+    assert one.distance(np.array([3.0, 0.0]), np.array([-3.0, 0.0])) == pytest.approx(2 * (2 * np.pi - 6))
+    assert one.difference(np.array([-3.0, 1.0]), np.array([3.0, 0.0])) == pytest.approx([2 * np.pi - 6, 1])
+    assert one.clamp(np.array([9.0, 9.0])).tolist() == [9.0, 1.0]
+    assert one.outside(np.array([9.0, 1.0 + 1e-15])) is None
+    assert one.outside(np.array([9.0, 1.1])) == 1
+
+
+def test_shortcuts_are_allowed_and_shorter_and_keep_the_ends():
+    edges = Edges(space(), round_a_wall)
+    detour = np.array([[-1, 0], [-1, 1.9], [1.9, 1.9], [1.9, -1.9], [1, -1.9], [1, 0]], dtype=float)
+    short = shorten(edges, detour, 200, np.random.default_rng(0))
+    assert path_is_allowed(edges, short)
+    assert (short[0].tolist(), short[-1].tolist()) == (detour[0].tolist(), detour[-1].tolist())
+    assert length(space(), short) < 0.6 * length(space(), detour)
+    straight = shorten(Edges(space(), lambda values: True), detour, 50, np.random.default_rng(0))
+    assert straight.tolist() == [detour[0].tolist(), detour[-1].tolist()]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_ramps_reach_their_end_within_all_limits(seed):
+    random = np.random.default_rng(seed)
+    speed, acceleration = random.uniform(0.5, 2, 6), random.uniform(0.5, 5, 6)
+    steps, start, end = random.uniform(-2, 2, 6), random.uniform(-speed, speed), random.uniform(-speed, speed)
+    least = float(shortest_ramps(steps, start, end, speed, acceleration).max())
+    assert fit_ramps(steps, start, end, 0.9 * least, speed, acceleration) is None
+    for duration in (least, 1.5 * least, 3 * least):
+        ramps = fit_ramps(steps, start, end, duration, speed, acceleration)
+        if ramps is None:  # there are gaps in what times are possible
+            continue
+        times = np.linspace(0, duration, 400)
+        values, velocities = ramps.states(times)
+        assert values[-1] == pytest.approx(steps)
+        assert velocities[-1] == pytest.approx(end)
+        assert (np.abs(velocities) <= speed * (1 + 1e-9)).all()
+        assert (np.abs(np.diff(velocities, axis=0)) <= acceleration * times[1] * (1 + 1e-6)).all()
+        least_value, greatest = ramps.reach()
+        assert least_value == pytest.approx(np.minimum(values.min(axis=0), 0), abs=1e-3)
+        assert greatest == pytest.approx(np.maximum(values.max(axis=0), 0), abs=1e-3)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_smoothed_motions_are_allowed_within_limits_and_faster(seed):
+    edges, bounds = Edges(space(), round_a_wall), limits(2, 1.0, 3.0)
+    slow = lines(found(round_a_wall, seed=seed).path, bounds)
+    quick = faster(edges, slow, bounds, 200, np.random.default_rng(seed))
+    assert sum(one.duration for one in quick) < sum(one.duration for one in slow)
+    samples = [(piece.duration * part, *piece.after(piece.duration * part)) for piece in quick for part in (0, 0.5)]
+    assert quick[0].values.tolist() == START.tolist()
+    assert quick[-1].after(quick[-1].duration)[0] == pytest.approx(GOAL)
+    for before, after in pairwise(quick):
+        assert before.after(before.duration)[0] == pytest.approx(after.values)
+        assert before.after(before.duration)[1] == pytest.approx(after.velocities)
+    for _, values, velocities in samples:
+        assert round_a_wall(values) or abs(values[0]) > 0.15 or values[1] > 1.45  # corners, by less than a step
+        assert (np.abs(velocities) <= 1 + 1e-9).all()
+    assert all((np.abs(one.accelerations) <= 3 + 1e-9).all() for one in quick)
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=lambda one: type(one).__name__)
+def test_retimed_paths_go_through_their_waypoints_in_multiples_of_a_step(profile):
+    points = np.random.default_rng(1).uniform(-2, 2, (6, 3))
+    timed = retime(profile, points, limits(3))
+    assert timed.orders[0][timed.is_point].tolist() == points.tolist()
+    assert timed.deltas[0] == 0
+    assert (timed.deltas[1:] > 0).all()
+    stepped = retime(profile, points, limits(3), time_step=0.25)
+    arrivals = np.cumsum(stepped.deltas)[stepped.is_point]
+    assert arrivals / 0.25 == pytest.approx(np.round(arrivals / 0.25))
+    assert stepped.deltas.sum() >= timed.deltas.sum()
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=lambda one: type(one).__name__)
+def test_what_cannot_be_retimed_says_why(profile):
+    with pytest.raises(RetimingError, match="no waypoints"):
+        retime(profile, np.zeros((0, 2)), limits(2))
+    with pytest.raises(OutsideLimitsError, match=r"value 1 of waypoint 1 is 10\.00000000005, outside its limits"):
+        retime(profile, np.array([[0, 0], [0, 10 + 5e-11]]), limits(2))
+    with pytest.raises(RetimingError, match="from waypoint 0 to 1: a joint moves whose velocity"):
+        retime(profile, np.array([[0.0, 0], [1, 0]]), limits(2, velocity=0.0))
+    with pytest.raises(OutsideLimitsError):
+        retime(profile, np.array([[0, 0], [0, np.nan]]), limits(2))
+    assert retime(profile, np.zeros((1, 2)), limits(2)).deltas.tolist() == [0.0]
+
+
+def test_a_limit_of_zero_holds_a_joint_that_stands_still_back_in_nothing():
+    still = Limits(plain(2), -np.ones(2), np.ones(2), np.array([1.0, 0]), np.array([1.0, 0]), np.ones(2))
+    for profile in (Linear(), Parabolic(), Cubic()):
+        assert np.isfinite(retime(profile, np.array([[0, 0], [1.0, 0]]), still).deltas).all()
+
+
+def samples(times, values, velocities=None) -> Samples:
+    return Samples(np.array(times), np.array(values), velocities, None, has_jumps=velocities is None)
+
+
+def test_verification_finds_what_is_wrong_and_when():
+    bounds, free = limits(1, 1.0, 2.0), lambda values: True
+    assert flaw(samples([0.0, 1.0], [[0.0], [1.0]]), bounds, free) is None
+    assert "speed of value 0 is 1.1" in flaw(samples([0.0, 1.0], [[0.0], [1.1]]), bounds, free)
+    assert "outside its limits" in flaw(samples([0.0, 99.0], [[0.0], [11.0]]), bounds, free)
+    assert "is inf at 1 s" in flaw(samples([0.0, 1.0, 1.0], [[0.0], [0.5], [0.6]]), bounds, free)
+    assert "at 1 s it collides" in flaw(samples([0.0, 1.0], [[0.0], [1.0]]), bounds, lambda values: values[0] < 1)
+    hasty = samples([0.0, 0.1], [[0.0], [0.05]], np.array([[0.0], [1.0]]))
+    assert "acceleration of value 0 is 10 at 0.1 s" in flaw(hasty, bounds, free)
+    assert flaw(samples([0.0, 1.0], [[0.0], [1.0 + 1e-12]]), bounds, free) is None
+    close = samples([0.0, 0.21, 0.21 + 1e-16, 1.0], [[0.0], [0.2], [0.2 + 1e-15], [0.9]])
+    assert flaw(close, bounds, free) is None  # rounding is no speed
+
+
+def test_jitter_stays_near_and_gives_up():
+    random = np.random.default_rng(0)
+    assert nearby(space(), START, round_a_wall, 10, 0.1, random) is START
+    touching = np.array([-0.19, 0.0])
+    moved = nearby(space(), touching, round_a_wall, 1000, 0.1, random)
+    assert round_a_wall(moved)
+    assert np.abs(moved - touching).max() <= 0.1
+    assert nearby(space(), touching, round_a_wall, 1000, 0.0, random) is None
+    assert nearby(space(), np.zeros(2), round_a_wall, 100, 0.1, random) is None
