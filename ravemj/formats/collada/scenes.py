@@ -116,6 +116,8 @@ def _filled(scene: SceneContext, body: BodyBuilder, instance: Element, parts: _S
             readers[-1].read()
     if not readers:
         return None
+    for reader in readers:
+        reader.settle(readers)
     body.name = valid_name(instance.get("name") or readers[0].model.get("name") or readers[0].model.get("id"))
     ExtraReader(scene.library, scene.references, readers).read(parts.systems)
     values = {index: values for reader in readers for index, values in reader.values.items()}
