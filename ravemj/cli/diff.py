@@ -2,6 +2,8 @@
 
 import argparse
 import json
+from collections.abc import Sequence
+from typing import cast
 
 from ravemj.cli.console import console, table
 from ravemj.cli.models import load_model
@@ -55,5 +57,5 @@ def _digits(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.10g}"
     if isinstance(value, list | tuple):
-        return " ".join(_digits(part) for part in value)
+        return " ".join(_digits(part) for part in cast("Sequence[object]", value))
     return str(value)

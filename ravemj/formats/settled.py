@@ -83,5 +83,5 @@ def _unit(parts: Sequence[float]) -> tuple[float, ...]:
 
 
 def _snapped(part: float) -> float:
-    """Return the exact sine or cosine of an eighth of a turn in place of one that is nearly so: models are full of them."""
+    """Return the exact sine of an eighth of a turn in place of what is nearly that: models are full of right angles."""
     return math.copysign(_SQRT_HALF, part) if abs(abs(part) - _SQRT_HALF) < 1e-12 else part

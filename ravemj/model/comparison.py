@@ -23,7 +23,7 @@ CONFIGURATIONS = 5
 
 _FARTHEST = 10.0  # [rad or m], of random values of joints without limits
 _AXIS_FIELDS = (
-    "direction", "lower", "upper", "circular", "value", "weight", "resolution", "max_velocity", "max_acceleration",
+    "lower", "upper", "circular", "value", "weight", "resolution", "max_velocity", "max_acceleration",
     "max_torque", "armature",
 )  # fmt: skip
 
@@ -36,7 +36,7 @@ class Difference(NamedTuple):
         quantity: What differs about it.
         first: What the first model has.
         second: What the second model has.
-        error: The largest difference of two numbers, relative to the largest above 1; None where it is no matter of numbers.
+        error: The largest difference of two numbers, relative to the largest above 1; None for what is no number.
     """
 
     part: str
@@ -111,6 +111,8 @@ class _Comparison:
         if first.kind != "slider":  # every point is as good there
             yield from self._near(part, "anchor", first.anchor, second.anchor)
         for one, other in zip(first.axes, second.axes, strict=False):
+            if first.kind != "spherical":  # a rotation vector in the axes of the parent
+                yield from self._near(part, "direction", one.direction, other.direction)
             for name in _AXIS_FIELDS:
                 yield from self._near(part, name.replace("_", " "), getattr(one, name), getattr(other, name))
         mimics = [None if joint.mimic is None else joint.mimic.dofs for joint in (first, second)]
@@ -139,7 +141,9 @@ class _Comparison:
                 yield from self._sizes(part, size.name.replace("_", " "), *values)
         yield from self._meshes(part, "drawn triangles", _drawn(first), _drawn(second))
 
-    def _sizes(self, part: str, quantity: str, first: Mesh | ArrayLike, second: Mesh | ArrayLike) -> Iterator[Difference]:
+    def _sizes(
+        self, part: str, quantity: str, first: Mesh | ArrayLike, second: Mesh | ArrayLike
+    ) -> Iterator[Difference]:
         if isinstance(first, Mesh) and isinstance(second, Mesh):
             yield from self._meshes(part, "triangles", first, second)
         elif not isinstance(first, Mesh) and not isinstance(second, Mesh):
@@ -168,7 +172,8 @@ class _Comparison:
         corners = [_corners(mesh) for mesh in (first, second)]
         yield from self._same(part, f"number of {quantity}", *map(len, corners))
         if len(corners[0]) == len(corners[1]):
-            error = float(np.abs(corners[0] - corners[1]).max(initial=0.0) / max(1.0, np.abs(corners[0]).max(initial=0.0)))
+            largest = max(1.0, float(np.abs(corners[0]).max(initial=0.0)))
+            error = float(np.abs(corners[0] - corners[1]).max(initial=0.0)) / largest
             if not error <= MESH_TOLERANCE:
                 yield Difference(part, quantity, "", "", error)
 

@@ -47,9 +47,12 @@ def poses_at(body: KinBody, values: Sequence[Sequence[float]]) -> list[Pose]:
         values: The values of each joint's axes [rad or m], active joints and then passive ones.
     """
     poses = [link.T_world_link for link in body.links]
-    placing = {joint.child: (joint, given) for joint, given in zip(body.all_joints, values, strict=True) if joint.places_child}
-    order = topological_order(placing, lambda link: [placing[link][0].parent] if placing[link][0].parent in placing else [])
-    place_links(poses, [placing[link][0] for link in order], [placing[link][1] for link in order])
+    joints = body.all_joints
+    placing = {joint.child: index for index, joint in enumerate(joints) if joint.places_child}
+    parents = {link: joints[index].parent for link, index in placing.items()}
+    order = topological_order(placing, lambda link: [parents[link]] if parents[link] in placing else [])
+    indices = [placing[link] for link in order]
+    place_links(poses, [joints[index] for index in indices], [values[index] for index in indices])
     return poses
 
 

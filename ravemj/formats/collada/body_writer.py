@@ -47,14 +47,13 @@ class BodyWriter:
 
     def _write_model(self, tree: Tree) -> None:
         out = self._sections.kinematics_models
-        with out.inside("kinematics_model", id=tree.model, name=self._body.name):
-            with out.inside("technique_common"):
-                for index in tree.joints:
-                    self._write_joint(index, self._body.all_joints[index])
-                if tree.links:
-                    self._write_link(tree, tree.root, None, 0)
-                for index in tree.joints:
-                    self._write_formula(index, self._body.all_joints[index].mimic)
+        with out.inside("kinematics_model", id=tree.model, name=self._body.name), out.inside("technique_common"):
+            for index in tree.joints:
+                self._write_joint(index, self._body.all_joints[index])
+            if tree.links:
+                self._write_link(tree, tree.root, None, 0)
+            for index in tree.joints:
+                self._write_formula(index, self._body.all_joints[index].mimic)
 
     def _write_formula(self, index: int, mimic: Mimic | None) -> None:
         """Write what a joint follows."""
@@ -159,12 +158,16 @@ class BodyWriter:
                 anchor, T_frame_child = self._joint_frames(joint)
                 if joint.parent == link:
                     with out.inside("attachment_start", joint=f"{tree.model}/joint{index}"):
-                        write_pose(out, Pose(anchor))
-                        with out.inside("extra", type=PROFILE):
-                            out.element("technique", profile=PROFILE)
+                        self._write_loop_end(Pose(anchor))
                 if joint.child == link:
                     with out.inside("attachment_end", joint=f"{tree.model}/joint{index}"):
-                        write_pose(out, settled.pose(T_frame_child.inverse()))
+                        self._write_loop_end(settled.pose(T_frame_child.inverse()))
+
+    def _write_loop_end(self, T_link_frame: Pose) -> None:
+        out = self._sections.kinematics_models
+        write_pose(out, T_link_frame)
+        with out.inside("extra", type=PROFILE):
+            out.element("technique", profile=PROFILE)
 
     def _joint_frames(self, joint: Joint) -> tuple[Vec3, Pose]:
         """Return a joint's frame: its origin in the parent link, and the pose of the child in it at the value 0."""

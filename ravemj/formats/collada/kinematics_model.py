@@ -97,6 +97,10 @@ class _FoundJoint(NamedTuple):
     place: float
 
 
+_LoopEnd = tuple[Element, int]
+"""An attachment of a joint that closes a loop, and the link that it stands in."""
+
+
 class ModelReader:
     """Reads one instance of a kinematics model into a body.
 
@@ -105,6 +109,7 @@ class ModelReader:
         links: Indices of links, by ``<link>``.
         joints: Indices of joints, by ``<joint>`` or ``<instance_joint>``, and by axis.
         values: Values of the axes of each joint as the scene binds them.
+        ends: The ends of joints that close loops.
     """
 
     def __init__(
@@ -130,7 +135,7 @@ class ModelReader:
         self.joints: dict[Element, int] = {}
         self.values: dict[int, list[float]] = {}
         self._found: list[_FoundJoint] = []
-        self._ends: dict[str, list[tuple[Element, int]]] = {}
+        self.ends: list[_LoopEnd] = []
         self._link_names = _Names(link.name for link in body.links)
         self._dummies = 0
 
@@ -142,25 +147,28 @@ class ModelReader:
             T_world_parent = Pose() if parent is None else rigid_part(parent.world, self._library.source(link))
             self._T_world_root = T_world_parent @ self._pose(link)
             self._read_link(link, self._root, self._T_world_root)
-        self._close_loops()
+
+    def settle(self, others: "list[ModelReader]") -> None:
+        """Give the joints to the body, with what they follow, once all models of the body are read."""
+        self._close_loops([end for reader in others for end in reader.ends])
         self._settle_joints()
         read_formulas(self._library, self._scene.references, self.model, self.joints, self.body)
 
-    def _close_loops(self) -> None:
+    def _close_loops(self, ends: "list[_LoopEnd]") -> None:
         """Read the joints that close loops; OpenRAVE's reader, and so that of its files, leaves them out."""
-        for attachments in self._ends.values():
-            start, end = (
-                next(((item, link) for item, link in attachments if local_name(item) == f"attachment_{kind}"), None)
-                for kind in ("start", "end")
-            )
-            if start is None or end is None or next(own_techniques(start[0]), None) is None:
+        for start, parent in self.ends:
+            path = start.get("joint")
+            if next(own_techniques(start), None) is None:
                 message = "OpenRAVE does not close the loop of this attachment, and neither does ravemj"
-                for attachment, _ in attachments:
-                    self._library.warn("ignored-tag", message, attachment)
-                continue
-            T_parent_frame = self._pose(start[0])
-            T_parent_child = T_parent_frame @ self._pose(end[0]).inverse()
-            self._add_joint(start[0], (start[1], end[1]), T_parent_frame, T_parent_child)
+                self._library.warn("ignored-tag", message, start)
+            elif local_name(start) == "attachment_start":
+                found = (end for end in ends if end[0] is not start and end[0].get("joint") == path)
+                end, child_link = next(found, (None, 0))
+                if end is None:
+                    raise self._library.error("the other end of the loop is missing", start)
+                T_parent_frame = self._pose(start)
+                T_parent_child = T_parent_frame @ self._pose(end).inverse()
+                self._add_joint(start, (parent, child_link), T_parent_frame, T_parent_child)
 
     def _settle_joints(self) -> None:
         """Give the joints to the body, those with an index of OpenRAVE's in its order."""
@@ -192,7 +200,7 @@ class ModelReader:
             if local_name(attachment) == "attachment_full":
                 self._read_attachment(attachment, index, T_world_link)
             else:
-                self._ends.setdefault(attachment.get("joint") or "", []).append((attachment, index))
+                self.ends.append((attachment, index))
 
     def _link_name(self, name: str | None) -> str:
         if not name:
@@ -275,8 +283,7 @@ class ModelReader:
             T_first_second=T_parent_child,
             anchor=T_parent_frame.position,
             axes=tuple(
-                self._axis(axis, info, T_parent_frame)
-                for axis, info in zip(axes[: _AXES[kind]], infos, strict=False)
+                self._axis(axis, info, T_parent_frame) for axis, info in zip(axes[: _AXES[kind]], infos, strict=False)
             ),
             weld_turn=self._weld_turn(kind, axes[0], infos[0], T_parent_frame, T_parent_child),
             enabled=all(self._axes.is_active(info) for info in infos),

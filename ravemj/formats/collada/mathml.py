@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, words
 from ravemj.model.expressions.functions import NAMED
 
-BETWEEN = {
+_BETWEEN = {
     "plus": "+", "minus": "-", "times": "*", "divide": "/", "eq": "=", "neq": "!=", "lt": "<", "leq": "<=",
     "gt": ">", "geq": ">=", "and": "&", "or": "|",
     "rem": "%",
@@ -129,8 +129,8 @@ def _name(element: Element, name_of: NameOf) -> str:
 def _operation(kind: str, texts: list[str]) -> str:
     if kind == "minus" and len(texts) == 1:
         return f"(-{texts[0]})"
-    if kind in BETWEEN:
-        return f"({BETWEEN[kind].join(texts)})"
+    if kind in _BETWEEN:
+        return f"({_BETWEEN[kind].join(texts)})"
     if kind in CALLS:
         return f"{CALLS[kind]}({','.join(texts)})"
     raise FormulaError(f"<{kind}> is not understood")

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
-from ravemj.formats.collada.mathml import BETWEEN, CALLS
+from ravemj.formats.collada.mathml import CALLS
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.expressions import Expression
 from ravemj.model.expressions.nodes import Call, Node, Number, Variable
@@ -16,9 +16,6 @@ _OPERATORS = {
     "ne": "neq", "lt": "lt", "le": "leq", "gt": "gt", "ge": "geq", "and": "and", "or": "or",
 }  # fmt: skip
 _FUNCTIONS = {name: tag for tag, name in reversed(CALLS.items())}
-_TESTS = ("if", "not")
-
-assert set(_OPERATORS.values()) <= BETWEEN.keys()
 
 
 class TooDeepError(Exception):
@@ -59,14 +56,17 @@ class _Math:
             case Call("not", (condition,)):
                 self._choice(condition, Number(0.0), Number(1.0), depth + 1)
             case Call(function, arguments):
-                with self.out.inside("apply"):
-                    tag = _OPERATORS.get(function, _FUNCTIONS.get(function))
-                    if tag is None:
-                        self.out.element("csymbol", function, encoding="text")
-                    else:
-                        self.out.element(tag)
-                    for argument in _operands(function, arguments):
-                        self.write(argument, depth + 1)
+                self._apply(function, arguments, depth + 1)
+
+    def _apply(self, function: str, arguments: Sequence[Node], depth: int) -> None:
+        tag = _OPERATORS.get(function, _FUNCTIONS.get(function))
+        with self.out.inside("apply"):
+            if tag is None:
+                self.out.element("csymbol", function, encoding="text")
+            else:
+                self.out.element(tag)
+            for argument in _operands(function, arguments):
+                self.write(argument, depth)
 
     def _choice(self, condition: Node, first: Node, second: Node, depth: int) -> None:
         with self.out.inside("piecewise"):

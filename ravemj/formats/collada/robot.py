@@ -101,13 +101,14 @@ class ExtraReader:
             index = self.joint(element, system)
             if index is not None:
                 built.gripper_joints.append(self._body.joints[index].name)
-                built.closing_direction.append(self._closing(element))
+                built.closing_direction += self._closing(element, len(self._body.joints[index].axes))
         self._body.manipulators.append(built)
 
-    def _closing(self, element: Element) -> float:
-        """Return the sign of closing of a gripper's joint."""
-        direction = next(children(element, "chucking_direction", "closing_direction"), None)
-        return self._references.number(direction) or 0.0
+    def _closing(self, element: Element, count: int) -> list[float]:
+        """Return the signs of closing of a gripper's joint, one for each axis."""
+        found = children(element, "chucking_direction", "closing_direction")
+        signs = [self._references.number(direction) or 0.0 for direction in found]
+        return (signs + [0.0] * count)[:count]
 
     def _pose(self, element: Element) -> Pose:
         return rigid_part(transform_of(self._library, element), self._library.source(element))

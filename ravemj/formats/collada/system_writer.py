@@ -103,17 +103,20 @@ class SystemWriter:
             with out.inside("bind_kinematics_model", node=f"visual{tree.number}/node{tree.root}"):
                 out.element("param", f"{scope}_{tree.model}_inst")
             for index in tree.joints:
-                if self._body.all_joints[index].places_child:
-                    self._bind_axes(tree, index, scope)
+                self._bind_axes(tree, index, scope)
 
     def _bind_axes(self, tree: Tree, index: int, scope: str) -> None:
+        """Bind the axes of a joint to what they move and, if they are DOFs, to their values."""
         out, joint = self._sections.bindings, self._body.all_joints[index]
         for place, axis in enumerate(joint.axes):
             name = f"joint{self._number}.{index}_axis{place}"
-            with out.inside("bind_joint_axis", target=f"visual{tree.number}/{name}"):
+            target = f"visual{tree.number}/{name}" if joint.places_child else f"node{self._number}.{joint.child}"
+            with out.inside("bind_joint_axis", target=target):
                 with out.inside("axis"):
                     out.element("param", f"{scope}_joint{index}_axis{place}")
-                _write_value(out, "value", "float", _in_file(joint, axis.value))
+                _write_value(
+                    out, "value", "float", _in_file(joint, axis.value) if index < len(self._body.joints) else 0
+                )
 
     def _write_extras(self) -> None:
         """Write what OpenRAVE's extras say about the body, and what they cannot say."""

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose
+from ravemj.core.transforms import UNIT_WXYZ, UNMOVED, ZERO, Pose
 from ravemj.errors import Diagnostics
 from ravemj.formats import settled
 from ravemj.formats.meshes.obj import write_obj
@@ -36,18 +36,17 @@ class GeomWriter:
 
     def write(self, geometry: Geometry) -> None:
         """Write a shape with its place and colours."""
-        shape, T = geometry.shape, geometry.T_link_geometry
+        shape = geometry.shape
         kind = _TYPES[type(shape)]
         if kind is None:
             kind = "box"
             message = f"OpenRAVE XML has no {type(shape).__name__}; a box stands for it"
             self._diagnostics.warn("not-written", message, geometry.source)
-        if isinstance(shape, Cylinder):
-            T = T @ CYLINDER_TURN.inverse()
+        turn = CYLINDER_TURN.inverse() if isinstance(shape, Cylinder) else UNMOVED
         attributes = {"name": geometry.name or None, "type": kind}
         attributes |= {"render": None if geometry.visible else False}
         with self._out.inside("Geom", **attributes, modifiable=None if geometry.modifiable else False):
-            write_pose(self._out, settled.pose(T))
+            write_pose(self._out, settled.pose(geometry.T_link_geometry @ turn))
             if isinstance(shape, TriMesh):
                 self._write_file("data", shape.mesh)
             else:
@@ -77,6 +76,7 @@ class GeomWriter:
         name = f"mesh-{stored.digest[:16]}.{self._kind}"
         self.files[name] = write_stl(stored) if self._kind == "stl" else write_obj(stored).encode()
         return name
+
 
 def write_pose(out: XmlText, pose: Pose) -> None:
     """Write the elements that place something; what does nothing is left out."""

@@ -82,9 +82,10 @@ class JointWriter:
 
     def _slider_frame(self, joint: Joint) -> int:
         """Return the link whose origin is the anchor of a slider, its parent where neither is."""
-        anchor = self._poses[joint.parent].apply(joint.anchor)
-        is_child = math.dist(self._poses[joint.child].position, anchor) < _NEAR
-        return joint.child if is_child else joint.parent
+        parent, child = self._poses[joint.parent], self._poses[joint.child]
+        anchor = parent.apply(joint.anchor)
+        near = [math.dist(link.position, anchor) < _NEAR for link in (parent, child)]
+        return joint.child if near == [False, True] else joint.parent
 
     def _write_numbers(self, joint: Joint) -> None:
         axes = joint.axes

@@ -128,7 +128,8 @@ MASS_TAGS: dict[str, Tag[MassReader]] = {
     "density": Tag(MassReader.density, "[kg/m³]"),
     "total": Tag(MassReader.total, "[kg]"),
     "precisetotal": Tag(
-        MassReader.precise_total, "[kg] of which OpenRAVE, which does not know it, has single precision; ravemj writes it"
+        MassReader.precise_total,
+        "[kg] of which OpenRAVE, which does not know it, has single precision; ravemj writes it",
     ),
     "radius": Tag(MassReader.radius, "of a sphere [m]"),
     "extents": Tag(MassReader.extents, "no effect, as in OpenRAVE; a warning says so"),

@@ -26,22 +26,24 @@ class PartNames:
         known = {name.lower() for name in links}
         self.links: list[str] = []
         for index, name in enumerate(links):
-            before = self.links
-            in_any_case = any(name.lower() == other.lower() for other in before)
+            in_any_case = any(name.lower() == other.lower() for other in self.links)
             is_word = len(name.split()) == 1 or not name
-            if (name and name in before) or (index in referred and (in_any_case or not is_word)):
-                name = _unused("_".join(name.split()) or "link", known)
-                message = f"the link '{links[index]}' of '{body.name}' is called '{name}' in the file"
+            is_taken = (name and name in self.links) or (index in referred and (in_any_case or not is_word))
+            given = _unused("_".join(name.split()) or "link", known) if is_taken else name
+            self.links.append(given)
+            if is_taken:
+                message = f"the link '{name}' of '{body.name}' is called '{given}' in the file"
                 diagnostics.warn("renamed", message, body.links[index].source)
-            self.links.append(name)
         joints = [joint.name for joint in body.all_joints]
+        active = set(joints[: len(body.joints)])
         self.joints: list[str] = []
         for index, name in enumerate(joints):
-            if joints.count(name) > 1 and name in joints[: len(body.joints)] and name in self.joints:
-                name = _unused(name or "joint", {*joints, *self.joints})
-                message = f"the joint '{joints[index]}' of '{body.name}' is called '{name}' in the file"
+            is_taken = name in active and name in self.joints
+            given = _unused(name or "joint", {*joints, *self.joints}) if is_taken else name
+            self.joints.append(given)
+            if is_taken:
+                message = f"the joint '{name}' of '{body.name}' is called '{given}' in the file"
                 diagnostics.warn("renamed", message, body.all_joints[index].source)
-            self.joints.append(name)
 
 
 def _unused(name: str, known: Collection[str]) -> str:

@@ -1,8 +1,7 @@
 """The writer of OpenRAVE XML: a scene as a document, with the files of its meshes.
 
 The reader's rules decide what stands where: links are placed as if every joint had its ``<initial>`` value, joints are
-given in the frame of their parent, and ``<jointvalues>`` moves them from there. What OpenRAVE's reader cannot take in is
-reported.
+given in the frame of their parent, and ``<jointvalues>`` moves them from there. What the format cannot say is reported.
 """
 
 from dataclasses import dataclass

@@ -71,7 +71,8 @@ class Saving(EnvironmentPart):
         """
         from ravemj.formats.writers import save  # noqa: PLC0415 - slow to import, and rarely wanted
 
-        path = os.fspath(checked_kind(filename, (str, os.PathLike), "Save: filename", "a path"))
+        checked_kind(filename, (str, os.PathLike), "Save: filename", "a path")
+        path = os.fspath(filename)
         if path.lower().endswith((".json", ".msgpack")):
             raise UnsupportedError("Save", "JSON files")
         given = _checked(atts)
@@ -105,10 +106,10 @@ def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:
     if isinstance(atts, str):
         return [("target", atts)]
     pairs = list((atts.items() if isinstance(atts, Mapping) else atts) or ())
-    for pair in pairs:
+    for pair in cast("list[Sequence[object]]", pairs):
         if len(pair) != 2 or not all(isinstance(text, str) for text in pair):
             raise ArgumentError(f"Save: atts: {pair!r} is no pair of a name and a text")
-        name, value = pair
+    for name, value in pairs:
         known = _VALUES.get(name)
         if known is None and name != "target":
             raise ArgumentError(f"Save: atts: nothing reads '{name}'; there are target, {', '.join(_VALUES)}")
