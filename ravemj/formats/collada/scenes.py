@@ -116,15 +116,11 @@ def _filled(scene: SceneContext, body: BodyBuilder, instance: Element, parts: _S
             readers[-1].read()
     if not readers:
         return None
-<<<<<<< HEAD
+    for reader in readers:
+        reader.settle(readers)
     model = readers[0].model
     body.name = valid_name(model.get("name") or model.get("id") or instance.get("name"))
     body.check_joint_names()
-=======
-    for reader in readers:
-        reader.settle(readers)
-    body.name = valid_name(instance.get("name") or readers[0].model.get("name") or readers[0].model.get("id"))
->>>>>>> h/writers
     ExtraReader(scene.library, scene.references, readers).read(parts.systems)
     values = {index: values for reader in readers for index, values in reader.values.items()}
     links = {element: index for reader in readers for element, index in reader.links.items()}
