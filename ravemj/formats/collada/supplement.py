@@ -89,7 +89,8 @@ def _order_links(body: BodyBuilder, order: Sequence[int], names: Sequence[str]) 
     pairs = [(place_of[first], place_of[second]) for first, second in body.adjacent]
     body.adjacent = [(min(pair), max(pair)) for pair in pairs]
     body.sensors = [
-        replace(sensor, link=None if sensor.link is None else place_of[sensor.link]) for sensor in body.sensors
+        one._replace(sensor=replace(one.sensor, link=None if one.sensor.link is None else place_of[one.sensor.link]))
+        for one in body.sensors
     ]
     body.links = [body.links[index] for index in order]
     for link, name in zip(body.links, names, strict=True):
