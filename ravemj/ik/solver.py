@@ -182,7 +182,8 @@ class IKSolver:
         values = self.free_samples(seed[list(self.free)])
         for part in np.split(values, range(_FIRST, len(values), _NEXT)):
             solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), part, limits=True)
-            for index in np.nonzero(solutions.valid.any(axis=1))[0]:
+            inside = nearest_turns(self.chain, solutions.values, seed)[1] | solutions.merged[:, None]
+            for index in np.nonzero((inside & solutions.valid).any(axis=1))[0]:
                 best = self._best(solutions, int(index), seed, weights, accept)
                 if best is not None:
                     return best
