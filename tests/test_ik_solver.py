@@ -69,6 +69,10 @@ class TestLimits:
         np.testing.assert_allclose(np.sort(all_turns(chain, np.array([[np.pi]]))[:, 0]), [-np.pi, np.pi])
         np.testing.assert_allclose(all_turns(chain, np.array([[0.5]])), [[0.5]])
 
+    def test_without_an_end_every_posture_comes_once(self):
+        chain = Chain.of([[0, 0, 1]], [[0, 0, 0]], lower=[-np.inf], upper=[np.inf])
+        np.testing.assert_allclose(all_turns(chain, np.array([[0.5], [-3.0]])), [[0.5], [-3.0]])
+
     def test_limits_far_from_zero(self):
         chain = Chain.of([[0, 0, 1]], [[0, 0, 0]], lower=[7.0], upper=[9.0])
         np.testing.assert_allclose(all_turns(chain, np.array([[1.0]])), [[1 + 2 * np.pi]])

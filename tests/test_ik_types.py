@@ -1,5 +1,7 @@
 """Every type of goal: what OpenRAVE means by it, by hand; reductions to closed forms, and the search."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from ik_arms import PANDA, PUMA, arm, pose
@@ -214,6 +216,8 @@ def test_many_free_joints_are_sampled_coarsely():
     solver = make_solver(PANDA, Task.DIRECTION)
     assert len(solver.free) == 5
     assert 100 < len(solver.free_samples()) <= 4096
+    assert 100 < len(replace(solver, steps=(0.1,) * 5).free_samples()) <= 4096
+    assert "every 0.1 rad" not in solver.describe()
 
 
 def test_poses_point_where_directions_say():

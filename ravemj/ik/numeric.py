@@ -1,10 +1,10 @@
 """Numeric inverse kinematics: damped least squares within limits, from many starts.
 
 A step is that of K. Levenberg and D. Marquardt with a damping in proportion to the error that is left (T. Sugihara,
-"Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method", 2011). A step that would go beyond limits
-is the best one within them instead, by MuJoCo's solver of quadratic programs. One start finds a solution in 60 to 90 of
-100 cases, so starts follow each other in a sequence that fills the space of joint values evenly (M. Roberts, 2018,
-after R. Kronecker).
+"Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method", 2011). A step that would go beyond
+limits is the best one within them instead, by MuJoCo's solver of quadratic programs. One start finds a solution in 60
+to 90 of 100 cases, so starts follow each other in a sequence that fills the space of joint values evenly (M. Roberts,
+2018, after R. Kronecker).
 """
 
 from collections.abc import Callable

@@ -77,7 +77,9 @@ def _range(chain: Chain, joint: int) -> tuple[float, float]:
 
 
 def affordable(chain: Chain, free: Sequence[int], steps: Sequence[float]) -> tuple[float, ...]:
-    """Return steps of several free joints, wider ones where there would be more than ``MOST`` samples."""
+    """Return steps of free joints; of several, wider ones where there would be more than ``MOST`` samples."""
+    if len(free) < 2:
+        return tuple(steps)
     ranges = [high - low for low, high in (_range(chain, joint) for joint in free)]
     wider = list(steps)
     while np.prod([span // step + 1 for span, step in zip(ranges, wider, strict=True)]) > MOST:

@@ -44,7 +44,7 @@ class IKSolver:
         closed: The solver in closed form, or None where no family fits.
         certificate: What it did with random configurations.
         free: Joints that are sampled.
-        steps: A step for each of them [rad or m].
+        steps: A step for each of them [rad or m]; several free joints are sampled more coarsely where need be.
         numeric: The search, which also answers where there is no closed form.
     """
 
@@ -77,14 +77,17 @@ class IKSolver:
         ]
         if isinstance(self.closed, ReducedForm):
             lines.insert(1, f"by reduction: {self.closed.how}")
-        for joint, step in zip(self.free, self.steps, strict=True):
+        for joint, step in zip(self.free, self._affordable_steps(), strict=True):
             unit = "m" if self.chain.prismatic[joint] else "rad"
             lines.append(f"joint {joint + 1} is free, sampled every {step:g} {unit}; complete for each of its values")
         return "\n".join(lines)
 
     def free_samples(self, start: Floats | None = None) -> Floats:
         """Return values of the free joints, shape (K, k), from a start or from 0 outwards."""
-        return redundancy.samples(self.chain, self.free, self.steps, start)
+        return redundancy.samples(self.chain, self.free, self._affordable_steps(), start)
+
+    def _affordable_steps(self) -> Sequence[float]:
+        return redundancy.affordable(self.chain, self.free, self.steps)
 
     def solve(self, goals: ArrayLike, *, free: Floats | None = None, limits: bool = True) -> Solutions:
         """Return all solutions of many goals, one turn of each.
@@ -179,7 +182,8 @@ class IKSolver:
         values = self.free_samples(seed[list(self.free)])
         for part in np.split(values, range(_FIRST, len(values), _NEXT)):
             solutions = self.closed.solve(np.repeat(pose[None], len(part), axis=0), part, limits=True)
-            for index in np.nonzero(solutions.valid.any(axis=1))[0]:
+            inside = nearest_turns(self.chain, solutions.values, seed)[1] | solutions.merged[:, None]
+            for index in np.nonzero((inside & solutions.valid).any(axis=1))[0]:
                 best = self._best(solutions, int(index), seed, weights, accept)
                 if best is not None:
                     return best
@@ -251,7 +255,7 @@ def make_solver(
         derived = derive_reduced(chain, task, joints, general=general) or derive(chain, task, joints, general=general)
         if derived is not None:
             sizes = [SLIDE_STEP * chain.reach if chain.prismatic[joint] else ANGLE_STEP for joint in joints]
-            given = redundancy.affordable(chain, joints, sizes) if steps is None else tuple(steps)
+            given = tuple(sizes if steps is None else steps)
             if len(given) != len(joints) or not all(step > 0 for step in given):
                 raise ValueError(f"steps {given} for free joints {joints}: expected one above 0 for each")
             return IKSolver(chain, task, *derived, joints, given, numeric)

@@ -170,6 +170,10 @@ class Screw:
 
     def transform(self, value: Floats) -> Transform:
         """Return the motions as transforms."""
+        if self.shared and not self.prismatic:
+            along, across, later = self.parts.reshape(3, 3, 3, 1, 1)
+            rotation = along + value[0] * across + value[1] * later
+            return Transform(rotation, self.point - apply_matrix(rotation, self.point))
         columns = [self.turned(value, constant(column)) for column in np.eye(3)]
         columns = [np.broadcast_to(column, (3, *value.shape[1:])) for column in columns]
         origin = self.moved(value, np.zeros((3, 1, 1)))

@@ -128,9 +128,10 @@ def _eaik(name: str, chain: Chain) -> Row:
 
 def _first(chain: Chain) -> Row:
     solver = make_solver(chain)
-    _, poses = _poses(chain, POSES)
+    values, poses = _poses(chain, POSES)
     median, share = _median([lambda pose=pose: solver.nearest(pose, np.zeros(chain.dof)) for pose in poses])
-    return Row("Panda: nearest solution within limits, median", "µs", median, note=f"{share:.1%} of the poses")
+    what = "Panda: nearest solution within limits, median : mj_kinematics"
+    return _single(what, chain, values, median, 1000.0, f"{share:.1%} of the poses; ")
 
 
 def _searches(name: str, chain: Chain) -> list[Row]:
@@ -139,10 +140,16 @@ def _searches(name: str, chain: Chain) -> list[Row]:
     near = values + np.random.default_rng(1).uniform(-0.2, 0.2, values.shape)
     anywhere, share = _median([lambda pose=pose: solver.solve(pose) for pose in poses])
     tracking, _ = _median([lambda pair=pair: solver.solve(*pair) for pair in zip(poses, near, strict=True)])
+    found = f"{share:.1%} of the poses; "
     return [
-        Row(f"{name}: search from anywhere, median", "µs", anywhere, note=f"{share:.1%} of the poses"),
-        Row(f"{name}: search from nearby, median", "µs", tracking),
+        _single(f"{name}: search from anywhere, median : mj_kinematics", chain, values, anywhere, 500.0, found),
+        _single(f"{name}: search from nearby, median : mj_kinematics", chain, values, tracking, 200.0, ""),
     ]
+
+
+def _single(what: str, chain: Chain, values: Floats, measured: float, limit: float, note: str) -> Row:
+    (floor,) = take_turns([microseconds(_floor(chain, values), 1)], 5)
+    return Row(what, "µs", measured, floor / 100, limit, note=note + _IDLE)
 
 
 def _median(calls: list[Callable[[], Floats | None]]) -> tuple[float, float]:

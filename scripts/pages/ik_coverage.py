@@ -100,10 +100,10 @@ Where no sample has a solution, a short search follows. Several free joints shar
 direction for `TranslationDirection5D`, and a slide along it for `Ray4D`, the arm is one for poses again. For
 `Rotation3D` and `Direction3D` all axes are moved to one point.
 
-**The search** answers what is left, and drags the hand in the viewer: damped least squares (K. Levenberg, D. Marquardt;
-the damping is T. Sugihara's, 2011) within the limits, from up to 200 starts that fill the space of joint values evenly.
-It finds a solution, but its list of solutions is not complete, and `describe()` says so. A weighted variant comes as
-near as it can where a goal is out of reach.
+**The search** answers what is left: damped least squares (K. Levenberg, D. Marquardt; the damping is T. Sugihara's,
+2011) within the limits, from up to 200 starts that fill the space of joint values evenly. It finds a solution, but its
+list of solutions is not complete, and `describe()` says so. A weighted variant comes as near as it can where a goal is
+out of reach, which is what dragging a hand needs.
 
 ## How to read the tables
 
