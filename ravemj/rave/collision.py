@@ -175,7 +175,8 @@ class CollisionChecker(Interface):
         thing = _thing(argument)
         if (state := questions.body_of(thing)).simulation is not self._simulation:
             raise ArgumentError(f"CheckCollision: '{state.scene.name}' was made for another environment")
-        return questions.body_and_others(world, thing, self._active_links(argument), without_bodies, without_links)
+        links = self._active_links(argument) if self._options else None
+        return questions.body_and_others(world, thing, links, without_bodies, without_links)
 
     def _added(self, argument: object) -> BodyState | LinkOf:
         thing = _thing(argument)

@@ -28,11 +28,11 @@ def collision_test(body: BodyState, *, itself_too: bool = True) -> Generator[Cal
     """
     world, kinematics = body.simulation.collisions(), body.kinematics
     pairs = body_and_all(world, body) if itself_too else body_and_others(world, body)
-    collide, follow = world.collide, world.model.follow
+    collide, follow, part = world.collide, world.model.follow, world.model.part(body)
 
     def collides(values: Floats) -> bool:
         kinematics.set_values(values)
-        follow(body)
+        follow(part, kinematics)
         return collide(pairs)
 
     def collides_with_held(values: Floats) -> bool:

@@ -19,7 +19,6 @@ _MOST_CONTACTS = 1 / 4096  # for each byte of MuJoCo's working memory, where a c
 
 _ONES = np.ones(3)  # summing rows by a product with it is the fastest way for few of them
 _NO_NUMBERS: list[int] = []
-_NO_PAIRS: list[tuple[int, int]] = []
 _NO_KEYS: list[int] = []
 
 Bools = NDArray[np.bool_]
@@ -133,30 +132,28 @@ class Pairs:
         self._rest_touching = self._touching = _NO_NUMBERS
         self._touching_keys = _NO_KEYS
 
-    def near(self) -> list[tuple[int, int]]:
-        """Return the pairs that may touch, in order. The caller holds the lock."""
+    def near(self) -> list[int]:
+        """Return the numbers of the pairs that may touch, in order. The caller holds the lock."""
         detection = self._detection
         keys = None if detection.is_overruled else detection.keys() if self._numbers else _NO_KEYS
         if keys is None:
-            return self._geoms(self._all_spheres.near())
+            return self._all_spheres.near().tolist()
         if keys is not self._touching_keys:
-            self._touching = [self._numbers[key] for key in keys if key in self._numbers]
+            self._touching = sorted({self._numbers[key] for key in keys if key in self._numbers})
             self._touching_keys = keys
         if not self._rest_is_welded or self._rest_stamp != detection.model.pose_stamp:
-            near = self._rest[self._spheres.near()].tolist()
-            touch, first, second = detection.shapes.touch, self.first, self.second
-            self._rest_touching = [number for number in near if touch(int(first[number]), int(second[number]))]
+            touch, near = detection.shapes.touch, self._rest[self._spheres.near()].tolist()
+            self._rest_touching = [number for number in near if touch(*self.geoms(number))]
             self._rest_stamp = detection.model.pose_stamp
-        if not self._touching and not self._rest_touching:
-            return _NO_PAIRS
-        return self._geoms(sorted({*self._touching, *self._rest_touching}))
+        return sorted(self._touching + self._rest_touching) if self._rest_touching else self._touching
+
+    def geoms(self, number: int) -> tuple[int, int]:
+        """Return both geoms of a pair."""
+        return int(self.first[number]), int(self.second[number])
 
     @cached_property
     def _all_spheres(self) -> "_Spheres":
         return _Spheres(self.first, self.second, self._detection)
-
-    def _geoms(self, numbers: list[int] | Ints) -> list[tuple[int, int]]:
-        return list(zip(self.first[numbers].tolist(), self.second[numbers].tolist(), strict=True))
 
     def gaps(self) -> Floats:
         """Return how far apart the spheres of each pair are [m], negative where they overlap, shape (n,)."""

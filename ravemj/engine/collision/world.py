@@ -116,12 +116,11 @@ class CollisionWorld:
     def collide(self, pairs: Pairs) -> bool:
         """Return whether any of the pairs touch or overlap."""
         near = pairs.near()
-        return bool(near) and any(self.shapes.touch(first, second) for first, second in near)
+        return bool(near) and any(self.shapes.touch(*pairs.geoms(number)) for number in near)
 
     def hits(self, pairs: Pairs) -> Iterator[tuple[int, int]]:
         """Yield the pairs that touch or overlap."""
-        touch = self.shapes.touch
-        return ((first, second) for first, second in pairs.near() if touch(first, second))
+        return (geoms for geoms in map(pairs.geoms, pairs.near()) if self.shapes.touch(*geoms))
 
     def nearest(self, pairs: Pairs, limit: float) -> tuple[float, tuple[int, int] | None]:
         """Return the least signed distance of the pairs [m] and the pair, or the limit and None if none is nearer."""
@@ -129,7 +128,7 @@ class CollisionWorld:
         for number in np.argsort(gaps, kind="stable"):
             if gaps[number] >= limit:
                 break
-            pair = int(pairs.first[number]), int(pairs.second[number])
+            pair = pairs.geoms(number)
             distance = self.shapes.distance(*pair, limit)
             if distance < limit:
                 limit, found = distance, pair
@@ -137,9 +136,9 @@ class CollisionWorld:
 
     def count_within(self, pairs: Pairs, tolerance: float) -> int:
         """Return how many of the pairs are nearer than a tolerance [m]."""
-        near = np.flatnonzero(pairs.gaps() <= tolerance)
+        near: list[int] = np.flatnonzero(pairs.gaps() <= tolerance).tolist()
         beyond = float(np.nextafter(tolerance, np.inf))
-        measured = (self.shapes.distance(int(pairs.first[n]), int(pairs.second[n]), beyond) for n in near)
+        measured = (self.shapes.distance(*pairs.geoms(number), beyond) for number in near)
         return sum(distance <= tolerance for distance in measured)
 
     def ray(self, start: Floats, direction: Floats, geoms: Ints | None = None) -> RayHit | None:

@@ -6,7 +6,7 @@ import mujoco
 
 from ravemj.core.transforms import Ints
 from ravemj.engine.compiled import Compiled, write_inertial
-from ravemj.engine.kinematics import NO_QPOS
+from ravemj.engine.kinematics import NO_QPOS, BodyKinematics
 from ravemj.engine.model_part import ModelPart
 from ravemj.engine.simulation.body import BodyState
 from ravemj.errors import Diagnostics
@@ -60,9 +60,9 @@ class WorldModel(Compiled):
         self.stamp += 1
         mujoco.mj_kinematics(self.model, self.data)
 
-    def follow(self, body: BodyState) -> None:
+    def follow(self, part: ModelPart, kinematics: BodyKinematics) -> None:
         """Take over the joint values of one body; in fewer steps than ``take``."""
-        if self._parts[body].take(body.own_kinematics):
+        if part.take(kinematics):
             self.pose_stamp += 1
         self.stamp += 1
         mujoco.mj_kinematics(self.model, self.data)
