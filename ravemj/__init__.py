@@ -35,12 +35,12 @@ from ravemj.errors import (
 from ravemj.formats.shipped import model_path
 from ravemj.geometry_functions import *  # noqa: F403 - as its __all__ lists them
 from ravemj.rave import *  # noqa: F403 - OpenRAVE's names, which ravemj/rave/__init__.py lists
-from ravemj.rave.recording import record
-from ravemj.trajectories.motion import Motion, read_motion
 
 if TYPE_CHECKING:
     from ravemj.compat import databases, interfaces, misc, planningutils
     from ravemj.gui.viewers import Viewer
+    from ravemj.rave.recording import record
+    from ravemj.trajectories.motion import Motion, read_motion
 
 __version__ = "0.1.0"
 
@@ -71,13 +71,20 @@ __all__ = [
 __all__ += geometry_functions.__all__
 __all__ += rave.__all__
 
+_LATE = {
+    "Motion": "ravemj.trajectories.motion",
+    "Viewer": "ravemj.gui.viewers",
+    "read_motion": "ravemj.trajectories.motion",
+    "record": "ravemj.rave.recording",
+}
+
 
 def __getattr__(name: str) -> object:
     """Import a module of OpenRAVE's, or what most scripts do without, when it is asked for."""
     if name in names.PUBLIC:
         return importlib.import_module(f"ravemj.{name}")
-    if name == "Viewer":
-        return importlib.import_module("ravemj.gui.viewers").Viewer
+    if name in _LATE:
+        return getattr(importlib.import_module(_LATE[name]), name)
     raise AttributeError(f"module 'ravemj' has no attribute '{name}'")
 
 

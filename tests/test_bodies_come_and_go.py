@@ -405,3 +405,23 @@ def test_bodies_cannot_hold_one_another_by_infos_either():
         arm.ResetGrabbed([info])
     assert arm.GetGrabbed() == []
     env.Destroy()
+
+
+def test_restoring_a_body_with_other_joints():
+    """The other body's links come to where those of the saved one were."""
+    chain = """<KinBody name="chain"><Body name="a"/><Body name="b"/><Body name="c"/>
+      <Joint name="j0" type="hinge"><Body>a</Body><Body>b</Body><axis>0 0 1</axis></Joint>
+      <Joint name="j1" type="hinge"><Body>b</Body><Body>c</Body><axis>0 1 0</axis><anchor>1 0 0</anchor></Joint>
+      </KinBody>"""
+    loose = """<KinBody name="loose"><Body name="a"/><Body name="b"/><Body name="c"/>
+      <Joint name="j" type="hinge2"><Body>a</Body><Body>b</Body></Joint></KinBody>"""
+    env = ravemj.Environment()
+    saved, other = (env.ReadKinBodyData(text) for text in (chain, loose))
+    for body in (saved, other):
+        env.Add(body)
+    saved.SetDOFValues([0.3, 0.4])
+    saved.SetTransform([1, 0, 0, 0, 1, 2, 3])
+    wanted, saver = saved.GetLinkTransformations(), saved.CreateKinBodyStateSaver()
+    saved.SetDOFValues([0, 0])
+    saver.Restore(other)
+    np.testing.assert_allclose(other.GetLinkTransformations(), wanted, rtol=0, atol=1e-12)

@@ -166,11 +166,28 @@ class TestDofValues:
             robot.GetTransform(),
             robot.GetLinkTransformations()[1],
             *robot.GetDOFLimits(),
+            robot.GetDOFVelocityLimits(),
+            robot.GetActiveDOFValues(),
+            robot.GetLinks()[1].GetTransform(),
+            robot.ComputeJacobianTranslation(2, [0, 0, 0]),
+            robot.CalculateActiveJacobian(2, [0, 0, 0]),
+            robot.ComputeInverseDynamics([1, 0]),
+            *robot.ComputeInverseDynamics([1, 0], None, True),
         ):
             assert array.dtype == np.float64
             array[...] = 7
-        assert robot.GetDOFValues().tolist() == [0, 0]
-        assert robot.GetTransform()[3, 3] == 1
+        assert robot.GetDOFValues().tolist() == robot.GetActiveDOFValues().tolist() == [0, 0]
+        assert robot.GetTransform()[3, 3] == robot.GetLinks()[1].GetTransform()[3, 3] == 1
+        assert robot.GetDOFLimits()[0].tolist() == [-10000, -10000]
+        assert 7 not in robot.GetDOFVelocityLimits()
+        assert 7 not in robot.ComputeJacobianTranslation(2, [0, 0, 0])
+        assert 7 not in robot.ComputeInverseDynamics([1, 0])
+
+    def test_answers_follow_new_descriptions(self, robot):
+        robot.SetDOFLimits([-1, -2], [1, 2])
+        assert robot.GetDOFLimits()[1].tolist() == [1, 2]
+        robot.SetDOFVelocityLimits([3, 4])
+        assert robot.GetDOFVelocityLimits().tolist() == [3, 4]
 
     def test_indices(self, robot):
         robot.SetDOFValues([0.1, 0.2])

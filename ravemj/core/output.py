@@ -5,7 +5,6 @@ and a target that was there before stays as it was. Where a process is killed be
 writes into the folder does it.
 """
 
-import hashlib
 import os
 import platform
 import shutil
@@ -183,6 +182,8 @@ def _temporary(path: AnyPath) -> Generator[Path]:
 @cache
 def _realm() -> str:
     """Return eight hexadecimal digits for where our process id counts: the machine, and the container on it."""
+    import hashlib  # noqa: PLC0415 - slow to import
+
     try:
         processes = os.readlink("/proc/self/ns/pid")
     except OSError:  # not Linux

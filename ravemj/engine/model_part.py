@@ -1,11 +1,15 @@
 """A body in a model of several bodies."""
 
+from typing import TYPE_CHECKING
+
 import mujoco
 import numpy as np
 
 from ravemj.core.transforms import Ints
 from ravemj.engine.kinematics import BodyKinematics
-from ravemj.formats.mjcf import BodyNames
+
+if TYPE_CHECKING:
+    from ravemj.formats.mjcf import BodyNames
 
 _WIDTHS = {int(mujoco.mjtJoint.mjJNT_FREE): (7, 6), int(mujoco.mjtJoint.mjJNT_BALL): (4, 3)}
 """How many numbers joints of several have in ``qpos`` and ``qvel``; the others have one."""
@@ -23,7 +27,7 @@ class ModelPart:
         stamp: ``BodyKinematics.stamp`` of what was last taken over; -1 before.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, names: BodyNames) -> None:
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, names: "BodyNames") -> None:
         self._model = model
         self.names = names
         found = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name) for name in names.links]

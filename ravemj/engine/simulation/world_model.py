@@ -10,7 +10,6 @@ from ravemj.engine.kinematics import NO_QPOS, BodyKinematics
 from ravemj.engine.model_part import ModelPart
 from ravemj.engine.simulation.body import BodyState
 from ravemj.errors import Diagnostics
-from ravemj.formats.mjcf import rgba
 from ravemj.model.scene import KinBody, Link, Scene, View
 
 
@@ -69,6 +68,8 @@ class WorldModel(Compiled):
 
     def _describe(self, part: ModelPart, before: Iterable[Link], links: Iterable[Link]) -> None:
         """Give links other masses, and geometries other colours; what is drawn in place of one keeps its own."""
+        from ravemj.formats.mjcf import rgba  # noqa: PLC0415 - slow to import
+
         for old, link, body_id, counts in zip(before, links, part.body_ids.tolist(), part.names.geoms, strict=True):
             if link.inertial is not old.inertial:
                 write_inertial(self.model, body_id, link.inertial)
