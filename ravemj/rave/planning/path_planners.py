@@ -1,7 +1,7 @@
 """Planners that find paths."""
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -154,6 +154,8 @@ class PathPlanner(Planner):
 class BiRrt(PathPlanner):
     """``birrt``: trees from all starts and goals grow towards each other."""
 
+    _defaults: ClassVar[Mapping[str, str]] = {"minimumgoalpaths": "1"}
+
     def _search(
         self,
         edges: Edges,
@@ -179,6 +181,8 @@ class BiRrt(PathPlanner):
 class BasicRrt(PathPlanner):
     """``BasicRRT``: one tree grows from the starts, now and then towards a goal."""
 
+    _defaults: ClassVar[Mapping[str, str]] = {"goalbias": "0.05", "nrrtextenttype": "0", "nminiterations": "0"}
+
     def _needs_goal(self, values: Values) -> bool:
         return True
 
@@ -196,6 +200,8 @@ class BasicRrt(PathPlanner):
 
 class ExplorationRrt(PathPlanner):
     """``ExplorationRRT``: one tree explores what the starts reach; the result is all its configurations."""
+
+    _defaults: ClassVar[Mapping[str, str]] = {"exploreprob": "0", "expectedsize": "100"}
 
     def _needs_goal(self, values: Values) -> bool:
         return False
