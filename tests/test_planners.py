@@ -60,7 +60,7 @@ def planned(robot, params, name="birrt"):
     return planner.PlanPath(trajectory), trajectory
 
 
-@pytest.mark.parametrize("name", ["birrt", "BIRRT", "BasicRRT"])
+@pytest.mark.parametrize("name", ["birrt", "BIRRT", "BasicRRT", "RAStar", "ra*"])
 def test_plans_keep_limits_and_collisions_at_every_moment(robot, name):
     status, trajectory = planned(robot, parameters(robot), name)
     assert status == PlannerStatus.HasSolution

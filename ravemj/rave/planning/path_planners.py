@@ -10,6 +10,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.planning.edges import Edges
+from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.rrt import Budget, End, MoreGoals, Search, connect, explore, single
 from ravemj.rave.enums import ConstraintFilterOptions, PlannerAction, PlannerStatusCode
 from ravemj.rave.planning.bodies import USER
@@ -196,6 +197,24 @@ class BasicRrt(PathPlanner):
         values: Values,
     ) -> Search:
         return single(edges, starts, goals, budget, random, float(values.tags.get("goalbias") or 0.05))
+
+
+class RaStar(PathPlanner):
+    """``RA*``: what looks like the shortest way is followed first, over random neighbours."""
+
+    def _needs_goal(self, values: Values) -> bool:
+        return True
+
+    def _search(
+        self,
+        edges: Edges,
+        starts: Sequence[Floats],
+        goals: Sequence[Floats],
+        budget: Budget,
+        random: np.random.Generator,
+        values: Values,
+    ) -> Search:
+        return search_by_cost(edges, starts, goals, budget, random)
 
 
 class ExplorationRrt(PathPlanner):
