@@ -60,7 +60,7 @@ def planned(robot, params, name="birrt"):
     return planner.PlanPath(trajectory), trajectory
 
 
-@pytest.mark.parametrize("name", ["birrt", "BIRRT", "BasicRRT"])
+@pytest.mark.parametrize("name", ["birrt", "BIRRT", "BasicRRT", "RAStar", "ra*"])
 def test_plans_keep_limits_and_collisions_at_every_moment(robot, name):
     status, trajectory = planned(robot, parameters(robot), name)
     assert status == PlannerStatus.HasSolution
@@ -204,7 +204,14 @@ def test_parameters_as_text_and_back(robot):
     again = retimer.GetParameters()
     assert again.GetConfigVelocityLimit().tolist() == params.GetConfigVelocityLimit().tolist()
     assert again.GetConfigurationSpecification() == params.GetConfigurationSpecification()
-    assert repr(again).replace("\n\n", "\n") == repr(params).replace("<foo>3</foo>\n", "")
+    assert repr(again).startswith(repr(params).partition("<foo>")[0])
+    assert "<foo>3</foo>" in repr(again)
+    assert "<pointtolerance>0.2</pointtolerance>" in repr(again)
+    birrt = ravemj.RaveCreatePlanner(robot.GetEnv(), "birrt")
+    params.SetExtraParameters("<_nmaxiterations>17</_nmaxiterations>")
+    birrt.InitPlan(robot, params)
+    assert re.findall("<_nmaxiterations>([^<]*)<", repr(birrt.GetParameters())) == ["17", "20", "100"]
+    assert "<minimumgoalpaths>1</minimumgoalpaths>" in repr(birrt.GetParameters())
     assert Planner.PlannerParameters(params) == params
 
 
@@ -256,6 +263,19 @@ def test_smoothers_refuse_paths_in_collision(robot):
     status = planningutils.SmoothActiveDOFTrajectory(trajectory, robot)
     assert "the path is in collision from the start" in status.description
     assert trajectory.GetDuration() == 0
+
+
+@pytest.mark.parametrize("call", [planningutils.RetimeActiveDOFTrajectory, planningutils.SmoothActiveDOFTrajectory])
+def test_trajectories_of_other_robots_are_refused(env, robot, call):
+    other = ravemj.RaveCreateRobot(env, "")
+    other.Clone(robot, 0)
+    other.SetName("brother")
+    env.Add(other)
+    trajectory = line(other, [[0, 0], [1, 0.5]])
+    status = call(trajectory, robot)
+    assert not status
+    assert "the trajectory has no group 'joint_values arm 0 1'" in status.description
+    assert trajectory.GetAllWaypoints2D().tolist() == [[0, 0], [1, 0.5]]
 
 
 def test_post_processing_by_an_unknown_planner_fails(robot):

@@ -9,6 +9,7 @@ from ravemj.planning.edges import Edges, bisection_order, length, path_is_allowe
 from ravemj.planning.jitter import nearby
 from ravemj.planning.ramp_shortcuts import faster, lines
 from ravemj.planning.ramps import fit_ramps, shortest_ramps
+from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.retiming.jerk_limited import JerkLimited
 from ravemj.planning.retiming.linear import Linear
 from ravemj.planning.retiming.parabolic import Parabolic
@@ -110,6 +111,17 @@ def test_searches_end_when_they_should():
 
 def test_a_search_with_one_seed_is_repeatable():
     assert np.array_equal(found(round_a_wall, seed=4).path, found(round_a_wall, seed=4).path)
+
+
+@pytest.mark.parametrize("allowed", [round_a_wall, in_a_tunnel, lambda values: True])
+def test_the_search_by_cost_finds_allowed_paths_that_are_short(allowed):
+    edges = Edges(space(), allowed)
+    search = search_by_cost(edges, [START], [GOAL], budget(), np.random.default_rng(0))
+    assert path_is_allowed(edges, search.path)
+    assert (search.path[0].tolist(), search.path[-1].tolist()) == (START.tolist(), GOAL.tolist())
+    assert length(space(), search.path) < 7
+    ended = search_by_cost(Edges(space(), nowhere), [START], [GOAL], budget(300), np.random.default_rng(0))
+    assert (ended.end, ended.path) == (End.iterations, None)
 
 
 def test_one_tree_finds_goals_and_explores():

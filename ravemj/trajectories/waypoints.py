@@ -178,12 +178,12 @@ class Waypoints:
     def _ends(self, group: Group, index: int) -> Ends:
         return self.data[index - 1, group.columns], self.data[index, group.columns]
 
-    def _unwound_ends(self, group: Group, index: int, find_body: FindBody) -> Ends:
+    def _unwound(self, group: Group, ends: Ends, find_body: FindBody) -> Ends:
         """Return the ends with circular joints at the turn of the second that is next to the first."""
-        first, second = self._ends(group, index)
+        first, second = ends
         body = find_body(group.body or "") if group.kind == JOINTS[0] else None
         if body is None:
-            return first, second
+            return ends
         axes = body.scene.dof_axes
         circular = np.array([dof < len(axes) and axes[dof].circular for dof in joint_indices(group)])
         turns = np.round((second - first) / (2 * np.pi))
@@ -197,7 +197,10 @@ class Waypoints:
             raise ArgumentError(f"group '{group.name}': there is no interpolation '{interpolation}'")
         derivatives = [self._ends(derivative, index) for derivative in self._derivatives(group, interpolation)]
         if len(derivatives) >= DERIVATIVES[interpolation]:
-            return curve(interpolation, self._unwound_ends(group, index, find_body), derivatives, duration)
+            ends = self._ends(group, index)
+            if interpolation not in {"linear", "quadratic"}:  # those go as their velocities say, or the long way round
+                ends = self._unwound(group, ends, find_body)
+            return curve(interpolation, ends, derivatives, duration)
         integral = find_shifted(self.groups, group.name, -1, exact=True)
         if integral is None or integral.dof != group.dof or interpolation == INTERPOLATIONS[-1]:
             needed = DERIVATIVES[interpolation]

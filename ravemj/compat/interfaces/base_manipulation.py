@@ -172,7 +172,7 @@ class BaseManipulation(Helper):
             maxtries: How often it is asked; None: 3.
             translation: A point for the tool, in place of a pose.
             rotation: A quaternion for the tool, in place of a pose.
-            seedik: Not used.
+            seedik: How many solutions of inverse kinematics are goals from the start; None: 8.
             constraintfreedoms: Not possible here.
             constraintmatrix: Not possible here.
             constrainterrorthresh: Not possible here.
@@ -189,7 +189,7 @@ class BaseManipulation(Helper):
             jittergoal: Not used.
             constrainttaskmatrix: Not possible here.
             constrainttaskpose: Not possible here.
-            goalsampleprob: Not used.
+            goalsampleprob: The part of the iterations in which a further one is asked for; None: 0.1.
             goalmaxsamples: As ``goalsamples``.
             goalmaxtries: Not used.
             releasegil: Not used.
@@ -203,7 +203,7 @@ class BaseManipulation(Helper):
         Example:
             >>> basemanip.MoveToHandPosition(matrices=[T_world_tool])
         """
-        del affinedofs, seedik, steplength, minimumgoalpaths, jittergoal, goalsampleprob, goalmaxtries, releasegil
+        del affinedofs, steplength, minimumgoalpaths, jittergoal, goalmaxtries, releasegil
         del freevalues, constrainterrorthresh
         if any(
             one is not None for one in (constraintfreedoms, constraintmatrix, constrainttaskmatrix, constrainttaskpose)
@@ -221,7 +221,7 @@ class BaseManipulation(Helper):
         traj = self._base.move_to_hand_position(
             goals,
             effort_of(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), HAND_EFFORT),
-            samples=goalsamples or goalmaxsamples or 40,
+            **given(first=seedik, samples=goalsamples or goalmaxsamples, probability=goalsampleprob),
             starts=_rows(None, initialconfigs, self._base.arm().GetArmDOF()),
             postprocessing=postprocessing,
         )

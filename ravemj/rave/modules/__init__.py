@@ -7,6 +7,7 @@ the same as text, and ``module`` takes commands.
 import logging
 from typing import TYPE_CHECKING
 
+from ravemj.core.arguments import checked_kind
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.commands import BaseCommands, TaskCommands, answering
@@ -41,7 +42,7 @@ def task_module(env: "Environment", xmlid: str = "TaskManipulation") -> tuple[Mo
 def made_module(env: "Environment", name: str) -> Module | None:
     """Return a new module of a name, whose letter case does not count, or None."""
     checked_environment(env, "RaveCreateModule")
-    word = next(iter(name.split()), "")
+    word = next(iter(checked_kind(name, str, "RaveCreateModule: name", "a text").split()), "")
     make = {"basemanipulation": base_module, "taskmanipulation": task_module}.get(word.lower())
     return None if make is None else make(env, word)[0]
 

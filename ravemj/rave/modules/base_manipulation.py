@@ -1,6 +1,7 @@
 """Motions of joints and of the tool: the module ``BaseManipulation``."""
 
 from collections.abc import Callable, Sequence
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.planning.jitter import nearby
+from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.motions import Mover, Postprocessing
@@ -50,6 +52,7 @@ class BaseManipulation(Mover):
         *,
         starts: Sequence[Floats] = (),
         postprocessing: Postprocessing | None = None,
+        more: MoreGoals | None = None,
     ) -> Trajectory:
         """Return a motion of the active DOFs to one of several goals.
 
@@ -58,6 +61,7 @@ class BaseManipulation(Mover):
             effort: How hard to try.
             starts: Where it may start; none: where the robot is.
             postprocessing: Smoother and its parameters; None: OpenRAVE's.
+            more: Further goals, which are asked for while it is planned.
 
         Raises:
             PlanningError: there is none.
@@ -68,7 +72,7 @@ class BaseManipulation(Mover):
         for one in [*goals, *starts]:
             if len(one) != dof or not np.isfinite(one).all():
                 raise ArgumentError(f"a goal or start is {list(one)}, and should be {dof} finite numbers")
-        return self.plan(goals, starts=starts, postprocessing=postprocessing, **effort._asdict())
+        return self.plan(goals, starts=starts, postprocessing=postprocessing, more=more, **effort._asdict())
 
     def move_manipulator(self, goals: Sequence[Floats], effort: Effort) -> Trajectory:
         """Return a motion of the joints of the active manipulator's arm to one of several goals.
@@ -100,7 +104,9 @@ class BaseManipulation(Mover):
         goals: Sequence[IkParameterization],
         effort: Effort,
         *,
+        first: int = 8,
         samples: int = 40,
+        probability: float = 0.1,
         starts: Sequence[Floats] = (),
         postprocessing: Postprocessing | None = None,
     ) -> Trajectory:
@@ -109,7 +115,9 @@ class BaseManipulation(Mover):
         Args:
             goals: The goals.
             effort: How hard to try.
-            samples: How many solutions of inverse kinematics are goals at most.
+            first: How many solutions of inverse kinematics are goals from the start.
+            samples: How many are goals at most.
+            probability: The part of the iterations in which a further one is asked for.
             starts: Values of the arm where it may start; none: where it is.
             postprocessing: Smoother and its parameters; None: OpenRAVE's.
 
@@ -117,14 +125,15 @@ class BaseManipulation(Mover):
             PlanningError: there is none.
         """
         manip = self._solvable()
-        found = [row for goal in goals for row in solutions(manip, goal, IkFilterOptions.CheckEnvCollisions)]
+        stream = (row for goal in goals for row in solutions(manip, goal, IkFilterOptions.CheckEnvCollisions))
+        found = list(islice(stream, min(first, samples)))
         if not found:
             raise PlanningError("inverse kinematics (IK) has no solution without collisions for any of the goals")
-        here = manip.GetArmDOFValues()
-        found.sort(key=lambda row: float(np.abs(row - here).max()))
+        rest = islice(stream, samples - len(found))
+        more = MoreGoals(lambda: next(rest, None), probability)
         with self.keeping_active():
             self.robot.SetActiveDOFs(manip.GetArmIndices())
-            return self.move_active_joints(found[:samples], effort, starts=starts, postprocessing=postprocessing)
+            return self.move_active_joints(found, effort, starts=starts, postprocessing=postprocessing, more=more)
 
     def _solvable(self) -> Manipulator:
         manip = self.arm()

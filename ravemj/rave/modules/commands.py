@@ -109,12 +109,19 @@ class BaseCommands(_Commands):
         """Moves the tool of the active manipulator to one of several poses without collisions."""
         readers: dict[str, Reader] = {**_OUTPUT, **_EFFORT, "matrix": Words.matrix, "matrices": _matrices}
         readers |= {"goalsamples": Words.integer, "goalmaxsamples": Words.integer, "steplength": Words.number}
-        readers |= dict.fromkeys(("seedik", "goalsampleprob", "goalmaxtries", "minimumgoalpaths"), Words.number)
+        readers |= {"seedik": Words.integer, "goalsampleprob": Words.number}
+        readers |= dict.fromkeys(("goalmaxtries", "minimumgoalpaths"), Words.number)
         options = read_options(arguments, readers)
         poses = [*([options["matrix"]] if "matrix" in options else []), *options.get("matrices", ())]
         goals = [IkParameterization(pose, IkParameterization.Type.Transform6D) for pose in poses]
-        samples = options.get("goalsamples", options.get("goalmaxsamples", 40))
-        traj = self._mover.move_to_hand_position(goals, effort_of(options, HAND_EFFORT), samples=samples)
+        names = {
+            "seedik": "first",
+            "goalmaxsamples": "samples",
+            "goalsamples": "samples",
+            "goalsampleprob": "probability",
+        }
+        given = {names[name]: value for name, value in options.items() if name in names}
+        traj = self._mover.move_to_hand_position(goals, effort_of(options, HAND_EFFORT), **given)
         return reply(self._mover, traj, options, "1" if not options.get("outputtraj") else "1 ")
 
     def move_hand_straight(self, arguments: str) -> str:

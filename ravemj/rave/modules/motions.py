@@ -1,6 +1,6 @@
 """Motions of a robot that are planned and executed."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
 
@@ -9,6 +9,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.planning.jitter import nearby
+from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import SaveParameters
 from ravemj.rave.planning.end_waypoints import EndWaypoint
 from ravemj.rave.planning.names import PLANNERS, needed_planner, retimed
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 
 JITTER_TRIES = 1000
 """How many configurations near a start or goal in collision are tried."""
+
+_SAME = 1e-9
+"""Configurations this near [rad or m] are the same."""
 
 Postprocessing = tuple[str, str]
 
@@ -77,7 +81,7 @@ class Mover:
         iterations: int,
         jitter: float,
         postprocessing: Postprocessing | None = None,
-        change: Callable[[PlannerParameters], None] | None = None,
+        more: MoreGoals | None = None,
     ) -> Trajectory:
         """Return a motion of the active DOFs to one of several goals.
 
@@ -89,7 +93,7 @@ class Mover:
             jitter: How far each value of a start or goal in collision may be moved to be without [rad or m]; the way
                 there and back is not tested.
             postprocessing: Smoother and its parameters; None: OpenRAVE's.
-            change: Called with the parameters before they are used.
+            more: Further goals, which are asked for while it is planned.
 
         Raises:
             PlanningError: there is none; its text says why.
@@ -99,8 +103,8 @@ class Mover:
         params.SetMaxIterations(iterations)
         if postprocessing is not None:
             params.SetPostProcessing(*postprocessing)
-        if change is not None:
-            change(params)
+        if more is not None:
+            params.set_goal_sampler(more.sample, more.probability)
         values = params.resolved()
         space = values.space()
         froms = list(starts) or [values.vectors["_vinitialconfig"]]
@@ -136,7 +140,8 @@ class Mover:
             place = traj.GetNumWaypoints() if end else 0
             reached = traj.GetWaypoint(-1 if end else 0, spec)
             nearest = int(np.argmin([np.abs(one - reached).max() for one in used]))
-            if (asked[nearest] != used[nearest]).any():
+            is_it = np.abs(used[nearest] - reached).max() < _SAME  # and no goal that came later
+            if is_it and (asked[nearest] != used[nearest]).any():
                 rest = np.zeros(len(reached))
                 new = EndWaypoint(traj, spec, asked[nearest], rest)
                 anchor = new.anchor(place, 0)

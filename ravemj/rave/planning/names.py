@@ -10,7 +10,7 @@ from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.planning.parameters import PlannerParameters
-from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt
+from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt, RaStar
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.processing import TRAJECTORY_PLANNERS
 from ravemj.rave.planning.status import PlannerStatus
@@ -27,6 +27,8 @@ PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
     "birrt": BiRrt,
     "basicrrt": BasicRrt,
     "explorationrrt": ExplorationRrt,
+    "ra*": RaStar,
+    "rastar": RaStar,
     **TRAJECTORY_PLANNERS,
 }
 """What plans, by names in lower case."""
@@ -34,8 +36,6 @@ PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
 MISSING: Mapping[str, str] = {
     "graspgradient": "planning of grasps",
     "grasper": "planning of grasps",
-    "ra*": "search on a lattice",
-    "rastar": "search on a lattice",
     "workspacetrajectorytracker": "tracking of motions of the tool",
 }
 """Names of OpenRAVE's own planners, in lower case, with what ravemj lacks to have them."""
@@ -46,7 +46,7 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
 
     Args:
         env: The environment.
-        name: In any letter case: ``birrt``, ``BasicRRT``, ``ExplorationRRT``; the retimers
+        name: In any letter case: ``birrt``, ``BasicRRT``, ``ExplorationRRT``, ``RAStar``; the retimers
             ``LinearTrajectoryRetimer``, ``ParabolicTrajectoryRetimer``, ``CubicTrajectoryRetimer``,
             ``QuinticTrajectoryRetimer``; the smoothers ``LinearSmoother``, ``shortcut_linear``,
             ``ParabolicSmoother``, ``CubicSmoother``, ``QuinticSmoother``.

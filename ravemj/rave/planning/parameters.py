@@ -2,8 +2,7 @@
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
-import copy
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -44,16 +43,22 @@ class PlannerParameters(ApiObject):
         True
     """
 
-    _internal = ("given", "resolved")
+    _internal = ("given", "of", "resolved")
 
     def __init__(self, other: "PlannerParameters | None" = None) -> None:
         self.given = Values()
         self._extra = ""
         if other is not None:
             source = checked_kind(other, PlannerParameters, "PlannerParameters: other")
-            self.given, self._extra = copy.copy(source.given), source._extra
-            self.given.vectors, self.given.numbers = dict(self.given.vectors), dict(self.given.numbers)
-            self.given.constraints = list(self.given.constraints)
+            self.given, self._extra = source.given.copied(), source._extra
+
+    @classmethod
+    def of(cls, values: Values, defaults: Mapping[str, str]) -> "PlannerParameters":
+        """Return parameters with values, and with further tags where the values lack them."""
+        params = cls()
+        params.given = values.copied()
+        params._extra = "\n".join(f"<{name}>{text}</{name}>" for name, text in {**defaults, **values.tags}.items())
+        return params
 
     def resolved(self) -> Values:
         """Return the values, with those of the extra text in place of others."""

@@ -1,7 +1,7 @@
 """Planners that find paths."""
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -10,6 +10,7 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.planning.edges import Edges
+from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.rrt import Budget, End, MoreGoals, Search, connect, explore, single
 from ravemj.rave.enums import ConstraintFilterOptions, PlannerAction, PlannerStatusCode
 from ravemj.rave.planning.bodies import USER
@@ -154,6 +155,8 @@ class PathPlanner(Planner):
 class BiRrt(PathPlanner):
     """``birrt``: trees from all starts and goals grow towards each other."""
 
+    _defaults: ClassVar[Mapping[str, str]] = {"minimumgoalpaths": "1"}
+
     def _search(
         self,
         edges: Edges,
@@ -179,6 +182,8 @@ class BiRrt(PathPlanner):
 class BasicRrt(PathPlanner):
     """``BasicRRT``: one tree grows from the starts, now and then towards a goal."""
 
+    _defaults: ClassVar[Mapping[str, str]] = {"goalbias": "0.05", "nrrtextenttype": "0", "nminiterations": "0"}
+
     def _needs_goal(self, values: Values) -> bool:
         return True
 
@@ -194,8 +199,28 @@ class BasicRrt(PathPlanner):
         return single(edges, starts, goals, budget, random, float(values.tags.get("goalbias") or 0.05))
 
 
+class RaStar(PathPlanner):
+    """``RA*``: what looks like the shortest way is followed first, over random neighbours."""
+
+    def _needs_goal(self, values: Values) -> bool:
+        return True
+
+    def _search(
+        self,
+        edges: Edges,
+        starts: Sequence[Floats],
+        goals: Sequence[Floats],
+        budget: Budget,
+        random: np.random.Generator,
+        values: Values,
+    ) -> Search:
+        return search_by_cost(edges, starts, goals, budget, random)
+
+
 class ExplorationRrt(PathPlanner):
     """``ExplorationRRT``: one tree explores what the starts reach; the result is all its configurations."""
+
+    _defaults: ClassVar[Mapping[str, str]] = {"exploreprob": "0", "expectedsize": "100"}
 
     def _needs_goal(self, values: Values) -> bool:
         return False

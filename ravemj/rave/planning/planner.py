@@ -1,6 +1,6 @@
 """The base of all planners."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, ClassVar
 
@@ -33,12 +33,13 @@ class Planner(Interface):
     _internal = ("run",)
     _takes_text: ClassVar[bool] = False
     """Whether parameters as text are enough, which say nothing about bodies."""
+    _defaults: ClassVar[Mapping[str, str]] = {}
+    """Parameters of this kind of planner, by their tags."""
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
         self._env = env
         self._xmlid = xmlid
         self._annotations = Annotations()
-        self._parameters: PlannerParameters | None = None
         self._values: Values | None = None
         self._callbacks: list[PlanCallback] = []
         self._action = 0
@@ -68,18 +69,16 @@ class Planner(Interface):
         if isinstance(params, str):
             if not self._takes_text:
                 raise ArgumentError(f"{self._xmlid}: a text does not say what moves; give PlannerParameters")
-            self._parameters = PlannerParameters()
-            self._parameters.given = self._parameters.given.with_tags(params)
+            self._values = Values().with_tags(params)
         elif isinstance(params, PlannerParameters):  # pyright: ignore[reportUnnecessaryIsInstance] - users' values
-            self._parameters = PlannerParameters(params)
+            self._values = PlannerParameters(params).resolved()
         else:
             raise TypeError(f"InitPlan: params is a {type(params).__name__}, and should be PlannerParameters")
-        self._values = self._parameters.resolved()
         return self._prepare(self._values) is None
 
     def GetParameters(self) -> PlannerParameters | None:
-        """Return the problem, a copy; None before ``InitPlan``."""
-        return None if self._parameters is None else PlannerParameters(self._parameters)
+        """Return the problem as the planner understands it, a copy; None before ``InitPlan``."""
+        return None if self._values is None else PlannerParameters.of(self._values, self._defaults)
 
     def PlanPath(self, traj: Trajectory, releasegil: bool = True) -> PlannerStatus:
         """Solve the problem.

@@ -1,6 +1,6 @@
 """Retimers: times for the waypoints of a trajectory."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -35,10 +35,25 @@ RETIMERS: dict[str, Callable[[Values], Profile]] = {
 """What retimes, by the names of planners in lower case."""
 
 
+TIMING: Mapping[str, str] = {
+    "interpolation": "",
+    "hastimestamps": "0",
+    "hasvelocities": "0",
+    "hasaccelerations": "0",
+    "pointtolerance": "0.2",
+    "outputaccelchanges": "1",
+    "multidofinterp": "0",
+    "verifyinitialpath": "1",
+}
+"""OpenRAVE's parameters of all planners that give times; of these, ``interpolation``, ``hastimestamps``,
+``hasvelocities``, ``outputaccelchanges`` and ``verifyinitialpath`` have an effect here."""
+
+
 class Retimer(Planner):
     """Gives the waypoints of a trajectory times that respect the limits; it looks at no collisions."""
 
     _takes_text: ClassVar[bool] = True
+    _defaults: ClassVar[Mapping[str, str]] = TIMING
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
         """Retime a trajectory in place."""
@@ -51,6 +66,8 @@ class Retimer(Planner):
             return self._failed("poses of bodies can be retimed by the LinearTrajectoryRetimer only")
         spec = ConfigurationSpecification.of(values.groups)
         source = traj.GetConfigurationSpecification()
+        if (lacking := lacking_group(spec, source)) is not None:
+            return self._failed(f"the trajectory has no group '{lacking}'")
         deltas = None
         if flag(values, "hastimestamps"):
             group = source.FindCompatibleGroup(DELTATIME, True)
@@ -68,6 +85,12 @@ class Retimer(Planner):
             return self._failed(str(error))
         fill(traj, spec, profile, timed)
         return self._solved(f"{len(timed.deltas)} waypoints in {timed.deltas.sum():.6g} s")
+
+
+def lacking_group(spec: ConfigurationSpecification, source: ConfigurationSpecification) -> str | None:
+    """Return the name of a group whose values a layout lacks altogether, or None."""
+    names = [group.name for group in spec.GetGroups()]
+    return next((name for name in names if source.FindCompatibleGroup(name) is None), None)
 
 
 def _given_velocities(traj: Trajectory, spec: ConfigurationSpecification) -> Floats:

@@ -1,6 +1,6 @@
 """Smoothers: shorter and faster motions without collisions."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -14,7 +14,7 @@ from ravemj.planning.retiming.polynomials import Cubic, Quintic
 from ravemj.planning.retiming.segments import OutsideLimitsError, Profile, RetimingError, Timed, retime
 from ravemj.planning.shortcuts import shorten
 from ravemj.rave.planning.planner import Planner
-from ravemj.rave.planning.retimers import fill, flag
+from ravemj.rave.planning.retimers import TIMING, fill, flag, lacking_group
 from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.planning.values import Values
 from ravemj.rave.specification import ConfigurationSpecification
@@ -35,14 +35,33 @@ SMOOTHERS: dict[str, Callable[[], Profile]] = {
 """How results move, by the names of planners in lower case. All but the parabolic ones keep to straight lines."""
 
 
+_CONSTRAINTS: Mapping[str, str] = {
+    "maxlinkspeed": "0",
+    "maxlinkaccel": "0",
+    "manipname": "",
+    "maxmanipspeed": "0",
+    "maxmanipaccel": "0",
+    "cosmanipanglethresh": "-1",
+    "mingripperdistance": "0",
+    "velocitydistancethresh": "0",
+    "maxmergeiterations": "1000",
+    "minswitchtime": "0.2",
+    "nshortcutcycles": "1",
+}
+"""OpenRAVE's further parameters of smoothers; they have no effect here."""
+
+
 class Smoother(Planner):
     """Takes shortcuts that are without collisions, and gives the result times."""
 
     _takes_text: ClassVar[bool] = True
+    _defaults: ClassVar[Mapping[str, str]] = {**TIMING, **_CONSTRAINTS}
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
         """Smooth a trajectory in place."""
         spec = ConfigurationSpecification.of(values.groups)
+        if (lacking := lacking_group(spec, traj.GetConfigurationSpecification())) is not None:
+            return self._failed(f"the trajectory has no group '{lacking}'")
         points = traj.GetAllWaypoints2D(spec)
         if len(points) < 2:
             return self._failed(f"there should be two waypoints at least, and there are {len(points)}")

@@ -1,5 +1,6 @@
 """How planning ended."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -17,14 +18,14 @@ class PlanningError(Exception):
     """No motion was found; not an ``openrave_exception``.
 
     Attributes:
-        parameter: What was to be planned.
-        recoverySolutions: What the caller can do instead.
+        parameter: Why.
+        recoverySuggestions: What the caller can do instead.
     """
 
-    def __init__(self, parameter: object = None, recoverySolutions: object = None) -> None:
+    def __init__(self, parameter: object = "", recoverySuggestions: Sequence[object] | None = None) -> None:
         super().__init__(parameter)
         self.parameter = parameter
-        self.recoverySolutions = recoverySolutions
+        self.recoverySuggestions = list(recoverySuggestions or ())
 
 
 class PlannerStatus(ApiObject):

@@ -60,6 +60,10 @@ class Values:
     goal_sampler: tuple[Callable[[], Floats | None], float] | None = None
     tags: dict[str, str] = field(default_factory=lambda: {})
 
+    def copied(self) -> "Values":
+        """Return a copy that can be changed by itself."""
+        return replace(self, vectors=dict(self.vectors), numbers=dict(self.numbers), constraints=list(self.constraints))
+
     def with_tags(self, text: str) -> "Values":
         """Return a copy with the tags of a text."""
         numbers, vectors = dict(self.numbers), dict(self.vectors)

@@ -1,0 +1,66 @@
+"""Randomized A*: the way that looks shortest is followed first, over random neighbours in place of a grid.
+
+After R. Diankov and J. Kuffner, "Randomized statistical path planning", IROS 2007.
+"""
+
+import heapq
+from collections.abc import Sequence
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.planning.edges import Edges
+from ravemj.planning.rrt import RANGE, Budget, End, Search, without_repetitions
+from ravemj.planning.trees import Tree
+
+_STEP = 0.3
+"""How far [rad or m] neighbours are."""
+
+_APART = 0.5
+"""Nearer than this part of a step no two configurations are."""
+
+_NEIGHBOURS = 8
+"""Of a configuration that are tried at once."""
+
+
+def search_by_cost(
+    edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats], budget: Budget, random: np.random.Generator
+) -> Search:
+    """Follow the configurations with the least way so far and to the nearest goal.
+
+    Args:
+        edges: Tests lines; starts and goals are allowed.
+        starts: Where paths may start.
+        goals: Where they may end.
+        budget: How long to go on; an iteration looks at one configuration.
+        random: Draws neighbours.
+    """
+    space, tree = edges.space, Tree(edges.space)
+    ways: list[float] = []
+    pending: list[tuple[float, int]] = []
+
+    def add(configuration: Floats, parent: int, way: float) -> None:
+        ways.append(way)
+        number = tree.add(configuration, parent)
+        heapq.heappush(pending, (way + min(space.distance(goal, configuration) for goal in goals), number))
+
+    for start in starts:
+        add(start, -1, 0.0)
+    iteration = 0
+    while (stopped := budget.end(iteration)) is None:
+        cost, number = heapq.heappop(pending)
+        node = tree.node(number).copy()
+        goal = min(range(len(goals)), key=lambda index: space.distance(goals[index], node))
+        step = space.difference(goals[goal], node)
+        if np.linalg.norm(step) <= RANGE and edges.line(node, step):
+            path = without_repetitions(np.array([*tree.branch(number)[::-1], goals[goal]]))
+            return Search(End.found, path, tree.root(number), goal, iteration + 1, (tree,))
+        for direction in random.normal(size=(_NEIGHBOURS, len(node))):
+            neighbour = space.clamp(node + direction * (_STEP / np.linalg.norm(direction)))
+            nearest = tree.node(tree.nearest(neighbour))
+            way = space.difference(neighbour, node)
+            if np.linalg.norm(space.difference(neighbour, nearest)) > _APART * _STEP and edges.line(node, way):
+                add(neighbour, number, ways[number] + space.distance(neighbour, node))
+        heapq.heappush(pending, (cost + _STEP, number))  # it has further neighbours
+        iteration += 1
+    return Search(stopped, None, -1, -1, iteration, (tree,))
