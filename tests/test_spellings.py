@@ -1,0 +1,260 @@
+"""Random trees of links, each written in several ways that mean the same, and in ways that change one thing.
+
+No answers are needed: what means the same must read the same, and a body that is scaled, moved or renamed must change
+in just that.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from strategies import Choices, RandomChoices, chance, choices, examples, number, one_of, vector
+
+from ravemj.core.transforms import Pose, rotate, wxyz_from_axis_angle
+from ravemj.formats.openrave_xml import read_text
+
+
+@dataclass(frozen=True)
+class Part:
+    """A link, and the joint to its parent: anchor and axis in the frame of the link; angles in degrees."""
+
+    parent: int
+    position: tuple[float, float, float]
+    axis: tuple[float, float, float]
+    angle: float
+    kind: str
+    anchor: tuple[float, float, float]
+    direction: tuple[float, float, float]
+    limits: tuple[float, float]
+    initial: float
+    mass: float
+    com: tuple[float, float, float]
+    extents: tuple[float, float, float]
+
+    @property
+    def pose(self) -> Pose:
+        """Where it is in its parent."""
+        return Pose(self.position, wxyz_from_axis_angle(self.axis, math.radians(self.angle)))
+
+
+def draw_part(choices: Choices, index: int) -> Part:
+    kind = one_of(choices, ["hinge", "slider"])
+    lower = number(choices, -170, 0)
+    return Part(
+        parent=choices.integer(0, index - 1) if index else -1,
+        position=vector(choices, 2),
+        axis=one_of(choices, [(0.0, 0.0, 1.0), (1.0, -2.0, 0.5)]),
+        angle=number(choices, -180, 180),
+        kind=kind,
+        anchor=vector(choices, 1) if kind == "hinge" else (0.0, 0.0, 0.0),
+        direction=one_of(choices, [(0.0, 1.0, 0.0), (0.3, -1.0, 2.0), (-1.0, 0.0, 0.0)]),
+        limits=(lower, lower + number(choices, 1, 170)),
+        initial=number(choices, -3, 3) if chance(choices, 40) else 0.0,
+        mass=number(choices, 0.1, 5),
+        com=vector(choices, 1),
+        extents=one_of(choices, [(0.1, 0.2, 0.3), (1.0, 0.05, 0.5)]),
+    )
+
+
+def draw_parts(choices: Choices) -> list[Part]:
+    return [draw_part(choices, index) for index in range(choices.integer(2, 7))]
+
+
+def text(values) -> str:
+    return " ".join(map(repr, map(float, values)))
+
+
+def placed(parts: list[Part]) -> list[Pose]:
+    """Return the poses of the links in the body."""
+    poses: list[Pose] = []
+    for part in parts:
+        poses.append(poses[part.parent] @ part.pose if poses else part.pose)
+    return poses
+
+
+def content(part: Part) -> str:
+    return (
+        f'<Geom type="box"><extents>{text(part.extents)}</extents></Geom>'
+        f'<Mass type="custom"><total>{part.mass!r}</total><com>{text(part.com)}</com></Mass>'
+    )
+
+
+def absolute(index: int, pose: Pose, part: Part) -> str:
+    """Return a Body with a pose of its own, as a quaternion."""
+    return (
+        f'<Body name="l{index}"><Translation>{text(pose.position)}</Translation><Quat>{text(pose.wxyz)}</Quat>'
+        f"{content(part)}</Body>"
+    )
+
+
+def chained(index: int, part: Part) -> str:
+    """Return a Body with a pose in its parent, as an axis and an angle."""
+    offset = f"<offsetfrom>l{part.parent}</offsetfrom>" if index else ""
+    rotation = f"<RotationAxis>{text((*part.axis, part.angle))}</RotationAxis>"
+    translation = f"<Translation>{text(part.position)}</Translation>"
+    return f'<Body name="l{index}">{content(part)}{rotation}{translation}{offset}</Body>'
+
+
+def joint(index: int, part: Part, pose: Pose | None) -> str:
+    """Return a Joint in the frame of its link, in degrees; with a pose of the link in that of the body, in radians."""
+    frame, anchor, direction = f"<offsetfrom>l{index}</offsetfrom>", part.anchor, part.direction
+    limits = f"<limitsdeg>{text(part.limits)}</limitsdeg>"
+    if pose is not None:
+        anchor, direction = pose.apply(anchor), rotate(pose.wxyz, direction)
+        frame = ""
+        if part.kind == "hinge":
+            limits = f"<limits>{text(map(math.radians, part.limits))}</limits>"
+    return (
+        f'<Joint name="j{index}" type="{part.kind}"><Body>l{part.parent}</Body><Body>l{index}</Body>{frame}'
+        f"<anchor>{text(anchor)}</anchor><axis>{text(direction)}</axis>{limits}<initial>{part.initial!r}</initial></Joint>"
+    )
+
+
+def flat(parts: list[Part], *, absolutely: bool) -> str:
+    poses = placed(parts)
+    if absolutely:
+        links = [absolute(index, pose, part) for index, (pose, part) in enumerate(zip(poses, parts, strict=True))]
+    else:
+        links = [chained(index, part) for index, part in enumerate(parts)]
+    # a slider's anchor is that of its frame, so its frame has to be the same
+    joints = [
+        joint(index, part, poses[index] if absolutely and part.kind == "hinge" else None)
+        for index, part in enumerate(parts)
+        if index
+    ]
+    return "".join(links + joints)
+
+
+def nested(parts: list[Part], moved: Pose, split: int) -> str:
+    """Return the links from some place on in a KinBody of their own, which a transform of its own moves."""
+    poses = placed(parts)
+    inner = [absolute(i, moved.inverse() @ poses[i], parts[i]) for i in range(split, len(parts))]
+    links = "".join(absolute(i, poses[i], parts[i]) for i in range(split))
+    scope = f"<Translation>{text(moved.position)}</Translation><Quat>{text(moved.wxyz)}</Quat>"
+    joints = "".join(joint(index, part, None) for index, part in enumerate(parts) if index)
+    return f"{links}<KinBody>{scope}{''.join(inner)}</KinBody>{joints}"
+
+
+def body(xml: str):
+    reading = read_text(xml, "test")
+    assert reading.failure is None
+    (found,) = reading.scene.bodies
+    return found
+
+
+def structure(found) -> list[object]:
+    joints = [(one.name, one.kind, one.parent, one.child, one.places_child, len(one.axes)) for one in found.joints]
+    return [*(link.name for link in found.links), *(len(link.geometries) for link in found.links), *joints]
+
+
+def poses_of(found) -> np.ndarray:
+    return np.array([link.T_world_link.matrix() for link in found.links])
+
+
+def numbers_of(found) -> dict[str, np.ndarray]:
+    """Return everything that is no pose of a link in the world."""
+    rigid = [(link.inertial.mass, *link.inertial.com, *np.ravel(link.inertial.inertia)) for link in found.links]
+    boxes = [part for link in found.links for part in link.geometries]
+    shapes = [(*part.shape.half_extents, *part.T_link_geometry.position) for part in boxes]
+    axes = [
+        (*one.anchor, *axis.direction, axis.reference, axis.value, axis.lower, axis.upper)
+        for one in found.joints
+        for axis in one.axes
+    ]
+    return {"rigid": np.array(rigid), "shapes": np.array(shapes), "axes": np.array(axes)}
+
+
+def assert_same(found, wanted) -> None:
+    assert structure(found) == structure(wanted)
+    np.testing.assert_allclose(poses_of(found), poses_of(wanted), atol=1e-9)
+    for name, values in numbers_of(wanted).items():
+        np.testing.assert_allclose(numbers_of(found)[name], values, atol=1e-9, err_msg=name)
+
+
+@pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
+class TestWhatMeansTheSame:
+    @given(choices())
+    @examples(200)
+    def test_chains_of_offsets_and_poses_of_their_own(self, choices):
+        parts = draw_parts(choices)
+        chains, poses = (body(f'<KinBody name="k">{flat(parts, absolutely=way)}</KinBody>') for way in (False, True))
+        assert_same(poses, chains)
+
+    @given(choices())
+    @examples(200)
+    def test_nested_and_flat(self, choices):
+        parts = draw_parts(choices)
+        moved = draw_part(choices, 0).pose
+        xml = nested(parts, moved, choices.integer(1, len(parts) - 1))
+        wanted = body(f'<KinBody name="k">{flat(parts, absolutely=True)}</KinBody>')
+        assert_same(body(f'<KinBody name="k">{xml}</KinBody>'), wanted)
+
+    @given(choices())
+    @examples(200)
+    def test_a_robot_of_several_bodies_and_one_body(self, choices):
+        parts = draw_parts(choices)
+        poses = placed(parts)
+        split = choices.integer(1, len(parts) - 1)
+        pieces = [absolute(index, pose, part) for index, (pose, part) in enumerate(zip(poses, parts, strict=True))]
+        joints = "".join(joint(index, part, None) for index, part in enumerate(parts) if index)
+        robot = (
+            f'<Robot name="k"><KinBody>{"".join(pieces[:split])}</KinBody>'
+            f"<Robot><KinBody>{''.join(pieces[split:])}</KinBody></Robot><KinBody>{joints}</KinBody></Robot>"
+        )
+        found = body(robot)
+        assert found.is_robot
+        assert_same(found, body(f'<KinBody name="k">{flat(parts, absolutely=True)}</KinBody>'))
+
+
+@pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
+class TestWhatChangesOneThing:
+    @given(choices())
+    @examples(150)
+    def test_a_transform_moves_the_whole_body(self, choices):
+        parts = draw_parts(choices)
+        moved = draw_part(choices, 0).pose
+        xml = flat(parts, absolutely=chance(choices, 50))
+        scope = f"<Translation>{text(moved.position)}</Translation><Quat>{text(moved.wxyz)}</Quat>"
+        still, found = body(f'<KinBody name="k">{xml}</KinBody>'), body(f'<KinBody name="k">{xml}{scope}</KinBody>')
+        assert structure(found) == structure(still)
+        np.testing.assert_allclose(poses_of(found), moved.matrix() @ poses_of(still), atol=1e-9)
+        for name, values in numbers_of(still).items():
+            np.testing.assert_allclose(numbers_of(found)[name], values, atol=1e-9, err_msg=name)
+
+    @given(choices())
+    @examples(150)
+    def test_a_prefix_changes_names_alone(self, choices):
+        xml = flat(draw_parts(choices), absolutely=False)
+        plain, found = (body(f'<KinBody name="k"{prefix}>{xml}</KinBody>') for prefix in ("", ' prefix="p_"'))
+        assert [link.name for link in found.links] == [f"p_{link.name}" for link in plain.links]
+        assert [one.name for one in found.joints] == [f"p_{one.name}" for one in plain.joints]
+        np.testing.assert_array_equal(poses_of(found), poses_of(plain))
+        for name, values in numbers_of(plain).items():
+            np.testing.assert_array_equal(numbers_of(found)[name], values, err_msg=name)
+
+    @given(choices())
+    @examples(150)
+    def test_a_factor_scales_positions_and_centres_of_mass(self, choices):
+        links = "".join(chained(index, part) for index, part in enumerate(draw_parts(choices)))
+        factor = one_of(choices, [2.0, 0.5])
+        scales = ("", f' scalegeometry="{factor}"')
+        plain, found = (body(f'<KinBody name="k"{scale}>{links}</KinBody>') for scale in scales)
+        wanted = poses_of(plain)
+        wanted[:, :3, 3] *= factor
+        np.testing.assert_allclose(poses_of(found), wanted, atol=1e-9)
+        rigid = numbers_of(plain)["rigid"]
+        rigid[:, 1:4] *= factor
+        np.testing.assert_allclose(numbers_of(found)["rigid"], rigid, atol=1e-9)
+        np.testing.assert_array_equal(numbers_of(found)["shapes"], numbers_of(plain)["shapes"])
+
+
+@pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
+@pytest.mark.parametrize("change", [{"position": (1.0, 2.0, 3.0)}, {"com": (9.0, 0.0, 0.0)}, {"limits": (-1.0, 1.0)}])
+def test_the_comparison_sees_a_difference(change):
+    parts = draw_parts(RandomChoices(1))
+    others = [*parts[:-1], replace(parts[-1], **change)]
+    one, other = (body(f'<KinBody name="k">{flat(some, absolutely=True)}</KinBody>') for some in (parts, others))
+    with pytest.raises(AssertionError):
+        assert_same(one, other)
