@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import cast
 
 from ravemj.core.transforms import Pose, Vec3, Wxyz
+from ravemj.model.scene import Joint
 
 _UNIT_DECIMALS = 13
 _LENGTH_DECIMALS = 12
@@ -65,6 +66,11 @@ def axis_angle(wxyz: Wxyz) -> tuple[float, ...]:
 def degrees(angle: float) -> float:
     """Return an angle [rad] in degrees."""
     return number(math.degrees(angle))
+
+
+def values(joint: Joint) -> list[float]:
+    """Return the values of a joint that were measured from poses [rad or m]."""
+    return [round(axis.value, _LENGTH_DECIMALS) for axis in joint.axes]
 
 
 def _largest(parts: Sequence[float]) -> int:

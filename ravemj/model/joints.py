@@ -56,6 +56,12 @@ def poses_at(body: KinBody, values: Sequence[Sequence[float]]) -> list[Pose]:
     return poses
 
 
+def rests(body: KinBody, joint: Joint) -> bool:
+    """Tell whether a joint of a body stays where it is: it neither has DOFs nor follows others."""
+    follows = joint.mimic is not None and joint.mimic.expression is not None
+    return not follows and all(joint is not other for other in body.joints)
+
+
 def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
     """Return the pose of a joint's child in its parent at the given values [rad or m]."""
     return joint.T_parent_child if joint.static else displaced_pose(joint, values)

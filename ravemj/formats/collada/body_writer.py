@@ -14,8 +14,7 @@ from ravemj.formats.collada.trees import Tree, trees_of
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.expressions import ExpressionError, joint_variables, parse, partials, substitute
 from ravemj.model.inertia import principal_frame, principal_moments
-from ravemj.model.joints import relative_pose, reported_anchor
-from ravemj.model.limits import clamp
+from ravemj.model.joints import relative_pose, reported_anchor, rests
 from ravemj.model.scene import Joint, KinBody, Mimic
 
 DEEPEST = 140
@@ -172,7 +171,7 @@ class BodyWriter:
     def _joint_frames(self, joint: Joint) -> tuple[Vec3, Pose]:
         """Return a joint's frame: its origin in the parent link, and the pose of the child in it at the value 0."""
         T_parent_child = self._rest_pose(joint)
-        anchor = settled.position(reported_anchor(joint))
+        anchor = settled.position(joint.anchor if rests(self._body, joint) else reported_anchor(joint))
         T_frame_child = Pose(add(T_parent_child.position, scale(anchor, -1.0)), T_parent_child.wxyz)
         return anchor, settled.pose(T_frame_child)
 
@@ -181,10 +180,8 @@ class BodyWriter:
         if not self._body.joints:  # joints place nothing
             parent, child = (self._body.links[index].T_world_link for index in (joint.parent, joint.child))
             return parent.inverse() @ child
-        follows = joint.mimic is not None and joint.mimic.expression is not None
-        rests = not follows and any(joint is other for other in self._body.passive_joints)
-        if rests and all(clamp(axis, 0.0) == 0.0 for axis in joint.axes):  # it stays where it is
-            return relative_pose(joint, [axis.value for axis in joint.axes])
+        if rests(self._body, joint):
+            return relative_pose(joint, settled.values(joint))
         return relative_pose(joint, [0.0] * len(joint.axes))
 
     def _write_physics(self, tree: Tree) -> None:

@@ -10,6 +10,7 @@ from ravemj.formats.collada.sections import Sections
 from ravemj.formats.collada.supplement import PROFILE
 from ravemj.formats.collada.trees import Tree
 from ravemj.formats.xml_text import XmlText
+from ravemj.model.joints import rests
 from ravemj.model.scene import AttachedSensor, Axis, Joint, KinBody, Manipulator
 
 
@@ -187,7 +188,11 @@ class SystemWriter:
             library.element("rotor_inertia", axis.armature)
 
     def _write_supplement(self) -> None:
-        """Write what only ``supplement`` reads: the order of the parts, and names that COLLADA's readers change."""
+        """Write what only ``supplement`` reads.
+
+        That is the order of the parts, their names, which COLLADA's readers change, and the values of joints that are
+        no DOFs.
+        """
         out, body = self._sections.systems, self._body
         out.element("name", body.name)
         if not body.joined_links_adjacent:
@@ -195,7 +200,9 @@ class SystemWriter:
         for index, link in enumerate(body.links):
             out.element("link", link.name, path=self._link_path(index))
         for index, joint in enumerate(body.all_joints):
-            out.element("joint", joint.name, path=self._joint_path(index))
+            is_kept = rests(body, joint) and joint.kind != "spherical"  # a ball counts from where it is
+            values = settled.values(joint) if is_kept else []
+            out.element("joint", joint.name, path=self._joint_path(index), values=values if any(values) else None)
 
     def _link_path(self, index: int) -> str:
         return f"{self._model_of_link[index]}/link{index}"

@@ -7,7 +7,7 @@ from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose, conjugate, rotate
 from ravemj.formats import settled
 from ravemj.formats.openrave_xml.part_names import PartNames
 from ravemj.formats.xml_text import XmlText
-from ravemj.model.joints import poses_at
+from ravemj.model.joints import poses_at, rests
 from ravemj.model.limits import clamp
 from ravemj.model.scene import Axis, Joint, KinBody, Mimic
 
@@ -31,9 +31,7 @@ def needs_values(body: KinBody) -> bool:
 
 def _initial(body: KinBody, index: int, axis: Axis) -> float:
     """Return the value at the listed poses; a joint that neither has DOFs nor follows others stays where it is."""
-    joint = body.all_joints[index]
-    rests = index >= len(body.joints) and (joint.mimic is None or joint.mimic.expression is None)
-    return axis.value if rests else axis.reference
+    return axis.value if rests(body, body.all_joints[index]) else axis.reference
 
 
 class JointWriter:

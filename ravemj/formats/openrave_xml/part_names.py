@@ -31,6 +31,7 @@ class PartNames:
             is_taken = (name and name in self.links) or (index in referred and (in_any_case or not is_word))
             given = _unused("_".join(name.split()) or "link", known) if is_taken else name
             self.links.append(given)
+            known.add(given.lower())
             if is_taken:
                 message = f"the link '{name}' of '{body.name}' is called '{given}' in the file"
                 diagnostics.warn("renamed", message, body.links[index].source)
