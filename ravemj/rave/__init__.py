@@ -6,7 +6,6 @@ objects is ravemj's own.
 
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.geometry_functions.ik_parameterization import IkParameterizationType
-from ravemj.rave.body.grabbing import GrabbedInfo
 from ravemj.rave.body.saving import StateSaver
 from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
 from ravemj.rave.controllers import (
@@ -26,6 +25,7 @@ from ravemj.rave.enums import (
     CollisionOptions,
     DebugLevel,
     GeometryType,
+    GrabbedInfoCheckResult,
     IkFilterOptions,
     IkReturnAction,
     InterfaceAddMode,
@@ -39,6 +39,8 @@ from ravemj.rave.enums import (
     SensorType,
     SerializationOptions,
     TriangulateOptions,
+    UpdateFromInfoMode,
+    UpdateFromInfoResult,
 )
 from ravemj.rave.environment import (
     Environment,
@@ -50,7 +52,41 @@ from ravemj.rave.environment import (
 )
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.graph_handle import GraphHandle
-from ravemj.rave.infos import ElectricMotorActuatorInfo, ExtractInfoOptions
+from ravemj.rave.infos import (
+    AttachedSensorInfo,
+    AxialSlice,
+    ConnectedBodyInfo,
+    ElectricMotorActuatorInfo,
+    EnvironmentBaseInfo,
+    ExtractInfoOptions,
+    GeometryInfo,
+    GrabbedInfo,
+    GripperInfo,
+    JointControlInfo_ExternalDevice,
+    JointControlInfo_IO,
+    JointControlInfo_RobotController,
+    JointControlMode,
+    JointInfo,
+    KinBodyInfo,
+    LinkInfo,
+    ManipulatorInfo,
+    RobotBaseInfo,
+    SideWall,
+    SideWallType,
+)
+from ravemj.rave.infos.sensor import (
+    ActuatorGeomData,
+    CameraGeomData,
+    CameraIntrinsics,
+    Force6DGeomData,
+    IMUGeomData,
+    JointEncoderGeomData,
+    LaserGeomData,
+    OdometryGeomData,
+    SensorGeometry,
+    TactileGeomData,
+)
+from ravemj.rave.interface import Interface, UserData
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.library import (
@@ -83,13 +119,14 @@ from ravemj.rave.plugins import (
     RaveCreatePlanner,
     RaveCreateProblem,
     RaveCreateSensor,
-    RaveCreateSpaceSampler,
     RaveCreateViewer,
     RaveGetLoadedInterfaces,
 )
-from ravemj.rave.report import CollisionReport
+from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact
 from ravemj.rave.robot import Robot
-from ravemj.rave.sensors import AttachedSensor, CameraGeomData, CameraIntrinsics, CameraSensorData, Sensor
+from ravemj.rave.samplers import Interval, RaveCreateSpaceSampler, SampleDataType, SpaceSampler
+from ravemj.rave.sensor_data import CameraSensorData, SensorData
+from ravemj.rave.sensors import AttachedSensor, Sensor
 from ravemj.rave.specification import (
     ConfigurationSpecification,
     IkParameterization,
@@ -97,14 +134,43 @@ from ravemj.rave.specification import (
 )
 from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 from ravemj.rave.trimesh import TriMesh
+from ravemj.rave.units import (
+    AngleUnit,
+    GetAngleUnitConversionScale,
+    GetAngleUnitFromString,
+    GetAngleUnitStandardValue,
+    GetAngleUnitString,
+    GetLengthUnitConversionScale,
+    GetLengthUnitFromString,
+    GetLengthUnitStandardValue,
+    GetLengthUnitString,
+    GetMassUnitConversionScale,
+    GetMassUnitFromString,
+    GetMassUnitStandardValue,
+    GetMassUnitString,
+    GetTimeDurationUnitConversionScale,
+    GetTimeDurationUnitFromString,
+    GetTimeDurationUnitStandardValue,
+    GetTimeDurationUnitString,
+    GetTimeStampUnitString,
+    LengthUnit,
+    MassUnit,
+    TimeDurationUnit,
+    TimeStampUnit,
+    UnitInfo,
+)
 
 KinBodyStateSaver = RobotStateSaver = StateSaver
 
 OpenRAVEException = openrave_exception = RavemjError
 
 __all__ = [
+    "ActuatorGeomData",
     "AdjacentOptions",
+    "AngleUnit",
     "AttachedSensor",
+    "AttachedSensorInfo",
+    "AxialSlice",
     "CameraGeomData",
     "CameraIntrinsics",
     "CameraSensorData",
@@ -114,32 +180,73 @@ __all__ = [
     "CollisionChecker",
     "CollisionOptions",
     "CollisionOptionsStateSaver",
+    "CollisionPairInfo",
     "CollisionReport",
     "ConfigurationSpecification",
+    "ConnectedBodyInfo",
+    "Contact",
     "Controller",
     "DebugLevel",
     "ElectricMotorActuatorInfo",
     "Environment",
+    "EnvironmentBaseInfo",
     "ErrorCode",
     "ExtractInfoOptions",
+    "Force6DGeomData",
     "Geometry",
+    "GeometryInfo",
     "GeometryType",
+    "GetAngleUnitConversionScale",
+    "GetAngleUnitFromString",
+    "GetAngleUnitStandardValue",
+    "GetAngleUnitString",
+    "GetLengthUnitConversionScale",
+    "GetLengthUnitFromString",
+    "GetLengthUnitStandardValue",
+    "GetLengthUnitString",
+    "GetMassUnitConversionScale",
+    "GetMassUnitFromString",
+    "GetMassUnitStandardValue",
+    "GetMassUnitString",
+    "GetTimeDurationUnitConversionScale",
+    "GetTimeDurationUnitFromString",
+    "GetTimeDurationUnitStandardValue",
+    "GetTimeDurationUnitString",
+    "GetTimeStampUnitString",
     "GrabbedInfo",
+    "GrabbedInfoCheckResult",
     "GraphHandle",
+    "GripperInfo",
+    "IMUGeomData",
     "IdealController",
     "IkFilterOptions",
     "IkParameterization",
     "IkParameterizationType",
     "IkReturnAction",
+    "Interface",
     "InterfaceAddMode",
     "InterfaceType",
+    "Interval",
     "Joint",
+    "JointControlInfo_ExternalDevice",
+    "JointControlInfo_IO",
+    "JointControlInfo_RobotController",
+    "JointControlMode",
+    "JointEncoderGeomData",
+    "JointInfo",
     "JointType",
     "KinBody",
+    "KinBodyInfo",
     "KinBodyStateSaver",
+    "LaserGeomData",
+    "LengthUnit",
     "Link",
+    "LinkInfo",
     "Manipulator",
+    "ManipulatorInfo",
+    "MassUnit",
     "MultiController",
+    "OdometryGeomData",
     "OpenRAVEException",
     "PhysicsEngine",
     "PhysicsEngineOptions",
@@ -184,16 +291,30 @@ __all__ = [
     "RaveReloadPlugins",
     "RaveSetDebugLevel",
     "Robot",
+    "RobotBaseInfo",
     "RobotStateSaver",
+    "SampleDataType",
     "SaveParameters",
     "SelectionOptions",
     "Sensor",
+    "SensorData",
+    "SensorGeometry",
     "SensorType",
     "SerializationOptions",
+    "SideWall",
+    "SideWallType",
+    "SpaceSampler",
     "StateSaver",
+    "TactileGeomData",
+    "TimeDurationUnit",
+    "TimeStampUnit",
     "Trajectory",
     "TriMesh",
     "TriangulateOptions",
+    "UnitInfo",
+    "UpdateFromInfoMode",
+    "UpdateFromInfoResult",
+    "UserData",
     "VelocityController",
     "load",
     "openrave_exception",

@@ -12,13 +12,13 @@ from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.planning import PLANNING, Planner
+from ravemj.rave.samplers import SAMPLERS
 from ravemj.rave.sensors import SENSING, Sensor
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
 
 _GRASPING = "planning of grasps"
-_SAMPLING = "sampling of spaces"
 
 _LOG = logging.getLogger("ravemj")
 
@@ -62,12 +62,6 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
             "baselaser2d": SENSING,
             "baseodometry": SENSING,
             "basetactile": SENSING,
-        },
-        InterfaceType.spacesampler: {
-            "bodyconfiguration": _SAMPLING,
-            "halton": _SAMPLING,
-            "mt19937": _SAMPLING,
-            "robotconfiguration": _SAMPLING,
         },
     }
 )
@@ -132,19 +126,6 @@ def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
     return _refuse(env, InterfaceType.sensor, name)
 
 
-def RaveCreateSpaceSampler(env: Environment, name: str) -> None:
-    """Refuse to make a sampler; return None where OpenRAVE does not know the name either.
-
-    Args:
-        env: The environment.
-        name: The name.
-
-    Raises:
-        UnsupportedError: the sampler is one of OpenRAVE's own.
-    """
-    return _refuse(env, InterfaceType.spacesampler, name)
-
-
 def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
     """Attach a viewer to the environment, beside those that it has; ``env.Remove`` closes it.
 
@@ -173,6 +154,7 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
         InterfaceType.physicsengine: ["GenericPhysicsEngine", "ode", "bullet", "mujoco"],
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],
+        InterfaceType.spacesampler: list(SAMPLERS),
         InterfaceType.viewer: list(VIEWERS),
     }
     return {kind: made.get(kind, []) for kind in InterfaceType}
