@@ -4,6 +4,7 @@
 objects is ravemj's own.
 """
 
+from ravemj.core.handles import Handle as UserData
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.geometry_functions.ik_parameterization import IkParameterizationType
 from ravemj.rave.body.saving import StateSaver
@@ -24,6 +25,7 @@ from ravemj.rave.enums import (
     CollisionAction,
     CollisionOptions,
     DebugLevel,
+    EnvironmentCreateOptions,
     GeometryType,
     GrabbedInfoCheckResult,
     IkFilterOptions,
@@ -86,17 +88,24 @@ from ravemj.rave.infos.sensor import (
     SensorGeometry,
     TactileGeomData,
 )
-from ravemj.rave.interface import Interface, UserData
+from ravemj.rave.interface import Interface
 from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.library import (
+    GetMicroTime,
+    GetMilliTime,
+    GetNanoTime,
     RaveFindDatabaseFile,
     RaveFindLocalFile,
+    RaveGetDataAccess,
+    RaveGetDefaultViewerType,
     RaveGetHomeDirectory,
     RaveGetPluginInfo,
     RaveInitialize,
+    RaveInvertFileLookup,
     RaveLoadPlugin,
     RaveReloadPlugins,
+    RaveSetDataAccess,
 )
 from ravemj.rave.link import Link
 from ravemj.rave.logs import (
@@ -111,6 +120,7 @@ from ravemj.rave.logs import (
     RaveSetDebugLevel,
 )
 from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.modules import Module
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.planning import Planner, PlanningError
 from ravemj.rave.plugins import (
@@ -121,6 +131,16 @@ from ravemj.rave.plugins import (
     RaveCreateSensor,
     RaveCreateViewer,
     RaveGetLoadedInterfaces,
+)
+from ravemj.rave.readables import Readable, ReadableInterface, SerializableData, stringreaders, xmlreaders
+from ravemj.rave.registry import (
+    ManageData,
+    PluginInfo,
+    RaveClone,
+    RaveCreateInterface,
+    RaveCreateSensorSystem,
+    RaveHasInterface,
+    SensorSystem,
 )
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact
 from ravemj.rave.robot import Robot
@@ -160,7 +180,7 @@ from ravemj.rave.units import (
     UnitInfo,
 )
 
-KinBodyStateSaver = RobotStateSaver = StateSaver
+KinBodyStateSaver = RobotStateSaver = StateRestoreContext = StateSaver
 
 OpenRAVEException = openrave_exception = RavemjError
 
@@ -190,6 +210,7 @@ __all__ = [
     "ElectricMotorActuatorInfo",
     "Environment",
     "EnvironmentBaseInfo",
+    "EnvironmentCreateOptions",
     "ErrorCode",
     "ExtractInfoOptions",
     "Force6DGeomData",
@@ -208,6 +229,9 @@ __all__ = [
     "GetMassUnitFromString",
     "GetMassUnitStandardValue",
     "GetMassUnitString",
+    "GetMicroTime",
+    "GetMilliTime",
+    "GetNanoTime",
     "GetTimeDurationUnitConversionScale",
     "GetTimeDurationUnitFromString",
     "GetTimeDurationUnitStandardValue",
@@ -242,9 +266,11 @@ __all__ = [
     "LengthUnit",
     "Link",
     "LinkInfo",
+    "ManageData",
     "Manipulator",
     "ManipulatorInfo",
     "MassUnit",
+    "Module",
     "MultiController",
     "OdometryGeomData",
     "OpenRAVEException",
@@ -254,9 +280,12 @@ __all__ = [
     "PlannerStatus",
     "PlannerStatusCode",
     "PlanningError",
+    "PluginInfo",
+    "RaveClone",
     "RaveCreateCollisionChecker",
     "RaveCreateController",
     "RaveCreateIkSolver",
+    "RaveCreateInterface",
     "RaveCreateKinBody",
     "RaveCreateModule",
     "RaveCreateMultiController",
@@ -265,6 +294,7 @@ __all__ = [
     "RaveCreateProblem",
     "RaveCreateRobot",
     "RaveCreateSensor",
+    "RaveCreateSensorSystem",
     "RaveCreateSpaceSampler",
     "RaveCreateTrajectory",
     "RaveCreateViewer",
@@ -272,14 +302,18 @@ __all__ = [
     "RaveFindDatabaseFile",
     "RaveFindLocalFile",
     "RaveGetAffineConfigurationSpecification",
+    "RaveGetDataAccess",
     "RaveGetDebugLevel",
+    "RaveGetDefaultViewerType",
     "RaveGetEnvironment",
     "RaveGetEnvironmentId",
     "RaveGetEnvironments",
     "RaveGetHomeDirectory",
     "RaveGetLoadedInterfaces",
     "RaveGetPluginInfo",
+    "RaveHasInterface",
     "RaveInitialize",
+    "RaveInvertFileLookup",
     "RaveLoadPlugin",
     "RaveLog",
     "RaveLogDebug",
@@ -289,7 +323,10 @@ __all__ = [
     "RaveLogVerbose",
     "RaveLogWarn",
     "RaveReloadPlugins",
+    "RaveSetDataAccess",
     "RaveSetDebugLevel",
+    "Readable",
+    "ReadableInterface",
     "Robot",
     "RobotBaseInfo",
     "RobotStateSaver",
@@ -299,11 +336,14 @@ __all__ = [
     "Sensor",
     "SensorData",
     "SensorGeometry",
+    "SensorSystem",
     "SensorType",
+    "SerializableData",
     "SerializationOptions",
     "SideWall",
     "SideWallType",
     "SpaceSampler",
+    "StateRestoreContext",
     "StateSaver",
     "TactileGeomData",
     "TimeDurationUnit",
@@ -318,4 +358,6 @@ __all__ = [
     "VelocityController",
     "load",
     "openrave_exception",
+    "stringreaders",
+    "xmlreaders",
 ]

@@ -117,6 +117,12 @@ class SaveParameters(IntFlag):
     """Which connected bodies are active."""
 
 
+class EnvironmentCreateOptions(IntFlag):
+    """What ``Environment`` begins with; without meaning here, since time begins to pass once it is wanted."""
+
+    ECO_StartSimulationThread = 1
+
+
 class CloningOptions(IntFlag):
     """What a clone of an environment takes over."""
 

@@ -43,6 +43,7 @@ class Environment(Contents, Loading, Collision, Publishing, Drawing, Viewing, De
 
     _internal = ("simulation",)
 
+    @also_named(penv="name")
     def __new__(cls, name: "str | int | Environment" = "", options: int = 1) -> Self:
         """Return a new object, or the environment that stands in the place of a name."""
         return name if isinstance(name, cls) else super().__new__(cls)
@@ -177,6 +178,8 @@ class Environment(Contents, Loading, Collision, Publishing, Drawing, Viewing, De
             True
         """
         self.StopSimulation()
+        for module in self.GetModules():
+            self.Remove(module)
         self.SetViewer("")
         self.Reset()
         self._renderer.close()

@@ -11,6 +11,7 @@ from ravemj.geometry_functions.ik_parameterization import INVERSE_KINEMATICS
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.environment import Environment
 from ravemj.rave.interface import checked_environment
+from ravemj.rave.modules import Module
 from ravemj.rave.planning import PLANNING, Planner
 from ravemj.rave.samplers import SAMPLERS
 from ravemj.rave.sensors import SENSING, Sensor
@@ -45,6 +46,7 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
             "basemanipulation": PLANNING,
             "grasper": _GRASPING,
             "ikfast": INVERSE_KINEMATICS,
+            "logging": "saving of scenes by a module",
             "taskcaging": PLANNING,
             "taskmanipulation": PLANNING,
             "visualfeedback": "visual feedback",
@@ -68,11 +70,15 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
 """Names of OpenRAVE's own plugins, in lower case, with what ravemj lacks to have them."""
 
 
-def RaveCreateModule(env: Environment, name: str) -> None:
-    """Refuse to make a module, a native program that takes commands.
+def RaveCreateModule(env: Environment, name: str) -> Module | None:
+    """Make a module, which takes commands; ``env.AddModule`` starts it.
+
+    Args:
+        env: The environment.
+        name: ``viewerrecorder``, which writes videos.
 
     Returns:
-        None, as in OpenRAVE where no plugin has a module of that name; a warning is logged.
+        The module; None, as in OpenRAVE, where no plugin has one of that name; a warning is logged.
 
     Raises:
         UnsupportedError: the module is one of OpenRAVE's own.
@@ -81,6 +87,10 @@ def RaveCreateModule(env: Environment, name: str) -> None:
         >>> RaveCreateModule(env, "urdf") is None
         True
     """
+    if checked_kind(name, str, "RaveCreateModule: name", "a text").lower() == "viewerrecorder":
+        from ravemj.rave.viewer_recorder import ViewerRecorder  # noqa: PLC0415 - rarely wanted
+
+        return ViewerRecorder(checked_environment(env, "RaveCreateModule"), name)
     return _refuse(env, InterfaceType.module, name)
 
 
@@ -148,9 +158,10 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
     from ravemj.gui.viewers import VIEWERS  # noqa: PLC0415 - slow to import
 
     made: dict[InterfaceType, list[str]] = {
-        InterfaceType.collisionchecker: ["ode"],
+        InterfaceType.collisionchecker: ["ode", "bullet", "fcl_", "pqp"],
         InterfaceType.controller: ["IdealController", "IdealVelocityController", "odevelocity"],
         InterfaceType.kinbody: [""],
+        InterfaceType.module: ["viewerrecorder"],
         InterfaceType.physicsengine: ["GenericPhysicsEngine", "ode", "bullet", "mujoco"],
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],

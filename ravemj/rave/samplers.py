@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from enum import IntEnum
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,20 +40,6 @@ class Interval(IntEnum):
     InterpolationMask = 0xFFFF0000
 
 
-class Sequence(Protocol):
-    """Where a sampler has its numbers from."""
-
-    kinds: frozenset[SampleDataType]
-    """What it gives."""
-
-    def dof(self) -> int: ...
-    def set_dof(self, dof: int) -> None: ...
-    def limits(self) -> tuple[Floats, Floats]: ...
-    def start(self, seed: int) -> None: ...
-    def reals(self, count: int) -> Floats: ...
-    def integers(self, count: int) -> "NDArray[np.uint32]": ...
-
-
 class SpaceSampler(Interface):
     """A sequence of points; ``RaveCreateSpaceSampler`` makes it. Real numbers are from 0 to 1 where nothing is said.
 
@@ -68,7 +54,7 @@ class SpaceSampler(Interface):
 
     _interface_type = InterfaceType.spacesampler
 
-    def __init__(self, env: "Environment", name: str, sequence: Sequence) -> None:
+    def __init__(self, env: "Environment", name: str, sequence: "_Random") -> None:
         self._env = env
         self._annotations = Annotations()
         self._name = name
@@ -178,7 +164,7 @@ class SpaceSampler(Interface):
         return self.SampleSequence(type, 1, interval)[0]
 
     def SampleComplete(self, type: SampleDataType, num: int, interval: int = Interval.Closed) -> Floats:
-        """Refuse to return points that cover the space completely; no sampler of OpenRAVE's does.
+        """Refuse to return points, shape (num, dof), that cover the space completely; no sampler of OpenRAVE's does.
 
         Args:
             type: What to give, a ``SampleDataType``.
@@ -202,28 +188,35 @@ class _Random:
     """Independent random numbers, even over the space."""
 
     kinds = frozenset(SampleDataType)
+    """What it gives."""
 
     def __init__(self) -> None:
         self._generator = np.random.Generator(np.random.MT19937())
         self._dof = 1
 
     def dof(self) -> int:
+        """Return the number of dimensions."""
         return self._dof
 
     def set_dof(self, dof: int) -> None:
+        """Choose the number of dimensions."""
         self._dof = dof
 
     def limits(self) -> tuple[Floats, Floats]:
+        """Return the least and the greatest real numbers, shape (dof,) each."""
         return np.zeros(self._dof), np.ones(self._dof)
 
     def start(self, seed: int) -> None:
+        """Begin the sequence that a seed stands for."""
         self._generator = np.random.Generator(np.random.MT19937(seed))
 
     def reals(self, count: int) -> Floats:
+        """Return the next points, shape (count, dof)."""
         lower, upper = self.limits()
         return self._generator.uniform(lower, upper, (count, len(lower)))
 
     def integers(self, count: int) -> "NDArray[np.uint32]":
+        """Return the next points in whole numbers, shape (count, dof)."""
         return self._generator.integers(0, 2**32, (count, self._dof), dtype=np.uint32)
 
 

@@ -169,7 +169,7 @@ class TactileSensorData(SensorData):
     thickness: float = 0.0
 
 
-class ActuatorState(IntEnum):
+class _ActuatorState(IntEnum):
     """What an actuator does."""
 
     Undefined = 0
@@ -199,14 +199,14 @@ class ActuatorSensorData(SensorData):
     """
 
     type: ClassVar[SensorType] = SensorType.Actuator
-    ActuatorState: ClassVar = ActuatorState
-    Undefined: ClassVar = ActuatorState.Undefined
-    Idle: ClassVar = ActuatorState.Idle
-    Moving: ClassVar = ActuatorState.Moving
-    Stalled: ClassVar = ActuatorState.Stalled
-    Braked: ClassVar = ActuatorState.Braked
+    ActuatorState: ClassVar = _ActuatorState
+    Undefined: ClassVar = _ActuatorState.Undefined
+    Idle: ClassVar = _ActuatorState.Idle
+    Moving: ClassVar = _ActuatorState.Moving
+    Stalled: ClassVar = _ActuatorState.Stalled
+    Braked: ClassVar = _ActuatorState.Braked
 
-    state: ActuatorState = ActuatorState.Undefined
+    state: _ActuatorState = _ActuatorState.Undefined
     measuredcurrent: float = 0.0
     measuredtemperature: float = 0.0
     appliedcurrent: float = 0.0

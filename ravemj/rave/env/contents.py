@@ -12,6 +12,7 @@ from ravemj.rave.enums import InterfaceAddMode, TriangulateOptions
 from ravemj.rave.env.base import BodyCallback, BodyCallbackHandle, EnvironmentPart
 from ravemj.rave.interface import Interface
 from ravemj.rave.kinbody import KinBody
+from ravemj.rave.modules import Module
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor
 from ravemj.rave.trimesh import TriMesh, trimesh_of
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Contents(EnvironmentPart):
-    """The bodies of an environment, as objects and as triangles; and modules, of which there are none."""
+    """The bodies of an environment, as objects and as triangles; and its modules."""
 
     TriangulateOptions = TriangulateOptions
     SelectionOptions = TriangulateOptions
@@ -39,7 +40,7 @@ class Contents(EnvironmentPart):
             interface: What to add; it was made for this environment.
             addMode: What to do if the name is taken: None, False or ``InterfaceAddMode.StrictNameChecking`` raises,
                 True or ``AllowRenaming`` gives it a name of its own. OpenRAVE 0.9 calls the argument ``anonymous``.
-            cmdargs: Arguments of modules; not used.
+            cmdargs: What a module starts with.
 
         Raises:
             openrave_exception: another body has the name (``BodyNameConflict``), the name is empty, or this is no
@@ -52,8 +53,9 @@ class Contents(EnvironmentPart):
             >>> box.SetName("box")
             >>> env.Add(box)
         """
-        del cmdargs
-        if not isinstance(interface, KinBody):
+        if isinstance(interface, Module):
+            self.AddModule(interface, cmdargs)
+        elif not isinstance(interface, KinBody):
             self._add_other(interface)
         else:
             self.AddKinBody(interface, addMode)
@@ -118,7 +120,7 @@ class Contents(EnvironmentPart):
         It stays usable as a body that is not added, and can be added again. What it held, and what held it, let go.
 
         Args:
-            interface: A body, a robot or a viewer.
+            interface: A body, a robot, a module or a viewer.
 
         Returns:
             False if it was not there.
@@ -157,9 +159,13 @@ class Contents(EnvironmentPart):
         return body is not None and self.Remove(body)
 
     def _remove_other(self, interface: object) -> bool:
-        """Close and remove a viewer; return whether it was there."""
+        """End and remove a module or a viewer; return whether it was there."""
         if interface is None:
             raise ArgumentError("Remove: takes a body or robot, not None")
+        if isinstance(interface, Module) and interface in self._modules:
+            self._modules.remove(interface)
+            interface.Destroy()
+            return True
         for viewer in self._viewers:
             if viewer is interface:
                 self._viewers.remove(viewer)
@@ -276,28 +282,34 @@ class Contents(EnvironmentPart):
         with self._simulation.lock:
             return _triangles(state for state in self._simulation.bodies if takes(state.scene, name))
 
-    def AddModule(self, module: object, args: str = "") -> int:
-        """Refuse any module, since ``RaveCreateModule`` makes none; it never returns.
+    def AddModule(self, module: Module | None, args: str = "") -> int:
+        """Add a module and start it.
 
         Args:
             module: What ``RaveCreateModule`` returned.
             args: What the module starts with.
 
+        Returns:
+            0 where it has started.
+
         Raises:
-            openrave_exception: always.
+            openrave_exception: it is no module of this environment.
         """
-        del args
         if module is None:
-            message = "module is None, as RaveCreateModule returns for names that no plugin has"
-        else:
-            message = f"module is a {type(module).__name__}, and should be what RaveCreateModule returned"
-        raise ArgumentError(f"AddModule: {message}")
+            raise ArgumentError("AddModule: module is None, as RaveCreateModule returns for names that no plugin has")
+        checked_kind(module, Module, "AddModule: module", "what RaveCreateModule returned")
+        self._check_alive()
+        if module.GetEnv() is not self:
+            raise ArgumentError(f"AddModule: module was made for {module.GetEnv()!r}, not for {self!r}")
+        if module not in self._modules:
+            self._modules.append(module)
+        return module.begin(args)
 
     LoadProblem = AddModule
 
-    def GetModules(self) -> list[object]:
-        """Return the modules that were added: none."""
-        return []
+    def GetModules(self) -> list[Module]:
+        """Return the modules that were added."""
+        return list(self._modules)
 
     GetLoadedProblems = GetModules
 

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Self, TypeVar, cast, dataclass_transform
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform
 from ravemj.core.transforms import Floats, Pose, Vec3, pose_of
@@ -37,11 +38,15 @@ def info_class(cls: type[T]) -> type[T]:
 
 
 @info_class
-class Info:
+class Info(ApiObject):
     """An info: it compares by its fields, and prints as the expression that makes it, without default values."""
 
     _called: ClassVar[str]
     """The class as users write it."""
+    _internal: ClassVar[tuple[str, ...]] = (
+        *("of", "geometry", "draw", "link", "adjacent", "joint", "motor", "manipulator", "sensor", "camera"),
+        *("named_values", "transform", "values_by_axis", "same_structure", "parameters", "with_parameters"),
+    )
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
@@ -97,8 +102,7 @@ class Info:
 
     def __dir__(self) -> list[str]:
         shown = {one.name for one in fields(self) if one.repr}
-        names = {"SerializeJSON", "DeserializeJSON", *shown}
-        return [name for name in super().__dir__() if name.startswith("__") or name in names or name[0].isupper()]
+        return sorted({*super().__dir__(), *shown})
 
 
 @info_class

@@ -1,5 +1,9 @@
 """Descriptions of bodies that are held or connected."""
 
+# JSON and users put anything into the fields that the functions of forms take.
+# pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownMemberType=false
+
 from collections.abc import Sequence
 from dataclasses import field
 from typing import Any

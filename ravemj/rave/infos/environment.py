@@ -1,5 +1,9 @@
 """The description of an environment."""
 
+# JSON and users put anything into the fields that the functions of forms take.
+# pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownMemberType=false
+
 from collections.abc import Sequence
 from dataclasses import field, replace
 

@@ -1,6 +1,8 @@
 """The sizes of a described shape by name, and the JSON of shapes."""
 
-# pyright: reportPrivateUsage=false - the fields have the names that OpenRAVE gives them
+# JSON and users put anything into the fields that the functions of forms take.
+# pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownMemberType=false
 
 from collections.abc import Sequence
 from dataclasses import dataclass

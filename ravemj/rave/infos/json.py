@@ -6,6 +6,7 @@ Each class of infos has a table of entries. Lengths are multiplied by a scale bo
 
 # Fields have the names that OpenRAVE gives them, and users put anything into them.
 # pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportUnknownMemberType=false
+# pyright: reportUnknownLambdaType=false
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from enum import Enum
@@ -24,8 +25,13 @@ Json = dict[str, Any]
 class Described(Protocol):
     """An info."""
 
-    def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json: ...
-    def DeserializeJSON(self, obj: Json, unitScale: float = 1.0, options: object = None) -> None: ...
+    def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
+        """Return it as JSON."""
+        ...
+
+    def DeserializeJSON(self, obj: Json, unitScale: float = 1.0, options: object = None) -> None:
+        """Take over JSON."""
+        ...
 
 
 class Form(NamedTuple):
@@ -80,7 +86,7 @@ def lengths(power: int = 1) -> Form:
 
 def _array(value: Any) -> Any:  # noqa: ANN401 - what JSON holds
     """Return lists of numbers as arrays, anything else as it is."""
-    is_numbers = isinstance(value, list) and value and all(isinstance(one, int | float) for one in value)
+    is_numbers = isinstance(value, list) and value and all(type(one) in {int, float} for one in value)
     return np.array(value, dtype=float) if is_numbers else value
 
 

@@ -1,5 +1,9 @@
 """The description of a link."""
 
+# JSON and users put anything into the fields that the functions of forms take.
+# pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownMemberType=false
+
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
 

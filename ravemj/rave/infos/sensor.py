@@ -58,7 +58,7 @@ class CameraIntrinsics(Info):
         matrix = np.array(self.K, dtype=float)
         for key, place in {"fx": (0, 0), "fy": (1, 1), "cx": (0, 2), "cy": (1, 2)}.items():
             matrix[place] = obj.get(key, matrix[place])
-        self.K = matrix
+        self.K = matrix  # pyright: ignore[reportConstantRedefinition] - OpenRAVE's name, no constant
 
 
 _INTRINSICS_JSON = (
@@ -133,7 +133,7 @@ class CameraGeomData(SensorGeometry):
 
     @KK.setter
     def KK(self, matrix: ArrayLike) -> None:
-        self.intrinsics.K = np.array(matrix, dtype=float)
+        self.intrinsics.K = np.array(matrix, dtype=float)  # pyright: ignore[reportConstantRedefinition] - as above
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
         return [
