@@ -375,3 +375,66 @@ def test_a_body_can_be_emptied(env, robot):
     robot.Destroy()
     assert env.GetBodies() == []
     assert robot.GetLinks() == []
+
+
+def test_an_environment_goes_through_json(env, robot):
+    robot.SetDOFValues([0.3, 0.1])
+    env.SetDescription("words")
+    env.GetPhysicsEngine().SetGravity([0, 0, -1])
+    text = json.dumps(env.ExtractInfo().SerializeJSON())
+    other = ravemj.Environment()
+    assert other.LoadJSON(json.loads(text))
+    np.testing.assert_allclose(other.GetRobot("arm").link_transforms(), robot.link_transforms(), atol=1e-12)
+    assert other.GetDescription() == "words"
+    assert other.GetPhysicsEngine().GetGravity()[2] == -1
+    read = other.ReadRobotJSON(json.loads(text))
+    assert (read.GetName(), read.GetDOF(), len(other.GetBodies())) == ("arm", 2, 1)
+    assert other.ReadKinBodyJSON({"bodies": []}) is None
+    robot.SetDOFValues([0.5, 0.1])
+    added, changed, removed = other.UpdateFromInfo(env.ExtractInfo(), ravemj.UpdateFromInfoMode.Exact)
+    assert ([], [other.GetRobot("arm")], []) == (added, changed, removed)
+    np.testing.assert_allclose(other.GetRobot("arm").GetDOFValues(), [0.5, 0.1], atol=1e-12)
+    _, _, removed = other.UpdateFromInfo(ravemj.EnvironmentBaseInfo(), ravemj.UpdateFromInfoMode.Exact)
+    assert [body.GetName() for body in removed] == ["arm"]
+    other.Destroy()
+
+
+def test_grippers_are_kept_and_no_bodies_are_connected(robot):
+    info = ravemj.GripperInfo(_name="two fingers", _gripperJointNames=["j1"])
+    assert robot.AddGripperInfo(info)
+    with pytest.raises(ravemj.openrave_exception):
+        robot.AddGripperInfo(info)
+    assert robot.ExtractInfo().SerializeJSON()["gripperInfos"][0]["gripperJointNames"] == ["j1"]
+    assert robot.RemoveGripperInfo("two fingers")
+    assert robot.GetGripperInfos() == []
+    with pytest.raises(NotImplementedError):
+        robot.AddConnectedBody(ravemj.ConnectedBodyInfo())
+    assert robot.GetConnectedBodies() == []
+
+
+def test_the_nearest_points():
+    from ravemj.compat import pyANN_int
+
+    rng = np.random.default_rng(3)
+    points, queries = rng.normal(size=(200, 3)), rng.normal(size=(7, 3))
+    tree = pyANN_int.KDTree(points)
+    indices, distances = tree.kSearchArray(queries, 4, 0)
+    true = ((queries[:, None] - points) ** 2).sum(axis=2)
+    np.testing.assert_array_equal(indices, np.argsort(true, axis=1)[:, :4])
+    np.testing.assert_allclose(distances, np.sort(true, axis=1)[:, :4])
+    near, squared, count = tree.kFRSearch(queries[0], 0.5, 300, 0)
+    assert count == (true[0] <= 0.5).sum() == (near >= 0).sum()
+    assert near.shape == (300,)
+    assert np.isinf(squared[count:]).all()
+    assert (len(tree), tree.dim()) == (200, 3)
+
+
+def test_boxes_are_drawn(env):
+    env.SetViewer("offscreen")
+    box = ravemj.AABB([0, 0, 0], [1, 1, 1])
+    assert env.drawaabb(box, np.eye(4), [1, 0, 0], 0.5) is not None
+    assert env.drawobb(ravemj.OrientedBox(pose=np.eye(4), extents=[1, 1, 1])) is not None
+    assert env.drawboxarray([[0, 0, 0], [3, 0, 0]], [1, 1, 1]) is not None
+    moved = box.GetTransformed(ravemj.matrixFromPose([1, 0, 0, 0, 2, 0, 0]))
+    combined = box.GetCombined(moved)
+    np.testing.assert_allclose([combined.pos(), combined.extents()], [[1, 0, 0], [2, 1, 1]])

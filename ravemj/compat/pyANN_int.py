@@ -6,6 +6,7 @@ Distances are squared, and exact whatever ``eps`` is.
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import also_named
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError
@@ -41,11 +42,12 @@ class KDTree:
 
     def kSearch(self, q: ArrayLike, k: int, eps: float = 0.0) -> tuple[Ints, Floats]:
         """Return the indices of the k nearest points, and their squared distances, shape (k,) each."""
-        indices, distances = self.kSearchArray([q], k, eps)
+        indices, distances = self.kSearchArray(np.asarray(q)[None], k, eps)
         return indices[0], distances[0]
 
     kPriSearch = kSearch
 
+    @also_named(q="qarray")
     def kSearchArray(self, qarray: ArrayLike, k: int, eps: float = 0.0) -> tuple[Ints, Floats]:
         """Return ``kSearch`` of each of many points: indices and squared distances, shape (m, k) each."""
         del eps
@@ -73,7 +75,7 @@ class KDTree:
         Returns:
             Indices and squared distances as of ``kSearch``; -1 and infinity where there are fewer than k points.
         """
-        indices, distances, counts = self.kFRSearchArray([q], sqrad, k, eps)
+        indices, distances, counts = self.kFRSearchArray(np.asarray(q)[None], sqrad, k, eps)
         return indices[0], distances[0], int(counts[0])
 
     def kFRSearchArray(self, qarray: ArrayLike, sqrad: float, k: int, eps: float = 0.0) -> tuple[Ints, Floats, Ints]:

@@ -7,6 +7,7 @@ objects is ravemj's own.
 from ravemj.core.handles import Handle as UserData
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.geometry_functions.ik_parameterization import IkParameterizationType
+from ravemj.rave.body.grippers import ConnectedBody
 from ravemj.rave.body.saving import StateSaver
 from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
 from ravemj.rave.controllers import (
@@ -203,6 +204,7 @@ __all__ = [
     "CollisionPairInfo",
     "CollisionReport",
     "ConfigurationSpecification",
+    "ConnectedBody",
     "ConnectedBodyInfo",
     "Contact",
     "Controller",

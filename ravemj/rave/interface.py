@@ -26,13 +26,17 @@ class UserData(ApiObject):
 
     _annotations: Annotations
 
-    def SetUserData(self, *arguments: Any) -> None:  # noqa: ANN401 - any object of the user's
+    def SetUserData(self, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
         """Attach an object of your own: ``SetUserData(data)`` or ``SetUserData(key, data)``.
 
         It stays as long as the body does. ``GetUserData`` returns it.
+
+        Args:
+            key: The name, or the object where it is the only argument.
+            data: The object.
         """
-        key, data = ("", *arguments) if len(arguments) == 1 else arguments
-        self._annotations.data[str(key)] = data
+        name, attached = ("", key) if data is ... else (key, data)
+        self._annotations.data[str(name)] = attached
 
     def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
         """Return what ``SetUserData`` attached under that name, or None.

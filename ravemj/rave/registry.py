@@ -46,14 +46,14 @@ class SensorSystem(Interface):
 
     _interface_type = InterfaceType.sensorsystem
 
-    def __init__(self) -> None:
+    def __init__(self, *args: object, **kwargs: object) -> None:
         raise UnsupportedError("SensorSystem", SENSOR_SYSTEMS)
 
 
 class ManageData(ApiObject):
     """What a sensor system keeps about a body; there is none here, and ``body.GetManageData()`` is None."""
 
-    def __init__(self) -> None:
+    def __init__(self, *args: object, **kwargs: object) -> None:
         raise UnsupportedError("ManageData", SENSOR_SYSTEMS)
 
     def GetSystem(self) -> NoReturn:

@@ -38,7 +38,7 @@ class ConvexDecompositionModel(DatabaseGenerator):
     def autogenerate(self, options: object = None) -> None:
         """Do nothing."""
 
-    def save(self) -> None:
+    def save(self, params: object = None) -> None:
         """Do nothing."""
 
     ComputeHullPlanes = staticmethod(refusing("ComputeHullPlanes", PARTS, "hull thresh"))

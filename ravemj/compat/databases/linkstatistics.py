@@ -33,7 +33,7 @@ class LinkStatisticsModel(DatabaseGenerator):
     def autogenerate(self, options: object = None) -> None:
         """Do nothing."""
 
-    def save(self) -> None:
+    def save(self, params: object = None) -> None:
         """Do nothing."""
 
     def setRobotWeights(self, type: int = 0, weightmult: float = 1.0) -> None:

@@ -1,6 +1,7 @@
 """``openravepy.misc``: what scripts need beside the API."""
 
-from ravemj.compat.misc.drawing import DrawAxes, DrawCircle, DrawIkparam, DrawIkparam2
+from ravemj.compat.misc.comparing import CompareBodies, CompareEnvironments, sequence_cross_product
+from ravemj.compat.misc.drawing import DrawAxes, DrawCircle, DrawIkparam, DrawIkparam2, DrawLabel
 from ravemj.compat.misc.sampling import SpaceSamplerExtra
 from ravemj.compat.misc.scripts import (
     InitOpenRAVELogging,
@@ -14,6 +15,8 @@ from ravemj.geometry_functions.solids import TSP, ComputeBoxMesh, ComputeCylinde
 
 __all__ = [
     "TSP",
+    "CompareBodies",
+    "CompareEnvironments",
     "ComputeBoxMesh",
     "ComputeCylinderYMesh",
     "ComputeGeodesicSphereMesh",
@@ -21,6 +24,7 @@ __all__ = [
     "DrawCircle",
     "DrawIkparam",
     "DrawIkparam2",
+    "DrawLabel",
     "InitOpenRAVELogging",
     "LoadTrajectoryFromFile",
     "OpenRAVEGlobalArguments",
@@ -28,4 +32,5 @@ __all__ = [
     "SpaceSamplerExtra",
     "mkdir_recursive",
     "myproduct",
+    "sequence_cross_product",
 ]
