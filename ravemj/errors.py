@@ -68,19 +68,25 @@ class Source(NamedTuple):
 
 
 class RavemjError(Exception):
-    """The root of ravemj's exceptions; OpenRAVE scripts know it as ``openrave_exception``.
-
-    Attributes:
-        message: What is wrong, in words.
-    """
+    """The root of ravemj's exceptions; OpenRAVE scripts know it as ``openrave_exception``."""
 
     _code = ErrorCode.Failed
 
     def __init__(self, message: str, code: ErrorCode | None = None) -> None:
         super().__init__(message)
-        self.message = message
+        self._message = message
         if code is not None:
             self._code = code
+
+    @property
+    def message(self) -> str:
+        """What is wrong, in words."""
+        return self._message
+
+    @property
+    def errortype(self) -> ErrorCode:  # OpenRAVE's name
+        """OpenRAVE's code for this kind of error."""
+        return self._code
 
     def __str__(self) -> str:
         return f"{self.message} ({self._code.name})"

@@ -83,7 +83,7 @@ EXPECTED = {
     "physics_fall": f"""fallen {9.8 / 2 * 0.2 * (0.2 + STEP):.2f} time 200000\nspeed {-9.8 * 0.2:.2f}
         rests 0.10 gravity 0 0 -9.8""",
     "plan": """basemanip worked\ntaskmanip worked\nplanner worked\nparameters worked\nretime worked\nsmooth worked
-        grasping - planning of grasps\nreachability - maps of what arms reach\nsampler - sampling of spaces\nNone""",
+        grasping - planning of grasps\nreachability - maps of what arms reach\nNone""",
     "play_trajectory": "points 3 duration 0.3\nmiddle 0.1 -0.05\narrived True\nvalues 0.1 0.3 True",
     "plotting": "without None None\nhandles 9 0\nwrong Failed\ncamera (4, 4)",
     "rays": """hit 0.4 -1 0 0\nhit 0.7 0 -1 0\ndown True 0.6 0 0.2 0 0 1\nrange False False""",

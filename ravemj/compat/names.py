@@ -15,7 +15,15 @@ from types import ModuleType
 OPENRAVEPY = "openravepy"
 PUBLIC = ("databases", "interfaces", "misc", "planningutils")
 """Sub-modules of OpenRAVE that are imported from ``ravemj`` as well."""
-ONLY_OPENRAVEPY = ("examples", "metaclass", "openravepy_int")
+ONLY_OPENRAVEPY = (
+    "convexdecompositionpy",
+    "examples",
+    "metaclass",
+    "openravepy_ext",
+    "openravepy_int",
+    "pyANN",
+    "pyANN_int",
+)
 
 
 class Renamed(MetaPathFinder, Loader):

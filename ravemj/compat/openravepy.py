@@ -44,6 +44,8 @@ globals().update({name: getattr(legacy, name) for name in legacy.__all__})
 
 def __getattr__(name: str) -> object:
     """Import a module of openravepy's when it is asked for, or give what is ravemj's own."""
+    if name == "OpenRAVEModel":
+        return importlib.import_module("ravemj.compat.databases").DatabaseGenerator
     if name in ONLY_OPENRAVEPY:
         return importlib.import_module(f"ravemj.compat.{name}")
     return getattr(ravemj, name)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import also_named
 from ravemj.core.transforms import ZERO, Floats, Pose
 from ravemj.geometry_functions import arguments
 
@@ -56,6 +57,24 @@ class AABB(ApiObject):
         """Return half the edge lengths [m], shape (3,)."""
         return np.array(self._extents)
 
+    def GetCombined(self, aabb: "AABB") -> "AABB":
+        """Return the smallest box around this one and another.
+
+        Args:
+            aabb: The other box.
+        """
+        low = np.minimum(self.pos() - self.extents(), aabb.pos() - aabb.extents())
+        high = np.maximum(self.pos() + self.extents(), aabb.pos() + aabb.extents())
+        return AABB((low + high) / 2, (high - low) / 2)
+
+    def GetTransformed(self, pose: ArrayLike) -> "AABB":
+        """Return the smallest box along the axes around this one, moved.
+
+        Args:
+            pose: A matrix 4x4 or 3x4, or [w, x, y, z, tx, ty, tz].
+        """
+        return AABBFromOrientedBox(OrientedBoxFromAABB(self, pose))
+
     def toDict(self) -> dict[str, Floats]:
         """Return the box as ``pos`` and ``extents``."""
         return {"pos": self.pos(), "extents": self.extents()}
@@ -70,8 +89,9 @@ class AABB(ApiObject):
 class OrientedBox(ApiObject):
     """An oriented box."""
 
-    def __init__(self, transform: ArrayLike = (1, 0, 0, 0, 0, 0, 0), extents: ArrayLike = ZERO) -> None:
-        self._pose = arguments.pose(transform, "transform")
+    @also_named(transform="pose")
+    def __init__(self, pose: ArrayLike = (1, 0, 0, 0, 0, 0, 0), extents: ArrayLike = ZERO) -> None:
+        self._pose = arguments.pose(pose, "pose")
         self._extents = arguments.vec3(extents, "extents")
 
     def extents(self) -> Floats:

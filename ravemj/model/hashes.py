@@ -94,10 +94,15 @@ def _joint(joint: Joint) -> tuple[object, ...]:
     return joint.kind, joint.parent, joint.child, relative_pose(joint, rest), moves, joint.places_child, mimic
 
 
-def _digest(*parts: object) -> str:
+def of_text(text: str) -> str:
+    """Return the hash of a text: 32 hexadecimal digits."""
     import hashlib  # noqa: PLC0415 - slow to import
 
-    return hashlib.md5(repr(_plain(parts)).encode(), usedforsecurity=False).hexdigest()
+    return hashlib.md5(text.encode(), usedforsecurity=False).hexdigest()
+
+
+def _digest(*parts: object) -> str:
+    return of_text(repr(_plain(parts)))
 
 
 def _plain(part: object) -> object:

@@ -60,6 +60,12 @@ def sphere_geometries(spheres: Floats, *, visible: bool) -> list[Geometry]:
     return [shape_geometry(Sphere(radius), Pose((x, y, z)), visible=visible) for x, y, z, radius in spheres.tolist()]
 
 
+def named_body(name: str, geometries: Iterable[Geometry]) -> KinBody:
+    """Return a body that is one static link with these shapes."""
+    nothing = KinBody(name=name, is_robot=False, links=(), joints=(), passive_joints=(), source=FROM_SCRIPT)
+    return body_of_geometries(nothing, geometries)
+
+
 def empty_body(body: KinBody) -> KinBody:
     """Return a body of the same name and kind without links."""
     return KinBody(name=body.name, is_robot=body.is_robot, links=(), joints=(), passive_joints=(), source=FROM_SCRIPT)

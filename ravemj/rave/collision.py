@@ -2,12 +2,13 @@
 
 import logging
 from collections.abc import Iterable, Sequence
+from types import TracebackType
 from typing import TYPE_CHECKING, Self, cast
 
 import numpy as np
 
 from ravemj.core.api_object import ApiObject
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.transforms import Ints
 from ravemj.engine.collision import questions
 from ravemj.engine.collision.findings import Collision, GeometryOf, Listed, Wanted, find
@@ -19,8 +20,9 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import Ray
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.body.collision import BodyCollision
+from ravemj.rave.collision_extras import CheckerExtras
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
-from ravemj.rave.interface import Annotations, Interface, checked_environment
+from ravemj.rave.interface import Annotations, checked_environment
 from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Part
 
@@ -40,7 +42,7 @@ _ARGUMENTS = ("ray", "link1", "link2", "link", "body1", "body2", "body", "bodyex
 """Names of the arguments of ``CheckCollision``, in the order in which they stand without names."""
 
 
-class CollisionChecker(Interface):
+class CollisionChecker(CheckerExtras):
     """Tests whether bodies touch; ``env.GetCollisionChecker()`` returns it.
 
     Boxes, spheres, cylinders, capsules and convex meshes are exact solids. Other meshes are their triangles, as in
@@ -284,26 +286,29 @@ class CollisionOptionsStateSaver(ApiObject):
         ...     env.CheckCollision(robot, report)
     """
 
-    def __init__(self, p: CollisionChecker, newoptions: int, required: bool = True) -> None:
+    @also_named(p="checker", newoptions="options")
+    def __init__(self, checker: CollisionChecker, options: int | None = None, required: bool = True) -> None:
         """Set the options.
 
         Args:
-            p: The checker.
-            newoptions: ``CollisionOptions`` combined with ``|``.
+            checker: The checker.
+            options: ``CollisionOptions`` combined with ``|``; None: as they are.
             required: Whether to raise where the checker does not know them.
 
         Raises:
             openrave_exception: it does not.
         """
-        self._checker = checked_kind(p, CollisionChecker, "CollisionOptionsStateSaver: p")
-        self._old = p.GetCollisionOptions()
-        if not p.SetCollisionOptions(newoptions) and required:
-            raise ArgumentError(f"CollisionOptionsStateSaver: newoptions are {newoptions}, which are not all known")
+        self._checker = checked_kind(checker, CollisionChecker, "CollisionOptionsStateSaver: checker")
+        self._old = checker.GetCollisionOptions()
+        if options is not None and not checker.SetCollisionOptions(options) and required:
+            raise ArgumentError(f"CollisionOptionsStateSaver: options are {options}, which are not all known")
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *exception: object) -> None:
+    def __exit__(
+        self, type: type[BaseException] | None, value: BaseException | None, traceback: TracebackType | None
+    ) -> None:
         self._checker.SetCollisionOptions(self._old)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import also_named
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats, Ints, Pose
 from ravemj.errors import ArgumentError, ErrorCode
@@ -144,8 +145,13 @@ class ConfigurationData(ApiObject):
         bodies = (env.GetKinBody(name) for name in extraction.used_bodies(self._groups))
         return [body for body in bodies if body is not None]
 
+    @also_named(env="body")
     def ExtractUsedIndices(self, body: "KinBody") -> tuple[Ints, Ints]:
-        """Return the DOF indices of a body that there are, and where in the configuration."""
+        """Return the DOF indices of a body that there are, and where in the configuration.
+
+        Args:
+            body: The body.
+        """
         indices, places = extraction.used_indices(self._groups, body.GetName())
         return np.array(indices, dtype=np.int_), np.array(places, dtype=np.int_)
 

@@ -117,6 +117,12 @@ class SaveParameters(IntFlag):
     """Which connected bodies are active."""
 
 
+class EnvironmentCreateOptions(IntFlag):
+    """What ``Environment`` begins with; without meaning here, since time begins to pass once it is wanted."""
+
+    ECO_StartSimulationThread = 1
+
+
 class CloningOptions(IntFlag):
     """What a clone of an environment takes over."""
 
@@ -309,7 +315,7 @@ class PlannerAction(IntEnum):
 
 
 class Interval(IntFlag):
-    """Which ends of a line count."""
+    """Which ends of an interval belong to it; and how values between waypoints are interpolated."""
 
     Open = Default = 0
     OpenStart = 1

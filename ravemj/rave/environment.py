@@ -4,7 +4,7 @@ import itertools
 import os
 import weakref
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 import mujoco
 
@@ -14,11 +14,9 @@ from ravemj.errors import ErrorCode, RavemjError, SourceError
 from ravemj.rave.body.base import both_locks
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.collision import Collision
-from ravemj.rave.env.contents import Contents
-from ravemj.rave.env.description import Description
+from ravemj.rave.env.described import Described
 from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
-from ravemj.rave.env.publishing import Publishing
 from ravemj.rave.env.saving import Saving
 from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment
@@ -29,7 +27,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Contents, Loading, Saving, Collision, Publishing, Drawing, Viewing, Description):
+class Environment(Described, Loading, Saving, Collision, Drawing, Viewing):
     """A world with robots and other bodies.
 
     Example:
@@ -44,6 +42,7 @@ class Environment(Contents, Loading, Saving, Collision, Publishing, Drawing, Vie
 
     _internal = ("simulation",)
 
+    @also_named(penv="name")
     def __new__(cls, name: "str | int | Environment" = "", options: int = 1) -> Self:
         """Return a new object, or the environment that stands in the place of a name."""
         return name if isinstance(name, cls) else super().__new__(cls)
@@ -123,33 +122,37 @@ class Environment(Contents, Loading, Saving, Collision, Publishing, Drawing, Vie
         """Let go of the lock."""
         self._simulation.lock.release()
 
-    def CloneSelf(self, options: int = CloningOptions.Bodies, name: str | None = None) -> "Environment":
+    def CloneSelf(self, options: int | str = CloningOptions.Bodies, clonedEnvName: Any = None) -> "Environment":  # noqa: ANN401 - either order
         """Return a new environment with copies of the bodies, in the same state.
 
         Robots keep their active DOFs and manipulators, and hold what they held.
 
         Args:
             options: What to copy, a ``CloningOptions``; bodies, gravity and the view are, whatever it says.
-            name: OpenRAVE's; ignored.
+            clonedEnvName: The new environment's name; OpenRAVE has it before the options, which is understood too.
 
         Example:
             >>> copy = env.CloneSelf(CloningOptions.Bodies)
             >>> copy.GetRobots()[0].SetDOFValues([1, 1])  # env's robot stays
         """
-        del name
-        clone = type(self)()
+        if isinstance(options, str):
+            options, clonedEnvName = CloningOptions.Bodies if clonedEnvName is None else clonedEnvName, options
+        clone = type(self)(clonedEnvName or "")
         clone.Clone(self, options)
         return clone
 
-    def Clone(self, reference: "Environment", options: int = CloningOptions.Bodies, name: str | None = None) -> None:
+    def Clone(
+        self, reference: "Environment", options: int | str = CloningOptions.Bodies, clonedEnvName: str | None = None
+    ) -> None:
         """Replace the bodies of this environment by copies of those of another.
 
         Args:
             reference: The environment to copy; nothing happens where it is this one.
             options: As in ``CloneSelf``.
-            name: OpenRAVE's; ignored.
+            clonedEnvName: What this environment is called from then on; as in ``CloneSelf``.
         """
-        del options, name
+        name = options if isinstance(options, str) else clonedEnvName
+        self._name = name or self._name
         for env in (self, checked_environment(reference, "Clone: reference")):
             env._check_alive()
         source = reference.simulation
@@ -178,6 +181,8 @@ class Environment(Contents, Loading, Saving, Collision, Publishing, Drawing, Vie
             True
         """
         self.StopSimulation()
+        for module in self.GetModules():
+            self.Remove(module)
         self.SetViewer("")
         self.Reset()
         self._renderer.close()

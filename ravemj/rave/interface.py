@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.rave.enums import InterfaceType
+from ravemj.rave.readables import ReadableInterface
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -25,13 +26,17 @@ class UserData(ApiObject):
 
     _annotations: Annotations
 
-    def SetUserData(self, *arguments: Any) -> None:  # noqa: ANN401 - any object of the user's
+    def SetUserData(self, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
         """Attach an object of your own: ``SetUserData(data)`` or ``SetUserData(key, data)``.
 
         It stays as long as the body does. ``GetUserData`` returns it.
+
+        Args:
+            key: The name, or the object where it is the only argument.
+            data: The object.
         """
-        key, data = ("", *arguments) if len(arguments) == 1 else arguments
-        self._annotations.data[str(key)] = data
+        name, attached = ("", key) if data is ... else (key, data)
+        self._annotations.data[str(name)] = attached
 
     def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
         """Return what ``SetUserData`` attached under that name, or None.
@@ -50,7 +55,7 @@ class UserData(ApiObject):
         return self._annotations.data.pop(key, None) is not None
 
 
-class Interface(UserData):
+class Interface(UserData, ReadableInterface):
     """An object of an environment: a body, a controller, a physics engine, a trajectory, ...
 
     OpenRAVE calls them interfaces, since its plugins make them.
@@ -92,6 +97,42 @@ class Interface(UserData):
             description: The text.
         """
         self._annotations.description = str(description)
+
+    def Clone(self, ref: Any, cloningoptions: int = 0) -> None:  # noqa: ANN401 - another object of its class
+        """Refuse to become like another object; bodies and trajectories do.
+
+        Args:
+            ref: The other object.
+            cloningoptions: OpenRAVE's; ignored.
+
+        Raises:
+            UnsupportedError: always.
+        """
+        raise UnsupportedError(f"{type(self).__name__}.Clone", "copies of what is neither body nor trajectory")
+
+    def SupportsJSONCommand(self, cmd: str) -> bool:
+        """Return whether ``SendJSONCommand`` knows a command: none.
+
+        Args:
+            cmd: The name of the command.
+        """
+        del cmd
+        return False
+
+    def SendJSONCommand(self, cmd: str, input: Any, releasegil: bool = False, lockenv: bool = False) -> Any:  # noqa: ANN401 - JSON
+        """Refuse to return the answer to a command of OpenRAVE's plugins in JSON; there are none.
+
+        Args:
+            cmd: The name of the command.
+            input: Its arguments.
+            releasegil: Not used.
+            lockenv: Not used.
+
+        Raises:
+            openrave_exception: always (``CommandNotSupported``).
+        """
+        message = f"{type(self).__name__} knows no JSON command '{cmd}'"
+        raise RavemjError(message, ErrorCode.CommandNotSupported)
 
     def SupportsCommand(self, cmd: str) -> bool:
         """Return whether ``SendCommand`` knows a command.

@@ -3,7 +3,7 @@
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.engine.simulation import BodyState
 from ravemj.model.shape_bodies import empty_body
 from ravemj.rave.body.base import both_locks
@@ -81,18 +81,19 @@ class KinBody(Building, GeometryGroups, Grabbing, BodyCollision, Velocities, Dyn
         """Return the body's number in its environment, from 1; 0 while it is not added."""
         return self._state.index
 
-    def Clone(self, reference: "KinBody", cloningoptions: int = 0) -> None:
+    @also_named(reference="ref")
+    def Clone(self, ref: "KinBody", cloningoptions: int = 0) -> None:
         """Become like another body, which may be in another environment: links, joints, name and configuration.
 
         Args:
-            reference: The body to copy; what it holds is not copied.
+            ref: The body to copy; what it holds is not copied.
             cloningoptions: OpenRAVE's; ignored.
 
         Raises:
             openrave_exception: this body is in an environment.
         """
         del cloningoptions
-        original = checked_kind(reference, KinBody, "Clone: reference").simulation_state
+        original = checked_kind(ref, KinBody, "Clone: ref").simulation_state
         with both_locks(self._simulation, original.simulation):
             self._state.copy(original)
 

@@ -2,6 +2,7 @@
 
 import logging
 import os
+import time
 from pathlib import Path
 
 from ravemj.rave import logs
@@ -73,6 +74,59 @@ def RaveFindDatabaseFile(filename: str, bRead: bool = True) -> str:
     return next((path for path in paths if not bRead or os.path.exists(path)), "")
 
 
+_data_access = 0
+
+
+def RaveSetDataAccess(accessoptions: int) -> None:
+    """Choose where ``RaveFindLocalFile`` looks. Files that are loaded are not restricted.
+
+    Args:
+        accessoptions: 0: everywhere. 1: only in the folders of ``OPENRAVE_DATA``.
+    """
+    global _data_access  # noqa: PLW0603 - OpenRAVE's function sets it for the process
+    _data_access = int(accessoptions)
+
+
+def RaveGetDataAccess() -> int:
+    """Return what ``RaveSetDataAccess`` chose; 0 from the start."""
+    return _data_access
+
+
+def RaveInvertFileLookup(filename: str) -> str:
+    """Return the path of a file relative to the folder of ``OPENRAVE_DATA`` that it is in; empty: in none.
+
+    Args:
+        filename: The path.
+    """
+    path = Path(filename).absolute()
+    inside = (folder for folder in _data_folders() if path.is_relative_to(folder))
+    return next((str(path.relative_to(folder)) for folder in inside), "")
+
+
+def _data_folders() -> list[Path]:
+    return [Path(folder).absolute() for folder in os.environ.get("OPENRAVE_DATA", "").split(os.pathsep) if folder]
+
+
+def RaveGetDefaultViewerType() -> str:
+    """Return the viewer of ``env.SetDefaultViewer``: what ``OPENRAVE_DEFAULT_VIEWER`` says, else ``qtcoin``."""
+    return os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "qtcoin"
+
+
+def GetNanoTime() -> int:
+    """Return the time since 1970 [ns]."""
+    return time.time_ns()
+
+
+def GetMicroTime() -> int:
+    """Return the time since 1970 [microseconds]."""
+    return time.time_ns() // 1000
+
+
+def GetMilliTime() -> int:
+    """Return the time since 1970 [ms]."""
+    return time.time_ns() // 1_000_000
+
+
 def RaveFindLocalFile(filename: str, curdir: str = "") -> str:
     """Return the path of a file in a folder, else in the working folder or those of ``OPENRAVE_DATA``.
 
@@ -87,4 +141,6 @@ def RaveFindLocalFile(filename: str, curdir: str = "") -> str:
 
     beside = os.path.join(curdir, filename)
     found = beside if curdir and os.path.exists(beside) else find(filename)
-    return os.path.abspath(found) if found else ""
+    if not found or (_data_access and not RaveInvertFileLookup(found)):
+        return ""
+    return os.path.abspath(found)

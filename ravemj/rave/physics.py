@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ravemj.engine.physics import Loads
     from ravemj.rave.environment import Environment
     from ravemj.rave.joint import Joint
+    from ravemj.rave.kinbody import KinBody
     from ravemj.rave.link import Link
 
 
@@ -87,6 +88,69 @@ class PhysicsEngine(Interface):
         Args:
             timestep: How long [s].
         """
+
+    def InitEnvironment(self) -> bool:
+        """Return True; nothing needs to be prepared."""
+        return True
+
+    def DestroyEnvironment(self) -> None:
+        """Do nothing; OpenRAVE's engines free memory here."""
+
+    def InitKinBody(self, body: "KinBody") -> bool:
+        """Return True; nothing needs to be prepared.
+
+        Args:
+            body: The body.
+        """
+        del body
+        return True
+
+    def GetLinkVelocity(self, link: "Link") -> tuple[Floats, Floats]:
+        """Return the velocity of a link, in world axes.
+
+        Args:
+            link: The link.
+
+        Returns:
+            That of its origin [m/s], and the angular one [rad/s], each of shape (3,).
+        """
+        velocity = link.GetVelocity()
+        return velocity[:3], velocity[3:]
+
+    def SetLinkVelocity(self, link: "Link", linearvel: ArrayLike, angularvel: ArrayLike) -> bool:
+        """Set the velocity of one link; see ``link.SetVelocity``.
+
+        Args:
+            link: The link.
+            linearvel: Velocity of its origin in the world [m/s], shape (3,).
+            angularvel: Angular velocity in the world [rad/s], shape (3,).
+
+        Returns:
+            True.
+        """
+        link.SetVelocity(linearvel, angularvel)
+        return True
+
+    def GetLinkVelocities(self, body: "KinBody") -> Floats:
+        """Return the velocities of all links of a body, shape (links, 6); see ``body.GetLinkVelocities``.
+
+        Args:
+            body: The body.
+        """
+        return body.GetLinkVelocities()
+
+    def SetLinkVelocities(self, body: "KinBody", velocities: ArrayLike) -> bool:
+        """Set the velocities of all links of a body; see ``body.SetLinkVelocities``.
+
+        Args:
+            body: The body.
+            velocities: Shape (links, 6).
+
+        Returns:
+            True.
+        """
+        body.SetLinkVelocities(velocities)
+        return True
 
     def GetJointForceTorque(self, joint: "Joint") -> tuple[Floats, Floats]:
         """Return the force and torque that a joint transmits to its child link.

@@ -12,13 +12,13 @@ from ravemj.rave.environment import Environment
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.modules import MODULES, Module, made_module
 from ravemj.rave.planning.names import PLANNERS
+from ravemj.rave.samplers import SAMPLERS
 from ravemj.rave.sensors import SENSING, Sensor
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
 
 _GRASPING = "planning of grasps"
-_SAMPLING = "sampling of spaces"
 
 _LOG = logging.getLogger("ravemj")
 
@@ -27,6 +27,7 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
         InterfaceType.module: {
             "grasper": _GRASPING,
             "ikfast": "compiling of solvers of inverse kinematics",
+            "logging": "saving of scenes by a module",
             "taskcaging": "caging of handles",
             "visualfeedback": "visual feedback",
         },
@@ -40,12 +41,6 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
             "baseodometry": SENSING,
             "basetactile": SENSING,
         },
-        InterfaceType.spacesampler: {
-            "bodyconfiguration": _SAMPLING,
-            "halton": _SAMPLING,
-            "mt19937": _SAMPLING,
-            "robotconfiguration": _SAMPLING,
-        },
     }
 )
 """Names of OpenRAVE's own plugins, in lower case, with what ravemj lacks to have them."""
@@ -56,7 +51,7 @@ def RaveCreateModule(env: Environment, name: str) -> Module | None:
 
     Args:
         env: The environment.
-        name: ``BaseManipulation`` or ``TaskManipulation``, in any letter case.
+        name: ``BaseManipulation``, ``TaskManipulation`` or ``viewerrecorder``, which writes videos; in any letter case.
 
     Returns:
         The module; None, as in OpenRAVE, where no plugin has a module of that name: a warning is logged.
@@ -89,19 +84,6 @@ def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
     return _refuse(env, InterfaceType.sensor, name)
 
 
-def RaveCreateSpaceSampler(env: Environment, name: str) -> None:
-    """Refuse to make a sampler; return None where OpenRAVE does not know the name either.
-
-    Args:
-        env: The environment.
-        name: The name.
-
-    Raises:
-        UnsupportedError: the sampler is one of OpenRAVE's own.
-    """
-    return _refuse(env, InterfaceType.spacesampler, name)
-
-
 def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
     """Attach a viewer to the environment, beside those that it has; ``env.Remove`` closes it.
 
@@ -124,7 +106,7 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
     from ravemj.gui.viewers import VIEWERS  # noqa: PLC0415 - slow to import
 
     made: dict[InterfaceType, list[str]] = {
-        InterfaceType.collisionchecker: ["ode"],
+        InterfaceType.collisionchecker: ["ode", "bullet", "fcl_", "pqp"],
         InterfaceType.controller: ["IdealController", "IdealVelocityController", "odevelocity"],
         InterfaceType.iksolver: ["ikfast"],
         InterfaceType.kinbody: [""],
@@ -133,6 +115,7 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
         InterfaceType.planner: list(PLANNERS),
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],
+        InterfaceType.spacesampler: list(SAMPLERS),
         InterfaceType.viewer: list(VIEWERS),
     }
     return {kind: made.get(kind, []) for kind in InterfaceType}

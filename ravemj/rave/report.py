@@ -17,7 +17,7 @@ FAR = 1e20
 """Distance of a report that no distance was found for [m], as in OpenRAVE."""
 
 
-@dataclass
+@dataclass(slots=True)
 class Contact:
     """A point where two shapes overlap, or where a ray meets a shape.
 
@@ -47,8 +47,11 @@ class CollisionPairInfo(ApiObject):
     """Two links that collide, or are nearest to each other; or a link that a ray hits.
 
     Attributes:
+        contacts: Where they touch, as ``Contact``.
         collides: False for links that are only nearest to each other.
     """
+
+    __slots__ = ("collides", "contacts", "first", "second")  # slots show on the class, as OpenRAVE's properties do
 
     def __init__(
         self,
@@ -109,6 +112,8 @@ class CollisionReport(ApiObject):
         >>> print(report.plink1, report.plink2)
         <link:Arm1 (1), parent=Pendulum> <link:base (0), parent=table>
     """
+
+    __slots__ = ("collisionInfos", "minDistance", "nKeepPrevious", "numWithinTol", "options")
 
     def __init__(self) -> None:
         self.nKeepPrevious = 0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_indices
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
@@ -20,6 +20,7 @@ from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.ik.arms import ArmSolver
 from ravemj.rave.body.active import ActiveChoice, ActiveDofs
 from ravemj.rave.body.affine import default_kinds
+from ravemj.rave.body.grippers import Grippers
 from ravemj.rave.body.manipulators import Manipulators
 from ravemj.rave.body.saving import Restorer, StateSaver
 from ravemj.rave.controllers import Controller, IdealController
@@ -51,7 +52,7 @@ POLL = 1e-3
 """How often [s] ``WaitForController`` looks."""
 
 
-class Robot(ActiveDofs, Manipulators, KinBody):
+class Robot(ActiveDofs, Manipulators, Grippers, KinBody):
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine
@@ -217,6 +218,7 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         assert self._controller is not ...
         return self._controller
 
+    @also_named(robot="controller")
     def SetController(
         self,
         controller: Controller | None,
@@ -350,6 +352,7 @@ class Robot(ActiveDofs, Manipulators, KinBody):
             **self.extracted(options),
             _vManipInfos=[ManipulatorInfo.of(body, arm) for arm in body.manipulators],
             _vAttachedSensorInfos=[AttachedSensorInfo.of(body, sensor) for sensor in body.sensors],
+            _vGripperInfos=self.GetGripperInfos(),
         )
 
     def take_choices(self, other: "Robot") -> None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from numpy.typing import ArrayLike
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions.ik_parameterization import goal_size
 from ravemj.rave.configuration_data import ConfigurationData, checked_order
@@ -34,6 +34,7 @@ class ConfigurationSpecification(ConfigurationData):
     Group = Group
     _internal = ("of",)
 
+    @also_named(pyspec="spec", group="spec", xmldata="spec")
     def __init__(self, spec: "ConfigurationSpecification | Group | str | None" = None) -> None:
         """Make a specification.
 
@@ -120,6 +121,7 @@ class ConfigurationSpecification(ConfigurationData):
         found = layout.find_shifted(self._groups, name if isinstance(name, str) else name.name, steps, exactmatch)
         return None if found is None else layout.copied([found])[0]
 
+    @also_named(group="name")
     def AddGroup(self, name: "str | Group", dof: int = 0, interpolation: str = "") -> int:
         """Add a group behind the others, unless it is there.
 

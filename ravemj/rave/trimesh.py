@@ -20,6 +20,8 @@ class TriMesh:
         >>> mesh = TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     """
 
+    __slots__ = ("indices", "vertices")  # slots show on the class, as OpenRAVE's properties do
+
     vertices: Floats | None
     indices: Ints | None
 

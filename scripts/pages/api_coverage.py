@@ -3,24 +3,20 @@
 import ast
 import importlib
 import inspect
-import re
 import sys
 import textwrap
 from collections.abc import Iterator, Mapping
 from functools import cache
-from pathlib import Path
 from types import FunctionType
 from typing import NamedTuple
 
-from api_names import BEHIND, PYMANOID, SCRIPTS
+import api_surface
+from api_names import BEHIND
 
 import ravemj
 from ravemj.compat import databases, interfaces, misc, planningutils
 
-_TESTS = Path(__file__).resolve().parents[2] / "tests"
-_CASES = "data/api-conformance"
 _STATEMENTS = {"with_env": ravemj.Environment, "with_robot": ravemj.KinBody}
-_SHOWN = {"with_env": "with env:", "with_robot": "with robot:"}
 
 _HEAD = """\
 # Which names of OpenRAVE's API are there
@@ -28,10 +24,9 @@ _HEAD = """\
 Made by `scripts/docs`, or `python scripts/pages/api_coverage.py > docs/api-coverage.md` alone, from the program itself;
 a test compares.
 
-The names are the 250 that make most of 308 published scripts possible, in an order in which whole scripts become
-possible early, and those that pymanoid needs. *yes*: it is there. *no*: it raises `NotImplementedError` and names the
-capability that ravemj lacks. *missing*: it is not there. The last column has the first test that uses the name, and how
-many of the scripts in `tests/data/api-conformance/` do, which have OpenRAVE's own answers.
+The names are all public ones of openravepy 0.149.1: modules, classes, methods, properties, arguments and members of
+enumerations. A name is *there* when it exists, members of enumerations with OpenRAVE's number. What only raises
+`NotImplementedError`, since ravemj lacks a capability, is *refused*; its row says which.
 """
 
 
@@ -49,22 +44,31 @@ class Place(NamedTuple):
 
 def markdown() -> str:
     """Return the page."""
-    more = [name for name in PYMANOID if name not in SCRIPTS]
-    rows = [_row(str(rank), name) for rank, name in enumerate(SCRIPTS, start=1)]
-    rows += [_row("pymanoid", name) for name in more]
-    counts = {state: sum(f"| {state}" in row for row in rows) for state in ("yes", "no", "missing")}
-    summary = f"Of {len(rows)}: {counts['yes']} yes, {counts['no']} no, {counts['missing']} missing.\n"
-    table = ["| rank | name | where | | tests |", "|--:|---|---|---|---|", *rows]
+    owners: dict[str, list[api_surface.Name]] = {}
+    for name in api_surface.names():
+        owners.setdefault(name.owner, []).append(name)
+    there = sum(map(api_surface.is_there, api_surface.names()))
+    rows = [row for owner, names in owners.items() for row in _rows(owner, names)]
+    summary = f"Of {len(api_surface.names())}: {there} there, {len(api_surface.names()) - there} missing.\n"
+    table = ["| class or module | names | there | refused | missing |", "|---|--:|--:|---|---|", *rows]
     return "\n".join([_HEAD, summary, *table]) + "\n"
 
 
-def _row(rank: str, name: str) -> str:
-    places = find(name)
-    missing = {place.capability for place in places if place.capability}
-    served = any(not place.capability for place in places)
-    state = "yes" if served else f"no: {', '.join(sorted(missing))}" if places else "missing"
-    owners = ", ".join(f"`{place.owner}`" for place in places)
-    return f"| {rank} | `{_SHOWN.get(name, name)}` | {owners} | {state} | {_tested(name)} |"
+def _rows(owner: str, names: list[api_surface.Name]) -> Iterator[str]:
+    """Yield the row of a class or module."""
+    present = [name for name in names if api_surface.is_there(name)]
+    missing = ", ".join(f"`{_last(name)}`" for name in names if name not in present)
+    lacking: dict[str, list[str]] = {}
+    for name in present:
+        capability = _capability(api_surface.thing_of(name))
+        if capability:
+            lacking.setdefault(capability, []).append(f"`{_last(name)}`")
+    refused = "; ".join(f"{capability}: {', '.join(which)}" for capability, which in sorted(lacking.items()))
+    yield f"| `{owner}` | {len(names)} | {len(present)} | {refused} | {missing} |"
+
+
+def _last(name: api_surface.Name) -> str:
+    return name.path.rpartition(".")[2]
 
 
 def find(name: str) -> list[Place]:
@@ -118,20 +122,27 @@ def _capability(thing: object) -> str:
     """Return what a function or class lacks that does nothing but raise ``UnsupportedError``; empty for others."""
     if isinstance(thing, type):
         return _capability_of_class(thing)
-    if not isinstance(thing, FunctionType):
+    if not isinstance(thing, FunctionType) or not thing.__module__.startswith("ravemj"):
         return ""
-    definition = ast.parse(textwrap.dedent(inspect.getsource(thing))).body[0]
-    assert isinstance(definition, ast.FunctionDef)
-    last = definition.body[-1]
+    return str(vars(thing).get("capability", "")) or _raised(inspect.unwrap(thing))
+
+
+def _raised(function: FunctionType) -> str:
+    """Return the capability that a function's only statement names as lacking; empty where it does something else."""
+    try:
+        definition = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    except OSError:  # made by a dataclass
+        return ""
+    last = definition.body[-1] if isinstance(definition, ast.FunctionDef) and len(definition.body) <= 2 else None
     if not (isinstance(last, ast.Raise) and isinstance(last.exc, ast.Call)):
         return ""
-    function = last.exc.func
-    if not (isinstance(function, ast.Name) and function.id == "UnsupportedError" and len(definition.body) <= 2):
+    raised = last.exc.func
+    if not (isinstance(raised, ast.Name) and raised.id == "UnsupportedError"):
         return ""
     argument = last.exc.args[1]
     if isinstance(argument, ast.Constant):
         return str(argument.value)
-    return str(vars(importlib.import_module(thing.__module__))[ast.unparse(argument)])
+    return str(vars(importlib.import_module(function.__module__)).get(ast.unparse(argument), ""))
 
 
 def _capability_of_class(thing: type[object]) -> str:
@@ -139,29 +150,6 @@ def _capability_of_class(thing: type[object]) -> str:
         return "" if "autogenerate" in vars(thing) else thing.capability
     made = vars(thing).get("__init__")
     return _capability(made) if made else ""
-
-
-def _tested(name: str) -> str:
-    """Return the first test that uses a name, and how many cases do."""
-    if name in _STATEMENTS:
-        used = re.compile(_SHOWN[name].replace(":", r"\b"))
-        found = [path for path, text in _texts().items() if used.search(text)]
-    else:
-        found = [path for path, words in _words().items() if name in words]
-    tests = [f"`{path}`" for path in found if not path.startswith(_CASES)][:1]
-    cases = sum(path.startswith(_CASES) for path in found)
-    return ", ".join(tests + ([f"{cases} case{'s' * (cases > 1)}"] if cases else []))
-
-
-@cache
-def _texts() -> Mapping[str, str]:
-    paths = [*sorted(_TESTS.glob("test_*.py")), *sorted((_TESTS / _CASES).glob("*.py"))]
-    return {path.relative_to(_TESTS).as_posix(): path.read_text(encoding="utf-8") for path in paths}
-
-
-@cache
-def _words() -> Mapping[str, set[str]]:
-    return {path: set(re.findall(r"\w+", text)) for path, text in _texts().items()}
 
 
 if __name__ == "__main__":

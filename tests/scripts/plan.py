@@ -41,10 +41,8 @@ def reachability():
     model = databases.kinematicreachability.ReachabilityModel(robot)
     if not model.load():
         model.autogenerate()
-def sampler():
-    RaveCreateSpaceSampler(env, 'halton').SampleSequence(10)
 
-for wish in (basemanip, taskmanip, planner, parameters, retime, smooth, grasping, reachability, sampler):
+for wish in (basemanip, taskmanip, planner, parameters, retime, smooth, grasping, reachability):
     try:
         wish()
         print(wish.__name__, 'worked')

@@ -170,7 +170,7 @@ class InverseKinematicsModel(SolvedJoints):
         del options
         self.generate()
 
-    def save(self, filepermissions: int | None = None) -> None:
+    def save(self, filepermissions: int | None = None) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Do nothing: to derive a solver takes no longer than to read one.
 
         Args:

@@ -2,10 +2,12 @@
 
 import numpy as np
 
-from ravemj.compat.databases.model import DatabaseGenerator
+from ravemj.compat.databases.model import DatabaseGenerator, refusing
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.model.motion_bounds import motion_bounds
+
+STATISTICS = "files of statistics of links"
 
 
 class LinkStatisticsModel(DatabaseGenerator):
@@ -22,6 +24,8 @@ class LinkStatisticsModel(DatabaseGenerator):
         >>> model.setRobotResolutions(xyzdelta=0.005)
     """
 
+    capability = STATISTICS
+
     def load(self) -> bool:
         """Return whether there is something to use: True."""
         return True
@@ -29,7 +33,7 @@ class LinkStatisticsModel(DatabaseGenerator):
     def autogenerate(self, options: object = None) -> None:
         """Do nothing."""
 
-    def save(self) -> None:
+    def save(self, params: object = None) -> None:
         """Do nothing."""
 
     def setRobotWeights(self, type: int = 0, weightmult: float = 1.0) -> None:
@@ -58,3 +62,16 @@ class LinkStatisticsModel(DatabaseGenerator):
         """Return how far a point travels at most per unit of each DOF; the least of all where nothing moves."""
         distances = motion_bounds(self.robot.simulation_state.scene)
         return np.where(distances > 0, distances, np.min(distances, initial=1.0, where=distances > 0))
+
+    CreateOptionParser = staticmethod(refusing("CreateOptionParser", STATISTICS, ""))
+    LoadPickle = refusing("LoadPickle", STATISTICS, "self")
+    RunFromParser = staticmethod(refusing("RunFromParser", STATISTICS, "Model parser **named"))
+    SavePickle = refusing("SavePickle", STATISTICS, "self")
+    generate = refusing("generate", STATISTICS, "self **named")
+    getfilename = refusing("getfilename", STATISTICS, "self read")
+    getversion = refusing("getversion", STATISTICS, "self")
+    grabbedjointspheres = None
+    show = refusing("show", STATISTICS, "self options")
+
+
+run = refusing("linkstatistics.run", STATISTICS, "*arguments **named")

@@ -1,10 +1,34 @@
 """What all models of ``openravepy.databases`` have in common."""
 
+from collections.abc import Callable
+from inspect import Parameter, Signature
 from typing import NoReturn
 
-from ravemj.errors import UnsupportedError
+from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.rave.environment import Environment
 from ravemj.rave.robot import Robot
+
+_BUILDING = "building of databases"
+
+
+def refusing(name: str, capability: str, arguments: str) -> Callable[..., NoReturn]:
+    """Return a function that says what is missing.
+
+    Args:
+        name: What users call it.
+        capability: What ravemj lacks.
+        arguments: The names of its arguments, which completion shows; ``*`` and ``**`` before a name take the rest.
+    """
+
+    def refuse(*given: object, **named: object) -> NoReturn:
+        raise UnsupportedError(name, capability)
+
+    kinds = {0: Parameter.POSITIONAL_OR_KEYWORD, 1: Parameter.VAR_POSITIONAL, 2: Parameter.VAR_KEYWORD}
+    shown = [Parameter(word.lstrip("*"), kinds[word.count("*")]) for word in arguments.split()]
+    vars(refuse).update(__signature__=Signature(shown), capability=capability)
+    refuse.__name__ = refuse.__qualname__ = name
+    refuse.__doc__ = f"Raise ``UnsupportedError``: ravemj has no {capability} yet."
+    return refuse
 
 
 class DatabaseGenerator:
@@ -16,7 +40,7 @@ class DatabaseGenerator:
         named: The same, by name.
     """
 
-    capability = "building of databases"
+    capability = _BUILDING
     """What ravemj lacks to compute it."""
 
     def __init__(self, robot: Robot, *arguments: object, **named: object) -> None:
@@ -44,6 +68,33 @@ class DatabaseGenerator:
             UnsupportedError: ravemj lacks what that takes; ``capability`` says what.
         """
         raise UnsupportedError(f"{type(self).__name__}.autogenerate", self.capability)
+
+    def save(self, params: object = None) -> None:
+        """Refuse to write what is not there.
+
+        Raises:
+            UnsupportedError: ravemj lacks what computing the model takes.
+        """
+        raise UnsupportedError(f"{type(self).__name__}.save", self.capability)
+
+    def clone(self, envother: Environment) -> "DatabaseGenerator":
+        """Return the model for the robot of the same name in another environment."""
+        robot = envother.GetRobot(self.robot.GetName())
+        if robot is None:
+            raise ArgumentError(f"clone: envother has no robot '{self.robot.GetName()}'")
+        return type(self)(robot)
+
+    autogenerateparams = refusing("autogenerateparams", _BUILDING, "self options")
+    generate = refusing("generate", _BUILDING, "self *arguments **named")
+    generatepcg = refusing("generatepcg", _BUILDING, "self")
+    getfilename = refusing("getfilename", _BUILDING, "self read")
+    getversion = refusing("getversion", _BUILDING, "self")
+    preprocess = refusing("preprocess", _BUILDING, "self")
+    show = refusing("show", _BUILDING, "self options")
+    CreateOptionParser = staticmethod(refusing("CreateOptionParser", _BUILDING, "useManipulator"))
+    _PARSER = "parser env args robotatts defaultviewer allowkinbody"
+    InitializeFromParser = staticmethod(refusing("InitializeFromParser", _BUILDING, f"Model {_PARSER}"))
+    RunFromParser = staticmethod(refusing("RunFromParser", _BUILDING, f"Model {_PARSER} **named"))
 
     def __getattr__(self, name: str) -> NoReturn:
         """Say what is missing, for all other methods that OpenRAVE's model has."""

@@ -1,7 +1,8 @@
 """``openravepy.misc``: what scripts need beside the API."""
 
 from ravemj.compat.misc.arms import MultiManipIKSolver
-from ravemj.compat.misc.drawing import DrawAxes, DrawCircle, DrawIkparam, DrawIkparam2
+from ravemj.compat.misc.comparing import CompareBodies, CompareEnvironments, sequence_cross_product
+from ravemj.compat.misc.drawing import DrawAxes, DrawCircle, DrawIkparam, DrawIkparam2, DrawLabel
 from ravemj.compat.misc.sampling import SpaceSamplerExtra
 from ravemj.compat.misc.scripts import (
     InitOpenRAVELogging,
@@ -15,6 +16,8 @@ from ravemj.geometry_functions.solids import TSP, ComputeBoxMesh, ComputeCylinde
 
 __all__ = [
     "TSP",
+    "CompareBodies",
+    "CompareEnvironments",
     "ComputeBoxMesh",
     "ComputeCylinderYMesh",
     "ComputeGeodesicSphereMesh",
@@ -22,6 +25,7 @@ __all__ = [
     "DrawCircle",
     "DrawIkparam",
     "DrawIkparam2",
+    "DrawLabel",
     "InitOpenRAVELogging",
     "LoadTrajectoryFromFile",
     "MultiManipIKSolver",
@@ -30,4 +34,5 @@ __all__ = [
     "SpaceSamplerExtra",
     "mkdir_recursive",
     "myproduct",
+    "sequence_cross_product",
 ]

@@ -9,6 +9,7 @@ from ravemj.core.arrays import checked_numbers, checked_transform
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
+from ravemj.rave.environment import Environment
 from ravemj.rave.specification import IkParameterization
 
 _FRAMES = {
@@ -160,3 +161,25 @@ def _transform(env: Canvas, target: Any) -> Floats:  # noqa: ANN401 - as of Draw
     if hasattr(thing, "GetTransform"):
         return thing.GetTransform()
     return checked_transform(thing, "target")
+
+
+def DrawLabel(
+    env: Environment,
+    label: str = "Label",
+    worldPosition: ArrayLike = (0, 0, 0),
+    color: ArrayLike = (0, 0, 0, 1),
+    height: float = 0.05,
+) -> None:
+    """Refuse to draw a text; see ``env.drawlabel``.
+
+    Args:
+        env: The environment.
+        label: The text.
+        worldPosition: Where it begins [m], shape (3,).
+        color: One colour.
+        height: Height of the letters [m].
+
+    Raises:
+        UnsupportedError: always.
+    """
+    env.drawlabel(label, worldPosition, color, height)

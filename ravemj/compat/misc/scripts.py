@@ -79,12 +79,15 @@ class OpenRAVEGlobalArguments:
         if level:
             logs.RaveSetDebugLevel(_LEVELS[level.lower()] if level.lower() in _LEVELS else int(level))
 
+    parseGlobal = parseGlobalArguments
+
     @staticmethod
     def parseEnvironment(
         options: Any,  # noqa: ANN401 - optparse gives whatever was added
         env: Environment,
         defaultviewer: bool = False,
         returnviewer: bool = False,
+        **kwargs: object,
     ) -> str | None:
         """Apply the options to an environment.
 
@@ -93,6 +96,7 @@ class OpenRAVEGlobalArguments:
             env: The environment.
             defaultviewer: Whether there is a viewer where the options name none.
             returnviewer: Return the viewer's name, in place of attaching it.
+            kwargs: OpenRAVE's; not used.
 
         Returns:
             The name, or None.
@@ -119,6 +123,7 @@ class OpenRAVEGlobalArguments:
         options: Any,  # noqa: ANN401 - optparse gives whatever was added
         createenv: Callable[[], Environment] = Environment,
         defaultviewer: bool = False,
+        **kwargs: object,
     ) -> Environment:
         """Return a new environment to which the options are applied."""
         env = createenv()

@@ -240,7 +240,9 @@ class BodyKinematics:
         """
         joint = self.body.passive_joints[index]
         if not (joint.places_child or joint.static) and self.dof:
-            return np.array(measured_values(joint, self.link_pose(joint.parent).inverse() @ self.link_pose(joint.child)))
+            return np.array(
+                measured_values(joint, self.link_pose(joint.parent).inverse() @ self.link_pose(joint.child))
+            )
         place = self._mimic_qpos.get(len(self.first_dofs) + index)
         return np.array(self._passive_values[index] if place is None else [self.qpos[place]])
 

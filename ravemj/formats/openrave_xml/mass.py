@@ -187,8 +187,8 @@ class DefaultMassReader:
 
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
-        before, *others = self._half_extents
-        self._half_extents = (number(element, self._context.diagnostics, before), *others)
+        before, second, third = self._half_extents
+        self._half_extents = (number(element, self._context.diagnostics, before), second, third)
 
     def extents(self, element: Element) -> None:
         """Read the half sizes of a box; of other kinds and behind a total they have no effect."""

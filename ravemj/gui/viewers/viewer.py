@@ -6,11 +6,12 @@ import weakref
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import also_named
 from ravemj.core.arrays import checked_vector
 from ravemj.core.handles import Handle
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import Simulation
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.graphics.rendering import Camera, CameraIntrinsics, Pinhole
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer, checked_colour
 from ravemj.gui.interaction import Resize
@@ -24,6 +25,8 @@ _LARGEST = 16384
 """Most pixels along a side: what graphics cards can draw."""
 
 _FIGURES = "SetFiguresInCamera"
+
+TEXTS = "texts in viewers"
 
 
 class Viewer(Playing):
@@ -84,17 +87,18 @@ class Viewer(Playing):
         """
         self.SetName(title)
 
-    def SetSize(self, w: int, h: int) -> None:
+    @also_named(w="width", h="height")
+    def SetSize(self, width: int, height: int) -> None:
         """Set the size of the window, and of pictures that name none.
 
         Args:
-            w: Columns [pixels].
-            h: Rows [pixels].
+            width: Columns [pixels].
+            height: Rows [pixels].
 
         Raises:
             ArgumentError: a size is no number from 1 to 16384.
         """
-        self._size = _checked_size(w, h, "SetSize")
+        self._size = _checked_size(width, height, "SetSize")
         self.interaction.handle(Resize(*self._size))
 
     def Move(self, x: int, y: int) -> None:
@@ -112,16 +116,50 @@ class Viewer(Playing):
             showtype: 0 hides it.
         """
 
-    def main(self, bShow: bool = True) -> int:
+    def SetTextSize(self, size: float) -> None:
+        """Refuse another size of texts.
+
+        Args:
+            size: The size.
+
+        Raises:
+            UnsupportedError: always.
+        """
+        raise UnsupportedError("Viewer.SetTextSize", TEXTS)
+
+    def SetUserText(self, userText: str) -> None:
+        """Refuse to show a text.
+
+        Args:
+            userText: The text.
+
+        Raises:
+            UnsupportedError: always.
+        """
+        raise UnsupportedError("Viewer.SetUserText", TEXTS)
+
+    def RegisterCallback(self, properties: object, callback: Callback) -> Handle:
+        """Return a handle; the older form of ``RegisterItemSelectionCallback``.
+
+        Args:
+            properties: Not used.
+            callback: As there.
+        """
+        del properties
+        return self.RegisterItemSelectionCallback(callback)
+
+    @also_named(bShow="show")
+    def main(self, show: bool = True, sig_thread_id: int = 0) -> int:
         """Wait until the window is closed or ``quitmainloop`` is called; without a window, return at once.
 
         Args:
-            bShow: False hides the window.
+            show: False hides the window.
+            sig_thread_id: Not used.
 
         Returns:
             0.
         """
-        del bShow
+        del show, sig_thread_id
         return 0
 
     def quitmainloop(self) -> None:

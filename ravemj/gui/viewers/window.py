@@ -10,6 +10,7 @@ from queue import SimpleQueue
 
 import numpy as np
 
+from ravemj.core.arguments import also_named
 from ravemj.core.arrays import checked_vector
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError, RavemjError, RenderingError
@@ -81,17 +82,18 @@ class WindowViewer(Viewer):
         super().SetName(title)
         self._requests.put(lambda window: window.set_title(str(title)))
 
-    def SetSize(self, w: int, h: int) -> None:
+    @also_named(w="width", h="height")
+    def SetSize(self, width: int, height: int) -> None:
         """Set the size of the window.
 
         Args:
-            w: Columns [pixels].
-            h: Rows [pixels].
+            width: Columns [pixels].
+            height: Rows [pixels].
 
         Raises:
             ArgumentError: a size is no number from 1 to 16384.
         """
-        super().SetSize(w, h)
+        super().SetSize(width, height)
         size = self._size
         self._requests.put(lambda window: window.resize(*size))
 
@@ -119,16 +121,18 @@ class WindowViewer(Viewer):
         """
         self._requests.put(lambda window: window.show_or_hide(bool(showtype)))
 
-    def main(self, bShow: bool = True) -> int:
+    @also_named(bShow="show")
+    def main(self, show: bool = True, sig_thread_id: int = 0) -> int:
         """Wait until the user closes the window or ``quitmainloop`` is called.
 
         Args:
-            bShow: False hides the window.
+            show: False hides the window.
+            sig_thread_id: Not used.
 
         Returns:
             0.
         """
-        self.Show(int(bShow))
+        self.Show(int(show))
         self.wait()
         return 0
 

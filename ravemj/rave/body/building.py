@@ -134,7 +134,17 @@ class Building(Structure, Identity):
         """
         return self.Init(linkinfos, [], uri)
 
-    InitFromLinkInfos = InitFromLinks
+    def InitFromLinkInfos(self, linkInfos: Sequence[LinkInfo], uri: str = "") -> bool:
+        """Make the body of links without joints; the other name of ``InitFromLinks``.
+
+        Args:
+            linkInfos: The descriptions of the links.
+            uri: What ``GetURI`` returns from then on.
+
+        Returns:
+            True.
+        """
+        return self.InitFromLinks(linkInfos, uri)
 
     def InitFromKinBodyInfo(self, info: KinBodyInfo) -> bool:
         """Make the body, its name included, of a description.

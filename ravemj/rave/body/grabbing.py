@@ -4,44 +4,23 @@
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ravemj.core.arguments import checked_kind
-from ravemj.core.transforms import Floats
 from ravemj.engine.grabbing import attached_bodies, grab_as_it_stands
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.enums import GrabbedInfoCheckResult
-from ravemj.rave.infos.base import Info
+from ravemj.rave.infos import GrabbedInfo
 from ravemj.rave.interface import Interface
 from ravemj.rave.link import Link
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
-
-
-@dataclass(eq=False, repr=False)
-class GrabbedInfo(Info):
-    """What ``ResetGrabbed`` needs to hold a body as before.
-
-    Attributes:
-        _grabbedname: Name of the held body.
-        _robotlinkname: Name of the link that holds it.
-        _trelative: ``T_link_body``, shape (4, 4).
-        _setIgnoreRobotLinkNames: Names of the holder's links that the held body does not collide with.
-    """
-
-    _called = "GrabbedInfo"
-
-    _grabbedname: str = ""
-    _robotlinkname: str = ""
-    _trelative: Floats = field(default_factory=lambda: np.eye(4))
-    _setIgnoreRobotLinkNames: list[str] = field(default_factory=list[str])
 
 
 class Grabbing(BodyPart, Interface):

@@ -91,6 +91,8 @@ class StateSaver(ApiObject):
         """Forget the state: nothing is restored any more."""
         self._restorers = []
 
+    Close = Release
+
     def __enter__(self) -> Self:
         return self
 

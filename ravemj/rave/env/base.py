@@ -10,6 +10,7 @@ from ravemj.errors import Diagnostic, ErrorCode, RavemjError
 from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.rave.interface import Annotations, UserData
 from ravemj.rave.kinbody import KinBody
+from ravemj.rave.modules import Module
 from ravemj.rave.robot import Robot
 
 if TYPE_CHECKING:
@@ -37,11 +38,11 @@ class EnvironmentPart(UserData):
         self._objects: WeakValueDictionary[BodyState, KinBody] = WeakValueDictionary()
         self._kept_objects: dict[BodyState, KinBody] = {}  # of bodies that are in the environment
         self._viewers: list[Viewer] = []
-        self._modules: list[Module] = []
         self._found: dict[Diagnostic, None] = {}  # as ordered sets, which loading a file again does not let grow
         self._files: dict[str, None] = {}
         self._annotations = Annotations()
         self._body_callbacks: list[BodyCallback] = []
+        self._modules: list[Module] = []
         self._is_destroyed = False
 
     def _check_alive(self) -> None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Contents(EnvironmentPart):
-    """The bodies of an environment, as objects and as triangles; and modules."""
+    """The bodies of an environment, as objects and as triangles; and its modules."""
 
     TriangulateOptions = TriangulateOptions
     SelectionOptions = TriangulateOptions
@@ -53,16 +53,15 @@ class Contents(EnvironmentPart):
             >>> box.SetName("box")
             >>> env.Add(box)
         """
-        if not isinstance(interface, KinBody):
-            self._add_other(interface, cmdargs)
+        if isinstance(interface, Module):
+            self.AddModule(interface, cmdargs)
+        elif not isinstance(interface, KinBody):
+            self._add_other(interface)
         else:
             self.AddKinBody(interface, addMode)
 
-    def _add_other(self, interface: object, cmdargs: str = "") -> None:
-        """Add a module; accept a viewer of this environment, which is attached already; refuse anything else."""
-        if isinstance(interface, Module):
-            self.AddModule(interface, cmdargs)
-            return
+    def _add_other(self, interface: object) -> None:
+        """Accept a viewer of this environment, which is attached already; refuse anything else that is no body."""
         if any(interface is viewer for viewer in self._viewers):
             return
         kind = "None" if interface is None else type(interface).__name__
@@ -121,7 +120,7 @@ class Contents(EnvironmentPart):
         It stays usable as a body that is not added, and can be added again. What it held, and what held it, let go.
 
         Args:
-            interface: A body, a robot or a viewer.
+            interface: A body, a robot, a module or a viewer.
 
         Returns:
             False if it was not there.
@@ -160,12 +159,13 @@ class Contents(EnvironmentPart):
         return body is not None and self.Remove(body)
 
     def _remove_other(self, interface: object) -> bool:
-        """Close and remove a viewer, or remove a module; return whether it was there."""
-        if isinstance(interface, Module) and interface in self._modules:
-            self._modules.remove(interface)
-            return True
+        """End and remove a module or a viewer; return whether it was there."""
         if interface is None:
             raise ArgumentError("Remove: takes a body or robot, not None")
+        if isinstance(interface, Module) and interface in self._modules:
+            self._modules.remove(interface)
+            interface.end()
+            return True
         for viewer in self._viewers:
             if viewer is interface:
                 self._viewers.remove(viewer)
@@ -282,8 +282,8 @@ class Contents(EnvironmentPart):
         with self._simulation.lock:
             return _triangles(state for state in self._simulation.bodies if takes(state.scene, name))
 
-    def AddModule(self, module: object, args: str = "") -> int:
-        """Add a module.
+    def AddModule(self, module: Module | None, args: str = "") -> int:
+        """Add a module and start it.
 
         Args:
             module: What ``RaveCreateModule`` returned.
@@ -293,21 +293,19 @@ class Contents(EnvironmentPart):
             0.
 
         Raises:
-            openrave_exception: it is None, or something else.
+            openrave_exception: it is no module of this environment.
 
         Example:
             >>> module = RaveCreateModule(env, "BaseManipulation")
             >>> env.AddModule(module, robot.GetName())
             0
         """
-        if not isinstance(module, Module):
-            if module is None:
-                message = "module is None, as RaveCreateModule returns for names that no plugin has"
-            else:
-                message = f"module is a {type(module).__name__}, and should be what RaveCreateModule returned"
-            raise ArgumentError(f"AddModule: {message}")
+        if module is None:
+            raise ArgumentError("AddModule: module is None, as RaveCreateModule returns for names that no plugin has")
+        checked_kind(module, Module, "AddModule: module", "what RaveCreateModule returned")
+        self._check_alive()
         if module.GetEnv() is not self:
-            raise ArgumentError("AddModule: module was made for another environment")
+            raise ArgumentError(f"AddModule: module was made for {module.GetEnv()!r}, not for {self!r}")
         if module not in self._modules:
             self._modules.append(module)
         module.start(args)

@@ -5,7 +5,8 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Ints
-from ravemj.errors import ArgumentError, ErrorCode
+from ravemj.errors import ArgumentError, ErrorCode, UnsupportedError
+from ravemj.geometry_functions import AABB, OrientedBox
 from ravemj.model import drawing
 from ravemj.model.drawing import Primitives
 from ravemj.rave.env.base import EnvironmentPart
@@ -137,6 +138,71 @@ class Drawing(EnvironmentPart):
         """
         center, half = checked_vector(pos, 3, "pos"), checked_vector(extents, 3, "extents")
         return self._draw(drawing.box(center, half, _checked_colors(color, 1)[0]))
+
+    def drawboxarray(self, pos: ArrayLike, extents: ArrayLike, color: ArrayLike | None = None) -> GraphHandle | None:
+        """Draw boxes of one size along the axes of the world.
+
+        Args:
+            pos: Their centres, (N, 3) [m].
+            extents: Half of their sides, (3,) [m].
+            color: One colour.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+        """
+        half, rgba = checked_vector(extents, 3, "extents"), _checked_colors(color, 1)[0]
+        return self._draw(drawing.merge(drawing.box(center, half, rgba) for center in _checked_points(pos)))
+
+    def drawaabb(
+        self, aabb: AABB, transform: ArrayLike, color: ArrayLike | None = None, transparency: float = 0.0
+    ) -> GraphHandle | None:
+        """Draw a box in a frame.
+
+        Args:
+            aabb: The box, along the axes of the frame.
+            transform: ``T_world_frame``: 4x4, 3x4 or a pose.
+            color: One colour.
+            transparency: 0 is opaque, 1 invisible.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+        """
+        rgba = _checked_colors(color, 1)[0]
+        rgba[3] *= 1 - transparency
+        return self._draw(
+            drawing.box(aabb.pos(), aabb.extents(), rgba).placed(checked_transform(transform, "transform"))
+        )
+
+    def drawobb(
+        self, obb: OrientedBox, color: ArrayLike | None = None, transparency: float = 0.0
+    ) -> GraphHandle | None:
+        """Draw an oriented box.
+
+        Args:
+            obb: The box.
+            color: One colour.
+            transparency: 0 is opaque, 1 invisible.
+
+        Returns:
+            The handle that keeps the drawing; None without a viewer.
+        """
+        return self.drawaabb(AABB((0, 0, 0), obb.extents()), obb.transform(), color, transparency)
+
+    def drawlabel(
+        self, label: str, worldPosition: ArrayLike, color: ArrayLike | None = None, height: float = 0.05
+    ) -> None:
+        """Refuse to draw a text.
+
+        Args:
+            label: The text.
+            worldPosition: Where it begins [m], (3,).
+            color: One colour.
+            height: Height of the letters [m].
+
+        Raises:
+            UnsupportedError: always.
+        """
+        raise UnsupportedError("drawlabel", "texts in drawings")
 
     def drawplane(self, transform: ArrayLike, extents: ArrayLike, texture: ArrayLike) -> GraphHandle | None:
         """Draw an image on a rectangle, in at most 64 x 64 cells of one colour.

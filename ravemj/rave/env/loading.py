@@ -2,6 +2,7 @@
 
 import logging
 import os
+import tempfile
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
@@ -171,12 +172,13 @@ class Loading(EnvironmentPart):
             into.simulation_state.rebuild(replace(scene, is_robot=into.IsRobot()))
         return into
 
-    def ReadTrimeshURI(self, filename: str) -> TriMesh | None:
+    def ReadTrimeshURI(self, filename: str, atts: Attributes | None = None) -> TriMesh | None:
         """Read a mesh file: all its triangles, in metres and in the frame of the file.
 
         Args:
             filename: The file. It is looked for in the working folder, then in the folders of the environment variable
                 ``OPENRAVE_DATA``.
+            atts: ``scalegeometry`` ("2" or "2 3 4") scales them; others have no meaning here.
 
         Returns:
             The triangles, or None, with the reason in the log, where there is no such file or it is broken.
@@ -185,16 +187,47 @@ class Loading(EnvironmentPart):
         from ravemj.formats.readers import find  # noqa: PLC0415
 
         path = find(filename)
+        factors = [float(word) for word in _checked_attributes(atts, "ReadTrimesh").get("scalegeometry", "1").split()]
+        x, y, z = (factors * 3)[:3]
         try:
             if path is None:
                 raise SourceError("there is no such file", Source(filename), "check the path, or set OPENRAVE_DATA")
-            parts = read_mesh(path)
+            parts = read_mesh(path, (x, y, z))
         except SourceError as error:
             _LOG.error("%s", error)
             return None
         return trimesh_of(Mesh.merged(part.mesh for part in parts))
 
     ReadTrimeshFile = ReadTrimeshURI
+
+    def ReadTrimeshData(self, data: str | bytes, formathint: str, atts: Attributes | None = None) -> TriMesh | None:
+        """Read the content of a mesh file; see ``ReadTrimeshURI``.
+
+        Args:
+            data: The content.
+            formathint: The suffix of the file that it would be, for instance ``stl``.
+            atts: As there.
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, f"mesh.{formathint.lstrip('.')}")
+            with open(path, "wb") as file:
+                file.write(data if isinstance(data, bytes) else data.encode())
+            return self.ReadTrimeshURI(path, atts)
+
+    def ReadInterfaceURI(self, filename: Text, atts: Attributes | None = None) -> KinBody | None:
+        """Read a robot or a body from a file without adding it; other interfaces stand in no file here.
+
+        Args:
+            filename: The file; see ``Load``.
+            atts: Attributes that act on it; see ``Load``.
+
+        Returns:
+            The robot or body; None, with the reason in the log, if there is none in the file.
+        """
+        reading = _read_file(filename, _checked_attributes(atts, "ReadInterfaceURI"))
+        return self._read(reading, None, is_robot=False)
+
+    ReadInterfaceXMLFile = ReadInterfaceURI
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

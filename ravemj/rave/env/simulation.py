@@ -118,6 +118,8 @@ class Simulating(EnvironmentPart):
         for body in map(self.wrap, self._simulation.bodies):
             if isinstance(body, Robot):
                 body.step_controller(timestep)
+        for module in tuple(self._modules):
+            module.SimulationStep(timestep)
 
 
 def _checked_step(timestep: float, name: str, least: float = 0.0) -> float:

@@ -6,24 +6,47 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, Field, dataclass, field, fields
 from enum import Enum
-from typing import Any, ClassVar, Self, cast
+from typing import Any, ClassVar, Self, TypeVar, cast, dataclass_transform
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform
 from ravemj.core.transforms import Floats, Pose, Vec3, pose_of
 from ravemj.errors import ArgumentError
 from ravemj.model.scene import Parameters
+from ravemj.rave.infos.json import Entry, Json, parameters
 from ravemj.rave.trimesh import TriMesh
 
+T = TypeVar("T")
 
-@dataclass(eq=False, repr=False)
-class Info:
+
+class FieldOfClass:
+    """What stands on the class for a field of its objects, which scripts and ``dir`` look for there."""
+
+
+@dataclass_transform(eq_default=False, field_specifiers=(field,))
+def info_class(cls: type[T]) -> type[T]:
+    """Make a dataclass of fields that show on the class, too."""
+    made = dataclass(eq=False, repr=False)(cls)
+    for one in fields(cast("Any", made)):
+        if not hasattr(made, one.name):
+            setattr(made, one.name, FieldOfClass())
+    return made
+
+
+@info_class
+class Info(ApiObject):
     """An info: it compares by its fields, and prints as the expression that makes it, without default values."""
 
     _called: ClassVar[str]
     """The class as users write it."""
+    _internal: ClassVar[tuple[str, ...]] = (
+        *("of", "geometry", "draw", "link", "adjacent", "joint", "motor", "manipulator", "sensor", "camera"),
+        *("named_values", "transform", "values_by_axis", "same_structure", "parameters", "with_parameters"),
+    )
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
@@ -38,12 +61,51 @@ class Info:
         changed = [f"{name}={_written(value)}" for name, value in shown.items() if not _same(value, new[name])]
         return f"{self._called}({', '.join(changed)})"
 
+    def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
+        """Return the info as OpenRAVE's JSON has it: dicts, lists, numbers and texts.
+
+        Args:
+            unitScale: Factor for all lengths.
+            options: OpenRAVE's; not used.
+        """
+        del options
+        new = type(self)()
+        written = Json()
+        for key, name, form, optional in self._json():
+            value = getattr(self, name)
+            if not (optional and (_same(value, getattr(new, name)) or value is None)):
+                written[key] = form.write(value, unitScale)
+        return written
+
+    def DeserializeJSON(self, obj: Json, unitScale: float = 1.0, options: object = None) -> None:
+        """Take over what JSON has; fields whose keys are not there stay as they are.
+
+        Args:
+            obj: What ``SerializeJSON`` returns, or a part of it.
+            unitScale: Factor for all lengths.
+            options: OpenRAVE's; not used.
+
+        Raises:
+            openrave_exception: something in it is wrong.
+        """
+        del options
+        checked_kind(obj, Mapping, f"{self._called}.DeserializeJSON: obj", "a dict")
+        for key, name, form, _ in (entry for entry in self._json(obj) if entry.key in obj):
+            try:
+                setattr(self, name, form.read(obj[key], unitScale, getattr(self, name)))
+            except (ValueError, TypeError, KeyError, AttributeError) as error:
+                raise ArgumentError(f"{self._called}.DeserializeJSON: {key}: {error}") from None
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        """Return the table of the keys; ``obj`` is what is about to be read."""
+        raise NotImplementedError
+
     def __dir__(self) -> list[str]:
         shown = {one.name for one in fields(self) if one.repr}
-        return [name for name in super().__dir__() if name.startswith("__") or name in shown]
+        return sorted({*super().__dir__(), *shown})
 
 
-@dataclass(eq=False, repr=False)
+@info_class
 class ParameterFields(Info):
     """The fields of links and joints that hold parameters."""
 
@@ -67,6 +129,14 @@ class ParameterFields(Info):
             tuple((name, tuple(values.astype(np.int_).tolist())) for name, values in integers.items()),
             tuple((name, str(text)) for name, text in self._mapStringParameters.items()),
         )
+
+
+PARAMETERS_JSON = (
+    Entry("floatParameters", "_mapFloatParameters", parameters("values"), optional=True),
+    Entry("intParameters", "_mapIntParameters", parameters("values"), optional=True),
+    Entry("stringParameters", "_mapStringParameters", parameters("value"), optional=True),
+)
+"""The keys of ``ParameterFields``."""
 
 
 def identity() -> Floats:

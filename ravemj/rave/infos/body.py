@@ -1,10 +1,14 @@
 """Descriptions of bodies and robots."""
 
+# JSON and users put anything into the fields that the functions of forms take.
+# pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownMemberType=false
+
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import IntFlag
 from typing import TYPE_CHECKING, TypeVar
 
@@ -16,10 +20,12 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.base import Info, identity
+from ravemj.rave.infos.base import Info, identity, info_class
+from ravemj.rave.infos.connected import ConnectedBodyInfo, GrabbedInfo
 from ravemj.rave.infos.joint import JointInfo
+from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Form, Json, infos
 from ravemj.rave.infos.link import LinkInfo
-from ravemj.rave.infos.robot import AttachedSensorInfo, ManipulatorInfo
+from ravemj.rave.infos.robot import AttachedSensorInfo, GripperInfo, ManipulatorInfo
 
 if TYPE_CHECKING:
     from ravemj.model.builder import BodyBuilder
@@ -35,7 +41,7 @@ class ExtractInfoOptions(IntFlag):
     """Leave the joint values out."""
 
 
-@dataclass(eq=False, repr=False)
+@info_class
 class KinBodyInfo(Info):
     """The description of a body.
 
@@ -76,25 +82,63 @@ class KinBodyInfo(Info):
         joints = [replace(joint, _vcurrentvalues=None) for joint in self._vJointInfos]
         return replace(self, _vLinkInfos=links, _vJointInfos=joints, _transform=np.eye(4), _dofValues=[])
 
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return _BODY_JSON
+
     def values_by_axis(self) -> dict[tuple[str, int], float]:
         """Return the joint values that are asked for, by the joint's name and the axis."""
         return {(str(name), int(axis)): float(value) for (name, axis), value in self._dofValues}
 
 
-@dataclass(eq=False, repr=False)
+@info_class
 class RobotBaseInfo(KinBodyInfo):
     """The description of a robot.
 
     Attributes:
         _vManipInfos: Its arms, a list of ``ManipulatorInfo``.
         _vAttachedSensorInfos: Its sensors, a list of ``AttachedSensorInfo``.
+        _vConnectedBodyInfos: Bodies that can be connected to it, a list of ``ConnectedBodyInfo``.
+        _vGripperInfos: Its grippers, a list of ``GripperInfo``.
     """
 
     _called = "Robot.RobotBaseInfo"
 
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return (*_BODY_JSON, *_ROBOT_JSON)
+
     _isRobot: bool = True
     _vManipInfos: Sequence[ManipulatorInfo] = field(default_factory=list[ManipulatorInfo])
     _vAttachedSensorInfos: Sequence[AttachedSensorInfo] = field(default_factory=list[AttachedSensorInfo])
+    _vConnectedBodyInfos: Sequence[ConnectedBodyInfo] = field(default_factory=list[ConnectedBodyInfo])
+    _vGripperInfos: Sequence[GripperInfo] = field(default_factory=list[GripperInfo])
+
+
+_DOF_VALUES = Form(
+    lambda values, scale: [
+        {"jointName": name, "value": float(value)} | ({"jointAxis": axis} if axis else {})
+        for (name, axis), value in values
+    ],
+    lambda items, scale, present: [((one["jointName"], one.get("jointAxis", 0)), one["value"]) for one in items],
+)
+_BODY_JSON = (
+    Entry("id", "_id", TEXT, optional=True),
+    Entry("name", "_name", TEXT, optional=True),
+    Entry("referenceUri", "_referenceUri", TEXT, optional=True),
+    Entry("transform", "_transform", POSE),
+    Entry("isRobot", "_isRobot", PLAIN),
+    Entry("dofValues", "_dofValues", _DOF_VALUES, optional=True),
+    Entry("grabbed", "_vGrabbedInfos", infos(lambda item: GrabbedInfo()), optional=True),
+    Entry("links", "_vLinkInfos", infos(lambda item: LinkInfo()), optional=True),
+    Entry("joints", "_vJointInfos", infos(lambda item: JointInfo()), optional=True),
+)
+_ROBOT_JSON = (
+    Entry("tools", "_vManipInfos", infos(lambda item: ManipulatorInfo()), optional=True),
+    Entry("attachedSensors", "_vAttachedSensorInfos", infos(lambda item: AttachedSensorInfo()), optional=True),
+    Entry("connectedBodies", "_vConnectedBodyInfos", infos(lambda item: ConnectedBodyInfo()), optional=True),
+    Entry("gripperInfos", "_vGripperInfos", infos(lambda item: GripperInfo()), optional=True),
+)
 
 
 def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:

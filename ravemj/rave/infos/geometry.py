@@ -3,19 +3,23 @@
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import field
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_numbers
+from ravemj.core.arrays import checked_numbers, checked_transform
 from ravemj.core.transforms import Floats, Vec3
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, Source, SourceError
+from ravemj.geometry_functions import AABB
 from ravemj.model import scene
+from ravemj.model.bounds import geometry_bounds
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import GeometryType
-from ravemj.rave.infos.base import Info, filled, identity, pose, vector
+from ravemj.rave.infos.base import filled, identity, info_class, pose, vector
+from ravemj.rave.infos.geometry_sizes import AxialSlice, GeometrySizes, SideWall
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 
 if TYPE_CHECKING:
@@ -26,8 +30,8 @@ _SHAPES = {GeometryType[one.name]: one.shape for one in scene.SHAPE_TYPES}
 _VECTORS = ("_vGeomData", "_vGeomData2", "_vGeomData3", "_vGeomData4")
 
 
-@dataclass(eq=False, repr=False)
-class GeometryInfo(Info):
+@info_class
+class GeometryInfo(GeometrySizes):
     """A shape of a link.
 
     Attributes:
@@ -39,6 +43,8 @@ class GeometryInfo(Info):
         _vGeomData3: Size of the cross on a container's bottom [m].
         _vGeomData4: Size of the plate on a container's bottom [m].
         _vCrossSection: Corners x y of a prism [m], shape (n, 2).
+        _vSideWalls: Walls of a cage, and ``_vAxialSlices`` radii of a round shape: only kept, since ravemj makes no
+            bodies of these.
         _meshcollision: The triangles of a trimesh, a ``TriMesh``; of another shape those that ``SetCollisionMesh`` set.
         _vDiffuseColor: Red, green, blue from 0 to 1.
         _vAmbientColor: The same in the shade.
@@ -68,6 +74,8 @@ class GeometryInfo(Info):
     _vGeomData3: ArrayLike = field(default_factory=filled(0, 4))
     _vGeomData4: ArrayLike = field(default_factory=filled(0, 4))
     _vCrossSection: ArrayLike = field(default_factory=lambda: np.zeros((0, 2)))
+    _vSideWalls: Sequence[SideWall] = field(default_factory=list[SideWall])
+    _vAxialSlices: Sequence[AxialSlice] = field(default_factory=list[AxialSlice])
     _meshcollision: TriMesh | None = None
     _vDiffuseColor: ArrayLike = field(default_factory=filled(1))
     _vAmbientColor: ArrayLike = field(default_factory=filled(0))
@@ -185,6 +193,19 @@ class GeometryInfo(Info):
         collision = _file(self._filenamecollision, self._vCollisionScale)
         file = collision or _file(self._filenamerender, self._vRenderScale)
         return scene.Mesh.merged(part.mesh for part in _parts(file)) if file else scene.Mesh.merged([])
+
+    def ComputeAABB(self, transform: ArrayLike) -> AABB:
+        """Return the smallest box along the axes that holds the shape, its link standing at a pose.
+
+        Args:
+            transform: ``T_a_link``: 4x4, 3x4 or 7 numbers.
+        """
+        low, high = geometry_bounds(self.geometry(), checked_transform(transform, "ComputeAABB: transform"))
+        return AABB((low + high) / 2, (high - low) / 2)
+
+    def GetCollisionMesh(self) -> TriMesh:
+        """Return the shape as triangles, in its own frame."""
+        return trimesh_of(self.geometry().triangulated())
 
     def draw(self, filename: str) -> None:
         """Draw a mesh file in place of the shape; '' draws the shape itself."""

@@ -1,11 +1,15 @@
 """The description of a joint."""
 
+# JSON and users put anything into the fields that the functions of forms take.
+# pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownMemberType=false
+
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -18,10 +22,17 @@ from ravemj.model.joints import about, directions_at, reported_anchor, wxyz_from
 from ravemj.model.mimic import Equations
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import JointType
-from ravemj.rave.infos.base import Info, ParameterFields, filled, per_axis, vector
+from ravemj.rave.infos.base import PARAMETERS_JSON, ParameterFields, filled, info_class, per_axis, vector
+from ravemj.rave.infos.json import LENGTHS, PLAIN, TEXT, Entry, Form, Json, info, named
+from ravemj.rave.infos.motor import (
+    ElectricMotorActuatorInfo,
+    JointControlInfo_ExternalDevice,
+    JointControlInfo_IO,
+    JointControlInfo_RobotController,
+    JointControlMode,
+)
 
 if TYPE_CHECKING:
-    from ravemj.formats.openrave_xml.actuator import Motor
     from ravemj.model.builder import JointBuilder, LinkBuilder
 
 _KINDS: dict[JointType, scene.JointKind] = {
@@ -52,47 +63,7 @@ _AXIS_FIELDS = (
 _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-@dataclass(eq=False, repr=False)
-class ElectricMotorActuatorInfo(Info):
-    """An electric motor behind a gear. Its torque wins over ``JointInfo._vmaxtorque``.
-
-    Attributes:
-        gear_ratio: Turns of the motor for one of the joint.
-        max_instantaneous_torque: Torque of the motor for a moment [N m].
-        nominal_torque: Torque of the motor for long [N m]; taken where the other is 0.
-        rotor_inertia: Inertia of the rotor [kg m^2].
-    """
-
-    _called = "ElectricMotorActuatorInfo"
-
-    model_type: str = ""
-    gear_ratio: float = 0.0
-    assigned_power_rating: float = 0.0
-    max_speed: float = 0.0
-    no_load_speed: float = 0.0
-    stall_torque: float = 0.0
-    max_instantaneous_torque: float = 0.0
-    nominal_speed_torque_points: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
-    max_speed_torque_points: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
-    nominal_torque: float = 0.0
-    rotor_inertia: float = 0.0
-    torque_constant: float = 0.0
-    nominal_voltage: float = 0.0
-    speed_constant: float = 0.0
-    starting_current: float = 0.0
-    terminal_resistance: float = 0.0
-    coloumb_friction: float = 0.0
-    viscous_friction: float = 0.0
-
-    def motor(self) -> "Motor":
-        """Return torque and inertia at the joint."""
-        names = ("gear_ratio", "max_instantaneous_torque", "nominal_torque", "rotor_inertia")
-        from ravemj.formats.openrave_xml.actuator import motor_of  # noqa: PLC0415 - rarely wanted
-
-        return motor_of({name: float(getattr(self, name)) for name in names})
-
-
-@dataclass(eq=False, repr=False)
+@info_class
 class JointInfo(ParameterFields):
     """A joint between two links. Fields with a number for each axis may be longer than there are axes.
 
@@ -113,6 +84,8 @@ class JointInfo(ParameterFields):
         _bIsActive: Whether it has DOFs.
         _vmimic: How it follows others: a list with the equations of position, velocity and acceleration for each axis.
         _infoElectricMotor: Its motor, or None.
+        _controlMode: Who drives it, a ``JointControlMode``; ``_jci_robotcontroller``, ``_jci_io`` and
+            ``_jci_externaldevice`` say more. Only kept.
 
     Example:
         >>> info = ravemj.KinBody.JointInfo()
@@ -149,6 +122,10 @@ class JointInfo(ParameterFields):
     _bIsActive: bool = True
     _vmimic: Sequence[Sequence[str] | None] = field(default_factory=list[Sequence[str] | None])
     _infoElectricMotor: ElectricMotorActuatorInfo | None = None
+    _controlMode: JointControlMode = JointControlMode.JCM_None
+    _jci_robotcontroller: JointControlInfo_RobotController | None = None
+    _jci_io: JointControlInfo_IO | None = None
+    _jci_externaldevice: JointControlInfo_ExternalDevice | None = None
     _id: str | None = None
 
     @classmethod
@@ -177,6 +154,29 @@ class JointInfo(ParameterFields):
             _vmimic=[] if mimic is None else [[mimic.position, mimic.velocity, mimic.acceleration]],
             **of_axes,
         ).with_parameters(joint.parameters)
+
+    def GetDOF(self) -> int:
+        """Return the number of axes of a joint of this type; 0 where the type is not set.
+
+        Raises:
+            openrave_exception: there is no such type.
+        """
+        kind = JointType(self._type)
+        return _SPECIAL_AXES[kind] if kind in _SPECIAL_AXES else int(kind) & 0xF
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        kind = JointType(self._type) if obj is None or not obj.get("type") else _WORDS.read(obj["type"], 1.0, None)
+        return _joint_json(kind == JointType.Prismatic)
+
+    def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
+        """Return the joint as OpenRAVE's JSON has it, see ``Info``; lists have a number for each axis.
+
+        Args:
+            unitScale: Factor for all lengths: of a slider also of its limits.
+            options: OpenRAVE's; not used.
+        """
+        written = super().SerializeJSON(unitScale, options)
+        return {key: value[: self.GetDOF()] if key in _OF_AXES else value for key, value in written.items()}
 
     def named_values(self) -> list[tuple[tuple[str, int], float]]:
         """Return the present values, each with the joint's name and the axis."""
@@ -253,6 +253,66 @@ class JointInfo(ParameterFields):
     def _equations(self) -> Equations | None:
         first = self._vmimic[0] if self._vmimic else None
         return Equations(*map(str, first)) if first and any(first) else None
+
+
+_TWO_AXES = (JointType.RR, JointType.RP, JointType.PR, JointType.PP)
+_SPECIAL_AXES = {JointType.Universal: 2, JointType.Hinge2: 2, JointType.Spherical: 3, JointType.Trajectory: 1}
+_WORDS = named(
+    {
+        JointType(0): "",
+        JointType.Revolute: "revolute",
+        JointType.Prismatic: "prismatic",
+        **{
+            kind: kind.name.lower() for kind in (JointType.RR, JointType.RP, JointType.PR, JointType.PP, *_SPECIAL_AXES)
+        },
+    }
+)
+_CONTROL = named({mode: mode.name.removeprefix("JCM_") for mode in JointControlMode})
+_MIMICS = Form(
+    lambda mimics, scale: [{"equations": list(one) if one else ["", "", ""]} for one in mimics],
+    lambda items, scale, present: [[*one["equations"], "", ""][:3] for one in items],
+)
+_OF_AXES = {f"{kind}{quantity}" for kind in ("max", "hardMax") for quantity in ("Vel", "Accel", "Jerk")} | {
+    *("maxTorque", "maxInertia", "resolutions", "weights", "offsets", "lowerLimit", "upperLimit", "isCircular"),
+}
+"""Keys whose lists have as many numbers as the joint has axes."""
+
+
+def _joint_json(slides: bool) -> Sequence[Entry]:
+    """Return the table of a joint; the values of one that slides are lengths."""
+    value = LENGTHS if slides else PLAIN
+    return (
+        Entry("type", "_type", _WORDS),
+        Entry("id", "_id", TEXT),
+        Entry("name", "_name", TEXT),
+        Entry("anchors", "_vanchor", LENGTHS),
+        Entry("parentLinkName", "_linkname0", TEXT),
+        Entry("childLinkName", "_linkname1", TEXT),
+        Entry("axes", "_vaxes", PLAIN),
+        Entry("currentValues", "_vcurrentvalues", value, optional=True),
+        Entry("resolutions", "_vresolution", PLAIN),
+        Entry("maxVel", "_vmaxvel", value),
+        Entry("hardMaxVel", "_vhardmaxvel", value),
+        Entry("maxAccel", "_vmaxaccel", value),
+        Entry("hardMaxAccel", "_vhardmaxaccel", value),
+        Entry("maxJerk", "_vmaxjerk", value),
+        Entry("hardMaxJerk", "_vhardmaxjerk", value),
+        Entry("maxTorque", "_vmaxtorque", PLAIN),
+        Entry("maxInertia", "_vmaxinertia", PLAIN),
+        Entry("weights", "_vweights", PLAIN),
+        Entry("offsets", "_voffsets", PLAIN),
+        Entry("lowerLimit", "_vlowerlimit", value),
+        Entry("upperLimit", "_vupperlimit", value),
+        Entry("mimics", "_vmimic", _MIMICS, optional=True),
+        *PARAMETERS_JSON,
+        Entry("electricMotorActuator", "_infoElectricMotor", info(ElectricMotorActuatorInfo), optional=True),
+        Entry("isCircular", "_bIsCircular", PLAIN),
+        Entry("isActive", "_bIsActive", PLAIN),
+        Entry("controlMode", "_controlMode", _CONTROL),
+        Entry("jointControlInfoRobotController", "_jci_robotcontroller", info(JointControlInfo_RobotController), True),
+        Entry("jointControlInfoIO", "_jci_io", info(JointControlInfo_IO), True),
+        Entry("jointControlInfoExternalDevice", "_jci_externaldevice", info(JointControlInfo_ExternalDevice), True),
+    )
 
 
 def _unit(direction: Vec3) -> Vec3:

@@ -1,10 +1,14 @@
 """The description of a link."""
 
+# JSON and users put anything into the fields that the functions of forms take.
+# pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownMemberType=false
+
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Self
 
 from numpy.typing import ArrayLike
@@ -15,14 +19,15 @@ from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.model.inertia import inertial_about, principal_frame, principal_moments
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.base import ParameterFields, filled, identity, pose
+from ravemj.rave.infos.base import PARAMETERS_JSON, ParameterFields, filled, identity, info_class, pose
 from ravemj.rave.infos.geometry import GeometryInfo
+from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Json, infos, lengths
 
 if TYPE_CHECKING:
     from ravemj.model.builder import LinkBuilder
 
 
-@dataclass(eq=False, repr=False)
+@info_class
 class LinkInfo(ParameterFields):
     """A link of a body.
 
@@ -102,9 +107,28 @@ class LinkInfo(ParameterFields):
             parameters=self.parameters(),
         )
 
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return _LINK_JSON
+
     def adjacent(self, names: Sequence[str]) -> list[int]:
         """Return the indices of the links that it is never tested against."""
         return [names.index(name) for name in self._vForcedAdjacentLinks if name in names]
+
+
+_LINK_JSON = (
+    Entry("id", "_id", TEXT),
+    Entry("name", "_name", TEXT),
+    Entry("transform", "_t", POSE),
+    Entry("massTransform", "_tMassFrame", POSE),
+    Entry("mass", "_mass", PLAIN),
+    Entry("inertiaMoments", "_vinertiamoments", lengths(2)),
+    *PARAMETERS_JSON,
+    Entry("forcedAdjacentLinks", "_vForcedAdjacentLinks", PLAIN, optional=True),
+    Entry("geometries", "_vgeometryinfos", infos(lambda item: GeometryInfo()), optional=True),
+    Entry("isStatic", "_bStatic", PLAIN),
+    Entry("isEnabled", "_bIsEnabled", PLAIN),
+)
 
 
 def geometries_of(infos: Sequence[GeometryInfo], *, visible: bool = True) -> tuple[scene.Geometry, ...]:

@@ -4,7 +4,7 @@
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -14,7 +14,9 @@ from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.infos.base import Info, identity, pose, vector
+from ravemj.rave.infos.base import Info, identity, info_class, pose, vector
+from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Json, info
+from ravemj.rave.infos.sensor import CameraGeomData, SensorGeometry
 
 if TYPE_CHECKING:
     from ravemj.model.manipulators import ManipulatorBuilder
@@ -24,7 +26,7 @@ def _ahead() -> ArrayLike:
     return np.array([0.0, 0.0, 1.0])
 
 
-@dataclass(eq=False, repr=False)
+@info_class
 class ManipulatorInfo(Info):
     """An arm of a robot.
 
@@ -97,8 +99,26 @@ class ManipulatorInfo(Info):
             gripper_name=self._grippername or "",
         )
 
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return _MANIPULATOR_JSON
 
-@dataclass(eq=False, repr=False)
+
+_MANIPULATOR_JSON = (
+    Entry("id", "_id", TEXT),
+    Entry("name", "_name", TEXT),
+    Entry("transform", "_tLocalTool", POSE),
+    Entry("chuckingDirections", "_vChuckingDirection", PLAIN, optional=True),
+    Entry("direction", "_vdirection", PLAIN),
+    Entry("baseLinkName", "_sBaseLinkName", TEXT),
+    Entry("effectorLinkName", "_sEffectorLinkName", TEXT),
+    Entry("ikSolverType", "_sIkSolverXMLId", TEXT),
+    Entry("gripperJointNames", "_vGripperJointNames", PLAIN, optional=True),
+    Entry("grippername", "_grippername", TEXT),
+)
+
+
+@info_class
 class AttachedSensorInfo(Info):
     """A sensor on a link.
 
@@ -107,6 +127,7 @@ class AttachedSensorInfo(Info):
         _linkname: Name of the link that carries it.
         _trelative: ``T_link_sensor``, shape (4, 4).
         _sensorname: OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``; empty for a mere frame.
+        _sensorgeometry: What is fixed about it: of a camera a ``CameraGeomData``.
     """
 
     _called = "Robot.AttachedSensorInfo"
@@ -115,7 +136,7 @@ class AttachedSensorInfo(Info):
     _linkname: str | None = None
     _trelative: ArrayLike = field(default_factory=identity)
     _sensorname: str | None = None
-    _camera: scene.Intrinsics | None = field(default=None, repr=False)
+    _sensorgeometry: SensorGeometry | None = None
     _id: str | None = None
 
     @classmethod
@@ -126,7 +147,7 @@ class AttachedSensorInfo(Info):
             _linkname="" if sensor.link is None else body.links[sensor.link].name,
             _trelative=sensor.T_link_sensor.matrix(),
             _sensorname=sensor.type,
-            _camera=sensor.camera,
+            _sensorgeometry=None if sensor.camera is None else CameraGeomData.of(sensor.camera),
         )
 
     def sensor(self, links: Sequence[str]) -> scene.AttachedSensor:
@@ -135,11 +156,56 @@ class AttachedSensorInfo(Info):
         Args:
             links: The names of the robot's links.
         """
+        geometry = self._sensorgeometry
         return scene.AttachedSensor(
             name=self._name or "",
             link=links.index(self._linkname) if self._linkname in links else None,
             T_link_sensor=pose(self._trelative, "AttachedSensorInfo._trelative"),
             type=self._sensorname or None,
-            camera=self._camera,
+            camera=geometry.camera() if isinstance(geometry, CameraGeomData) else None,
             source=FROM_SCRIPT,
         )
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return _SENSOR_JSON
+
+
+_SENSOR_JSON = (
+    Entry("id", "_id", TEXT),
+    Entry("name", "_name", TEXT),
+    Entry("linkName", "_linkname", TEXT),
+    Entry("transform", "_trelative", POSE),
+    Entry("type", "_sensorname", TEXT),
+    Entry("sensorGeometry", "_sensorgeometry", info(CameraGeomData), optional=True),
+)
+
+
+@info_class
+class GripperInfo(Info):
+    """The gripper of an arm; manipulators name it in ``ManipulatorInfo._grippername``.
+
+    Attributes:
+        _name: Its name.
+        _grippertype: Its kind, any text.
+        _gripperJointNames: Names of its joints.
+    """
+
+    _called = "GripperInfo"
+
+    _id: str | None = None
+    _name: str | None = None
+    _grippertype: str = ""
+    _gripperJointNames: Sequence[str] = field(default_factory=list[str])
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return _GRIPPER_JSON
+
+
+_GRIPPER_JSON = (
+    Entry("id", "_id", TEXT),
+    Entry("name", "_name", TEXT),
+    Entry("grippertype", "_grippertype", TEXT),
+    Entry("gripperJointNames", "_gripperJointNames", PLAIN),
+)

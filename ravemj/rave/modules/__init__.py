@@ -23,7 +23,7 @@ __all__ = ["MODULES", "Module", "base_module", "made_module", "task_module"]
 
 _LOG = logging.getLogger("ravemj")
 
-MODULES = ("BaseManipulation", "TaskManipulation")
+MODULES = ("BaseManipulation", "TaskManipulation", "viewerrecorder")
 """Names of the modules."""
 
 
@@ -43,6 +43,10 @@ def made_module(env: "Environment", name: str) -> Module | None:
     """Return a new module of a name, whose letter case does not count, or None."""
     checked_environment(env, "RaveCreateModule")
     word = next(iter(checked_kind(name, str, "RaveCreateModule: name", "a text").split()), "")
+    if word.lower() == "viewerrecorder":
+        from ravemj.rave.viewer_recorder import ViewerRecorder  # noqa: PLC0415 - rarely wanted
+
+        return ViewerRecorder(env, word)
     make = {"basemanipulation": base_module, "taskmanipulation": task_module}.get(word.lower())
     return None if make is None else make(env, word)[0]
 

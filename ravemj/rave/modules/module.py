@@ -27,7 +27,7 @@ class Module(Interface):
     """
 
     _interface_type = InterfaceType.module
-    _internal = ("start",)
+    _internal = ("end", "start")
 
     def __init__(
         self, env: "Environment", xmlid: str, start: Callable[[str], None], commands: Mapping[str, Command]
@@ -46,13 +46,19 @@ class Module(Interface):
         """Take the module out of the environment."""
         self._env.Remove(self)
 
-    def SimulationStep(self, elapsedtime: float) -> bool:
-        """Do nothing in a step of time; return False.
+    def end(self) -> None:
+        """End what the module does; the environment calls this when it removes it."""
+
+    def SimulationStep(self, timeelapsed: float) -> bool:
+        """Take note that simulation time has passed; ``env.StepSimulation`` calls this for modules that were added.
 
         Args:
-            elapsedtime: How long the step is [s].
+            timeelapsed: How long [s].
+
+        Returns:
+            Whether something was done.
         """
-        del elapsedtime
+        del timeelapsed
         return False
 
     def SupportsCommand(self, cmd: str) -> bool:

@@ -12,6 +12,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 from websockets.sync.server import ServerConnection
 
+from ravemj.core.arguments import also_named
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
 from ravemj.graphics.simulation_renderer import SimulationRenderer
@@ -97,16 +98,18 @@ class WebViewer(Viewer):
         while any(client.looks < before + 2 for client, before in looks.items()) and time.monotonic() < end:
             time.sleep(_SYNC_STEP)
 
-    def main(self, bShow: bool = True) -> int:
+    @also_named(bShow="show")
+    def main(self, show: bool = True, sig_thread_id: int = 0) -> int:
         """Wait until ``quitmainloop`` is called or the viewer is closed.
 
         Args:
-            bShow: Without meaning.
+            sig_thread_id: Not used.
+            show: Without meaning.
 
         Returns:
             0.
         """
-        del bShow
+        del show
         while not self.server.closed.wait(0.1):  # in slices, so that Ctrl-C gets through
             pass
         return 0

@@ -1,0 +1,5 @@
+"""``openravepy.openravepy_ext``: what OpenRAVE's Python adds to its classes, which stands in ``openravepy`` here."""
+
+from ravemj.compat.legacy import *  # noqa: F403 - what its __all__ lists
+from ravemj.geometry_functions import *  # noqa: F403 - what its __all__ lists
+from ravemj.rave import *  # noqa: F403 - what ravemj/rave/__init__.py lists

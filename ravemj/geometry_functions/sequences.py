@@ -1,0 +1,42 @@
+"""Sequences of points that cover a cube evenly."""
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints
+
+
+def halton(first: int, count: int, dimensions: int) -> Floats:
+    """Return points of Halton's sequence, in the prime bases 2, 3, 5, ...; the point 0 is the origin.
+
+    Args:
+        first: The place of the first point.
+        count: How many points.
+        dimensions: Of the cube.
+
+    Returns:
+        Shape (count, dimensions), from 0 to 1, without 1.
+
+    Source: J. H. Halton, On the efficiency of certain quasi-random sequences of points, 1960.
+    """
+    places = np.arange(first, first + count)
+    return np.column_stack([_radical_inverse(places, base) for base in _primes(dimensions)]).reshape(count, dimensions)
+
+
+def _radical_inverse(places: Ints, base: int) -> Floats:
+    """Return numbers with their digits mirrored at the point."""
+    mirrored, weight, rest = np.zeros(len(places)), 1.0 / base, places.copy()
+    while rest.any():
+        mirrored += rest % base * weight
+        rest //= base
+        weight /= base
+    return mirrored
+
+
+def _primes(count: int) -> list[int]:
+    found: list[int] = []
+    candidate = 2
+    while len(found) < count:
+        if all(candidate % prime for prime in found):
+            found.append(candidate)
+        candidate += 1
+    return found

@@ -1,0 +1,173 @@
+"""What collision checkers answer about shapes that are no bodies, and what OpenRAVE's checkers prepare."""
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_transform
+from ravemj.core.transforms import Floats, Pose, pose_of
+from ravemj.errors import UnsupportedError
+from ravemj.geometry_functions import AABB
+from ravemj.model import scene
+from ravemj.model.shape_bodies import named_body, shape_geometry
+from ravemj.rave.interface import Interface
+from ravemj.rave.trimesh import TriMesh, checked_mesh
+
+if TYPE_CHECKING:
+    from ravemj.rave.kinbody import KinBody
+    from ravemj.rave.report import CollisionReport
+
+GROUPS = "collision checkers that look at groups of geometries"
+
+
+class CheckerExtras(Interface):
+    """Boxes and meshes against bodies; each such question takes the shape into the world and out again."""
+
+    @abstractmethod
+    def CheckCollision(self, *arguments: object, report: "CollisionReport | None" = None, **named: object) -> bool:
+        """Return whether things touch."""
+
+    def CheckCollisionOBB(
+        self,
+        aabb: AABB,
+        pose: ArrayLike,
+        *arguments: "Sequence[KinBody] | CollisionReport | None",
+        bodiesincluded: "Sequence[KinBody] | None" = None,
+        report: "CollisionReport | None" = None,
+    ) -> bool:
+        """Return whether a box touches bodies: ``(aabb, pose[, bodiesincluded][, report])``.
+
+        Args:
+            aabb: The box, in its own frame.
+            pose: ``T_world_box``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
+            arguments: The others by their places.
+            bodiesincluded: The bodies; left out: all.
+            report: Filled with what is found; the first names in it are those of a body ``box``.
+        """
+        checked_kind(aabb, AABB, "CheckCollisionOBB: aabb")
+        x, y, z = aabb.extents().tolist()
+        T_world_box = pose_of(checked_transform(pose, "CheckCollisionOBB: pose"))
+        cx, cy, cz = aabb.pos().tolist()
+        shape = shape_geometry(scene.Box((x, y, z)), T_world_box @ Pose((cx, cy, cz)), visible=False)
+        for argument in arguments:
+            if isinstance(argument, list | tuple):
+                bodiesincluded = argument
+            else:
+                report = argument or report  # pyright: ignore[reportAssignmentType] - a report is no list
+        return self._collides(shape, bodiesincluded, report)
+
+    def CheckCollisionTriMesh(
+        self,
+        trimesh: TriMesh,
+        *arguments: "KinBody | CollisionReport | None",
+        body: "KinBody | None" = None,
+        report: "CollisionReport | None" = None,
+    ) -> bool:
+        """Return whether triangles touch bodies: ``(trimesh[, body][, report])``.
+
+        Args:
+            trimesh: The triangles, in the world [m].
+            arguments: The others by their places.
+            body: The only body that counts; left out: all.
+            report: Filled with what is found; the first names in it are those of a body ``box``.
+        """
+        mesh = checked_mesh(trimesh, "CheckCollisionTriMesh: trimesh")
+        given: list[Any] = [one for one in arguments if one is not None]
+        if given and hasattr(given[0], "GetLinks"):
+            body = given.pop(0)
+        report = given.pop(0) if given else report
+        return self._collides(
+            shape_geometry(scene.TriMesh(mesh), Pose(), visible=False), None if body is None else [body], report
+        )
+
+    def _collides(
+        self, shape: scene.Geometry, bodies: "Sequence[KinBody] | None", report: "CollisionReport | None"
+    ) -> bool:
+        simulation = self._env.simulation
+        with simulation.lock:
+            state = simulation.create(named_body(simulation.free_name("box"), [shape]))
+            simulation.insert(state)
+            try:
+                probe = self._env.wrap(state)
+                if bodies is None:
+                    return self.CheckCollision(probe, report=report)
+                return any([self.CheckCollision(probe, body, report=report) for body in bodies])
+            finally:
+                self._env.Remove(self._env.wrap(state))
+
+    def CheckCollisionRays(
+        self,
+        rays: ArrayLike,
+        body: "KinBody | None" = None,
+        front_facing_only: bool = False,
+        checkPreemptFn: object = None,
+    ) -> tuple[NDArray[np.bool_], Floats]:
+        """Return which rays hit something, shape (n,), and where, shape (n, 6); see ``env.CheckCollisionRays``.
+
+        Args:
+            rays: As there.
+            body: As there.
+            front_facing_only: As there.
+            checkPreemptFn: Not used: the rays are cast at once.
+        """
+        del checkPreemptFn
+        return self._env.CheckCollisionRays(rays, body, front_facing_only)
+
+    def InitKinBody(self, body: "KinBody") -> bool:
+        """Return True; nothing needs to be prepared.
+
+        Args:
+            body: The body.
+        """
+        del body
+        return True
+
+    def RemoveKinBody(self, body: "KinBody") -> None:
+        """Do nothing; OpenRAVE's checkers free memory here.
+
+        Args:
+            body: The body.
+        """
+
+    def SetGeometryGroup(self, groupname: str) -> None:
+        """Accept the geometries that links have; refuse groups.
+
+        Args:
+            groupname: Empty, or ``self``.
+
+        Raises:
+            UnsupportedError: it is a group; ``body.SetLinkGeometriesFromGroup`` gives links the shapes of one.
+        """
+        if groupname not in {"", scene.OWN_SHAPES}:
+            raise UnsupportedError(f"SetGeometryGroup('{groupname}')", GROUPS)
+
+    def GetGeometryGroup(self) -> str:
+        """Return the group that is looked at: empty, the geometries that links have."""
+        return ""
+
+    def SetBodyGeometryGroup(self, body: "KinBody", groupname: str) -> bool:
+        """Accept the geometries that the links of a body have, and return True; refuse groups.
+
+        Args:
+            body: The body.
+            groupname: Empty, or ``self``.
+
+        Raises:
+            UnsupportedError: it is a group; ``body.SetLinkGeometriesFromGroup`` gives links the shapes of one.
+        """
+        del body
+        self.SetGeometryGroup(groupname)
+        return True
+
+    def GetBodyGeometryGroup(self, body: "KinBody") -> str:
+        """Return the group that is looked at: empty, the geometries that links have.
+
+        Args:
+            body: The body.
+        """
+        del body
+        return ""

@@ -1,0 +1,110 @@
+"""Descriptions of bodies that are held or connected."""
+
+# JSON and users put anything into the fields that the functions of forms take.
+# pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownMemberType=false
+
+from collections.abc import Sequence
+from dataclasses import field
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from ravemj.core.transforms import Floats
+from ravemj.model import hashes
+from ravemj.rave.infos.base import Info, identity, info_class
+from ravemj.rave.infos.joint import JointInfo
+from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Json, infos
+from ravemj.rave.infos.link import LinkInfo
+from ravemj.rave.infos.robot import AttachedSensorInfo, GripperInfo, ManipulatorInfo
+
+
+@info_class
+class ConnectedBodyInfo(Info):
+    """A body that can be connected to a link of a robot, and is part of it then.
+
+    Attributes:
+        _name: Its name, which stands with an underscore before the names of its parts.
+        _linkname: Name of the robot's link that carries it.
+        _trelative: ``T_link_body``, shape (4, 4).
+        _uri: The file that it comes from; not read.
+        _linkInfos: Its links; the first one is fixed to the robot.
+        _jointInfos: Its joints.
+        _manipulatorInfos: Its arms.
+        _attachedSensorInfos: Its sensors.
+        _gripperInfos: Its grippers.
+        _bIsActive: Whether it is connected: 1, or 0 for no, -1 for undecided.
+    """
+
+    _called = "ConnectedBodyInfo"
+
+    _id: str | None = None
+    _name: str | None = None
+    _linkname: str | None = None
+    _uri: str = ""
+    _trelative: ArrayLike = field(default_factory=identity)
+    _linkInfos: Sequence[LinkInfo] = field(default_factory=list[LinkInfo])
+    _jointInfos: Sequence[JointInfo] = field(default_factory=list[JointInfo])
+    _manipulatorInfos: Sequence[ManipulatorInfo] = field(default_factory=list[ManipulatorInfo])
+    _attachedSensorInfos: Sequence[AttachedSensorInfo] = field(default_factory=list[AttachedSensorInfo])
+    _gripperInfos: Sequence[GripperInfo] = field(default_factory=list[GripperInfo])
+    _bIsActive: int = 0
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return _CONNECTED_JSON
+
+
+_CONNECTED_JSON = (
+    Entry("id", "_id", TEXT),
+    Entry("name", "_name", TEXT),
+    Entry("linkName", "_linkname", TEXT),
+    Entry("uri", "_uri", TEXT, optional=True),
+    Entry("transform", "_trelative", POSE),
+    Entry("links", "_linkInfos", infos(lambda item: LinkInfo()), optional=True),
+    Entry("joints", "_jointInfos", infos(lambda item: JointInfo()), optional=True),
+    Entry("tools", "_manipulatorInfos", infos(lambda item: ManipulatorInfo()), optional=True),
+    Entry("attachedSensors", "_attachedSensorInfos", infos(lambda item: AttachedSensorInfo()), optional=True),
+    Entry("gripperInfos", "_gripperInfos", infos(lambda item: GripperInfo()), optional=True),
+    Entry("isActive", "_bIsActive", PLAIN),
+)
+
+
+@info_class
+class GrabbedInfo(Info):
+    """What ``ResetGrabbed`` needs to hold a body as before.
+
+    Attributes:
+        _grabbedname: Name of the held body.
+        _robotlinkname: Name of the link that holds it.
+        _trelative: ``T_link_body``, shape (4, 4).
+        _setIgnoreRobotLinkNames: Names of the holder's links that the held body does not collide with.
+        _grabbedUserData: Anything that JSON can hold; only kept.
+    """
+
+    _called = "GrabbedInfo"
+
+    _grabbedname: str = ""
+    _robotlinkname: str = ""
+    _trelative: Floats = field(default_factory=identity)
+    _setIgnoreRobotLinkNames: Sequence[str] = field(default_factory=list[str])
+    _grabbedUserData: Any = None
+    _id: str = ""
+
+    def GetGrabbedInfoHash(self) -> str:
+        """Return a text that is the same for infos that say the same: 32 hexadecimal digits."""
+        return hashes.of_text(repr(self.SerializeJSON()))
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return _GRABBED_JSON
+
+
+_GRABBED_JSON = (
+    Entry("id", "_id", TEXT, optional=True),
+    Entry("grabbedName", "_grabbedname", TEXT),
+    Entry("robotLinkName", "_robotlinkname", TEXT),
+    Entry("transform", "_trelative", POSE),
+    Entry("ignoreRobotLinkNames", "_setIgnoreRobotLinkNames", PLAIN, optional=True),
+    Entry("grabbedUserData", "_grabbedUserData", PLAIN, optional=True),
+)

@@ -1,0 +1,289 @@
+"""The sizes of a described shape by name, and the JSON of shapes."""
+
+# JSON and users put anything into the fields that the functions of forms take.
+# pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownMemberType=false
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.arrays import checked_vector
+from ravemj.core.transforms import Floats
+from ravemj.rave.enums import GeometryType
+from ravemj.rave.infos.base import Info
+from ravemj.rave.infos.json import LENGTHS, PLAIN, POSE, TEXT, Entry, Form, Json, named
+from ravemj.rave.trimesh import TriMesh
+
+
+class SideWallType(IntEnum):
+    """Which side of a cage a wall is on: towards negative or positive x or y."""
+
+    NX = 0
+    PX = 1
+    NY = 2
+    PY = 3
+
+
+@dataclass
+class SideWall:
+    """A wall of a cage.
+
+    Attributes:
+        transf: ``T_cage_wall``, shape (4, 4).
+        vExtents: Half its edge lengths [m], shape (3,).
+        type: Which side it is on.
+    """
+
+    transf: ArrayLike = ((1.0, 0, 0, 0), (0, 1.0, 0, 0), (0, 0, 1.0, 0), (0, 0, 0, 1.0))
+    vExtents: ArrayLike = (0.0, 0.0, 0.0)
+    type: SideWallType = SideWallType.NX
+
+
+@dataclass
+class AxialSlice:
+    """The radius of a round shape at a height.
+
+    Attributes:
+        zOffset: The height [m].
+        radius: The radius [m].
+    """
+
+    zOffset: float = 0.0
+    radius: float = 0.0
+
+
+class GeometrySizes(Info):
+    """Sizes of a shape by name. As in OpenRAVE, all are read from the same numbers, whatever the type."""
+
+    _type: GeometryType
+    _t: ArrayLike
+    _vGeomData: ArrayLike
+    _vGeomData2: ArrayLike
+    _vRenderScale: ArrayLike
+    _vCollisionScale: ArrayLike
+
+    def GetBoxHalfExtents(self) -> Floats:
+        """Return half the edge lengths of a box [m], shape (3,)."""
+        return _first(self._vGeomData)
+
+    def SetBoxHalfExtents(self, halfExtents: ArrayLike) -> None:
+        """Set half the edge lengths of a box.
+
+        Args:
+            halfExtents: Lengths [m], shape (3,).
+        """
+        self._vGeomData = checked_vector(halfExtents, 3, "SetBoxHalfExtents: halfExtents")
+
+    def GetContainerOuterExtents(self) -> Floats:
+        """Return the outer edge lengths of a container [m], shape (3,)."""
+        return _first(self._vGeomData)
+
+    def SetContainerOuterExtents(self, outerExtents: ArrayLike) -> None:
+        """Set the outer edge lengths of a container.
+
+        Args:
+            outerExtents: Lengths [m], shape (3,).
+        """
+        self._vGeomData = checked_vector(outerExtents, 3, "SetContainerOuterExtents: outerExtents")
+
+    def GetContainerInnerExtents(self) -> Floats:
+        """Return the edge lengths of a container's interior [m], shape (3,)."""
+        return _first(self._vGeomData2)
+
+    def SetContainerInnerExtents(self, innerExtents: ArrayLike) -> None:
+        """Set the edge lengths of a container's interior.
+
+        Args:
+            innerExtents: Lengths [m], shape (3,).
+        """
+        self._vGeomData2 = checked_vector(innerExtents, 3, "SetContainerInnerExtents: innerExtents")
+
+    def GetCageBaseHalfExtents(self) -> Floats:
+        """Return half the edge lengths of a cage's base [m], shape (3,)."""
+        return _first(self._vGeomData)
+
+    def SetCageBaseHalfExtents(self, halfExtents: ArrayLike) -> None:
+        """Set half the edge lengths of a cage's base.
+
+        Args:
+            halfExtents: Lengths [m], shape (3,).
+        """
+        self._vGeomData = checked_vector(halfExtents, 3, "SetCageBaseHalfExtents: halfExtents")
+
+    def GetSphereRadius(self) -> float:
+        """Return the radius of a sphere [m]."""
+        return float(_first(self._vGeomData)[0])
+
+    def GetCylinderRadius(self) -> float:
+        """Return the radius of a cylinder [m]."""
+        return float(_first(self._vGeomData)[0])
+
+    def GetCylinderHeight(self) -> float:
+        """Return the full height of a cylinder [m]."""
+        return float(_first(self._vGeomData)[1])
+
+    def GetCapsuleRadius(self) -> float:
+        """Return the radius of a capsule [m]."""
+        return float(_first(self._vGeomData)[0])
+
+    def GetCapsuleHeight(self) -> float:
+        """Return the height of a capsule's cylindrical part [m]."""
+        return float(_first(self._vGeomData)[1])
+
+    def GetConicalFrustumTopRadius(self) -> float:
+        """Return the radius of the upper end of a conical frustum [m]."""
+        return float(_first(self._vGeomData)[0])
+
+    def GetConicalFrustumBottomRadius(self) -> float:
+        """Return the radius of the lower end of a conical frustum [m]."""
+        return float(_first(self._vGeomData)[1])
+
+    def GetConicalFrustumHeight(self) -> float:
+        """Return the height of a conical frustum [m]."""
+        return float(_first(self._vGeomData)[2])
+
+    def GetPrismHeight(self) -> float:
+        """Return the full height of a prism [m]."""
+        return float(_first(self._vGeomData)[0])
+
+    def ComputeInnerEmptyVolume(self) -> tuple[Floats | None, Floats | None]:
+        """Return the box that is free inside of a container.
+
+        Returns:
+            The pose of its centre in the link, shape (4, 4), and half its edge lengths [m], shape (3,); None and None
+            for shapes of other types.
+        """
+        if GeometryType(self._type) != GeometryType.Container:
+            return None, None
+        outer, inner = self.GetContainerOuterExtents(), self.GetContainerInnerExtents()
+        T_link_box = np.array(self._t, dtype=float)
+        T_link_box[:3, 3] += T_link_box[:3, 2] * (outer[2] - inner[2] / 2)
+        return T_link_box, inner / 2
+
+    def ConvertUnitScale(self, unitScale: float) -> None:
+        """Multiply all lengths.
+
+        Args:
+            unitScale: The factor.
+        """
+        self.DeserializeJSON(self.SerializeJSON(unitScale))
+        self._vRenderScale = np.asarray(self._vRenderScale, dtype=float) * unitScale
+        self._vCollisionScale = np.asarray(self._vCollisionScale, dtype=float) * unitScale
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        kind = GeometryType(self._type) if obj is None or "type" not in obj else _TYPES.read(obj["type"], 1.0, None)
+        return (*_COMMON_JSON, *_SIZES_JSON.get(kind, ()))
+
+
+def _first(numbers: ArrayLike) -> Floats:
+    """Return the first three numbers, with zeros for those that are missing."""
+    return np.array([*np.ravel(np.asarray(numbers, dtype=float)), 0.0, 0.0, 0.0])[:3]
+
+
+_NAMES = "Box Sphere Cylinder Trimesh Container Cage CalibrationBoard Axial ConicalFrustum Prism Capsule"
+_TYPES = named({GeometryType.None_: ""} | {GeometryType[name]: name.lower() for name in _NAMES.split()})
+
+_COMMON_JSON = (
+    Entry("id", "_id", TEXT),
+    Entry("name", "_name", TEXT),
+    Entry("transform", "_t", POSE),
+    Entry("type", "_type", _TYPES),
+    Entry("transparency", "_fTransparency", PLAIN, optional=True),
+    Entry("visible", "_bVisible", PLAIN, optional=True),
+    Entry("diffuseColor", "_vDiffuseColor", PLAIN, optional=True),
+    Entry("ambientColor", "_vAmbientColor", PLAIN, optional=True),
+    Entry("modifiable", "_bModifiable", PLAIN, optional=True),
+)
+
+_EXTENTS = Form(
+    lambda numbers, scale: (_first(numbers) * scale).tolist(),
+    lambda value, scale, present: np.array([*value, 0.0], dtype=float) * scale,
+)
+
+
+def _number(place: int) -> Form:
+    """Return the form of one of the numbers of a field."""
+
+    def read(value: float, scale: float, present: Any) -> Floats:  # noqa: ANN401 - what users put into the field
+        numbers = np.array([*_first(present), 0.0])
+        numbers[place] = value * scale
+        return numbers
+
+    return Form(lambda numbers, scale: float(_first(numbers)[place] * scale), read)
+
+
+_ROUND = (Entry("radius", "_vGeomData", _number(0)), Entry("height", "_vGeomData", _number(1)))
+_MESH = Form(
+    lambda mesh, scale: _mesh_json(mesh or TriMesh(), scale),
+    lambda value, scale, present: TriMesh(
+        np.reshape(value["vertices"], (-1, 3)) * scale, np.reshape(value["indices"], (-1, 3))
+    ),
+)
+_CROSS_SECTION = Form(
+    lambda corners, scale: (np.ravel(corners) * scale).tolist(),
+    lambda value, scale, present: np.reshape(value, (-1, 2)) * scale,
+)
+_WALLS = Form(
+    lambda walls, scale: [
+        {
+            "transf": POSE.write(one.transf, scale),
+            "vExtents": LENGTHS.write(one.vExtents, scale),
+            "type": SideWallType(one.type).name.lower(),
+        }
+        for one in walls
+    ],
+    lambda items, scale, present: [
+        SideWall(
+            POSE.read(one["transf"], scale, None),
+            LENGTHS.read(one["vExtents"], scale, None),
+            SideWallType[one["type"].upper()],
+        )
+        for one in items
+    ],
+)
+_SLICES = Form(
+    lambda slices, scale: [number * scale for one in slices for number in (one.zOffset, one.radius)],
+    lambda value, scale, present: [AxialSlice(z * scale, r * scale) for z, r in np.reshape(value, (-1, 2)).tolist()],
+)
+
+_SIZES_JSON = {
+    GeometryType.Box: (Entry("halfExtents", "_vGeomData", _EXTENTS),),
+    GeometryType.CalibrationBoard: (Entry("halfExtents", "_vGeomData", _EXTENTS),),
+    GeometryType.Sphere: _ROUND[:1],
+    GeometryType.Cylinder: _ROUND,
+    GeometryType.Capsule: _ROUND,
+    GeometryType.Trimesh: (Entry("mesh", "_meshcollision", _MESH),),
+    GeometryType.Prism: (
+        Entry("crossSection", "_vCrossSection", _CROSS_SECTION),
+        Entry("height", "_vGeomData", _number(0)),
+    ),
+    GeometryType.ConicalFrustum: (
+        Entry("topRadius", "_vGeomData", _number(0)),
+        Entry("bottomRadius", "_vGeomData", _number(1)),
+        Entry("height", "_vGeomData", _number(2)),
+    ),
+    GeometryType.Axial: (Entry("axial", "_vAxialSlices", _SLICES),),
+    GeometryType.Container: (
+        Entry("outerExtents", "_vGeomData", _EXTENTS),
+        Entry("innerExtents", "_vGeomData2", _EXTENTS),
+        Entry("bottomCross", "_vGeomData3", _EXTENTS, optional=True),
+        Entry("bottom", "_vGeomData4", _EXTENTS, optional=True),
+    ),
+    GeometryType.Cage: (
+        Entry("baseExtents", "_vGeomData", _EXTENTS),
+        Entry("innerSizeX", "_vGeomData2", _number(0)),
+        Entry("innerSizeY", "_vGeomData2", _number(1)),
+        Entry("innerSizeZ", "_vGeomData2", _number(2)),
+        Entry("sideWalls", "_vSideWalls", _WALLS, optional=True),
+    ),
+}
+
+
+def _mesh_json(mesh: TriMesh, scale: float) -> Json:
+    vertices, indices = (np.zeros(0) if part is None else np.asarray(part) for part in (mesh.vertices, mesh.indices))
+    return {"vertices": (vertices.ravel() * scale).tolist(), "indices": indices.ravel().astype(int).tolist()}

@@ -1,0 +1,190 @@
+"""OpenRAVE's JSON of infos: which key holds which field, and how.
+
+Each class of infos has a table of entries. Lengths are multiplied by a scale both ways, poses are
+[w, x, y, z, tx, ty, tz], and arrays are lists.
+"""
+
+# Fields have the names that OpenRAVE gives them, and users put anything into them.
+# pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportUnknownMemberType=false
+# pyright: reportUnknownLambdaType=false
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from enum import Enum
+from typing import Any, NamedTuple, Protocol, cast
+
+import numpy as np
+
+from ravemj.core.arrays import checked_transform
+from ravemj.core.transforms import pose_of
+from ravemj.errors import ArgumentError
+from ravemj.geometry_functions import matrixFromPose
+
+Json = dict[str, Any]
+
+
+class Described(Protocol):
+    """An info."""
+
+    def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
+        """Return it as JSON."""
+        ...
+
+    def DeserializeJSON(self, obj: Json, unitScale: float = 1.0, options: object = None) -> None:
+        """Take over JSON."""
+        ...
+
+
+class Form(NamedTuple):
+    """How a field stands in JSON.
+
+    Attributes:
+        write: Takes the field and the scale; returns what JSON has.
+        read: Takes what JSON has, the scale and the present field; returns the new one.
+    """
+
+    write: Callable[[Any, float], Any]
+    read: Callable[[Any, float, Any], Any]
+
+
+class Entry(NamedTuple):
+    """A key of JSON.
+
+    Attributes:
+        key: The key.
+        field: The field that it holds.
+        form: How.
+        optional: Whether the key is left out where the field is None, empty or has its default value.
+    """
+
+    key: str
+    field: str
+    form: Form
+    optional: bool = False
+
+
+def plain(value: Any) -> Any:  # noqa: ANN401 - what JSON can hold
+    """Return a value as lists, numbers and texts."""
+    if isinstance(value, Enum):
+        return plain(value.value)
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): plain(one) for key, one in value.items()}
+    if isinstance(value, str | bytes) or not isinstance(value, Iterable):
+        return value
+    return [plain(one) for one in value]
+
+
+def lengths(power: int = 1) -> Form:
+    """Return the form of numbers [m^power]."""
+
+    def scaled(values: Any, scale: float) -> Any:  # noqa: ANN401 - a number or an array
+        return plain(np.asarray(values, dtype=float) * scale**power)
+
+    return Form(scaled, lambda value, scale, present: _array(scaled(value, scale)))
+
+
+def _array(value: Any) -> Any:  # noqa: ANN401 - what JSON holds
+    """Return lists of numbers as arrays, anything else as it is."""
+    is_numbers = isinstance(value, list) and value and all(type(one) in {int, float} for one in value)
+    return np.array(value, dtype=float) if is_numbers else value
+
+
+def _write_pose(transform: Any, scale: float) -> list[float]:  # noqa: ANN401 - what users put into the field
+    numbers = pose_of(checked_transform(transform, "transform")).numbers()
+    numbers[4:] *= scale
+    return numbers.tolist()
+
+
+def _read_pose(numbers: Sequence[float], scale: float, present: object) -> Any:  # noqa: ANN401 - an array
+    del present
+    pose = np.array(numbers, dtype=float)
+    if pose.shape != (7,):
+        raise ArgumentError(f"transform: is {plain(numbers)}, and should be seven numbers")
+    pose[4:] *= scale
+    return matrixFromPose(pose)
+
+
+def _read_parameters(items: Sequence[Json], key: str, present: Mapping[str, Any]) -> Json:
+    found = dict(present)
+    for item in items:
+        name = item.get("id", item.get("key"))
+        if not name:
+            raise ArgumentError(f"parameters: {item} has no id")
+        if item.get("__deleted__"):
+            found.pop(name, None)
+        else:
+            found[name] = _array(item[key])
+    return found
+
+
+def parameters(key: str) -> Form:
+    """Return the form of values by name; each is behind a key."""
+    return Form(
+        lambda values, scale: [{"id": name, key: plain(value)} for name, value in values.items()],
+        lambda items, scale, present: _read_parameters(items, key, present),
+    )
+
+
+def info(kind: Callable[[], Described]) -> Form:
+    """Return the form of one info, or None."""
+
+    def read(value: Json | None, scale: float, present: Described | None) -> Described | None:
+        if value is None:
+            return None
+        changed = present or kind()
+        changed.DeserializeJSON(value, scale)
+        return changed
+
+    return Form(lambda value, scale: None if value is None else value.SerializeJSON(scale), read)
+
+
+def infos(kind: Callable[[Json], Described]) -> Form:
+    """Return the form of a list of infos.
+
+    Reading changes those that have the same id, or else the same name; others are added, and one with ``__deleted__``
+    goes.
+
+    Args:
+        kind: Makes an empty info for an item.
+    """
+
+    def read(items: Sequence[Json], scale: float, present: Sequence[Described]) -> list[Described]:
+        found = list(present)
+        for item in items:
+            known = next((one for one in found if _is_called(one, item)), None)
+            if item.get("__deleted__"):
+                found = [one for one in found if one is not known]
+                continue
+            changed = known or kind(item)
+            changed.DeserializeJSON(item, scale)
+            if known is None:
+                found.append(changed)
+        return found
+
+    return Form(lambda values, scale: [one.SerializeJSON(scale) for one in values], read)
+
+
+def _is_called(one: Described, item: Json) -> bool:
+    fields = cast("Mapping[str, Any]", vars(one))
+    by_id, by_name = (item.get(key) and item.get(key) == fields.get(f"_{key}") for key in ("id", "name"))
+    return bool(by_id or by_name)
+
+
+def named(names: Mapping[Any, str]) -> Form:
+    """Return the form of an enumeration by its words."""
+    values = {word: value for value, word in reversed(list(names.items()))}
+
+    def read(word: str, scale: float, present: object) -> Any:  # noqa: ANN401 - a member of the enumeration
+        del scale, present
+        if word not in values:
+            raise ArgumentError(f"there is no type '{word}'; there are {', '.join(filter(None, values))}")
+        return values[word]
+
+    return Form(lambda value, scale: names[value], read)
+
+
+PLAIN = Form(lambda value, scale: plain(value), lambda value, scale, present: _array(value))
+TEXT = Form(lambda value, scale: "" if value is None else str(value), lambda value, scale, present: value)
+POSE = Form(_write_pose, _read_pose)
+LENGTHS = lengths()

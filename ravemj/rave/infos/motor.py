@@ -1,0 +1,145 @@
+"""What drives a joint: electric motors, and how controllers of hardware know it."""
+
+from collections.abc import Sequence
+from dataclasses import field, fields
+from enum import IntEnum
+from typing import TYPE_CHECKING
+
+from ravemj.rave.infos.base import Info, info_class
+from ravemj.rave.infos.json import PLAIN, Entry, Json
+
+if TYPE_CHECKING:
+    from ravemj.formats.openrave_xml.actuator import Motor
+
+
+def _camel(name: str) -> str:
+    """Return the key of JSON for a field: ``gearRatio`` for ``gear_ratio``."""
+    first, *rest = name.split("_")
+    return first + "".join(word.capitalize() for word in rest)
+
+
+class JointControlMode(IntEnum):
+    """Who drives a joint of a real robot."""
+
+    JCM_None = 0
+    JCM_RobotController = 1
+    JCM_IO = 2
+    JCM_ExternalDevice = 3
+
+
+@info_class
+class ElectricMotorActuatorInfo(Info):
+    """An electric motor behind a gear. Its torque wins over ``JointInfo._vmaxtorque``.
+
+    Attributes:
+        gear_ratio: Turns of the motor for one of the joint.
+        max_instantaneous_torque: Torque of the motor for a moment [N m].
+        nominal_torque: Torque of the motor for long [N m]; taken where the other is 0.
+        rotor_inertia: Inertia of the rotor [kg m^2].
+    """
+
+    _called = "ElectricMotorActuatorInfo"
+
+    model_type: str = ""
+    gear_ratio: float = 0.0
+    assigned_power_rating: float = 0.0
+    max_speed: float = 0.0
+    no_load_speed: float = 0.0
+    stall_torque: float = 0.0
+    max_instantaneous_torque: float = 0.0
+    nominal_speed_torque_points: Sequence[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
+    max_speed_torque_points: Sequence[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
+    nominal_torque: float = 0.0
+    rotor_inertia: float = 0.0
+    torque_constant: float = 0.0
+    nominal_voltage: float = 0.0
+    speed_constant: float = 0.0
+    starting_current: float = 0.0
+    terminal_resistance: float = 0.0
+    coloumb_friction: float = 0.0
+    viscous_friction: float = 0.0
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return _MOTOR_JSON
+
+    def motor(self) -> "Motor":
+        """Return torque and inertia at the joint."""
+        names = ("gear_ratio", "max_instantaneous_torque", "nominal_torque", "rotor_inertia")
+        from ravemj.formats.openrave_xml.actuator import motor_of  # noqa: PLC0415 - rarely wanted
+
+        return motor_of({name: float(getattr(self, name)) for name in names})
+
+
+_MOTOR_JSON = tuple(Entry(_camel(one.name), one.name, PLAIN) for one in fields(ElectricMotorActuatorInfo))
+
+
+@info_class
+class JointControlInfo_RobotController(Info):  # noqa: N801 - OpenRAVE's name
+    """A joint that the controller of a robot drives. It is only kept: ravemj drives no hardware.
+
+    Attributes:
+        controllerType: Kind of the controller.
+        robotControllerAxisIndex: For each axis of the joint its number there; -1: none.
+        robotControllerAxisMult: Factor from the joint's value to the controller's.
+        robotControllerAxisOffset: What is added then.
+        robotControllerAxisManufacturerCode: Maker of each axis' drive.
+        robotControllerAxisProductCode: Its product.
+    """
+
+    _called = "JointControlInfo_RobotController"
+
+    controllerType: str = ""
+    robotControllerAxisIndex: Sequence[int] = (-1, -1, -1)
+    robotControllerAxisMult: Sequence[float] = (1.0, 1.0, 1.0)
+    robotControllerAxisOffset: Sequence[float] = (0.0, 0.0, 0.0)
+    robotControllerAxisManufacturerCode: Sequence[str] = ("", "", "")
+    robotControllerAxisProductCode: Sequence[str] = ("", "", "")
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return [Entry(one.name, one.name, PLAIN) for one in fields(self)]
+
+
+@info_class
+class JointControlInfo_IO(Info):  # noqa: N801 - OpenRAVE's name
+    """A joint that inputs and outputs drive, such as a gripper's. It is only kept.
+
+    Attributes:
+        deviceType: Kind of the device.
+        moveIONames: For each axis the outputs that move it.
+        upperLimitIONames: The inputs that tell of the upper limit.
+        upperLimitSensorIsOn: What they say there.
+        lowerLimitIONames: The inputs that tell of the lower limit.
+        lowerLimitSensorIsOn: What they say there.
+    """
+
+    _called = "JointControlInfo_IO"
+
+    deviceType: str = ""
+    moveIONames: Sequence[Sequence[str]] = ((), (), ())
+    upperLimitIONames: Sequence[Sequence[str]] = ((), (), ())
+    upperLimitSensorIsOn: Sequence[Sequence[int]] = ((), (), ())
+    lowerLimitIONames: Sequence[Sequence[str]] = ((), (), ())
+    lowerLimitSensorIsOn: Sequence[Sequence[int]] = ((), (), ())
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return [Entry(one.name, one.name, PLAIN) for one in fields(self)]
+
+
+@info_class
+class JointControlInfo_ExternalDevice(Info):  # noqa: N801 - OpenRAVE's name
+    """A joint that some other device drives. It is only kept.
+
+    Attributes:
+        externalDeviceType: Kind of the device.
+    """
+
+    _called = "JointControlInfo_ExternalDevice"
+
+    externalDeviceType: str = ""
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        del obj
+        return [Entry("externalDeviceType", "externalDeviceType", PLAIN)]

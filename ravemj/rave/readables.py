@@ -1,0 +1,140 @@
+"""Values that scripts attach to interfaces under an id, as OpenRAVE's readers of custom tags do."""
+
+from typing import Any
+from xml.sax.saxutils import escape
+
+from ravemj.core.api_object import ApiObject
+
+
+class Readable(ApiObject):
+    """A value under an id; ``stringreaders.CreateStringReadable`` makes one of a text."""
+
+    def __init__(self, id: str, data: Any = "") -> None:  # noqa: ANN401 - what JSON can hold
+        self._id = str(id)
+        self._data = data
+
+    def GetXMLId(self) -> str:
+        """Return the id."""
+        return self._id
+
+    def SerializeXML(self, options: int = 0) -> str:
+        """Return the value as an element of XML that is called like the id.
+
+        Args:
+            options: Not used.
+        """
+        del options
+        return f"<{self._id}>{escape(str(self._data))}</{self._id}>"
+
+    def SerializeJSON(self, unitScale: float = 1.0, options: int = 0) -> Any:  # noqa: ANN401 - what JSON can hold
+        """Return the value.
+
+        Args:
+            unitScale: Not used.
+            options: Not used.
+        """
+        del unitScale, options
+        return self._data
+
+    def DeserializeJSON(self, obj: Any, unitScale: float = 1.0) -> None:  # noqa: ANN401 - what JSON can hold
+        """Take over a value.
+
+        Args:
+            obj: The value.
+            unitScale: Not used.
+        """
+        del unitScale
+        self._data = obj
+
+    def __repr__(self) -> str:
+        return f"stringreaders.CreateStringReadable({self._id!r}, {self._data!r})"
+
+
+class ReadableInterface(ApiObject):
+    """An object with values under ids."""
+
+    _readables: dict[str, Readable] | None = None
+
+    def GetReadableInterface(self, id: str) -> Readable | None:
+        """Return the value under an id, or None.
+
+        Args:
+            id: The id.
+        """
+        return (self._readables or {}).get(id)
+
+    def GetReadableInterfaces(self) -> dict[str, Readable]:
+        """Return all values by their ids."""
+        return dict(self._readables or {})
+
+    def SetReadableInterface(self, id: str, readable: Readable | None) -> None:
+        """Attach a value.
+
+        Args:
+            id: The id.
+            readable: The value; None: forget the one that is there.
+        """
+        kept = {key: one for key, one in (self._readables or {}).items() if key != id}
+        self._readables = kept if readable is None else kept | {id: readable}
+
+
+class stringreaders:  # noqa: N801 - OpenRAVE's name
+    """Makes values of texts."""
+
+    @staticmethod
+    def CreateStringReadable(id: str, data: str) -> Readable:
+        """Return a text under an id.
+
+        Args:
+            id: The id.
+            data: The text.
+        """
+        return Readable(id, str(data))
+
+
+class xmlreaders:  # noqa: N801 - OpenRAVE's name
+    """Makes values of texts; the older name."""
+
+    @staticmethod
+    def CreateStringXMLReadable(xmlid: str, data: str) -> Readable:
+        """Return a text under an id.
+
+        Args:
+            xmlid: The id.
+            data: The text.
+        """
+        return Readable(xmlid, str(data))
+
+
+class SerializableData(ApiObject):
+    """A text that scripts attach and read back.
+
+    Args:
+        data: The text.
+    """
+
+    def __init__(self, data: str = "") -> None:
+        self._data = data
+
+    def Serialize(self, options: int = 0) -> str:
+        """Return the text.
+
+        Args:
+            options: Not used.
+        """
+        del options
+        return self._data
+
+    def Deserialize(self, data: str) -> None:
+        """Take over a text.
+
+        Args:
+            data: The text.
+        """
+        self._data = data
+
+    def Close(self) -> None:
+        """Forget the text."""
+        self._data = ""
+
+    close = Close

@@ -1,0 +1,277 @@
+"""Samplers: sequences of numbers that cover a space."""
+
+from collections.abc import Callable
+from enum import IntEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.arguments import also_named, checked_kind
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.geometry_functions.sequences import halton
+from ravemj.rave.enums import InterfaceType, Interval
+from ravemj.rave.interface import Annotations, Interface, checked_environment
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+
+class SampleDataType(IntEnum):
+    """What samplers give."""
+
+    Real = 1
+    Uint32 = 2
+
+
+class SpaceSampler(Interface):
+    """A sequence of points; ``RaveCreateSpaceSampler`` makes it. Real numbers are from 0 to 1 where nothing is said.
+
+    Example:
+        >>> sampler = ravemj.RaveCreateSpaceSampler(env, "halton")
+        >>> sampler.SetSpaceDOF(2)
+        >>> sampler.SampleSequence2D(ravemj.SampleDataType.Real, 3)
+        array([[0.        , 0.        ],
+               [0.5       , 0.33333333],
+               [0.25      , 0.66666667]])
+    """
+
+    _interface_type = InterfaceType.spacesampler
+
+    def __init__(self, env: "Environment", name: str, sequence: "_Random") -> None:
+        self._env = env
+        self._annotations = Annotations()
+        self._name = name
+        self._sequence = sequence
+
+    def GetXMLId(self) -> str:
+        """Return the name of the kind of sampler, as it was spelt when it was made."""
+        return self._name
+
+    def SetSeed(self, seed: int) -> None:
+        """Begin the sequence anew.
+
+        Args:
+            seed: The same number gives the same sequence, here and not in OpenRAVE; of Halton's sequence the place.
+        """
+        self._sequence.start(int(seed))
+
+    def SetSpaceDOF(self, dof: int) -> None:
+        """Choose the number of dimensions.
+
+        Args:
+            dof: At least 1; that of a body cannot be changed.
+
+        Raises:
+            openrave_exception: there cannot be so many.
+        """
+        if dof < 1:
+            raise ArgumentError(f"SetSpaceDOF: dof is {dof}, and should be at least 1")
+        self._sequence.set_dof(int(dof))
+
+    def GetDOF(self) -> int:
+        """Return the number of dimensions."""
+        return self._sequence.dof()
+
+    GetNumberOfValues = GetDOF
+
+    @also_named(seed="type")
+    def Supports(self, type: SampleDataType) -> bool:
+        """Return whether the sampler gives this kind of numbers.
+
+        Args:
+            type: A ``SampleDataType``.
+        """
+        return SampleDataType(type) in self._sequence.kinds
+
+    @also_named(seed="type")
+    def GetLimits(self, type: SampleDataType) -> tuple[Floats, Floats]:
+        """Return the least and the greatest values, shape (dof,) each.
+
+        Args:
+            type: A ``SampleDataType``.
+        """
+        self._check(type, "GetLimits")
+        return self._sequence.limits()
+
+    def SampleSequence(
+        self, type: SampleDataType, num: int, interval: int = Interval.Closed
+    ) -> "Floats | NDArray[np.uint32]":
+        """Return the next points of the sequence in one row, shape (num * dof,).
+
+        Args:
+            type: What to give, a ``SampleDataType``.
+            num: How many points.
+            interval: Which of the limits belong to the space, an ``Interval``; not used, since no limit is likely.
+        """
+        return self.SampleSequence2D(type, num, interval).ravel()
+
+    def SampleSequence2D(
+        self, type: SampleDataType, num: int, interval: int = Interval.Closed
+    ) -> "Floats | NDArray[np.uint32]":
+        """Return the next points of the sequence, shape (num, dof).
+
+        Args:
+            type: What to give, a ``SampleDataType``.
+            num: How many points.
+            interval: Which of the limits belong to the space, an ``Interval``; not used, since no limit is likely.
+
+        Raises:
+            openrave_exception: the sampler gives no numbers of this kind (``NotImplemented``).
+        """
+        del interval
+        self._check(type, "SampleSequence")
+        if num < 0:
+            raise ArgumentError(f"SampleSequence: num is {num}, and should not be negative")
+        whole = SampleDataType(type) == SampleDataType.Uint32
+        return self._sequence.integers(int(num)) if whole else self._sequence.reals(int(num))
+
+    def SampleSequenceOneReal(self, interval: int = Interval.Closed) -> float:
+        """Return the next number of a sequence in one dimension.
+
+        Args:
+            interval: As of ``SampleSequence``.
+
+        Raises:
+            openrave_exception: the sampler gives points (``InvalidState``).
+        """
+        return float(self._one(SampleDataType.Real, interval))
+
+    def SampleSequenceOneUInt32(self) -> int:
+        """Return the next whole number of a sequence in one dimension, as ``SampleSequenceOneReal``."""
+        return int(self._one(SampleDataType.Uint32, Interval.Closed))
+
+    def _one(self, type: SampleDataType, interval: int) -> float:
+        if self.GetDOF() != 1 or isinstance(self._sequence, _Halton):
+            message = f"'{self._name}' gives points of {self.GetDOF()} dimensions; call SampleSequence2D"
+            raise RavemjError(message, ErrorCode.InvalidState)
+        return self.SampleSequence(type, 1, interval)[0]
+
+    def SampleComplete(self, type: SampleDataType, num: int, interval: int = Interval.Closed) -> Floats:
+        """Refuse to return points, shape (num, dof), that cover the space completely; no sampler of OpenRAVE's does.
+
+        Args:
+            type: What to give, a ``SampleDataType``.
+            num: How many points.
+            interval: As of ``SampleSequence``.
+
+        Raises:
+            openrave_exception: always (``NotImplemented``).
+        """
+        raise RavemjError(f"'{self._name}' has no complete samples", ErrorCode.NotImplemented)
+
+    SampleComplete2D = SampleComplete
+
+    def _check(self, type: SampleDataType, caller: str) -> None:
+        if not self.Supports(type):
+            message = f"{caller}: '{self._name}' gives no numbers of type {SampleDataType(type).name}"
+            raise RavemjError(message, ErrorCode.NotImplemented)
+
+
+class _Random:
+    """Independent random numbers, even over the space."""
+
+    kinds = frozenset(SampleDataType)
+    """What it gives."""
+
+    def __init__(self) -> None:
+        self._generator = np.random.Generator(np.random.MT19937())
+        self._dof = 1
+
+    def dof(self) -> int:
+        """Return the number of dimensions."""
+        return self._dof
+
+    def set_dof(self, dof: int) -> None:
+        """Choose the number of dimensions."""
+        self._dof = dof
+
+    def limits(self) -> tuple[Floats, Floats]:
+        """Return the least and the greatest real numbers, shape (dof,) each."""
+        return np.zeros(self._dof), np.ones(self._dof)
+
+    def start(self, seed: int) -> None:
+        """Begin the sequence that a seed stands for."""
+        self._generator = np.random.Generator(np.random.MT19937(seed))
+
+    def reals(self, count: int) -> Floats:
+        """Return the next points, shape (count, dof)."""
+        lower, upper = self.limits()
+        return self._generator.uniform(lower, upper, (count, len(lower)))
+
+    def integers(self, count: int) -> "NDArray[np.uint32]":
+        """Return the next points in whole numbers, shape (count, dof)."""
+        return self._generator.integers(0, 2**32, (count, self._dof), dtype=np.uint32)
+
+
+class _Halton(_Random):
+    """Halton's sequence in the bases 2, 3, 5, ...: the same points every time, spread evenly."""
+
+    kinds = frozenset({SampleDataType.Real})
+    _next = 0
+
+    def set_dof(self, dof: int) -> None:
+        self._dof, self._next = dof, 0
+
+    def start(self, seed: int) -> None:
+        self._next = seed
+
+    def reals(self, count: int) -> Floats:
+        points = halton(self._next, count, self._dof)
+        self._next += count
+        return points
+
+
+class _Configurations(_Random):
+    """Random values within the limits of a body: of all DOFs, or of those that are active in a robot."""
+
+    kinds = frozenset({SampleDataType.Real})
+
+    def __init__(self, limits: "Callable[[], tuple[Floats, Floats]]") -> None:
+        super().__init__()
+        self.limits = limits
+
+    def dof(self) -> int:
+        return len(self.limits()[0])
+
+    def set_dof(self, dof: int) -> None:
+        if dof != self.dof():
+            message = f"SetSpaceDOF: dof is {dof}, and the body has {self.dof()}"
+            raise ArgumentError(message, ErrorCode.Assert)
+
+
+SAMPLERS = ("MT19937", "Halton", "BodyConfiguration", "RobotConfiguration")
+"""Names of all samplers."""
+
+
+def RaveCreateSpaceSampler(env: "Environment", name: str) -> SpaceSampler | None:
+    """Make a sampler.
+
+    Args:
+        env: The environment.
+        name: ``MT19937``: random numbers. ``Halton``: Halton's sequence. ``BodyConfiguration body`` and
+            ``RobotConfiguration robot``: random joint values of the body of that name, and values of the robot's
+            active DOFs, within their limits.
+
+    Returns:
+        The sampler; None for an unknown name.
+
+    Raises:
+        openrave_exception: there is no such body or robot.
+    """
+    checked_environment(env, "RaveCreateSpaceSampler")
+    kind, *arguments = checked_kind(name, str, "RaveCreateSpaceSampler: name", "a text").split() or [""]
+    match kind.lower():
+        case "mt19937":
+            return SpaceSampler(env, kind, _Random())
+        case "halton":
+            return SpaceSampler(env, kind, _Halton())
+        case "bodyconfiguration" if body := env.GetKinBody(" ".join(arguments)):
+            return SpaceSampler(env, kind, _Configurations(body.GetDOFLimits))
+        case "robotconfiguration" if robot := env.GetRobot(" ".join(arguments)):
+            return SpaceSampler(env, kind, _Configurations(robot.GetActiveDOFLimits))
+        case "bodyconfiguration" | "robotconfiguration":
+            raise ArgumentError(f"RaveCreateSpaceSampler: '{name}' should end in the name of a body or robot")
+        case _:
+            return None

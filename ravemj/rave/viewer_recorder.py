@@ -1,0 +1,151 @@
+"""The module ``viewerrecorder``: videos of what goes on in an environment."""
+
+import time
+from collections.abc import Iterator
+from queue import Queue
+from threading import Thread
+from typing import TYPE_CHECKING, NamedTuple
+
+from ravemj.errors import ArgumentError, RavemjError
+from ravemj.graphics.simulation_renderer import Frame
+from ravemj.rave.modules.module import Module
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+
+_FORMATS = ("mp4", "gif", "webp")
+_WAITING = 8
+"""Frames that may wait for the encoder."""
+
+_TIMINGS = ("simtime", "realtime", "controller")
+
+
+class _Order(NamedTuple):
+    """What ``Start`` asks for."""
+
+    width: int
+    height: int
+    fps: float
+    timing: str
+    path: str
+
+
+class ViewerRecorder(Module):
+    """Writes videos of what the viewer shows; without a viewer, of what ``env.render`` does.
+
+    ``Start WIDTH HEIGHT FPS codec NUMBER timing WHICH filename FILE`` begins: a frame is drawn when simulation time has
+    gone on by that of a frame (``simtime``, ``controller``), or real time (``realtime``). The suffix of the file, .mp4,
+    .gif or .webp, chooses the format, and not the number of the codec. ``Stop`` ends; the file is complete then.
+    ``GetCodecs`` lists the formats.
+
+    Example:
+        >>> recorder = ravemj.RaveCreateModule(env, "viewerrecorder")
+        >>> env.AddModule(recorder, "")
+        0
+        >>> recorder.SendCommand("Start 640 480 30 codec 0 timing simtime filename swing.mp4")
+        >>> env.StepSimulation(1.0)
+        >>> recorder.SendCommand("Stop")
+    """
+
+    def __init__(self, env: "Environment", name: str) -> None:
+        commands = {"Start": self._start, "Stop": self._stop, "GetCodecs": self._codecs}
+        super().__init__(env, name, lambda arguments: None, commands)
+        self._order: _Order | None = None
+        self._frames: Queue[Frame | None] = Queue(_WAITING)
+        self._thread: Thread | None = None
+        self._error: RavemjError | None = None
+        self._passed = 0.0
+        self._drawn = 0
+        self._began = 0.0
+
+    def SimulationStep(self, timeelapsed: float) -> bool:
+        """Draw the frames that are due.
+
+        Args:
+            timeelapsed: How long [s].
+
+        Returns:
+            Whether one was drawn.
+        """
+        if self._order is None:
+            return False
+        self._passed += timeelapsed
+        passed = time.monotonic() - self._began if self._order.timing == "realtime" else self._passed
+        before = self._drawn
+        frame = None
+        while self._drawn <= passed * self._order.fps + 1e-9 and self._is_writing():
+            frame = self._env.render(self._order.width, self._order.height) if frame is None else frame
+            self._frames.put(frame)
+            self._drawn += 1
+        return self._drawn > before
+
+    def _is_writing(self) -> bool:
+        return self._thread is not None and self._thread.is_alive()
+
+    def end(self) -> None:
+        """End the video that is under way."""
+        if self._order is not None:
+            self._stop("")
+
+    def _start(self, arguments: str) -> str:
+        """Begin a video: WIDTH HEIGHT FPS codec NUMBER timing WHICH filename FILE."""
+        from ravemj.graphics.video import check_target, write_frames  # noqa: PLC0415 - slow to import
+
+        if self._order is not None:
+            raise RavemjError("Start: a video is under way already; send Stop first")
+        order = _order_of(arguments)
+        check_target(order.path)
+
+        def write() -> None:
+            try:
+                write_frames(order.path, self._taken(), order.fps)
+            except RavemjError as error:
+                self._error = error
+
+        self._order, self._error = order, None
+        self._passed, self._drawn, self._began = 0.0, 0, time.monotonic()
+        self._thread = Thread(target=write, name="ravemj recorder", daemon=True)
+        self._thread.start()
+        self.SimulationStep(0.0)
+        return ""
+
+    def _taken(self) -> Iterator[Frame]:
+        while (frame := self._frames.get()) is not None:
+            yield frame
+
+    def _stop(self, arguments: str) -> str:
+        """End the video."""
+        del arguments
+        if self._order is None or self._thread is None:
+            raise RavemjError("Stop: no video is under way")
+        self._order = None
+        if self._thread.is_alive():
+            self._frames.put(None)
+        self._thread.join()
+        self._frames = Queue(_WAITING)
+        if self._error is not None:
+            raise self._error
+        return ""
+
+    def _codecs(self, arguments: str) -> str:
+        """List the formats."""
+        del arguments
+        return "\n".join(f"{number} {name}" for number, name in enumerate(_FORMATS))
+
+
+def _order_of(arguments: str) -> _Order:
+    """Return what the arguments of ``Start`` ask for."""
+    before, found, after = arguments.partition("filename")
+    words = before.split()
+    try:
+        width, height, fps = int(words[0]), int(words[1]), float(words[2])
+        named = dict(zip(words[3::2], words[4::2], strict=True))
+        timing = named.pop("timing", "simtime")
+        named.pop("codec", None)
+        path = after.strip().splitlines()[0].strip() if found else ""
+        if named or timing not in _TIMINGS or not path or min(width, height, fps) <= 0:
+            raise ValueError
+    except (ValueError, IndexError):
+        wanted = f"WIDTH HEIGHT FPS codec NUMBER timing {'|'.join(_TIMINGS)} filename FILE"
+        raise ArgumentError(f"Start: is followed by '{arguments}', and should be by {wanted}") from None
+    return _Order(width, height, fps, timing, path)
