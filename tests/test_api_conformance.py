@@ -50,6 +50,7 @@ MISTAKES = {
     ),
     "dynamics-03-accelerations": ("symmetric", "with the forces of sliders as they are, the mass matrix is symmetric"),
     "dynamics-11-mimic": (r"b\[0\]", "OpenRAVE leaves out what accelerates the follower"),
+    "ik-10-param-distance": (r"Lookat3D\[0\]", "OpenRAVE leaves out what is along a direction that nobody can set"),
     "info-23-extract-and-init": ("limits-before-add", "OpenRAVE counts no DOFs of a body that is not added yet"),
     "mesh-03-sphere": ("counts", "how finely a sphere is divided is not part of the API"),
     "mesh-04-cylinder": ("counts", "how finely a cylinder is divided is not part of the API"),
@@ -207,7 +208,7 @@ def test_case(name, tmp_path):
 
 
 def test_the_lists_name_cases():
-    assert len(NAMES) == 404
+    assert len(NAMES) == 503
     assert {*MISTAKES, *SLIDER_FORCES} <= set(NAMES)
     assert set(NAMES) >= NOT_YET
     assert LIST.read_text().split() == sorted(NOT_YET)
