@@ -128,8 +128,8 @@ class Pairs:
         self._numbers = {key(*pair, count): number for pair, number in zip(both, numbers, strict=True)}
         self._spheres = _Spheres(first[self._rest], second[self._rest], detection)
         self._rest_is_welded = bool(detection.are_welded(first[self._rest], second[self._rest]).all())
-        self._rest_stamp = -1
-        self._rest_touching = self._touching = _NO_NUMBERS
+        self._rest_stamp, self._rest_is_exact = -1, False
+        self._rest_near = self._touching = _NO_NUMBERS
         self._touching_keys = _NO_KEYS
 
     def near(self) -> list[int]:
@@ -142,10 +142,13 @@ class Pairs:
             self._touching = sorted({self._numbers[key] for key in keys if key in self._numbers})
             self._touching_keys = keys
         if not self._rest_is_welded or self._rest_stamp != detection.model.pose_stamp:
-            touch, near = detection.shapes.touch, self._rest[self._spheres.near()].tolist()
-            self._rest_touching = [number for number in near if touch(*self.geoms(number))]
+            self._rest_near, self._rest_is_exact = self._rest[self._spheres.near()].tolist(), False
             self._rest_stamp = detection.model.pose_stamp
-        return sorted(self._touching + self._rest_touching) if self._rest_touching else self._touching
+        elif not self._rest_is_exact:  # what is asked again while joints move
+            touch = detection.shapes.touch
+            self._rest_near = [number for number in self._rest_near if touch(*self.geoms(number))]
+            self._rest_is_exact = True
+        return sorted(self._touching + self._rest_near) if self._rest_near else self._touching
 
     def geoms(self, number: int) -> tuple[int, int]:
         """Return both geoms of a pair."""
