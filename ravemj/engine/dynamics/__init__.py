@@ -1,7 +1,7 @@
 """Velocities, derivatives and dynamics of one body in its present configuration.
 
-``tree`` knows which joint carries which, ``coupling`` how velocities follow the DOFs, and ``body`` calls MuJoCo's
-functions with both.
+``tree`` knows which joint carries which, ``coupling`` how velocities follow the DOFs, ``rows`` reads what MuJoCo writes
+off by DOF, and ``body`` calls MuJoCo's functions with all three.
 """
 
 from ravemj.engine.dynamics.body import BodyDynamics
