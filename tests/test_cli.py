@@ -324,6 +324,30 @@ def test_info_prints_the_numbers_as_json(folder):
     assert pendulum["links"][1]["geometries"][0]["half_extents"] == [0.1, 0.01, 0.01]
 
 
+@pytest.mark.parametrize("name", ["arm.dae", "arm.zae", "arm.robot.xml"])
+def test_diff_finds_nothing_in_what_convert_writes(folder, name):
+    assert said(ravemj_command(folder, "convert", "env.xml", "-o", name)) == f"wrote {name}\n"
+    assert said(ravemj_command(folder, "diff", "env.xml", name)) == "no differences in 1 body\n"
+    assert json.loads(said(ravemj_command(folder, "diff", "env.xml", name, "--json"))) == []
+
+
+def test_diff_tells_what_differs(folder):
+    text = (folder / "double-pendulum.xml").read_text()
+    (folder / "double-pendulum.xml").write_text(text.replace("<maxvel>3.42</maxvel>", "<maxvel>3.43</maxvel>"))
+    other = folder / "other"
+    other.mkdir()
+    (other / "env.xml").write_text((folder / "env.xml").read_text())
+    (other / "double-pendulum.xml").write_text(text)
+    found = json.loads(said(ravemj_command(folder, "diff", "env.xml", "other/env.xml", "--json"), 1))
+    assert [(entry["part"], entry["quantity"], entry["first"], entry["second"]) for entry in found] == [
+        ("'Pendulum' joint 'Joint0'", "max velocity", 3.43, 3.42)
+    ]
+    assert found[0]["difference"] == pytest.approx(0.01 / 3.43)
+    table = said(ravemj_command(folder, "diff", "env.xml", "other/env.xml"), 1)
+    assert "max velocity" in table
+    assert said(ravemj_command(folder, "diff", "env.xml", "other/env.xml", "--tolerance", "0.1")).startswith("no diff")
+
+
 def test_convert_writes_what_mujoco_loads(folder):
     assert said(ravemj_command(folder, "convert", "env.xml", "-o", "out.xml")) == "wrote out.xml\n"
     text = (folder / "out.xml").read_text()

@@ -53,6 +53,7 @@ def check_round_trip(scene: Scene, kind: str, folder: Path) -> set[str]:
     save(first / NAMES[kind], scene, Diagnostics(), kind)
     reading = read_file(first / NAMES[kind])
     assert reading.failure is None
+    assert not {finding.code for finding in reading.diagnostics} & {"unknown-tag", "unknown-attribute", "ignored-tag"}
     save(second / NAMES[kind], reading.scene, Diagnostics(), kind)
     assert contents(second) == contents(first)
     return {difference.quantity for difference in compare(scene, reading.scene)}

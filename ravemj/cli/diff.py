@@ -18,7 +18,7 @@ def diff(options: argparse.Namespace) -> int:
     first, second = (_scene(model) for model in (options.first, options.second))
     found = compare(first, second, options.tolerance)
     if options.json:
-        print(json.dumps([_entry(difference) for difference in found], indent=1))
+        print(json.dumps([_entry(difference) for difference in found], indent=1, default=str))
     elif found:
         rows = table(f"{options.first} and {options.second}", "part", "quantity", "first", "second", "difference>")
         for difference in found:
