@@ -98,6 +98,14 @@ class ArmSolver:
             self._of = now
         return self._solver
 
+    def twin(self) -> "ArmSolver":
+        """Return another one for arms like this, which another thread may ask at the same time."""
+        other = ArmSolver(self.task, self.free)
+        if self._solver is not None:
+            other._of = self._of
+            other._solver = replace(self._solver, numeric=NumericSolver(self._solver.chain, self.task))
+        return other
+
     def _derived(self, chain: Chain) -> IKSolver:
         usual = self.free
         if usual is None and self.task is not Task.TRANSFORM:

@@ -8,7 +8,7 @@ from ravemj.ik.chain import Chain
 from ravemj.ik.solver import ANGLE_STEP, SLIDE_STEP
 
 _ALONG = 1e-6
-_MOST = 100_000
+_MOST = 4096
 """Samples of more than two joints, about; with OpenRAVE's steps they would fill the memory."""
 
 

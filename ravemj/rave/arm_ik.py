@@ -268,7 +268,8 @@ class ArmIk(ArmGoals):
             rows = given.reshape(-1, goal_size(iktype))
             local = np.array([moved_goal(iktype, row, pose_of(T_base_world)) for row in rows]).reshape(rows.shape)
         try:
-            found = solver.solve(local, limits=limits)
+            with self._state.simulation.lock:
+                found = solver.solve(local, limits=limits)
         except ValueError as error:
             raise ArgumentError(f"goals: {error}") from error
         return IkBatch(found.values, found.valid, _branch_names(solver, found.values.shape[1]))

@@ -148,7 +148,7 @@ class Judge:
                 self.quit = bool(action & _QUIT)
                 return False
             if said is not None:
-                answer.take(said, [])
+                answer.take(said)
                 if len(said.GetSolution()):
                     answer.SetSolution(said.GetSolution())
         return True
@@ -222,7 +222,7 @@ class Judge:
         """Return the answer where no solution is good."""
         answer = IkReturn(self.action | _REJECT)
         failures = self._question.failures
-        answer.take(answer, [] if failures is None else list(range(self._started, len(failures))))
+        answer.name_failures([] if failures is None else list(range(self._started, len(failures))))
         return answer
 
 

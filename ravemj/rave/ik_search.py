@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_vector
+from ravemj.core.arrays import checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
 from ravemj.geometry_functions.ik_parameterization import goal_of_tool
@@ -95,8 +95,11 @@ class IkSearch(Interface):
         """Let it answer for an arm.
 
         Raises:
+            ArgumentError: the robot is in another environment than the solver.
             ValueError: the arm is none that can be solved; the message says why.
         """
+        if robot.GetEnv() is not self._env:
+            raise ArgumentError(f"SetIkSolver: the solver '{self._name}' was made for another environment")
         description = next(one for one in robot.simulation_state.scene.manipulators if one.name == arm)
         self.arm_solver.of(robot.simulation_state.scene, description)
         self._robot, self._arm_name = robot, arm
@@ -117,8 +120,10 @@ class IkSearch(Interface):
         return arm
 
     def _description(self) -> "scene.Manipulator":
-        arms = self._owner().simulation_state.scene.manipulators
-        return next(arm for arm in arms if arm.name == self._arm_name)
+        for arm in self._owner().simulation_state.scene.manipulators:
+            if arm.name == self._arm_name:
+                return arm
+        raise RavemjError(f"the arm '{self._arm_name}' of the solver '{self._name}' was removed")
 
     def derived(self) -> IKSolver:
         """Return what computes, for the arm as it is now."""
@@ -127,7 +132,8 @@ class IkSearch(Interface):
 
     def _free_values(self, solver: IKSolver, shares: ArrayLike | None) -> Floats | None:
         """Return the values of free joints, shape (k,), that are given as shares of their ranges; None: any."""
-        if shares is None or not len(given := np.atleast_1d(np.asarray(shares, dtype=float))):
+        given = np.zeros(0) if shares is None else checked_numbers(shares, "freevalues")
+        if not given.size:
             return None
         count, free = len(solver.free), list(solver.free)
         if given.shape != (count,):

@@ -32,7 +32,7 @@ class IkReturn(ApiObject):
         self._user_data: Any = None
         self._failures: list[int] = []
 
-    _internal = ("take",)
+    _internal = ("name_failures", "take")
 
     def GetAction(self) -> IkReturnAction:
         """Return ``Success``, or the bits of all that happened to what was tried."""
@@ -87,10 +87,13 @@ class IkReturn(ApiObject):
         """Return where the failures of this search are in the list that was given as ``ikFailureAccumulator``."""
         return list(self._failures)
 
-    def take(self, other: "IkReturn", failures: list[int]) -> None:
-        """Take over the data that a filter attached to its answer, and where the failures are."""
+    def name_failures(self, indices: list[int]) -> None:
+        """Say where the failures are in the list of the user."""
+        self._failures = indices
+
+    def take(self, other: "IkReturn") -> None:
+        """Take over the data that a filter attached to its answer."""
         self._map.update(other.GetMapDataDict())
-        self._failures += failures
         if other.GetUserData() is not None:
             self._user_data = other.GetUserData()
 

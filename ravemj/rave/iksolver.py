@@ -54,7 +54,7 @@ class IkSolver(IkSearch):
     def copy_for(self, robot: "Robot") -> "IkSolver":
         """Return a solver for the same arm of another robot like this, with the default steps of free joints."""
         copy = IkSolver(robot.GetEnv(), self._name, self.kind, self.arm_solver.free)
-        copy.arm_solver = self.arm_solver
+        copy.arm_solver = self.arm_solver.twin()
         copy.attach(robot, self._arm_name)
         return copy
 
@@ -133,7 +133,8 @@ class IkSolver(IkSearch):
         goal = checked_kind(ikparam, IkParameterization, "Solve: ikparam")
         free, options = split_options("Solve", arguments, named)
         seed = None if q0 is None else checked_vector(q0, self.derived().chain.dof, "Solve: q0")
-        return self.find_one(goal, free, options, seed=seed)
+        with self._env.simulation.lock:
+            return self.find_one(goal, free, options, seed=seed)
 
     def SolveAll(self, ikparam: IkParameterization, *arguments: object, **named: object) -> list[IkReturn]:
         """Return all solutions: ``SolveAll(ikparam, [freeparameters,] filteroptions)``.
@@ -144,7 +145,9 @@ class IkSolver(IkSearch):
             named: The same by name.
         """
         goal = checked_kind(ikparam, IkParameterization, "SolveAll: ikparam")
-        return self.find_all(goal, *split_options("SolveAll", arguments, named))
+        free, options = split_options("SolveAll", arguments, named)
+        with self._env.simulation.lock:
+            return self.find_all(goal, free, options)
 
     def __repr__(self) -> str:
         return f"RaveCreateIkSolver({self._env!r}, {self._name!r})"
