@@ -112,11 +112,9 @@ def _gripper(
     for name in built.gripper_joints:
         index = next((i for i, joint in enumerate(body.joints) if joint.name == name), None)
         dofs = () if index is None else joint_dofs(body, index)
-        if set(dofs) & set(arm):
-            index = None
-        else:
-            own = [next(signs, 0.0) for _ in dofs or (None,)]
-        if index is None:
+        is_of_arm = bool(set(dofs) & set(arm))
+        own = [] if is_of_arm else [next(signs, 0.0) for _ in range(max(len(dofs), 1))]
+        if index is None or is_of_arm:
             message = f"manipulator '{built.name}': '{name}' is no active joint outside of the arm; left out"
             diagnostics.warn("unknown-joint", message, built.source)
         else:

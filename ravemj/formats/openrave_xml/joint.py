@@ -139,7 +139,7 @@ class _JointReader:
 
     def _set_all(self, element: Element, name: str, factor: float = 1.0, *, not_negative: bool = False) -> None:
         """Read a number for each axis; those that are missing keep their values, which the factor multiplies, too."""
-        before = [axis.get(name, getattr(_PLAIN_AXIS, name)) for axis in self.axes]
+        before = [axis[name] if name in axis else getattr(_PLAIN_AXIS, name) for axis in self.axes]
         values = numbers(element, len(self.axes), self.context.diagnostics, before)
         if not_negative:
             self.negative.pop(name, None)

@@ -96,9 +96,9 @@ class MassReader:
 
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
-        before, *others = self._rule.half_extents
+        before, y, z = self._rule.half_extents
         radius = number(element, self._context.diagnostics, before) * self._scale[0]
-        self._rule = self._rule._replace(half_extents=(radius, *others))
+        self._rule = self._rule._replace(half_extents=(radius, y, z))
 
     def com(self, element: Element) -> None:
         """Read the centre of mass of a custom mass."""
@@ -175,8 +175,8 @@ class DefaultMassReader:
 
     def radius(self, element: Element) -> None:
         """Read the ``<radius>`` of a sphere."""
-        before, *others = self._half_extents
-        self._half_extents = (number(element, self._context.diagnostics, before), *others)
+        before, y, z = self._half_extents
+        self._half_extents = (number(element, self._context.diagnostics, before), y, z)
 
     def extents(self, element: Element) -> None:
         """Read the half sizes of a box; of other kinds and behind a total they have no effect."""
