@@ -621,6 +621,9 @@ def _joint_node(joint: JointModel, spelling: Spelling) -> Node:
     return node
 
 
+_AXES = {"hinge2": 2, "spherical": 3}
+
+
 def _joint_numbers(joint: JointModel, *, degrees: bool) -> list[Node]:
     nodes: list[Node] = []
     if joint.limits is not None:
@@ -631,7 +634,8 @@ def _joint_numbers(joint: JointModel, *, degrees: bool) -> list[Node]:
         nodes.append(_numbers("initial", joint.initial))
     for tag, value in joint.numbers.items():
         in_degrees = degrees and tag in {"maxvel", "maxaccel"}
-        nodes.append(_numbers(f"{tag}deg", math.degrees(value)) if in_degrees else _numbers(tag, value))
+        values = [math.degrees(value) if in_degrees else value] * _AXES.get(joint.kind, 1)
+        nodes.append(_numbers(f"{tag}deg" if in_degrees else tag, *values))
     return nodes
 
 

@@ -287,6 +287,7 @@ class Kinematics:
     def __init__(self, body: BodyModel) -> None:
         self.names: list[str] = []
         self.poses: list[np.ndarray] = []
+        self.static: list[bool] = []
         self.joints: list[Attached] = []
         self._enter(body.scope, np.ones(3))
         self.active = [joint for joint in self.joints if joint.model.active]
@@ -300,8 +301,11 @@ class Kinematics:
             elif isinstance(item, LinkModel):
                 self.poses.append(self._frame(item.offset_from) @ pose_of(item.transform, scale))
                 self.names.append(item.name)
+                self.static.append(item.static)
             else:
                 first, second = self.names.index(item.first), self.names.index(item.second)
+                if not item.axes and first and self.static[second] and not self.static[first]:
+                    first, second = second, first  # at once, so the axis that nobody gave is z of the other link
                 inverse = np.linalg.inv(self.poses[first])
                 frame = inverse @ self._frame(item.offset_from)
                 self.joints.append(Attached(item, first, second, inverse @ self.poses[second], frame))
