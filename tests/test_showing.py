@@ -124,7 +124,8 @@ def test_infos_compare_by_content(env):
 # Names that are not OpenRAVE's, and that users call all the same
 OURS = """
     background batch_collides serve_viewer batch_inverse_dynamics batch_jacobians batch_link_transforms camera close
-    com_jacobian data default_camera diagnostics drawarrow drawbox drawlinelist drawlinestrip drawplane drawtrimesh
+    com_jacobian data default_camera diagnostics drawaabb drawarrow drawboxarray drawlabel drawobb drawbox drawlinelist
+    drawlinestrip drawplane drawtrimesh
     files link_transforms mjcf model plot3 qpos_indices render spec collisionInfos contacts minDistance
     nKeepPrevious numCols numWithinTol options pgeom1 pgeom2 plink1 plink2 vLinkColliding deserialize serialize
     extents pos dir main quitmainloop interaction body columns dof interpolation kind name names offset toDict

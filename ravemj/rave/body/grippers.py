@@ -23,7 +23,7 @@ def _refuse(name: str) -> object:
         raise UnsupportedError(f"ConnectedBody.{name}", CONNECTED)
 
     refuse.__name__ = name
-    refuse.__doc__ = "Raise ``UnsupportedError``: ravemj connects no bodies yet."
+    refuse.__doc__ = "Refuse to return anything: ravemj connects no bodies yet, and raises ``UnsupportedError``."
     return refuse
 
 

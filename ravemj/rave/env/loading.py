@@ -201,7 +201,7 @@ class Loading(EnvironmentPart):
     ReadTrimeshFile = ReadTrimeshURI
 
     def ReadTrimeshData(self, data: str | bytes, formathint: str, atts: Attributes | None = None) -> TriMesh | None:
-        """Read the content of a mesh file; see ``ReadTrimeshURI``.
+        """Return the triangles in the content of a mesh file; see ``ReadTrimeshURI``.
 
         Args:
             data: The content.
