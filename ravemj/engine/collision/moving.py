@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.questions import MovedBy, body_and_others, held_with, itself
@@ -57,7 +56,7 @@ class _MovingTest:
     def __init__(self, world: CollisionWorld, body: BodyState, places: Ints, pairs: Ints) -> None:
         self._model, self._data = world.model.model, world.model.data
         self._qpos, self._places, self._world = self._data.qpos, places, world
-        tested = _tested_by_mujoco(self._model, pairs)
+        tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
         meant = pairs[tested]
         self._meant = {*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()}
         rest = pairs[~tested]
@@ -116,21 +115,3 @@ def _carried(world: CollisionWorld, body: BodyState, grab: GrabbedBody) -> list[
                 mujoco.mju_mulQuat(wxyz, conjugate, data.xquat[root])
                 found.append(_Held(root, carrier, offset, wxyz))
     return found
-
-
-def _tested_by_mujoco(model: mujoco.MjModel, pairs: Ints) -> NDArray[np.bool_]:
-    """Return which pairs of geoms ``mj_collision`` tests, shape (n,).
-
-    It leaves out what the bits of contacts say, bodies that are fixed to each other, a body and its parent unless that
-    is fixed to the world, and excluded pairs of bodies (MuJoCo's documentation, "Computation", section "Collision").
-    """
-    first, second = pairs[:, 0], pairs[:, 1]
-    kinds, with_kinds = model.geom_contype, model.geom_conaffinity
-    bits = (kinds[first] & with_kinds[second]) | (kinds[second] & with_kinds[first])
-    bodies, others = model.geom_bodyid[first], model.geom_bodyid[second]
-    weld, other_weld = model.body_weldid[bodies], model.body_weldid[others]
-    parent = model.body_weldid[model.body_parentid[weld]]
-    other_parent = model.body_weldid[model.body_parentid[other_weld]]
-    related = (weld != 0) & (other_weld != 0) & ((weld == other_parent) | (other_weld == parent))
-    signature = (np.minimum(bodies, others) << 16) + np.maximum(bodies, others)
-    return (bits != 0) & (weld != other_weld) & ~related & ~np.isin(signature, model.exclude_signature)

@@ -113,6 +113,10 @@ class CollisionWorld:
         """Return pairs of geoms for a question that is asked once."""
         return Pairs(first, second, self._detection, once=True)
 
+    def found_by_mujoco(self, first: Ints, second: Ints) -> NDArray[np.bool_]:
+        """Return which pairs of geoms MuJoCo's own collision detection looks at, shape (n,)."""
+        return self._detection.finds(first, second)
+
     def collide(self, pairs: Pairs) -> bool:
         """Return whether any of the pairs touch or overlap."""
         near = pairs.near()
