@@ -72,6 +72,7 @@ class _MovingTest:
             for held in self._held:
                 held.follow(model, data)
             mujoco.mj_kinematics(model, data)
+            self._world.model.pose_stamp += 1  # else pairs without a joint between them are not looked at again
         mujoco.mj_collision(model, data)
         if data.ncon:
             touch = self._world.shapes.touch  # of meshes, MuJoCo takes the hulls
