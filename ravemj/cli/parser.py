@@ -2,11 +2,11 @@
 
 import argparse
 import difflib
-import math
 from collections.abc import Iterable, Sequence
 from typing import NoReturn, TypeAlias
 
 from ravemj.cli import check, convert, diff, ik, info, pictures, sessions, view
+from ravemj.cli.words import colour, port, positive, size, target, vector
 from ravemj.formats.shipped import SHIPPED_MODELS
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
 
@@ -89,7 +89,7 @@ def _add_model(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> None:
-    parser.add_argument("--size", type=_size, default=(640, 480), metavar="WxH", help=size_help)
+    parser.add_argument("--size", type=size, default=(640, 480), metavar="WxH", help=size_help)
     parser.add_argument(
         "--camera",
         metavar="FILE",
@@ -97,7 +97,7 @@ def _add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> Non
     )
     parser.add_argument(
         "--background",
-        type=_colour,
+        type=colour,
         metavar="COLOUR",
         help="background: red, green and blue from 0 to 1, as 0.8,0.85,0.9, or a CSS name or #rrggbb; default: the "
         "model's, or white",
@@ -121,9 +121,7 @@ def _add_view(commands: Commands) -> None:
         metavar="H",
         help="interface that serves the page (127.0.0.1, which only browsers of this machine reach)",
     )
-    parser.add_argument(
-        "--port", type=_port, default=0, metavar="P", help="port of the page; default: one that is free"
-    )
+    parser.add_argument("--port", type=port, default=0, metavar="P", help="port of the page; default: one that is free")
     parser.set_defaults(run=view.view)
 
 
@@ -141,14 +139,14 @@ def _add_play(commands: Commands) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        type=_target,
+        type=target,
         metavar="FILE",
         help=".mp4, .gif, .webp, or a folder for PNG frames; without a display: MODEL.mp4",
     )
     goal = parser.add_mutually_exclusive_group()
     goal.add_argument(
         "--to",
-        type=_vector,
+        type=vector,
         metavar="Q",
         help="joint values at the end, rad or m, separated by commas; default: the first joint to pi, the others to 0",
     )
@@ -158,9 +156,9 @@ def _add_play(commands: Commands) -> None:
         help="motion as .csv (header time,<joint>,…; seconds, rad or m) or .npz (arrays time and values)",
     )
     parser.add_argument(
-        "--duration", type=_positive, metavar="S", help="seconds the motion takes; default: 1, or as the file says"
+        "--duration", type=positive, metavar="S", help="seconds the motion takes; default: 1, or as the file says"
     )
-    parser.add_argument("--fps", type=_positive, default=30.0, metavar="N", help="frames in a second (30)")
+    parser.add_argument("--fps", type=positive, default=30.0, metavar="N", help="frames in a second (30)")
     _add_picture_options(parser, "size of the video (640x480); windows have a size of their own")
     parser.set_defaults(run=pictures.play)
 
@@ -174,9 +172,9 @@ def _add_render(commands: Commands) -> None:
         'ravemj render pendulum -o pendulum.png --q "0.785,0.785" --size 1280x720',
     )
     _add_model(parser)
-    parser.add_argument("-o", "--output", type=_target, required=True, metavar="FILE", help=".png, .jpg or .webp")
+    parser.add_argument("-o", "--output", type=target, required=True, metavar="FILE", help=".png, .jpg or .webp")
     parser.add_argument(
-        "--q", type=_vector, metavar="Q", help="joint values of the first robot, rad or m, separated by commas"
+        "--q", type=vector, metavar="Q", help="joint values of the first robot, rad or m, separated by commas"
     )
     _add_picture_options(parser, "size of the picture (640x480)")
     parser.set_defaults(run=pictures.render)
@@ -197,7 +195,7 @@ def _add_convert(commands: Commands) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        type=_target,
+        type=target,
         default=convert.TO_STANDARD_OUTPUT,
         metavar="TARGET",
         help="a folder (no suffix, or a final /), or the MJCF file itself, with meshes in assets/ beside it; "
@@ -259,7 +257,7 @@ def _add_diff(commands: Commands) -> None:
         parser.add_argument(name, metavar=name.upper(), help="OpenRAVE XML or COLLADA file")
     parser.add_argument(
         "--tolerance",
-        type=_positive,
+        type=positive,
         default=TOLERANCE,
         metavar="T",
         help=f"largest difference of two numbers that counts as none ({TOLERANCE:g}); corners of meshes have "
@@ -296,7 +294,7 @@ def _add_ik(commands: Commands) -> None:
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument(
         "--to",
-        type=_vector,
+        type=vector,
         metavar="GOAL",
         help="the goal in the world: x,y,z, or x,y,z,qw,qx,qy,qz, or the values of another type of goal; m and rad",
     )
@@ -317,9 +315,9 @@ def _add_ik(commands: Commands) -> None:
     )
     parser.add_argument("--json", action="store_true", help="print all solutions as JSON, not the nearest ones alone")
     parser.add_argument(
-        "-o", "--output", type=_target, metavar="FILE", help="picture with an arm at each solution; .png, .jpg or .webp"
+        "-o", "--output", type=target, metavar="FILE", help="picture with an arm at each solution; .png, .jpg or .webp"
     )
-    parser.add_argument("--size", type=_size, default=(640, 480), metavar="WxH", help="size of the picture (640x480)")
+    parser.add_argument("--size", type=size, default=(640, 480), metavar="WxH", help="size of the picture (640x480)")
     parser.set_defaults(run=ik.ik)
 
 
@@ -369,69 +367,3 @@ def _add_doctor(commands: Commands) -> None:
         commands, "doctor", "say what can draw pictures here, and how to install what cannot", "ravemj doctor"
     )
     parser.set_defaults(run=pictures.doctor)
-
-
-def _target(text: str) -> str:
-    if not text:
-        raise argparse.ArgumentTypeError("the name is empty")
-    return text
-
-
-def _vector(text: str) -> list[float]:
-    return [_number(part) for part in text.replace(",", " ").split()]
-
-
-def _number(text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise argparse.ArgumentTypeError(f"'{text}' is no finite number")
-    return number
-
-
-def _positive(text: str) -> float:
-    number = _number(text)
-    if number <= 0:
-        raise argparse.ArgumentTypeError(f"{text} is not above 0")
-    return number
-
-
-def _port(text: str) -> int:
-    if not (text.isascii() and text.isdecimal() and int(text) <= 65535):
-        raise argparse.ArgumentTypeError(f"'{text}' is no port from 0 to 65535")
-    return int(text)
-
-
-def _size(text: str) -> tuple[int, int]:
-    width, cross, height = text.lower().partition("x")
-    if not (cross and all(side.isdecimal() and 0 < int(side) <= _LONGEST_SIDE for side in (width, height))):
-        raise argparse.ArgumentTypeError(f"'{text}' is no size like 640x480, up to {_LONGEST_SIDE}x{_LONGEST_SIDE}")
-    return int(width), int(height)
-
-
-def _colour(text: str) -> list[float]:
-    if text[:1].isalpha() or text.startswith("#"):
-        return _colour_of_name(text)
-    colour = _vector(text)
-    if len(colour) != 3 or not all(0 <= part <= 1 for part in colour):
-        raise _no_colour(text)
-    return colour
-
-
-def _colour_of_name(text: str) -> list[float]:
-    """Return what CSS means by a name or by hexadecimal digits."""
-    from PIL import ImageColor  # noqa: PLC0415 - slow to import
-
-    try:
-        return [part / 255 for part in ImageColor.getrgb(text)[:3]]
-    except ValueError:
-        raise _no_colour(text) from None
-
-
-def _no_colour(text: str) -> argparse.ArgumentTypeError:
-    return argparse.ArgumentTypeError(f"'{text}' is no colour like 0.8,0.85,0.9 or red or #d9e2e6")
-
-
-_LONGEST_SIDE = 16384

@@ -1,0 +1,75 @@
+"""Words of the command line as values; what makes no sense is an error that says what would."""
+
+import argparse
+import math
+
+_LONGEST_SIDE = 16384
+
+
+def target(text: str) -> str:
+    """Return the name of a file or folder."""
+    if not text:
+        raise argparse.ArgumentTypeError("the name is empty")
+    return text
+
+
+def vector(text: str) -> list[float]:
+    """Return numbers that commas or blanks separate."""
+    return [_number(part) for part in text.replace(",", " ").split()]
+
+
+def _number(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f"'{text}' is no finite number")
+    return number
+
+
+def positive(text: str) -> float:
+    """Return a number above 0."""
+    number = _number(text)
+    if number <= 0:
+        raise argparse.ArgumentTypeError(f"{text} is not above 0")
+    return number
+
+
+def port(text: str) -> int:
+    """Return the number of a port."""
+    if not (text.isascii() and text.isdecimal() and int(text) <= 65535):
+        raise argparse.ArgumentTypeError(f"'{text}' is no port from 0 to 65535")
+    return int(text)
+
+
+def size(text: str) -> tuple[int, int]:
+    """Return width and height of a picture [pixels]."""
+    width, cross, height = text.lower().partition("x")
+    if not (cross and all(side.isdecimal() and 0 < int(side) <= _LONGEST_SIDE for side in (width, height))):
+        raise argparse.ArgumentTypeError(f"'{text}' is no size like 640x480, up to {_LONGEST_SIDE}x{_LONGEST_SIDE}")
+    return int(width), int(height)
+
+
+def colour(text: str) -> list[float]:
+    """Return red, green and blue from 0 to 1: three numbers, or what CSS means by a name or digits."""
+    if text[:1].isalpha() or text.startswith("#"):
+        return _colour_of_name(text)
+    parts = vector(text)
+    if len(parts) != 3 or not all(0 <= part <= 1 for part in parts):
+        raise _no_colour(text)
+    return parts
+
+
+def _colour_of_name(text: str) -> list[float]:
+    """Return what CSS means by a name or by hexadecimal digits."""
+    from PIL import ImageColor  # noqa: PLC0415 - slow to import
+
+    try:
+        return [part / 255 for part in ImageColor.getrgb(text)[:3]]
+    except ValueError:
+        raise _no_colour(text) from None
+
+
+def _no_colour(text: str) -> argparse.ArgumentTypeError:
+    return argparse.ArgumentTypeError(f"'{text}' is no colour like 0.8,0.85,0.9 or red or #d9e2e6")
