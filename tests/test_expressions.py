@@ -687,11 +687,11 @@ def test_partials_that_are_none(text, position):
 
 
 def test_deprecated_mimic():
-    assert linear_mimic("J1 0.5 0.1") == ("J1*0.5+0.1", "|J1 0.5")
-    assert linear_mimic(" J -1 +2e-3 rest") == ("J*-1+0.002", "|J -1")
-    position, velocity = linear_mimic("J -0.5 -0.1")
+    assert linear_mimic("J1 0.5 0.1") == ("J1*0.500000+0.100000", "|J1 0.500000", "|J1 0.500000")
+    assert linear_mimic(" J -1 +2e-3 rest") == ("J*-1.000000+0.002000", "|J -1.000000", "|J -1.000000")
+    position, velocity, acceleration = linear_mimic("J -0.5 -0.1")
     assert value(position, J=1.0) == pytest.approx(-0.6)
-    assert partials(velocity) == {"J": "-0.5"}
+    assert partials(velocity) == partials(acceleration) == {"J": "-0.500000"}
     for text in ("", "J", "J 1", "J a b", "J nan 1", "J 1 inf"):
         with pytest.raises(ExpressionError, match="a joint and two numbers"):
             linear_mimic(text)
@@ -757,8 +757,8 @@ def known_of(equation, known):
 def test_followers_of_the_conformance_cases():
     cases, followers = set(), 0
     for case, body in bodies_with_mimic_joints():
-        if case == "errors-46-mimic-circular":
-            continue  # has no values
+        if case in {"errors-46-mimic-circular", "gap-08-mimic-equal-limits"}:
+            continue  # the one has no values, and the joints of the other are welds, which stand at 0
         for configuration in body["configurations"]:
             followers += check_configuration(body, configuration)
             cases.add(case)

@@ -427,12 +427,18 @@ def test_robots_without_arms_and_joints_outside_of_them_say_so(puma):
         InverseKinematicsModel(puma.GetRobot()).load()
 
 
-@pytest.mark.parametrize("wrong", [np.full((4, 4), np.nan), np.diag([1, -1, 1, 1.0]), np.zeros((4, 4)), "x", [1, 2]])
+@pytest.mark.parametrize("wrong", [np.full((4, 4), np.nan), np.diag([1, -1, 1, 1.0]), np.zeros((4, 4)), "x"])
 def test_goals_that_are_no_poses_say_so(puma, wrong):
     for find in (puma.FindIKSolution, puma.FindIKSolutions):
         with pytest.raises(ravemj.openrave_exception, match="param") as caught:
             find(wrong, 0)
         assert caught.value.GetCode() == "InvalidArguments"
+
+
+def test_goals_of_a_wrong_shape_are_value_errors(puma):
+    for find in (puma.FindIKSolution, puma.FindIKSolutions):
+        with pytest.raises(ValueError, match="param: has shape"):
+            find([1, 2], 0)
 
 
 def test_calls_without_options_or_with_others_are_type_errors(puma):

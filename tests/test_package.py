@@ -128,8 +128,8 @@ NAME_EACH_OTHER = """
     rave.env.description rave.env.drawing rave.env.loading rave.env.publishing rave.env.saving rave.env.simulation
     rave.env.viewing rave.environment rave.ik_judge rave.ik_search rave.ikreturn rave.iksolver rave.interface
     rave.joint rave.joint_limits rave.kinbody rave.link rave.link_geometries rave.manipulator rave.member
-    rave.modules rave.modules.module rave.parameters rave.physics rave.report rave.robot rave.sensors
-    rave.specification rave.tables rave.trajectory
+    rave.module rave.parameters rave.physics rave.report rave.robot rave.sensors rave.specification rave.tables
+    rave.trajectory
 """
 """Classes of the API whose methods take and return one another, and the topics that make them up."""
 

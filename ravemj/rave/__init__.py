@@ -125,7 +125,7 @@ from ravemj.rave.logs import (
     RaveSetDebugLevel,
 )
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.modules import Module
+from ravemj.rave.module import Module
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.planning import (
     Planner,

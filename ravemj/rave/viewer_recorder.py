@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.graphics.simulation_renderer import Frame
-from ravemj.rave.modules.module import Module
+from ravemj.rave.module import Module
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

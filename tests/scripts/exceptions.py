@@ -7,7 +7,7 @@ env.Load('data/room.env.xml')
 robot = env.GetRobots()[0]
 for call in (lambda: robot.SetDOFValues([1, 2]), lambda: robot.SetActiveManipulator('leg'), lambda: env.CheckCollision(None),
              lambda: env.Load('data/room.env.xml'), lambda: robot.GetController().SendCommand('dance'),
-             lambda: robot.SetTransform([1, 2, 3]), lambda: env.GetBodies()[1].SetName('arm')):
+             lambda: robot.SetTransform([[0] * 4] * 4), lambda: env.GetBodies()[1].SetName('arm')):
     try:
         call()
         print('nothing')

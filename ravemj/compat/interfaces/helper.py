@@ -7,7 +7,7 @@ from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
 from ravemj.core.transforms import Floats
 from ravemj.rave.environment import Environment
-from ravemj.rave.modules import Module
+from ravemj.rave.module import Module
 from ravemj.rave.modules.motions import Mover
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory

@@ -10,13 +10,13 @@ from ravemj.errors import Diagnostic, ErrorCode, RavemjError
 from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.rave.interface import Annotations, UserData
 from ravemj.rave.kinbody import KinBody
-from ravemj.rave.modules import Module
+from ravemj.rave.module import Module
 from ravemj.rave.robot import Robot
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
     from ravemj.rave.environment import Environment
-    from ravemj.rave.modules.module import Module
+    from ravemj.rave.module import Module
 
 
 BodyCallback = Callable[[KinBody, int], object]

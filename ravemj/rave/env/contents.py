@@ -12,7 +12,7 @@ from ravemj.rave.enums import InterfaceAddMode, TriangulateOptions
 from ravemj.rave.env.base import BodyCallback, BodyCallbackHandle, EnvironmentPart
 from ravemj.rave.interface import Interface
 from ravemj.rave.kinbody import KinBody
-from ravemj.rave.modules.module import Module
+from ravemj.rave.module import Module
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor
 from ravemj.rave.trimesh import TriMesh, trimesh_of

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from ravemj.core.arguments import checked_kind
 from ravemj.rave.interface import checked_environment
+from ravemj.rave.module import Command, Module
 from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.commands import BaseCommands, TaskCommands, answering
-from ravemj.rave.modules.module import Command, Module
 from ravemj.rave.modules.motions import Mover
 from ravemj.rave.modules.task_manipulation import TaskManipulation
 from ravemj.rave.modules.words import Words

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.rave.module import Command
 from ravemj.rave.modules.base_manipulation import HAND_EFFORT, BaseManipulation, Effort
-from ravemj.rave.modules.module import Command
 from ravemj.rave.modules.motions import Mover
 from ravemj.rave.modules.task_manipulation import TaskManipulation
 from ravemj.rave.modules.words import Reader, Words, flag, read_options, switch, text
