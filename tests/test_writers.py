@@ -19,7 +19,7 @@ from ravemj.formats.openrave_xml.writer import write as openrave_document
 from ravemj.formats.readers import read_data, read_file
 from ravemj.formats.writers import save
 from ravemj.model.comparison import compare
-from ravemj.model.scene import Scene, TriMesh
+from ravemj.model.scene import UNLIMITED, Scene, TriMesh, View
 
 pytestmark = pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
 
@@ -33,6 +33,7 @@ KNOWN_LOSSES = {
     ("collada", "errors-38-manipulator-unknown-link"): {"manipulators"},  # COLLADA has none without both links
     ("collada", "errors-39-manipulator-empty"): {"manipulators"},
     ("collada", "errors-46-mimic-circular"): {"follows DOFs"},  # an equation that OpenRAVE throws away
+    ("openrave", "willowgarage-pr2.zae"): {"direction"},  # of a weld, which OpenRAVE XML turns about the z axis
     ("openrave", "calibration_board.dae"): {"shapes"},  # OpenRAVE XML has no such shape; a box stands for it
 }
 NAMES = {"openrave": "model.env.xml", "collada": "model.dae"}
@@ -175,6 +176,69 @@ def test_collada_is_in_degrees_and_openrave_xml_in_radians(tmp_path):
     assert "<min>\n                <float>-90</float>" in collada
     assert "<speed>\n              <float>30</float>" in collada
     assert f"<limitsrad>{-np.pi / 2!r} {np.pi!r}</limitsrad>" in openrave_document(scene, Diagnostics()).text
+
+
+TWO_LINKS = '<KinBody name="k"><Body name="a"/><Body name="b"/>{}</KinBody>'
+
+
+class TestJoints:
+    @pytest.mark.parametrize("kind", NAMES)
+    @pytest.mark.parametrize("circular", [True, False])
+    def test_axes_that_differ(self, kind, circular, tmp_path):
+        """The first of the axes is circular, or has limits; the others have theirs, and other torques."""
+        joint = (
+            f'<Joint name="j" type="hinge2" circular="{circular}"><Body>a</Body><Body>b</Body><axis1>0 0 1</axis1>'
+            "<axis2>1 0 0</axis2><limitsdeg>-10 20 -30 40</limitsdeg><maxtorque>5</maxtorque></Joint>"
+        )
+        scene = read_data(TWO_LINKS.format(joint)).scene
+        first, second = scene.bodies[0].joints[0].axes
+        assert [first.circular, second.circular] == [circular, False]
+        assert [first.max_torque, second.max_torque] == [5.0, 0.0]
+        assert second.upper == pytest.approx(np.radians(40))
+        assert check_round_trip(scene, kind, tmp_path) == set()
+
+    def test_circular_second_axis(self, tmp_path):
+        joint = '<Joint name="j" type="hinge2"><Body>a</Body><Body>b</Body><axis1>0 0 1</axis1><axis2>1 0 0</axis2>'
+        scene = read_data(TWO_LINKS.format(joint + "</Joint>")).scene
+        body = scene.bodies[0]
+        axes = tuple(replace(axis, lower=-UNLIMITED, upper=UNLIMITED, circular=True) for axis in body.joints[0].axes)
+        changed = Scene((replace(body, joints=(replace(body.joints[0], axes=axes),)),))
+        assert check_round_trip(changed, "collada", tmp_path) == set()
+        assert check_round_trip(changed, "openrave", tmp_path) == {"circular"}
+        assert warnings_of(changed, "openrave", tmp_path) == ["not-written"]
+
+    def test_circular_sliders(self, tmp_path):
+        joint = '<Joint name="j" type="slider" circular="true"><Body>a</Body><Body>b</Body><axis>0 0 1</axis></Joint>'
+        scene = read_data(TWO_LINKS.format(joint)).scene
+        assert check_round_trip(scene, "openrave", tmp_path) == set()
+        assert check_round_trip(scene, "collada", tmp_path) == {"circular"}
+        assert warnings_of(scene, "collada", tmp_path) == ["not-written"]
+
+    def test_axes_of_welds(self, tmp_path):
+        """A weld keeps its axis in COLLADA; in OpenRAVE XML it is the z axis of the child."""
+        joint = '<Joint name="{}"><Body>{}</Body><Body>{}</Body><axis>0 0 1</axis><limitsdeg>0 {}</limitsdeg></Joint>'
+        joints = joint.format("weld", "a", "b", 0) + '<Body name="c"/>' + joint.format("j", "b", "c", 90)
+        scene = read_data(TWO_LINKS.format(joints)).scene
+        assert warnings_of(scene, "openrave", tmp_path) == []
+        assert check_round_trip(scene, "openrave", tmp_path) == set()
+        turned = Scene((with_axis(scene.bodies[0], direction=(1.0, 0.0, 0.0)),))
+        assert turned.bodies[0].joints[0].static
+        assert check_round_trip(turned, "collada", tmp_path) == set()
+        assert check_round_trip(turned, "openrave", tmp_path) == {"direction"}
+        assert warnings_of(turned, "openrave", tmp_path) == ["not-written"]
+
+
+@pytest.mark.parametrize(("kind", "codes"), [("collada", ["not-written"]), ("openrave", [])])
+def test_the_view_is_lost_in_collada(kind, codes, tmp_path):
+    scene = read_file(MODELS / "panda.xml").scene
+    assert warnings_of(replace(scene, view=View()), kind, tmp_path) == []
+    assert warnings_of(replace(scene, view=View(background=(0.0, 0.0, 1.0))), kind, tmp_path) == codes
+
+
+def warnings_of(scene: Scene, kind: str, folder: Path) -> list[str]:
+    diagnostics = Diagnostics()
+    save(folder / NAMES[kind], scene, diagnostics, kind)
+    return [finding.code for finding in diagnostics]
 
 
 class TestSave:

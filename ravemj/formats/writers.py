@@ -9,11 +9,11 @@ from urllib.parse import quote
 from xml.sax.saxutils import escape
 
 from ravemj.core.output import AnyPath, added_files, new_file
-from ravemj.errors import Diagnostics
+from ravemj.errors import Diagnostics, Source
 from ravemj.formats.collada import writer as collada
 from ravemj.formats.openrave_xml import writer as openrave_xml
 from ravemj.formats.openrave_xml.geom_writer import FOLDER, MeshFormat
-from ravemj.model.scene import Scene
+from ravemj.model.scene import Scene, View
 
 ModelFormat = Literal["collada", "openrave"]
 
@@ -39,6 +39,9 @@ def save(
     if kind == "openrave":
         _save_openrave_xml(Path(path), openrave_xml.write(scene, diagnostics, meshes))
         return
+    if scene.view not in (None, View()):
+        message = "background and camera are left out: COLLADA has no place for them"
+        diagnostics.warn("not-written", message, Source(os.fspath(path)), "OpenRAVE XML keeps them")
     content = collada.write(scene, diagnostics).encode()
     if os.fspath(path).lower().endswith(_ARCHIVE_SUFFIX):
         content = _archive(f"{Path(path).stem}.dae", content)

@@ -45,8 +45,11 @@ def read_supplement(
             _name_joints(body, order, names)
             body.joints = [body.joints[index] for index in order]
             for joint, element in zip(body.joints, children(technique, "joint"), strict=True):
-                given = map(float, (element.get("values") or "").split())
-                joint.axes = tuple(replace(axis, reference=next(given, 0.0)) for axis in joint.axes)
+                given, torques = (map(float, (element.get(name) or "").split()) for name in ("values", "torques"))
+                joint.axes = tuple(
+                    replace(axis, reference=next(given, 0.0), max_torque=next(torques, axis.max_torque))
+                    for axis in joint.axes
+                )
             values |= {place: given for place, given in enumerate([values[index] for index in order])}
         order, names = _listed(references, technique, "link", links)
         if sorted(order) == list(range(len(body.links))):

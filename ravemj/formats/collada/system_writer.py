@@ -71,7 +71,11 @@ class SystemWriter:
         out, joint = self._sections.systems, self._body.all_joints[index]
         sid = f"{self._name}_axis{index}_{place}"
         with out.inside("axis_info", sid=sid, axis=f"{self._joint_path(index)}/axis{place}"):
-            _write_parameter(out, "circular", "bool", axis.circular)
+            circular = axis.circular and joint.kind != "slider"
+            if axis.circular and not circular:
+                message = f"the slider '{joint.name}' is circular, as none is in COLLADA; there it has limits"
+                self._diagnostics.warn("not-written", message, joint.source)
+            _write_parameter(out, "circular", "bool", circular)
             _write_parameter(out, "planning_weight", "float", axis.weight)
             _write_parameter(out, "discretization_resolution", "float", axis.resolution)
             _write_value(out, "active", "bool", index < len(self._body.joints))
@@ -80,7 +84,7 @@ class SystemWriter:
                 first = sum(len(other.axes) for other in self._body.joints[:index])
                 with out.inside("index", semantic="OpenRAVE"):
                     out.element("int", first + place)
-            if not axis.circular:
+            if not circular:
                 with out.inside("limits"):
                     _write_value(out, "min", "float", _in_file(joint, axis.lower))
                     _write_value(out, "max", "float", _in_file(joint, axis.upper))
@@ -164,9 +168,9 @@ class SystemWriter:
 
     def _write_sensor(self, number: int, sensor: AttachedSensor) -> None:
         out, name = self._sections.systems, f"{self._name}_sensor{number}"
-        if sensor.link is not None:
-            with out.inside("frame_origin", link=self._link_path(sensor.link)):
-                write_pose(out, settled.pose(sensor.T_link_sensor))
+        link = None if sensor.link is None else self._link_path(sensor.link)
+        with out.inside("frame_origin", link=link):
+            write_pose(out, settled.pose(sensor.T_link_sensor))
         if sensor.type is None:
             return
         out.element("instance_sensor", url=f"#{name}")
@@ -190,8 +194,8 @@ class SystemWriter:
     def _write_supplement(self) -> None:
         """Write what only ``supplement`` reads.
 
-        That is the order of the parts, their names, which COLLADA's readers change, and the values of joints that are
-        no DOFs.
+        That is the order of the parts, their names, which COLLADA's readers change, the values of joints that are no
+        DOFs, and torques that differ between the axes of a joint, which has one motor.
         """
         out, body = self._sections.systems, self._body
         out.element("name", body.name)
@@ -202,7 +206,12 @@ class SystemWriter:
         for index, joint in enumerate(body.all_joints):
             is_kept = rests(body, joint) and joint.kind != "spherical"  # a ball counts from where it is
             values = settled.values(joint) if is_kept else []
-            out.element("joint", joint.name, path=self._joint_path(index), values=values if any(values) else None)
+            torques = [axis.max_torque for axis in joint.axes]
+            attributes = {
+                "values": values if any(values) else None,
+                "torques": torques if len(set(torques)) > 1 else None,
+            }
+            out.element("joint", joint.name, path=self._joint_path(index), **attributes)
 
     def _link_path(self, index: int) -> str:
         return f"{self._model_of_link[index]}/link{index}"

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose, conjugate, rotate
+from ravemj.errors import Diagnostics
 from ravemj.formats import settled
 from ravemj.formats.openrave_xml.part_names import PartNames
 from ravemj.formats.xml_text import XmlText
@@ -11,7 +12,8 @@ from ravemj.model.joints import poses_at, rests
 from ravemj.model.limits import clamp
 from ravemj.model.scene import Axis, Joint, KinBody, Mimic
 
-_NEAR = 1e-9  # of points [m]
+_NEAR = 1e-9  # of points [m] and of unit vectors
+_Z = (0.0, 0.0, 1.0)
 _AXIS_TAGS = {"hinge": ("axis",), "slider": ("axis",), "hinge2": ("axis1", "axis2"), "spherical": ()}
 
 
@@ -37,8 +39,9 @@ def _initial(body: KinBody, index: int, axis: Axis) -> float:
 class JointWriter:
     """Writes the joints of a body."""
 
-    def __init__(self, out: XmlText, names: PartNames, poses: Sequence[Pose]) -> None:
+    def __init__(self, out: XmlText, diagnostics: Diagnostics, names: PartNames, poses: Sequence[Pose]) -> None:
         self._out = out
+        self._diagnostics = diagnostics
         self._names = names
         self._poses = poses
 
@@ -71,12 +74,21 @@ class JointWriter:
         turns_with_child = joint.static and len(body.joints) > 0  # OpenRAVE moves the frame of a weld to its child
         if joint.kind != "slider" and not turns_with_child:
             self._out.element("anchor", settled.position(joint.anchor))
+        if turns_with_child and joint.kind == "hinge":
+            self._check_weld(joint)
+            return
         T_frame_parent = self._poses[frame].inverse() @ self._poses[joint.parent]
         turn = conjugate(joint.T_parent_child.wxyz) if turns_with_child else UNIT_WXYZ
         for tag, axis in zip(_AXIS_TAGS[joint.kind], joint.axes, strict=False):
             if axis.direction != ZERO:
                 in_frame = rotate(T_frame_parent.wxyz, rotate(turn, axis.direction))
                 self._out.element(tag, settled.direction(in_frame))
+
+    def _check_weld(self, joint: Joint) -> None:
+        """Warn of a weld with another axis than OpenRAVE gives those of XML files: the z axis of the child."""
+        if math.dist(joint.axes[0].direction, rotate(joint.T_parent_child.wxyz, _Z)) > _NEAR:
+            message = f"the axis of the weld '{joint.name}' is left out: in OpenRAVE XML it is the z axis of its child"
+            self._diagnostics.warn("not-written", message, joint.source)
 
     def _slider_frame(self, joint: Joint) -> int:
         """Return the link whose origin is the anchor of a slider, its parent where neither is."""
@@ -87,8 +99,14 @@ class JointWriter:
 
     def _write_numbers(self, joint: Joint) -> None:
         axes = joint.axes
-        if not axes[0].circular:
-            self._out.element("limitsrad", [limit for axis in axes for limit in (axis.lower, axis.upper)])
+        first, others = axes[0], axes[1:]
+        if others or not first.circular:  # the numbers of a circular axis take no effect
+            limits = [0.0, 0.0] if first.circular else [first.lower, first.upper]
+            limits += [limit for axis in others for limit in (axis.lower, axis.upper)]
+            self._out.element("limitsrad", limits)
+        if any(axis.circular for axis in others):
+            message = f"joint '{joint.name}' has another circular axis than the first; in OpenRAVE XML it has limits"
+            self._diagnostics.warn("not-written", message, joint.source)
         factor = 1.0 if joint.kind == "slider" else 180 / math.pi
         self._out.element("weight", [axis.weight for axis in axes])
         self._out.element("resolution", [settled.number(axis.resolution * factor) for axis in axes])

@@ -85,8 +85,8 @@ class _Writer:
                 self._write_parts(body, names)
                 self._write_values(body)
             return
-        with self.out.inside("Robot", name=body.name, makeJoinedLinksAdjacent=joined):
-            with self.out.inside("KinBody"):
+        with self.out.inside("Robot", name=body.name):
+            with self.out.inside("KinBody", makeJoinedLinksAdjacent=joined):
                 self._write_parts(body, names)
             for manipulator in body.manipulators:
                 self._write_manipulator(manipulator, names)
@@ -99,7 +99,7 @@ class _Writer:
         poses = [settled.pose(pose) for pose in listed_poses(body)]
         for link, name, pose in zip(body.links, names.links, poses, strict=True):
             self._write_link(link, name, pose)
-        joints = JointWriter(self.out, names, poses)
+        joints = JointWriter(self.out, self.diagnostics, names, poses)
         for index in range(len(body.all_joints)):
             joints.write(body, index)
         for first, second in body.adjacent:
