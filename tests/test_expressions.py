@@ -692,8 +692,12 @@ def test_deprecated_mimic():
     position, velocity, acceleration = linear_mimic("J -0.5 -0.1")
     assert value(position, J=1.0) == pytest.approx(-0.6)
     assert partials(velocity) == partials(acceleration) == {"J": "-0.500000"}
-    for text in ("", "J", "J 1", "J a b", "J nan 1", "J 1 inf"):
-        with pytest.raises(ExpressionError, match="a joint and two numbers"):
+    assert linear_mimic("J 2")[0] == "J*2.000000+0.000000"
+    for text in ("", "J", "J a b"):
+        with pytest.raises(ExpressionError, match="a joint and one or two numbers"):
+            linear_mimic(text)
+    for text in ("J nan 1", "J 1 inf"):
+        with pytest.raises(ExpressionError, match="finite numbers"):
             linear_mimic(text)
 
 
