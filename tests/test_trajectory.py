@@ -301,8 +301,7 @@ def test_stored_trajectories_come_back(rows, description, options):
     trajectory = trajectory_of(TIMED, rows)
     trajectory.SetDescription(description)
     stored = trajectory.serialize(options)
-    forms = [stored, stored.decode("latin-1")] if isinstance(stored, bytes) else [stored, stored.encode()]
-    for form in forms:
+    for form in (stored, stored.decode() if options else stored.decode("latin-1")):
         back = ravemj.RaveCreateTrajectory(ENV, "").deserialize(form)
         assert back.GetAllWaypoints2D().tolist() == trajectory.GetAllWaypoints2D().tolist()
         assert back.GetConfigurationSpecification() == TIMED

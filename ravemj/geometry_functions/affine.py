@@ -1,10 +1,9 @@
 """Affine DOFs: which parts of a body's pose move, and their values."""
 
-from enum import IntFlag
-
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.enumerations import NamedFlag
 from ravemj.core.transforms import Floats, Pose, Vec3, normalize, wxyz_from_axis_angle
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import arguments
@@ -13,7 +12,7 @@ from ravemj.geometry_functions.rotations import normalizeAxisRotation
 Z_AXIS: Vec3 = (0.0, 0.0, 1.0)
 
 
-class DOFAffine(IntFlag):
+class DOFAffine(NamedFlag):
     """Parts of a pose; combine them with ``|``. There is one kind of rotation at most."""
 
     NoTransform = 0

@@ -1,9 +1,9 @@
 """What of a tool's pose a goal of inverse kinematics asks for."""
 
-from enum import IntEnum
+from ravemj.core.enumerations import NamedInt
 
 
-class IkParameterizationType(IntEnum):
+class IkParameterizationType(NamedInt):
     """What of a pose the end of an arm shall reach: the numbers hold DOF, count of values, and a unique number.
 
     Those that end in ``Velocity`` stand for velocities in trajectories; no goal is of such a type.
@@ -45,9 +45,6 @@ class IkParameterizationType(IntEnum):
     VelocityDataBit = 0x8000
     UniqueIdMask = 0xFFFF
     CustomDataBit = 0x10000
-
-    def __str__(self) -> str:
-        return f"{type(self).__name__}.{self.name}"  # as OpenRAVE writes it into names of files and solvers
 
 
 GOAL_TYPES = frozenset(kind for kind in IkParameterizationType if kind >> 24 and not kind & 0x8000)

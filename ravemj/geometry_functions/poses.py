@@ -19,8 +19,11 @@ def matrixFromPose(pose: ArrayLike) -> Floats:
         Shape (4, 4).
 
     Raises:
+        ValueError: there are fewer than seven numbers, as in OpenRAVE, whose bindings let Python's own error through.
         ArgumentError: the quaternion is far from unit length.
     """
+    if np.size(pose) < 7:
+        raise ValueError(f"pose: has {np.size(pose)} numbers, and should have 7")
     return Pose(_position(pose), arguments.unit_wxyz(pose, "pose")).matrix()
 
 

@@ -116,16 +116,23 @@ def closed_loops(body: KinBody) -> list[list[tuple[int, int]]]:
 
 
 def links_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:
-    """Return the effector of a manipulator, what is fixed to it, and what hangs on these."""
+    """Return the effector of a manipulator, what is fixed to it, what hangs on these, and what moves with it.
+
+    A link moves with the effector if all DOFs that move the effector move it, also through joints that follow them.
+    """
     if manipulator.effector is None:
         return []
     joints = body.all_joints
     fixed = set(rigidly_attached(body, manipulator.effector))
+    moving = dofs_moving(body, manipulator.effector) | set(manipulator.arm_dofs)
 
     def hangs(link: int) -> bool:
         return link in fixed or any(joints[index].parent in fixed for index in joints_above(body, link))
 
-    return [link for link in range(len(body.links)) if hangs(link)]
+    def follows(link: int) -> bool:
+        return bool(moving) and moving <= dofs_moving(body, link)
+
+    return [link for link in range(len(body.links)) if hangs(link) or follows(link)]
 
 
 def joints_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:

@@ -174,14 +174,18 @@ class CollisionChecker(CheckerExtras):
         without_bodies: frozenset[BodyState] = _NO_BODIES,
         without_links: frozenset[LinkOf] = _NO_LINKS,
     ) -> Pairs:
-        thing = _thing(argument)
-        if (state := questions.body_of(thing)).simulation is not self._simulation:
-            raise ArgumentError(f"CheckCollision: '{state.scene.name}' was made for another environment")
+        thing = self._ours(argument)
         links = self._active_links(argument) if self._options else None
         return questions.body_and_others(world, thing, links, without_bodies, without_links)
 
-    def _added(self, argument: object) -> BodyState | LinkOf:
+    def _ours(self, argument: object) -> BodyState | LinkOf:
         thing = _thing(argument)
+        if (state := questions.body_of(thing)).simulation is not self._simulation:
+            raise ArgumentError(f"CheckCollision: '{state.scene.name}' was made for another environment")
+        return thing
+
+    def _added(self, argument: object) -> BodyState | LinkOf:
+        thing = self._ours(argument)
         if not self._simulation.holds(state := questions.body_of(thing)):
             message = f"CheckCollision: '{state.scene.name}' is not in this environment; add it first"
             raise RavemjError(message, ErrorCode.Assert)

@@ -1,9 +1,9 @@
 """OpenRAVE's enumerations, with OpenRAVE's numbers."""
 
-from enum import IntEnum, IntFlag
+from ravemj.core.enumerations import NamedFlag, NamedInt
 
 
-class CheckLimitsAction(IntEnum):
+class CheckLimitsAction(NamedInt):
     """What setters of joint values and velocities do with values outside the limits."""
 
     Nothing = 0
@@ -16,7 +16,7 @@ class CheckLimitsAction(IntEnum):
     """Raise, and change nothing."""
 
 
-class JointType(IntEnum):
+class JointType(NamedInt):
     """Kinds of joints."""
 
     vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
@@ -32,7 +32,7 @@ class JointType(IntEnum):
     Trajectory = 0x80000004
 
 
-class GeometryType(IntEnum):
+class GeometryType(NamedInt):
     """Kinds of shapes."""
 
     vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
@@ -50,7 +50,7 @@ class GeometryType(IntEnum):
     Capsule = 11
 
 
-class SensorType(IntEnum):
+class SensorType(NamedInt):
     """Kinds of sensors."""
 
     Invalid = 0
@@ -64,7 +64,7 @@ class SensorType(IntEnum):
     Actuator = 8
 
 
-class InterfaceType(IntEnum):
+class InterfaceType(NamedInt):
     """Kinds of objects that OpenRAVE's plugins make."""
 
     planner = 1
@@ -83,7 +83,7 @@ class InterfaceType(IntEnum):
     spacesampler = 13
 
 
-class InterfaceAddMode(IntEnum):
+class InterfaceAddMode(NamedInt):
     """What ``env.Add`` does when the name is taken; True and False in its place are OpenRAVE 0.9's ``anonymous``."""
 
     AllowRenaming = 0
@@ -96,7 +96,7 @@ class InterfaceAddMode(IntEnum):
     """Raise."""
 
 
-class SaveParameters(IntFlag):
+class SaveParameters(NamedFlag):
     """What a state saver keeps and restores."""
 
     LinkTransformation = 0x1
@@ -117,13 +117,13 @@ class SaveParameters(IntFlag):
     """Which connected bodies are active."""
 
 
-class EnvironmentCreateOptions(IntFlag):
+class EnvironmentCreateOptions(NamedFlag):
     """What ``Environment`` begins with; without meaning here, since time begins to pass once it is wanted."""
 
     ECO_StartSimulationThread = 1
 
 
-class CloningOptions(IntFlag):
+class CloningOptions(NamedFlag):
     """What a clone of an environment takes over."""
 
     Bodies = 1
@@ -137,7 +137,7 @@ class CloningOptions(IntFlag):
     """Copies hold nothing."""
 
 
-class UpdateFromInfoMode(IntEnum):
+class UpdateFromInfoMode(NamedInt):
     """What ``env.UpdateFromInfo`` does with bodies that the info does not name."""
 
     Exact = 0
@@ -146,7 +146,7 @@ class UpdateFromInfoMode(IntEnum):
     """Leave them."""
 
 
-class UpdateFromInfoResult(IntEnum):
+class UpdateFromInfoResult(NamedInt):
     """How an object took over an info."""
 
     NoChange = 0
@@ -155,7 +155,7 @@ class UpdateFromInfoResult(IntEnum):
     RequireReinitialize = 3
 
 
-class GrabbedInfoCheckResult(IntEnum):
+class GrabbedInfoCheckResult(NamedInt):
     """What ``body.CheckGrabbedInfo`` finds."""
 
     Identical = 0
@@ -164,7 +164,7 @@ class GrabbedInfoCheckResult(IntEnum):
     IgnoredLinksNotMatch = 3
 
 
-class DebugLevel(IntEnum):
+class DebugLevel(NamedInt):
     """How much is logged; each level includes those before it."""
 
     Fatal = 0
@@ -177,7 +177,7 @@ class DebugLevel(IntEnum):
     """A bit beside the level."""
 
 
-class IkFilterOptions(IntFlag):
+class IkFilterOptions(NamedFlag):
     """Which solutions of inverse kinematics are left out."""
 
     CheckEnvCollisions = 1
@@ -190,7 +190,7 @@ class IkFilterOptions(IntFlag):
     IgnoreEndEffectorSelfCollisions = 0x20
 
 
-class IkReturnAction(IntFlag):
+class IkReturnAction(NamedFlag):
     """What a filter says about a solution of inverse kinematics, and why it was rejected."""
 
     Success = 0
@@ -205,7 +205,7 @@ class IkReturnAction(IntFlag):
     RejectCustomFilter = 0x8001
 
 
-class CollisionOptions(IntFlag):
+class CollisionOptions(NamedFlag):
     """What collision checking looks for and reports; combine them with ``|``."""
 
     Distance = 0x1
@@ -228,7 +228,7 @@ class CollisionOptions(IntFlag):
     """Functions of ``env.RegisterCollisionCallback`` are not called."""
 
 
-class CollisionAction(IntEnum):
+class CollisionAction(NamedInt):
     """What a function of ``env.RegisterCollisionCallback`` says about a collision."""
 
     DefaultAction = 0
@@ -237,7 +237,7 @@ class CollisionAction(IntEnum):
     """It does not count."""
 
 
-class AdjacentOptions(IntFlag):
+class AdjacentOptions(NamedFlag):
     """Which pairs of links ``GetNonAdjacentLinks`` returns; combine them with ``|``."""
 
     Enabled = 1
@@ -246,7 +246,7 @@ class AdjacentOptions(IntFlag):
     """Those that the active DOFs move against each other."""
 
 
-class TriangulateOptions(IntEnum):
+class TriangulateOptions(NamedInt):
     """Which bodies ``TriangulateScene`` takes; also called ``SelectionOptions``."""
 
     Obstacles = 1
@@ -260,7 +260,7 @@ class TriangulateOptions(IntEnum):
 SelectionOptions = TriangulateOptions
 
 
-class SerializationOptions(IntFlag):
+class SerializationOptions(NamedFlag):
     """What of a body goes into its hash."""
 
     Kinematics = 1
@@ -274,7 +274,7 @@ class SerializationOptions(IntFlag):
     JointLimits = 0x100
 
 
-class SensorCommand(IntEnum):
+class SensorCommand(NamedInt):
     """What ``sensor.Configure`` is asked to do; ``Sensor.ConfigureCommand``."""
 
     PowerOn = 0x10
@@ -288,7 +288,7 @@ class SensorCommand(IntEnum):
     RenderGeometryCheck = 0x32
 
 
-class PlannerStatusCode(IntFlag):
+class PlannerStatusCode(NamedFlag):
     """How planning ended."""
 
     Failed = 0
@@ -297,14 +297,14 @@ class PlannerStatusCode(IntFlag):
     InterruptedWithSolution = 3
 
 
-class PhysicsEngineOptions(IntFlag):
+class PhysicsEngineOptions(NamedFlag):
     """What physics engines look at."""
 
     SelfCollisions = 1
     """Links of one body collide with one another."""
 
 
-class PlannerAction(IntEnum):
+class PlannerAction(NamedInt):
     """What a function of ``planner.RegisterPlanCallback`` says."""
 
     vars()["None"] = 0  # OpenRAVE's name, which Python keeps for itself
@@ -314,7 +314,7 @@ class PlannerAction(IntEnum):
     """Stop if there is a path already, however long."""
 
 
-class Interval(IntFlag):
+class Interval(NamedFlag):
     """Which ends of an interval belong to it; and how values between waypoints are interpolated."""
 
     Open = Default = 0
@@ -328,7 +328,7 @@ class Interval(IntFlag):
     InterpolationMask = 0xFFFF0000
 
 
-class ConstraintFilterOptions(IntFlag):
+class ConstraintFilterOptions(NamedFlag):
     """What tests of configurations look at."""
 
     CheckEnvCollisions = 1

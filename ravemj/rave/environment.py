@@ -125,10 +125,12 @@ class Environment(Described, Loading, Saving, Collision, Drawing, Viewing):
     def CloneSelf(self, options: int | str = CloningOptions.Bodies, clonedEnvName: Any = None) -> "Environment":  # noqa: ANN401 - either order
         """Return a new environment with copies of the bodies, in the same state.
 
-        Robots keep their active DOFs and manipulators, and hold what they held.
+        Robots keep their active DOFs and manipulators, and hold what they held. Simulation time stands still in the
+        copy until ``StartSimulation``.
 
         Args:
-            options: What to copy, a ``CloningOptions``; bodies, gravity and the view are, whatever it says.
+            options: What to copy, a ``CloningOptions``: bodies only with ``Bodies``; gravity and the view are, whatever
+                it says.
             clonedEnvName: The new environment's name; OpenRAVE has it before the options, which is understood too.
 
         Example:
@@ -138,6 +140,7 @@ class Environment(Described, Loading, Saving, Collision, Drawing, Viewing):
         if isinstance(options, str):
             options, clonedEnvName = CloningOptions.Bodies if clonedEnvName is None else clonedEnvName, options
         clone = type(self)(clonedEnvName or "")
+        clone.StopSimulation()
         clone.Clone(self, options)
         return clone
 
@@ -151,8 +154,9 @@ class Environment(Described, Loading, Saving, Collision, Drawing, Viewing):
             options: As in ``CloneSelf``.
             clonedEnvName: What this environment is called from then on; as in ``CloneSelf``.
         """
-        name = options if isinstance(options, str) else clonedEnvName
-        self._name = name or self._name
+        if isinstance(options, str):
+            options, clonedEnvName = CloningOptions.Bodies, options
+        self._name = clonedEnvName or self._name
         for env in (self, checked_environment(reference, "Clone: reference")):
             env._check_alive()
         source = reference.simulation
@@ -160,7 +164,7 @@ class Environment(Described, Loading, Saving, Collision, Drawing, Viewing):
             return
         with both_locks(source, self._simulation):
             self._kept_objects.clear()
-            for original, copy in self._simulation.copy(source).items():
+            for original, copy in self._simulation.copy(source, bodies=bool(options & CloningOptions.Bodies)).items():
                 body, other = self.wrap(copy), reference.wrap(original)
                 if isinstance(body, Robot) and isinstance(other, Robot):
                     body.take_choices(other)

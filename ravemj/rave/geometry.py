@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
-from ravemj.core.transforms import Floats, pose_of
+from ravemj.core.transforms import Floats, Vec3, pose_of
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import AABB
@@ -20,7 +20,10 @@ from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 
 
 class Geometry(ApiObject):
-    """A shape of a link; ``link.GetGeometries()`` makes it. Getters of what its type does not have raise.
+    """A shape of a link; ``link.GetGeometries()`` makes it.
+
+    Getters of sizes answer for boxes and round shapes of any type from the same three numbers, as in OpenRAVE: half
+    extents; radius; radius and height. For others, getters of what the type does not have raise.
 
     Setters act at once, also in viewers and in pictures.
 
@@ -80,42 +83,39 @@ class Geometry(ApiObject):
 
     def GetBoxExtents(self) -> Floats:
         """Return half the edge lengths of a box [m], shape (3,)."""
-        return np.array(self._box().half_extents)
+        return np.array(self._sizes())
 
-    def _box(self) -> scene.Box:
-        shape = self._scene.shape
-        if not isinstance(shape, scene.Box):
-            raise self._has_none("box extents")
-        return shape
+    def _sizes(self) -> Vec3:
+        """Return the numbers that OpenRAVE keeps for boxes and round shapes: its getters read them for any of these."""
+        match self._scene.shape:
+            case scene.Box(half_extents=sizes):
+                return sizes
+            case scene.Sphere(radius=radius):
+                return radius, 0.0, 0.0
+            case scene.Cylinder(radius=radius, height=height) | scene.Capsule(radius=radius, height=height):
+                return radius, height, 0.0
+            case _:
+                raise self._has_none("radius, height or box extents")
 
     def GetSphereRadius(self) -> float:
         """Return the radius of a sphere [m]."""
-        shape = self._scene.shape
-        if not isinstance(shape, scene.Sphere):
-            raise self._has_none("sphere radius")
-        return shape.radius
-
-    def _round(self) -> scene.Cylinder | scene.Capsule:
-        shape = self._scene.shape
-        if not isinstance(shape, scene.Cylinder | scene.Capsule):
-            raise self._has_none("radius and height")
-        return shape
+        return self._sizes()[0]
 
     def GetCylinderRadius(self) -> float:
         """Return the radius of a cylinder [m]."""
-        return self._round().radius
+        return self._sizes()[0]
 
     def GetCylinderHeight(self) -> float:
         """Return the full height of a cylinder along its z axis [m]."""
-        return self._round().height
+        return self._sizes()[1]
 
     def GetCapsuleRadius(self) -> float:
         """Return the radius of a capsule [m]."""
-        return self._round().radius
+        return self._sizes()[0]
 
     def GetCapsuleHeight(self) -> float:
         """Return the height of a capsule's cylindrical part along its z axis [m]."""
-        return self._round().height
+        return self._sizes()[1]
 
     def _container(self) -> scene.Container:
         shape = self._scene.shape

@@ -175,7 +175,7 @@ class CollisionReport(ApiObject):
         return [(info.first.link, info.second.link if info.second else None) for info in colliding]
 
     def __str__(self) -> str:
-        return "\n".join(map(str, self.collisionInfos)) or "no collision"
+        return "\n".join(map(str, self.collisionInfos)) or "[]"  # as OpenRAVE prints an empty report
 
     def __repr__(self) -> str:
         return f"<report:{self}>"

@@ -1,13 +1,13 @@
 """Samplers: sequences of numbers that cover a space."""
 
 from collections.abc import Callable
-from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.arguments import also_named, checked_kind
+from ravemj.core.enumerations import NamedInt
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions.sequences import halton
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 
-class SampleDataType(IntEnum):
+class SampleDataType(NamedInt):
     """What samplers give."""
 
     Real = 1

@@ -286,17 +286,17 @@ class Trajectory(Interface):
         """
         self._waypoints, traj._waypoints = traj._waypoints, self._waypoints
 
-    def serialize(self, options: int | None = 0) -> bytes | str:
+    def serialize(self, options: int | None = 0) -> bytes:
         """Return the trajectory in OpenRAVE's format.
 
         Args:
             options: 0x8000 for XML.
 
         Returns:
-            Bytes; text for XML.
+            Bytes, in UTF-8 for XML.
         """
         stored = Stored(self._known(), self.GetDescription())
-        return to_text(stored, self._xmlid) if (options or 0) & AS_TEXT else to_bytes(stored)
+        return to_text(stored, self._xmlid).encode() if (options or 0) & AS_TEXT else to_bytes(stored)
 
     def deserialize(self, data: bytes | str) -> Self:
         """Take over what ``serialize`` returned, of either form.
@@ -326,7 +326,7 @@ class Trajectory(Interface):
         """
         content = self.serialize(options)
         with new_file(filename) as path:
-            path.write_bytes(content.encode() if isinstance(content, str) else content)
+            path.write_bytes(content)
 
     def LoadFromFile(self, filename: AnyPath) -> None:
         """Take over the trajectory in a file, of either form.
@@ -361,7 +361,7 @@ class Trajectory(Interface):
         from ravemj.trajectories.serialization import AS_TEXT  # noqa: PLC0415 - rarely wanted
 
         made = f"RaveCreateTrajectory({self._env!r}, {self._xmlid!r})"
-        return made if self._waypoints is None else f"{made}.deserialize({self.serialize(AS_TEXT)!r})"
+        return made if self._waypoints is None else f"{made}.deserialize({self.serialize(AS_TEXT).decode()!r})"
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:  # noqa: ANN401 - IPython's
         """Print the short text in IPython, where ``repr`` would fill the screen."""

@@ -4,15 +4,15 @@ ravemj computes in metres, kilograms, radians and seconds; the units here conver
 """
 
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import Any, ClassVar, TypeVar
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
+from ravemj.core.enumerations import NamedInt
 from ravemj.errors import ArgumentError
 
 
-class LengthUnit(IntEnum):
+class LengthUnit(NamedInt):
     """Units of length."""
 
     m = 0
@@ -27,7 +27,7 @@ class LengthUnit(IntEnum):
     ft = 17
 
 
-class MassUnit(IntEnum):
+class MassUnit(NamedInt):
     """Units of mass."""
 
     g = 0
@@ -36,7 +36,7 @@ class MassUnit(IntEnum):
     lb = 16
 
 
-class AngleUnit(IntEnum):
+class AngleUnit(NamedInt):
     """Units of angles."""
 
     rad = 0
@@ -44,7 +44,7 @@ class AngleUnit(IntEnum):
     cdeg = -2
 
 
-class TimeDurationUnit(IntEnum):
+class TimeDurationUnit(NamedInt):
     """Units of durations."""
 
     s = 0
@@ -54,7 +54,7 @@ class TimeDurationUnit(IntEnum):
     ps = -12
 
 
-class TimeStampUnit(IntEnum):
+class TimeStampUnit(NamedInt):
     """Units of points in time."""
 
     s = 0
@@ -65,7 +65,7 @@ class TimeStampUnit(IntEnum):
 
 Unit = TypeVar("Unit", LengthUnit, MassUnit, AngleUnit, TimeDurationUnit, TimeStampUnit)
 
-_PER_STANDARD: dict[type[IntEnum], dict[IntEnum, float]] = {
+_PER_STANDARD: dict[type[NamedInt], dict[NamedInt, float]] = {
     LengthUnit: {
         LengthUnit.m: 1.0,
         LengthUnit.dm: 1e1,
@@ -89,7 +89,7 @@ _PER_STANDARD: dict[type[IntEnum], dict[IntEnum, float]] = {
 }
 """How many of each unit are a metre, a gram, a radian, a second; inch, foot and pound by their legal definitions."""
 
-_OTHER_WORDS: dict[type[IntEnum], dict[str, str]] = {
+_OTHER_WORDS: dict[type[NamedInt], dict[str, str]] = {
     LengthUnit: {
         "0.1mm": "dmm",
         "meter": "m",
@@ -102,10 +102,10 @@ _OTHER_WORDS: dict[type[IntEnum], dict[str, str]] = {
 }
 
 
-_WRITTEN: dict[IntEnum, str] = {LengthUnit.dmm: "0.1mm"}
+_WRITTEN: dict[NamedInt, str] = {LengthUnit.dmm: "0.1mm"}
 
 
-def _written(unit: IntEnum) -> str:
+def _written(unit: NamedInt) -> str:
     return _WRITTEN.get(unit, unit.name)
 
 
@@ -253,7 +253,7 @@ class UnitInfo(ApiObject):
     angleUnit: AngleUnit = AngleUnit.rad
     timeStampUnit: TimeStampUnit = TimeStampUnit.us
 
-    _kinds: ClassVar[dict[str, type[IntEnum]]] = {
+    _kinds: ClassVar[dict[str, type[NamedInt]]] = {
         "lengthUnit": LengthUnit,
         "massUnit": MassUnit,
         "timeDurationUnit": TimeDurationUnit,

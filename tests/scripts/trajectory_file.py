@@ -16,7 +16,7 @@ for t, q, v in ((0, 0, 0), (1, 0.5, 1), (1, 1, 0)):
     spec.InsertJointValues(data, [v] * len(indices), robot, indices, 1)
     traj.Insert(traj.GetNumWaypoints(), data)
 traj.SaveToFile('mine.traj')
-open('mine.xml', 'w').write(traj.serialize(0x8000))
+open('mine.xml', 'wb').write(traj.serialize(0x8000))
 other = RaveCreateTrajectory(env, '')
 other.LoadFromFile('mine.traj')
 third = misc.LoadTrajectoryFromFile(env, 'mine.xml')

@@ -63,7 +63,7 @@ class Helper(ApiObject):
             self._mover.execute(traj)
         if outputtrajobj:
             return traj
-        return str(traj.serialize(AS_TEXT)) if outputtraj else None
+        return traj.serialize(AS_TEXT).decode() if outputtraj else None
 
     def _pair(
         self,

@@ -49,12 +49,12 @@ def body_and_others(
         body: The body with what it holds, or one link, without what that holds.
         links: Only these links of the body, and what they hold.
         without_bodies: Other bodies that are left out.
-        without_links: Links of other bodies that are left out.
+        without_links: Links that are left out, of the body itself as well.
     """
 
     def find() -> tuple[Ints, Ints]:
         others = _without(world, world.geoms_of_others(body_of(body)), without_bodies, without_links)
-        return cross(_geoms(world, body, links), others)
+        return cross(_without(world, _geoms(world, body, links), frozenset(), without_links), others)
 
     return world.pairs(("others", body, links, without_bodies, without_links), find)
 

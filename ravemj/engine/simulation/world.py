@@ -154,8 +154,12 @@ class Simulation:
             for body in self.bodies:
                 self.remove(body)
 
-    def copy(self, other: "Simulation") -> dict[BodyState, BodyState]:
+    def copy(self, other: "Simulation", *, bodies: bool = True) -> dict[BodyState, BodyState]:
         """Replace bodies, view and gravity by copies of another world's. The caller holds both locks.
+
+        Args:
+            other: The other world.
+            bodies: Whether its bodies are copied; else this world is empty.
 
         Returns:
             For each body of the other world its copy.
@@ -163,13 +167,13 @@ class Simulation:
         self.clear()
         self.view = other.view
         self.set_gravity(other.gravity)
-        copies = {body: self.create(body.scene) for body in other.bodies}
+        copies = {body: self.create(body.scene) for body in other.bodies if bodies}
         for body, copy in copies.items():
             copy.copy(body)
             self.insert(copy, body.index)
             copy.rest_poses = body.rest_poses
         for body, copy in copies.items():
-            copy.grabs = [grab._replace(body=copies[grab.body]) for grab in body.grabs]
+            copy.grabs = [grab._replace(body=copies[grab.body]) for grab in body.grabs if grab.body in copies]
         return copies
 
     def set_gravity(self, gravity: Vec3) -> None:

@@ -39,7 +39,7 @@ class Grabbing(BodyPart, Interface):
         that is held already renews link and pose.
 
         Args:
-            body: What to hold; it is in the same environment.
+            body: What to hold; it was made for the same environment, and need not be in it.
             grablink: The link of this body that holds it.
             linkstoignore: Further links of this body that it should not collide with.
             grabbedUserData: Kept in ``GrabbedInfo._grabbedUserData`` by OpenRAVE; not used.
@@ -48,8 +48,8 @@ class Grabbing(BodyPart, Interface):
             True.
 
         Raises:
-            openrave_exception: the body is in no environment or in another one, is this body itself, or holds this
-                body.
+            openrave_exception: this body is not in the environment (``NotInitialized``); the other one is None
+                (``Failed``), of another environment, this body itself, or holds this body (``InvalidArguments``).
         """
         del grabbedUserData
         with self._simulation.lock:
@@ -60,12 +60,15 @@ class Grabbing(BodyPart, Interface):
             self._state.grab(grab_as_it_stands(self._state, held, link, ignored))
             return True
 
-    def _check_holdable(self, body: "KinBody") -> None:
+    def _check_holdable(self, body: "KinBody | None") -> None:
+        if body is None:
+            raise ArgumentError("Grab: body is None, and should be a KinBody", ErrorCode.Failed)
         held = checked_kind(body, BodyPart, "Grab: body", "a KinBody").simulation_state
-        for state in (self._state, held):
-            if not self._simulation.holds(state):
-                message = f"Grab: '{state.scene.name}' is not in this environment; add it first"
-                raise RavemjError(message, ErrorCode.NotInitialized)
+        if not self._simulation.holds(self._state):
+            message = f"Grab: '{self.GetName()}' is not in this environment; add it first"
+            raise RavemjError(message, ErrorCode.NotInitialized)
+        if held.simulation is not self._simulation:
+            raise ArgumentError(f"Grab: '{held.scene.name}' was made for another environment")
         self._check_not_carried_by(held)
 
     def _check_not_carried_by(self, held: BodyState) -> None:
@@ -142,8 +145,8 @@ class Grabbing(BodyPart, Interface):
             self._state.moved()
 
     def GetGrabbed(self) -> "list[KinBody]":
-        """Return the held bodies, in the order of grabbing."""
-        return [self._env.wrap(grab.body) for grab in self._state.grabs]
+        """Return the held bodies that are in the environment, in the order of grabbing."""
+        return [self._env.wrap(grab.body) for grab in self._state.grabs if self._simulation.holds(grab.body)]
 
     def GetNumGrabbed(self) -> int:
         """Return the number of held bodies."""

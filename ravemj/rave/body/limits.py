@@ -237,7 +237,7 @@ class Limits(BodyPart):
             if numbers.ndim != 1 or (len(numbers) != len(chosen) and numbers.size + len(chosen) > 0):
                 wanted = f"{dof} numbers, one for each DOF" if indices is None else f"{len(chosen)}, as many as indices"
                 message = f"{caller}: values have shape {numbers.shape}, and should be {wanted}"
-                raise ArgumentError(message, ErrorCode.Failed)
+                raise ArgumentError(message, ErrorCode.Failed if indices is None else ErrorCode.Assert)
             if np.isnan(numbers).any():
                 raise ArgumentError(f"{caller}: values are {numbers.tolist()}, and should be numbers")
             given[name] = numbers.tolist()

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.model import scene
 from ravemj.model.triangles import links_triangles
 from ravemj.rave.enums import InterfaceAddMode, TriangulateOptions
@@ -81,7 +81,11 @@ class Contents(EnvironmentPart):
         with self._simulation.lock:
             if self._simulation.holds(state):
                 return
-            if _renames(addMode):
+            renames = _renames(addMode)
+            if not body.GetName():
+                message = "Add: the body has no name; give it one with SetName"
+                raise RavemjError(message, ErrorCode.Assert if renames else ErrorCode.Failed)
+            if renames:
                 self._simulation.rename(state, self._simulation.free_name(state.scene.name))
             self._simulation.insert(state)
             self._kept_objects[state] = body
@@ -161,7 +165,7 @@ class Contents(EnvironmentPart):
     def _remove_other(self, interface: object) -> bool:
         """End and remove a module or a viewer; return whether it was there."""
         if interface is None:
-            raise ArgumentError("Remove: takes a body or robot, not None")
+            raise ArgumentError("Remove: takes a body or robot, not None", ErrorCode.Failed)
         if isinstance(interface, Module) and interface in self._modules:
             self._modules.remove(interface)
             interface.end()

@@ -9,13 +9,13 @@
 
 from collections.abc import Sequence
 from dataclasses import field, replace
-from enum import IntFlag
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_transform
+from ravemj.core.enumerations import NamedFlag
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Diagnostics, send_warnings
 from ravemj.model import scene
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-class ExtractInfoOptions(IntFlag):
+class ExtractInfoOptions(NamedFlag):
     """Options of ``body.ExtractInfo``."""
 
     Everything = 0

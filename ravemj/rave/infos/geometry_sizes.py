@@ -6,13 +6,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_vector
+from ravemj.core.enumerations import NamedInt
 from ravemj.core.transforms import Floats
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.base import Info
@@ -20,7 +20,7 @@ from ravemj.rave.infos.json import LENGTHS, PLAIN, POSE, TEXT, Entry, Form, Json
 from ravemj.rave.trimesh import TriMesh
 
 
-class SideWallType(IntEnum):
+class SideWallType(NamedInt):
     """Which side of a cage a wall is on: towards negative or positive x or y."""
 
     NX = 0

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import field, fields
-from enum import IntEnum
 from typing import TYPE_CHECKING
 
+from ravemj.core.enumerations import NamedInt
 from ravemj.rave.infos.base import Info, info_class
 from ravemj.rave.infos.json import PLAIN, Entry, Json
 
@@ -18,7 +18,7 @@ def _camel(name: str) -> str:
     return first + "".join(word.capitalize() for word in rest)
 
 
-class JointControlMode(IntEnum):
+class JointControlMode(NamedInt):
     """Who drives a joint of a real robot."""
 
     JCM_None = 0

@@ -26,7 +26,7 @@ def reply(mover: Mover, traj: Trajectory, options: Mapping[str, Any], before: st
     """Execute a motion if the options do not forbid it, and return the answer of the command."""
     if options.get("execute", True):
         mover.execute(traj)
-    return before + (str(traj.serialize(AS_TEXT)) if options.get("outputtraj") else "")
+    return before + (traj.serialize(AS_TEXT).decode() if options.get("outputtraj") else "")
 
 
 def effort_of(options: Mapping[str, Any], default: Effort) -> Effort:
