@@ -32,5 +32,10 @@ napoleon_use_ivar = True
 nitpick_ignore_regex = [  # pages of others, which a build without network knows nothing of
     ("py:class", r"(collections|mujoco|np|numpy|optparse|os|weakref)\..*|EllipsisType|NDArray|Path"),
     ("py:class", r"Parameters|Result"),  # type variables
-    ("py:class", r"IkParameterizationData|Simulation|SimulationRenderer|_\w+"),  # below the API
+    # Names of types: of JSON, of functions that scripts hand in, of what modules take.
+    ("py:class", r"Answer|BodyCallback|Command|Constraint|FilterFunction|Json|PlanCallback|SaveArguments|State"),
+    (
+        "py:class",
+        r"BodyCallbackHandle|BodyCollision|IkBatch|IKSolver|ravemj\.core\.handles\.Handle|IkParameterizationData|Simulation|SimulationRenderer|_\w+",
+    ),  # below the API
 ]
