@@ -81,12 +81,10 @@ class Contents(EnvironmentPart):
         with self._simulation.lock:
             if self._simulation.holds(state):
                 return
-            renames = _renames(addMode)
-            if not body.GetName():
-                message = "Add: the body has no name; give it one with SetName"
-                raise RavemjError(message, ErrorCode.Assert if renames else ErrorCode.Failed)
-            if renames:
+            if _renames(addMode):  # also where there is no name: pymanoid does so, though OpenRAVE 0.149 refuses it
                 self._simulation.rename(state, self._simulation.free_name(state.scene.name))
+            elif not body.GetName():
+                raise RavemjError("Add: the body has no name; give it one with SetName", ErrorCode.Failed)
             self._simulation.insert(state)
             self._kept_objects[state] = body
         self._tell_of_body(body, 1)
