@@ -12,8 +12,6 @@ from ravemj.core.transforms import Floats, inverse, pose_of
 from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions.ik_parameterization import moved_goal
 from ravemj.geometry_functions.ik_types import IkParameterizationType, goal_size
-from ravemj.ik import IKSolver
-from ravemj.ik.arms import ArmSolver
 from ravemj.rave.arm_goals import ArmGoals
 from ravemj.rave.ik_search import task_of
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
@@ -21,6 +19,7 @@ from ravemj.rave.iksolver import IkSolver, split_options
 from ravemj.rave.specification import IkParameterization
 
 if TYPE_CHECKING:
+    from ravemj.ik import IKSolver
     from ravemj.rave.robot import Robot
 
 _LOG = logging.getLogger("ravemj")
@@ -223,7 +222,7 @@ class ArmIk(ArmGoals):
 
     # Many goals at once
 
-    def ik_solver(self, iktype: IkParameterizationType = _Type.Transform6D) -> IKSolver:
+    def ik_solver(self, iktype: IkParameterizationType = _Type.Transform6D) -> "IKSolver":
         """Return what computes inverse kinematics of the arm; it is derived when first asked for.
 
         Args:
@@ -235,6 +234,8 @@ class ArmIk(ArmGoals):
         Example:
             >>> print(manip.ik_solver().describe())
         """
+        from ravemj.ik.arms import ArmSolver  # noqa: PLC0415 - slow to import
+
         solver = self.GetIkSolver()
         try:
             if solver is not None and solver.kind == iktype:
@@ -282,7 +283,7 @@ def _without_flag(arguments: tuple[object, ...], ikreturn: bool) -> tuple[tuple[
     return arguments, ikreturn
 
 
-def _branch_names(solver: IKSolver, count: int) -> list[str]:
+def _branch_names(solver: "IKSolver", count: int) -> list[str]:
     """Return a name for each solution of a goal: the values of free joints, and the choices of the closed form."""
     if solver.closed is None:
         return [f"found {number + 1}" for number in range(count)]

@@ -12,16 +12,16 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
 from ravemj.geometry_functions.ik_parameterization import goal_of_tool
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType
-from ravemj.ik import IKSolver, Task
-from ravemj.ik.arms import ArmSolver
-from ravemj.ik.candidates import nearest_first, shortfall
-from ravemj.ik.limits import distances
 from ravemj.rave.ik_judge import CHECK_ENV, IGNORE_FILTERS, IGNORE_LIMITS, IGNORE_SELF, Filter, Judge, Question
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
 from ravemj.rave.interface import Annotations, Interface
 from ravemj.rave.specification import IkParameterization
 
+# Half of what ravemj takes to be imported would be for inverse kinematics, which most scripts do without.
+# ruff: noqa: PLC0415
+
 if TYPE_CHECKING:
+    from ravemj.ik import IKSolver, Task
     from ravemj.model import scene
     from ravemj.rave.environment import Environment
     from ravemj.rave.manipulator import Manipulator
@@ -37,12 +37,14 @@ _OF_POSES = {
 """Types whose solvers also take a pose, for the part of it that they ask for."""
 
 
-def task_of(kind: IkParameterizationType) -> Task:
+def task_of(kind: IkParameterizationType) -> "Task":
     """Return what a type of goal asks for.
 
     Raises:
         UnsupportedError: no solver answers such goals.
     """
+    from ravemj.ik import Task
+
     try:
         return Task(kind.name)
     except ValueError:
@@ -83,6 +85,8 @@ class IkSearch(Interface):
         self._annotations = Annotations()
         self._name = name
         self.kind = kind
+        from ravemj.ik.arms import ArmSolver
+
         self.arm_solver = ArmSolver(task_of(kind), free)
         self._steps = None if steps is None else tuple(steps)
         self._filters: list[Filter] = []
@@ -125,12 +129,12 @@ class IkSearch(Interface):
                 return arm
         raise RavemjError(f"the arm '{self._arm_name}' of the solver '{self._name}' was removed")
 
-    def derived(self) -> IKSolver:
+    def derived(self) -> "IKSolver":
         """Return what computes, for the arm as it is now."""
         solver = self.arm_solver.of(self._owner().simulation_state.scene, self._description())
         return solver if self._steps is None else replace(solver, steps=self._steps)
 
-    def _free_values(self, solver: IKSolver, shares: ArrayLike | None) -> Floats | None:
+    def _free_values(self, solver: "IKSolver", shares: ArrayLike | None) -> Floats | None:
         """Return the values of free joints, shape (k,), that are given as shares of their ranges; None: any."""
         given = np.zeros(0) if shares is None else checked_numbers(shares, "freevalues")
         if not given.size:
@@ -192,8 +196,10 @@ class IkSearch(Interface):
             answer = judge.first(self._nearest_first(solver, numbers, free, options, start))
             if answer is None:
                 if explain and not judge.quit:
-                    judge.fall_short(*shortfall(solver, numbers, free), limits=not options & IGNORE_LIMITS)
+                    judge.fall_short(*_shortfall(solver, numbers, free), limits=not options & IGNORE_LIMITS)
                 return judge.failure()
+        from ravemj.ik.limits import distances
+
         away = distances(solver.chain, answer.GetSolution(), start, self._weights())
         answer.SetMapKeyValue("__distancetosol__", away)
         return answer
@@ -212,20 +218,22 @@ class IkSearch(Interface):
             answers = judge.all(rows)
             if not answers and failures is not None and not judge.quit:
                 free = self._free_values(solver, shares)
-                judge.fall_short(*shortfall(solver, self._numbers(goal), free), limits=not options & IGNORE_LIMITS)
+                judge.fall_short(*_shortfall(solver, self._numbers(goal), free), limits=not options & IGNORE_LIMITS)
         return answers
 
     def _all_rows(
-        self, solver: IKSolver, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int
+        self, solver: "IKSolver", goal: IkParameterization | Floats, shares: ArrayLike | None, options: int
     ) -> Floats:
         free = self._free_values(solver, shares)
         samples = None if free is None else free[None]
         return solver.solve_one(self._numbers(goal), free=samples, limits=not options & IGNORE_LIMITS)
 
     def _nearest_first(
-        self, solver: IKSolver, numbers: Floats, free: Floats | None, options: int, start: Floats | None = None
+        self, solver: "IKSolver", numbers: Floats, free: Floats | None, options: int, start: Floats | None = None
     ) -> Iterator[Floats]:
         seed, limits = self._posture() if start is None else start, not options & IGNORE_LIMITS
+        from ravemj.ik.candidates import nearest_first
+
         return nearest_first(solver, numbers, seed, weights=self._weights(), free=free, limits=limits)
 
     def _weights(self) -> Floats:
@@ -264,3 +272,9 @@ class IkSearch(Interface):
         filters = [] if options & IGNORE_FILTERS else self._filters
         question = Question(self._owner(), self._arm, self._description(), goal, options, filters, failures)
         return Judge(question)
+
+
+def _shortfall(solver: "IKSolver", numbers: Floats, free: Floats | None) -> tuple[bool, bool]:
+    from ravemj.ik.candidates import shortfall
+
+    return shortfall(solver, numbers, free)

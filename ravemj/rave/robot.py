@@ -17,7 +17,6 @@ from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import DOFAffine
 from ravemj.geometry_functions.ik_types import IkParameterizationType
-from ravemj.ik.arms import ArmSolver
 from ravemj.rave.body.active import ActiveChoice, ActiveDofs
 from ravemj.rave.body.affine import default_kinds
 from ravemj.rave.body.grippers import Grippers
@@ -40,6 +39,7 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.sensors import AttachedSensor
 
 if TYPE_CHECKING:
+    from ravemj.ik.arms import ArmSolver
     from ravemj.rave.environment import Environment
     from ravemj.rave.report import CollisionReport
 
