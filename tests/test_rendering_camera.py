@@ -212,6 +212,7 @@ def test_written_cameras_come_back_to_the_last_digit(tmp_path):
         ('{"T": []}', 'without the entry "camera"'),
         ('{"camera": [[1, 2], [3]]}', "no array of numbers"),
         (json.dumps({"camera": SAVED, "fovy": "wide"}), '"fovy" is "wide"'),
+        ("[" * 2000, "found an array of shape"),
         ("1 2 3 4 5", r"found an array of shape \(5,\)"),
         (json.dumps([[2 * x for x in row[:3]] + row[3:] for row in SAVED[:3]]), "no rotation"),
     ],

@@ -370,6 +370,30 @@ def test_pictures_of_pages_are_handed_to_callbacks(env, viewer):
     handle.Close()
 
 
+def test_deep_messages_do_not_let_finalizers_fail():
+    finalized = []
+
+    class Circle:
+        def __init__(self):
+            self.itself = self
+
+        def __del__(self):
+            finalized.append(json.dumps([0]))
+
+    thresholds = gc.get_threshold()
+    rounds = range(500, 1000, 5)  # the collection begins at one depth of the parser after the other
+    try:
+        for threshold in rounds:
+            Circle()
+            gc.set_threshold(threshold)
+            with pytest.raises(ValueError, match="no message"):
+                parse("[" * 1000)
+    finally:
+        gc.set_threshold(*thresholds)
+    gc.collect()
+    assert len(finalized) == len(rounds)
+
+
 def test_broken_pages_harm_nobody(viewer, caplog):
     with Page(viewer) as page, Page(viewer) as other:
         page.settled()

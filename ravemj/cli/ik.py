@@ -123,7 +123,7 @@ def _start(path: str, robot: Robot) -> list[float]:
         content: Any = json.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
         raise SourceError(f"cannot read the file: {(error.strerror or str(error)).lower()}", Source(path)) from None
-    except ValueError as error:
+    except (RecursionError, ValueError) as error:
         raise SourceError(f"not JSON: {error}", Source(path), hint) from None
     values = robot.GetDOFValues().tolist()
     if isinstance(content, dict):

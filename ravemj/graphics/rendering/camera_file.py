@@ -30,7 +30,7 @@ def read_camera(path: str | Path) -> Camera:
         raise SourceError("cannot read the camera: this is no text file", source, _EXPECTED) from None
     try:
         document = json.loads(text)
-    except ValueError:
+    except (RecursionError, ValueError):
         document = _read_numbers(text, source)
     try:
         return _camera_from_document(document)

@@ -27,6 +27,7 @@ LONGEST = 1024
 _FARTHEST = 100_000.0
 _LARGEST = 8192
 _LONGEST_KEY = 20
+_MOST_BRACKETS = 8
 
 
 class Shape(NamedTuple):
@@ -55,9 +56,14 @@ def parse(text: str | bytes) -> Message:
         ValueError: it says nothing that is known, or numbers that make no sense; the text is one of a few.
     """
     try:
+        text = text if isinstance(text, str) else text.decode()
+        # Messages are flat. Deep ones end the parser at Python's limit of recursion, and finalizers that the garbage
+        # collector happens to run down there fail.
+        if text.count("[") + text.count("{") > _MOST_BRACKETS:
+            raise ValueError
         fields = json.loads(text)
         parser = _PARSERS[fields["type"]]
-    except (KeyError, TypeError, RecursionError, ValueError):
+    except (KeyError, TypeError, ValueError):
         raise ValueError("this is no message of a viewer's page") from None
     try:
         return parser(fields)
