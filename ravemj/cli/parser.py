@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import NoReturn, TypeAlias
 
 from ravemj.cli import check, convert, diff, ik, info, pictures, sessions, view
-from ravemj.cli.words import colour, port, positive, size, target, vector
+from ravemj.cli.argument_types import colour, port, positive, size, target, vector
 from ravemj.formats.shipped import SHIPPED_MODELS
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
 

@@ -14,7 +14,7 @@ from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.commands import BaseCommands, TaskCommands, answering
 from ravemj.rave.modules.motions import Mover
 from ravemj.rave.modules.task_manipulation import TaskManipulation
-from ravemj.rave.modules.words import Words
+from ravemj.rave.modules.tokens import Words
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

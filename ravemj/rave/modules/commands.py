@@ -11,7 +11,7 @@ from ravemj.rave.module import Command
 from ravemj.rave.modules.base_manipulation import HAND_EFFORT, BaseManipulation, Effort
 from ravemj.rave.modules.motions import Mover
 from ravemj.rave.modules.task_manipulation import TaskManipulation
-from ravemj.rave.modules.words import Reader, Words, flag, read_options, switch, text
+from ravemj.rave.modules.tokens import Reader, Words, flag, read_options, switch, text
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
