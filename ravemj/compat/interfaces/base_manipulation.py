@@ -12,8 +12,8 @@ from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
 from ravemj.rave.modules import base_module
-from ravemj.rave.modules.base_manipulation import HAND_EFFORT, Effort
-from ravemj.rave.modules.commands import effort_of, straight, unsync
+from ravemj.rave.modules.base_manipulation import HAND_SEARCH, SearchOptions
+from ravemj.rave.modules.commands import search_options, straight, unsync
 from ravemj.rave.planning import PlanningError
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
@@ -91,8 +91,8 @@ class BaseManipulation(Helper):
         dof = self.robot.GetActiveDOF()
         wanted, starts = _rows(goal, goals, dof), _rows(None, initialconfigs, dof)
         post = None if postprocessingplanner is None else (postprocessingplanner, postprocessingparameters or "")
-        effort = effort_of(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), Effort())
-        traj = self._base.move_active_joints(wanted, effort, starts=starts, postprocessing=post)
+        search = search_options(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), SearchOptions())
+        traj = self._base.move_active_joints(wanted, search, starts=starts, postprocessing=post)
         return self._done(traj, execute, outputtraj, outputtrajobj)
 
     def MoveManipulator(
@@ -128,8 +128,8 @@ class BaseManipulation(Helper):
         """
         del steplength, releasegil
         wanted = _rows(goal, goals, self._base.arm().GetArmDOF())
-        effort = effort_of(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), Effort())
-        return self._done(self._base.move_manipulator(wanted, effort), execute, outputtraj, outputtrajobj)
+        search = search_options(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), SearchOptions())
+        return self._done(self._base.move_manipulator(wanted, search), execute, outputtraj, outputtrajobj)
 
     def MoveToHandPosition(
         self,
@@ -220,7 +220,7 @@ class BaseManipulation(Helper):
             raise PlanningError("there is no goal")
         traj = self._base.move_to_hand_position(
             goals,
-            effort_of(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), HAND_EFFORT),
+            search_options(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), HAND_SEARCH),
             **given(first=seedik, samples=goalsamples or goalmaxsamples, probability=goalsampleprob),
             starts=_rows(None, initialconfigs, self._base.arm().GetArmDOF()),
             postprocessing=postprocessing,

@@ -8,7 +8,7 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.transforms import Floats
 from ravemj.rave.environment import Environment
 from ravemj.rave.module import Module
-from ravemj.rave.modules.motions import Mover
+from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.serialization import AS_TEXT
@@ -24,15 +24,20 @@ class Helper(ApiObject):
     """
 
     def __init__(
-        self, robot: Robot, plannername: str | None, maxvelmult: float | None, module: Module, mover: Mover
+        self,
+        robot: Robot,
+        plannername: str | None,
+        maxvelmult: float | None,
+        module: Module,
+        manipulation: Manipulation,
     ) -> None:
         self.robot = checked_kind(robot, Robot, "robot")
-        self.prob, self._mover = module, mover
+        self.prob, self._manipulation = module, manipulation
         words = [robot.GetName(), *(["planner", plannername] if plannername else [])]
         self.args = " ".join([*words, *(["maxvelmult", f"{maxvelmult:.15e}"] if maxvelmult is not None else [])])
         env: Environment = robot.GetEnv()
         env.Add(module, True, self.args)
-        mover.choose(robot.GetName())
+        manipulation.choose(robot.GetName())
         weakref.finalize(self, env.Remove, module).atexit = False
 
     def SetRobot(self, robot: Robot) -> bool:
@@ -42,7 +47,7 @@ class Helper(ApiObject):
             robot: The robot.
         """
         self.robot = checked_kind(robot, Robot, "robot")
-        return self._mover.choose(robot.GetName())
+        return self._manipulation.choose(robot.GetName())
 
     def clone(self, envother: Environment) -> Any:  # noqa: ANN401 - of the same class
         """Return such a helper for the robot of the same name in another environment.
@@ -60,7 +65,7 @@ class Helper(ApiObject):
     ) -> Trajectory | str | None:
         """Execute a motion unless ``execute`` is False, and return it in the form that is asked for."""
         if execute is None or execute:
-            self._mover.execute(traj)
+            self._manipulation.execute(traj)
         if outputtrajobj:
             return traj
         return traj.serialize(AS_TEXT).decode() if outputtraj else None

@@ -1,7 +1,7 @@
 """Modules, under OpenRAVE's names: what plans and executes motions.
 
-``motions`` plans and executes, ``base_manipulation`` and ``task_manipulation`` say what, ``commands`` and ``words`` are
-the same as text, and ``module`` takes commands.
+``motions`` plans and executes, ``base_manipulation`` and ``task_manipulation`` say what, ``commands`` and ``tokens``
+are the same as text, and ``module`` takes commands.
 """
 
 import logging
@@ -12,9 +12,9 @@ from ravemj.rave.interface import checked_environment
 from ravemj.rave.module import Command, Module
 from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.commands import BaseCommands, TaskCommands, answering
-from ravemj.rave.modules.motions import Mover
+from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.modules.task_manipulation import TaskManipulation
-from ravemj.rave.modules.tokens import Words
+from ravemj.rave.modules.tokens import Tokens
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -29,14 +29,14 @@ MODULES = ("BaseManipulation", "TaskManipulation", "viewerrecorder")
 
 def base_module(env: "Environment", xmlid: str = "BaseManipulation") -> tuple[Module, BaseManipulation]:
     """Make a module that moves arms, and return it with what it runs."""
-    mover = BaseManipulation(env)
-    return _module(env, xmlid, mover, answering(BaseCommands(mover).named())), mover
+    manipulation = BaseManipulation(env)
+    return _module(env, xmlid, manipulation, answering(BaseCommands(manipulation).named())), manipulation
 
 
 def task_module(env: "Environment", xmlid: str = "TaskManipulation") -> tuple[Module, TaskManipulation]:
     """Make a module that moves grippers, and return it with what it runs."""
-    mover = TaskManipulation(env)
-    return _module(env, xmlid, mover, answering(TaskCommands(mover).named())), mover
+    manipulation = TaskManipulation(env)
+    return _module(env, xmlid, manipulation, answering(TaskCommands(manipulation).named())), manipulation
 
 
 def made_module(env: "Environment", name: str) -> Module | None:
@@ -51,17 +51,17 @@ def made_module(env: "Environment", name: str) -> Module | None:
     return None if make is None else make(env, word)[0]
 
 
-def _module(env: "Environment", xmlid: str, mover: Mover, commands: dict[str, Command]) -> Module:
+def _module(env: "Environment", xmlid: str, manipulation: Manipulation, commands: dict[str, Command]) -> Module:
     def start(arguments: str) -> None:
-        words = Words(arguments)
-        if words and not mover.choose(name := words.next()):
+        tokens = Tokens(arguments)
+        if tokens and not manipulation.choose(name := tokens.next()):
             _LOG.warning("module %s: there is no robot '%s'", xmlid, name)
-        while words:
-            name = words.next().lower()
+        while tokens:
+            name = tokens.next().lower()
             if name == "planner":
-                mover.choose_planner(words.next("a planner"))
+                manipulation.choose_planner(tokens.next("a planner"))
             elif name == "maxvelmult":
-                mover.maxvelmult = words.number()
+                manipulation.maxvelmult = tokens.number()
             else:
                 _LOG.warning("module %s: '%s' is no argument of it", xmlid, name)
 

@@ -12,7 +12,7 @@ from ravemj.planning.jitter import nearby
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.modules.motions import Mover, Postprocessing
+from ravemj.rave.modules.motions import Manipulation, Postprocessing
 from ravemj.rave.planning.bodies import Bodies
 from ravemj.rave.planning.names import PLANNERS
 from ravemj.rave.planning.parameters import PlannerParameters
@@ -24,8 +24,8 @@ _LARGEST_JUMP = 0.5
 """How far a joint may move [rad or m] in one step of the tool along a straight line."""
 
 
-class Effort(NamedTuple):
-    """How hard to try.
+class SearchOptions(NamedTuple):
+    """How long to search, and how far aside of starts and goals.
 
     Attributes:
         tries: How often the planner is asked.
@@ -38,17 +38,17 @@ class Effort(NamedTuple):
     jitter: float = 0.04
 
 
-HAND_EFFORT = Effort(tries=3, jitter=0.03)
+HAND_SEARCH = SearchOptions(tries=3, jitter=0.03)
 """OpenRAVE's for motions to poses of the tool."""
 
 
-class BaseManipulation(Mover):
+class BaseManipulation(Manipulation):
     """Plans motions of the active DOFs, of an arm, or of its tool."""
 
     def move_active_joints(
         self,
         goals: Sequence[Floats],
-        effort: Effort,
+        search: SearchOptions,
         *,
         starts: Sequence[Floats] = (),
         postprocessing: Postprocessing | None = None,
@@ -58,7 +58,7 @@ class BaseManipulation(Mover):
 
         Args:
             goals: The goals.
-            effort: How hard to try.
+            search: How long to search.
             starts: Where it may start; none: where the robot is.
             postprocessing: Smoother and its parameters; None: OpenRAVE's.
             more: Further goals, which are asked for while it is planned.
@@ -72,21 +72,21 @@ class BaseManipulation(Mover):
         for one in [*goals, *starts]:
             if len(one) != dof or not np.isfinite(one).all():
                 raise ArgumentError(f"a goal or start is {list(one)}, and should be {dof} finite numbers")
-        return self.plan(goals, starts=starts, postprocessing=postprocessing, more=more, **effort._asdict())
+        return self.plan(goals, starts=starts, postprocessing=postprocessing, more=more, **search._asdict())
 
-    def move_manipulator(self, goals: Sequence[Floats], effort: Effort) -> Trajectory:
+    def move_manipulator(self, goals: Sequence[Floats], search: SearchOptions) -> Trajectory:
         """Return a motion of the joints of the active manipulator's arm to one of several goals.
 
         Args:
             goals: The goals.
-            effort: How hard to try.
+            search: How long to search.
 
         Raises:
             PlanningError: there is none.
         """
         with self.keeping_active():
             self.robot.SetActiveDOFs(self.arm().GetArmIndices())
-            return self.move_active_joints(goals, effort)
+            return self.move_active_joints(goals, search)
 
     def arm(self) -> Manipulator:
         """Return the active manipulator.
@@ -102,7 +102,7 @@ class BaseManipulation(Mover):
     def move_to_hand_position(
         self,
         goals: Sequence[IkParameterization],
-        effort: Effort,
+        search: SearchOptions,
         *,
         first: int = 8,
         samples: int = 40,
@@ -114,7 +114,7 @@ class BaseManipulation(Mover):
 
         Args:
             goals: The goals.
-            effort: How hard to try.
+            search: How long to search.
             first: How many solutions of inverse kinematics are goals from the start.
             samples: How many are goals at most.
             probability: The part of the iterations in which a further one is asked for.
@@ -133,7 +133,7 @@ class BaseManipulation(Mover):
         more = MoreGoals(lambda: next(rest, None), probability)
         with self.keeping_active():
             self.robot.SetActiveDOFs(manip.GetArmIndices())
-            return self.move_active_joints(found, effort, starts=starts, postprocessing=postprocessing, more=more)
+            return self.move_active_joints(found, search, starts=starts, postprocessing=postprocessing, more=more)
 
     def _solvable(self) -> Manipulator:
         manip = self.arm()
@@ -246,7 +246,7 @@ class BaseManipulation(Mover):
                 continue
             if goal is here:
                 return self.straight(here[None])
-            found = self._by(planner, lambda goal=goal: self.move_active_joints([goal], Effort()))
+            found = self._by(planner, lambda goal=goal: self.move_active_joints([goal], SearchOptions()))
             if found is not None:
                 return found
         raise PlanningError("there is no place where the joints can move to their values")

@@ -2,35 +2,37 @@
 
 from collections.abc import Callable, Mapping
 from functools import wraps
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.rave.module import Command
-from ravemj.rave.modules.base_manipulation import HAND_EFFORT, BaseManipulation, Effort
-from ravemj.rave.modules.motions import Mover
+from ravemj.rave.modules.base_manipulation import HAND_SEARCH, BaseManipulation, SearchOptions
+from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.modules.task_manipulation import TaskManipulation
-from ravemj.rave.modules.tokens import Reader, Words, flag, read_options, switch, text
+from ravemj.rave.modules.tokens import Reader, Tokens, flag, read_options, switch, text
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.serialization import AS_TEXT
 
+Kind = TypeVar("Kind", bound=Manipulation)
+
 _OUTPUT: Mapping[str, Reader] = {"execute": flag, "outputtraj": switch}
-_EFFORT: Mapping[str, Reader] = {"maxiter": Words.integer, "maxtries": Words.integer, "jitter": Words.number}
+_SEARCH: Mapping[str, Reader] = {"maxiter": Tokens.integer, "maxtries": Tokens.integer, "jitter": Tokens.number}
 _POSTPROCESSING = ("postprocessingplanner", "postprocessingparameters")
 
 
-def reply(mover: Mover, traj: Trajectory, options: Mapping[str, Any], before: str = "") -> str:
+def reply(manipulation: Manipulation, traj: Trajectory, options: Mapping[str, Any], before: str = "") -> str:
     """Execute a motion if the options do not forbid it, and return the answer of the command."""
     if options.get("execute", True):
-        mover.execute(traj)
+        manipulation.execute(traj)
     return before + (traj.serialize(AS_TEXT).decode() if options.get("outputtraj") else "")
 
 
-def effort_of(options: Mapping[str, Any], default: Effort) -> Effort:
-    """Return how hard options say to try."""
+def search_options(options: Mapping[str, Any], default: SearchOptions) -> SearchOptions:
+    """Return how long options say to search."""
     names = {"maxiter": "iterations", "maxtries": "tries", "jitter": "jitter"}
     return default._replace(**{names[name]: value for name, value in options.items() if name in names})
 
@@ -54,23 +56,19 @@ def _or_none(command: Command) -> Command:
     return run
 
 
-class _Commands:
+class _Commands(Generic[Kind]):
     """Commands for one robot."""
 
-    def __init__(self, mover: Mover) -> None:
-        self._any = mover
+    def __init__(self, manipulation: Kind) -> None:
+        self._manipulation = manipulation
 
     def set_robot(self, arguments: str) -> str | None:
         """Chooses the robot by its name."""
-        return "" if self._any.choose(arguments.strip()) else None
+        return "" if self._manipulation.choose(arguments.strip()) else None
 
 
-class BaseCommands(_Commands):
+class BaseCommands(_Commands[BaseManipulation]):
     """The commands of ``BaseManipulation``."""
-
-    def __init__(self, mover: BaseManipulation) -> None:
-        super().__init__(mover)
-        self._mover = mover
 
     def named(self) -> Named:
         """Return the commands by their names."""
@@ -86,31 +84,37 @@ class BaseCommands(_Commands):
 
     def move_active_joints(self, arguments: str) -> str:
         """Moves the active DOFs to one of several goals without collisions."""
-        dof = self._mover.robot.GetActiveDOF()
-        readers = {**_OUTPUT, **_EFFORT, **_goals(dof), "steplength": Words.number}
-        readers |= {"initialconfigs": lambda words: words.rows(dof), "postprocessingplanner": text}
+        dof = self._manipulation.robot.GetActiveDOF()
+        readers = {**_OUTPUT, **_SEARCH, **_goals(dof), "steplength": Tokens.number}
+        readers |= {"initialconfigs": lambda tokens: tokens.rows(dof), "postprocessingplanner": text}
         options = read_options(arguments, readers)
         starts = options.get("initialconfigs", ())
         post = (options["postprocessingplanner"], "") if "postprocessingplanner" in options else None
         goals = [*options.get("goal", ()), *options.get("goals", ())]
-        effort = effort_of(options, Effort())
+        search = search_options(options, SearchOptions())
         return reply(
-            self._mover, self._mover.move_active_joints(goals, effort, starts=starts, postprocessing=post), options
+            self._manipulation,
+            self._manipulation.move_active_joints(goals, search, starts=starts, postprocessing=post),
+            options,
         )
 
     def move_manipulator(self, arguments: str) -> str:
         """Moves the arm of the active manipulator to one of several goals without collisions."""
-        dof = self._mover.arm().GetArmDOF()
-        options = read_options(arguments, {**_OUTPUT, **_EFFORT, **_goals(dof), "steplength": Words.number})
+        dof = self._manipulation.arm().GetArmDOF()
+        options = read_options(arguments, {**_OUTPUT, **_SEARCH, **_goals(dof), "steplength": Tokens.number})
         goals = [*options.get("goal", ()), *options.get("goals", ())]
-        return reply(self._mover, self._mover.move_manipulator(goals, effort_of(options, Effort())), options)
+        return reply(
+            self._manipulation,
+            self._manipulation.move_manipulator(goals, search_options(options, SearchOptions())),
+            options,
+        )
 
     def move_to_hand_position(self, arguments: str) -> str:
         """Moves the tool of the active manipulator to one of several poses without collisions."""
-        readers: dict[str, Reader] = {**_OUTPUT, **_EFFORT, "matrix": Words.matrix, "matrices": _matrices}
-        readers |= {"goalsamples": Words.integer, "goalmaxsamples": Words.integer, "steplength": Words.number}
-        readers |= {"seedik": Words.integer, "goalsampleprob": Words.number}
-        readers |= dict.fromkeys(("goalmaxtries", "minimumgoalpaths"), Words.number)
+        readers: dict[str, Reader] = {**_OUTPUT, **_SEARCH, "matrix": Tokens.matrix, "matrices": _matrices}
+        readers |= {"goalsamples": Tokens.integer, "goalmaxsamples": Tokens.integer, "steplength": Tokens.number}
+        readers |= {"seedik": Tokens.integer, "goalsampleprob": Tokens.number}
+        readers |= dict.fromkeys(("goalmaxtries", "minimumgoalpaths"), Tokens.number)
         options = read_options(arguments, readers)
         poses = [*([options["matrix"]] if "matrix" in options else []), *options.get("matrices", ())]
         goals = [IkParameterization(pose, IkParameterization.Type.Transform6D) for pose in poses]
@@ -121,39 +125,35 @@ class BaseCommands(_Commands):
             "goalsampleprob": "probability",
         }
         given = {names[name]: value for name, value in options.items() if name in names}
-        traj = self._mover.move_to_hand_position(goals, effort_of(options, HAND_EFFORT), **given)
-        return reply(self._mover, traj, options, "1" if not options.get("outputtraj") else "1 ")
+        traj = self._manipulation.move_to_hand_position(goals, search_options(options, HAND_SEARCH), **given)
+        return reply(self._manipulation, traj, options, "1" if not options.get("outputtraj") else "1 ")
 
     def move_hand_straight(self, arguments: str) -> str:
         """Moves the tool of the active manipulator along a straight line."""
-        readers: dict[str, Reader] = {**_OUTPUT, "direction": lambda words: words.numbers(3), "greedysearch": flag}
-        readers |= {"minsteps": Words.integer, "maxsteps": Words.integer, "starteematrix": Words.matrix}
-        readers |= dict.fromkeys(("stepsize", "ignorefirstcollision", "maxdeviationangle", "steplength"), Words.number)
+        readers: dict[str, Reader] = {**_OUTPUT, "direction": lambda tokens: tokens.numbers(3), "greedysearch": flag}
+        readers |= {"minsteps": Tokens.integer, "maxsteps": Tokens.integer, "starteematrix": Tokens.matrix}
+        readers |= dict.fromkeys(("stepsize", "ignorefirstcollision", "maxdeviationangle", "steplength"), Tokens.number)
         options = read_options(arguments, {**readers, "planner": text})
-        return reply(self._mover, straight(self._mover, options), options)
+        return reply(self._manipulation, straight(self._manipulation, options), options)
 
     def move_unsync_joints(self, arguments: str) -> str:
         """Moves the active DOFs to where other joints can move to values without collisions."""
         readers: dict[str, Reader] = {**_OUTPUT, "handjoints": _hand, "planner": text}
-        readers |= {"maxtries": Words.integer, "maxdivision": Words.integer}
+        readers |= {"maxtries": Tokens.integer, "maxdivision": Tokens.integer}
         options = read_options(arguments, readers)
         hand, indices = options.get("handjoints", (np.zeros(0), []))
-        return reply(self._mover, unsync(self._mover, hand, indices, options), options)
+        return reply(self._manipulation, unsync(self._manipulation, hand, indices, options), options)
 
     def jitter_active(self, arguments: str) -> str:
         """Moves the active DOFs a little, out of collision."""
-        readers: dict[str, Reader] = {**_OUTPUT, "maxiter": Words.integer, "jitter": Words.number}
+        readers: dict[str, Reader] = {**_OUTPUT, "maxiter": Tokens.integer, "jitter": Tokens.number}
         options = read_options(arguments, {**readers, "outputfinal": switch})
-        final, traj = self._mover.jitter_active(options.get("maxiter", 5000), options.get("jitter", 0.03))
-        return reply(self._mover, traj, options, _numbers(final) if options.get("outputfinal") else "")
+        final, traj = self._manipulation.jitter_active(options.get("maxiter", 5000), options.get("jitter", 0.03))
+        return reply(self._manipulation, traj, options, _numbers(final) if options.get("outputfinal") else "")
 
 
-class TaskCommands(_Commands):
+class TaskCommands(_Commands[TaskManipulation]):
     """The commands of ``TaskManipulation``."""
-
-    def __init__(self, mover: TaskManipulation) -> None:
-        super().__init__(mover)
-        self._mover = mover
 
     def named(self) -> Named:
         """Return the commands by their names."""
@@ -169,60 +169,60 @@ class TaskCommands(_Commands):
     def close_fingers(self, arguments: str) -> str:
         """Closes the gripper until its fingers touch something."""
         options = self._options(arguments)
-        return self._answer(self._mover.close_fingers(options.get("movingdir"), options.get("offset")), options)
+        return self._answer(self._manipulation.close_fingers(options.get("movingdir"), options.get("offset")), options)
 
     def release_fingers(self, arguments: str) -> str:
         """Opens the gripper, and lets go of a body."""
         options = self._options(arguments)
-        target = self._mover.env.GetKinBody(options["target"]) if "target" in options else None
-        return self._answer(self._mover.release_fingers(options.get("movingdir"), target), options)
+        target = self._manipulation.env.GetKinBody(options["target"]) if "target" in options else None
+        return self._answer(self._manipulation.release_fingers(options.get("movingdir"), target), options)
 
     def release_active(self, arguments: str) -> str:
         """Moves the active joints to one side until they touch something."""
-        dof = self._mover.robot.GetActiveDOF()
-        readers: dict[str, Reader] = {**_OUTPUT, "outputfinal": switch, "movingdir": lambda words: words.numbers(dof)}
-        readers |= dict.fromkeys(("finestep", "translationstepmult"), Words.number)
+        dof = self._manipulation.robot.GetActiveDOF()
+        readers: dict[str, Reader] = {**_OUTPUT, "outputfinal": switch, "movingdir": lambda tokens: tokens.numbers(dof)}
+        readers |= dict.fromkeys(("finestep", "translationstepmult"), Tokens.number)
         options = read_options(arguments, readers)
-        return self._answer(self._mover.release_active(options.get("movingdir", np.zeros(dof))), options)
+        return self._answer(self._manipulation.release_active(options.get("movingdir", np.zeros(dof))), options)
 
     def _options(self, arguments: str) -> dict[str, Any]:
-        manip = self._mover.robot.GetActiveManipulator()
+        manip = self._manipulation.robot.GetActiveManipulator()
         dof = manip.GetGripperDOF() if manip else 0
         readers: dict[str, Reader] = {**_OUTPUT, "outputfinal": switch, "target": text}
-        readers |= dict.fromkeys(("movingdir", "offset"), lambda words: words.numbers(dof))
-        readers |= dict.fromkeys(("coarsestep", "finestep", "translationstepmult"), Words.number)
+        readers |= dict.fromkeys(("movingdir", "offset"), lambda tokens: tokens.numbers(dof))
+        readers |= dict.fromkeys(("coarsestep", "finestep", "translationstepmult"), Tokens.number)
         return read_options(arguments, readers)
 
     def _answer(self, found: tuple[Floats, Trajectory], options: Mapping[str, Any]) -> str:
-        return reply(self._mover, found[1], options, _numbers(found[0]) if options.get("outputfinal") else "")
+        return reply(self._manipulation, found[1], options, _numbers(found[0]) if options.get("outputfinal") else "")
 
 
-def straight(mover: BaseManipulation, options: Mapping[str, Any]) -> Trajectory:
+def straight(manipulation: BaseManipulation, options: Mapping[str, Any]) -> Trajectory:
     """Return the motion of the tool along a straight line that options ask for."""
     names = {"stepsize": "step", "minsteps": "least", "maxsteps": "most", "starteematrix": "start"}
     names["ignorefirstcollision"] = "ignored"
     given = {names[name]: value for name, value in options.items() if name in names}
-    return mover.move_hand_straight(options.get("direction", np.zeros(3)), **given)
+    return manipulation.move_hand_straight(options.get("direction", np.zeros(3)), **given)
 
 
-def unsync(mover: BaseManipulation, hand: Floats, indices: list[int], options: Mapping[str, Any]) -> Trajectory:
+def unsync(manipulation: BaseManipulation, hand: Floats, indices: list[int], options: Mapping[str, Any]) -> Trajectory:
     """Return the motion to where other joints can move that options ask for."""
     names = {"maxtries": "tries", "maxdivision": "divisions", "planner": "planner"}
     given = {names[name]: value for name, value in options.items() if name in names}
-    return mover.move_unsync_joints(hand, indices, **given)
+    return manipulation.move_unsync_joints(hand, indices, **given)
 
 
 def _goals(dof: int) -> dict[str, Reader]:
-    return {"goal": lambda words: [words.numbers(dof)], "goals": lambda words: words.rows(dof)}
+    return {"goal": lambda tokens: [tokens.numbers(dof)], "goals": lambda tokens: tokens.rows(dof)}
 
 
-def _matrices(words: Words) -> list[Floats]:
-    return [words.matrix() for _ in range(words.integer())]
+def _matrices(tokens: Tokens) -> list[Floats]:
+    return [tokens.matrix() for _ in range(tokens.integer())]
 
 
-def _hand(words: Words) -> tuple[Floats, list[int]]:
-    count = words.integer()
-    return words.numbers(count), [words.integer() for _ in range(count)]
+def _hand(tokens: Tokens) -> tuple[Floats, list[int]]:
+    count = tokens.integer()
+    return tokens.numbers(count), [tokens.integer() for _ in range(count)]
 
 
 def _numbers(values: Floats) -> str:

@@ -31,7 +31,7 @@ _SAME = 1e-9
 Postprocessing = tuple[str, str]
 
 
-class Mover:
+class Manipulation:
     """Plans and executes motions of one robot.
 
     Attributes:
@@ -108,8 +108,8 @@ class Mover:
         values = params.resolved()
         space = values.space()
         froms = list(starts) or [values.vectors["_vinitialconfig"]]
-        wished = [[space.clamp(one) for one in some] for some in (froms, goals)]
-        moved = [self._jittered(values, some, jitter) for some in wished]
+        wanted = [[space.clamp(one) for one in some] for some in (froms, goals)]
+        moved = [self._jittered(values, some, jitter) for some in wanted]
         params.SetInitialConfig(np.array(moved[0]).ravel())
         params.SetGoalConfig(np.array(moved[1]).ravel())
         status = PlannerStatus("there is no try")
@@ -120,7 +120,7 @@ class Mover:
             planner.InitPlan(self.robot, params)
             status = planner.PlanPath(traj)
             if status:
-                self._join(traj, wished, moved)
+                self._join(traj, wanted, moved)
                 return traj
         raise PlanningError(status.description)
 
@@ -133,10 +133,10 @@ class Mover:
             found = [nearby(space, one, test, JITTER_TRIES, jitter, random) for one in configurations]
         return [old if new is None else new for old, new in zip(configurations, found, strict=True)]
 
-    def _join(self, traj: Trajectory, wished: Sequence[Sequence[Floats]], moved: Sequence[Sequence[Floats]]) -> None:
+    def _join(self, traj: Trajectory, wanted: Sequence[Sequence[Floats]], moved: Sequence[Sequence[Floats]]) -> None:
         """Let a motion start and end where it was asked for, where a start or goal was jittered."""
         spec = self.robot.GetActiveConfigurationSpecification()
-        for end, (asked, used) in enumerate(zip(wished, moved, strict=True)):
+        for end, (asked, used) in enumerate(zip(wanted, moved, strict=True)):
             place = traj.GetNumWaypoints() if end else 0
             reached = traj.GetWaypoint(-1 if end else 0, spec)
             nearest = int(np.argmin([np.abs(one - reached).max() for one in used]))

@@ -8,7 +8,7 @@ from ravemj.core.transforms import Floats
 from ravemj.engine.collision.questions import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
 from ravemj.rave.kinbody import KinBody
-from ravemj.rave.modules.motions import Mover
+from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.planning.bodies import Bodies
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.trajectory import Trajectory
@@ -20,7 +20,7 @@ _CLOSE = 1e-6
 """How near [rad or m] to a contact joints stop."""
 
 
-class TaskManipulation(Mover):
+class TaskManipulation(Manipulation):
     """Opens and closes grippers."""
 
     def close_fingers(

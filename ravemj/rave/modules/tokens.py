@@ -1,4 +1,4 @@
-"""Arguments of commands: words and numbers in a text."""
+"""The arguments of commands: texts and numbers, taken off a line one after the other."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -9,14 +9,14 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 
 
-class Words:
-    """The words of a text, taken one after the other."""
+class Tokens:
+    """The tokens of a text, taken one after the other."""
 
     def __init__(self, text: str) -> None:
         self._words = text.split()
 
     def next(self, wanted: str = "a word") -> str:
-        """Return the next word.
+        """Return the next token.
 
         Raises:
             ArgumentError: there is none.
@@ -29,7 +29,7 @@ class Words:
         return bool(self._words)
 
     def number(self) -> float:
-        """Return the next word as a number.
+        """Return the next token as a number.
 
         Raises:
             ArgumentError: it is none.
@@ -41,14 +41,14 @@ class Words:
             raise ArgumentError(f"'{word}' should be a number") from None
 
     def integer(self) -> int:
-        """Return the next word as a whole number."""
+        """Return the next token as a whole number."""
         number = self.number()
         if number != int(number):
             raise ArgumentError(f"{number:g} should be a whole number")
         return int(number)
 
     def numbers(self, count: int) -> Floats:
-        """Return some of the next words as numbers, shape (count,)."""
+        """Return some of the next tokens as numbers, shape (count,)."""
         return np.array([self.number() for _ in range(count)])
 
     def rows(self, width: int) -> Floats:
@@ -66,42 +66,42 @@ class Words:
         return pose
 
 
-Reader = Callable[[Words], Any]
+Reader = Callable[[Tokens], Any]
 
 
 def read_options(text: str, readers: Mapping[str, Reader]) -> dict[str, Any]:
     """Return the options in a text.
 
     Args:
-        text: Words, each followed by what its reader takes.
+        text: Tokens, each followed by what its reader takes.
         readers: By the names of the options, in lower case.
 
     Raises:
         ArgumentError: a word is no option, or what follows it is wrong.
     """
-    words, found = Words(text), dict[str, Any]()
-    while words:
-        name = words.next().lower()
+    tokens, found = Tokens(text), dict[str, Any]()
+    while tokens:
+        name = tokens.next().lower()
         if name not in readers:
             raise ArgumentError(f"'{name}' is no argument of the command; it takes {', '.join(readers)}")
         try:
-            found[name] = readers[name](words)
+            found[name] = readers[name](tokens)
         except ArgumentError as error:
             raise ArgumentError(f"{name}: {error.message}") from None
     return found
 
 
-def switch(words: Words) -> bool:
+def switch(tokens: Tokens) -> bool:
     """Return True for a word that stands alone."""
-    del words
+    del tokens
     return True
 
 
-def flag(words: Words) -> bool:
+def flag(tokens: Tokens) -> bool:
     """Return whether the next word is not 0."""
-    return bool(words.number())
+    return bool(tokens.number())
 
 
-def text(words: Words) -> str:
-    """Return the next word."""
-    return words.next()
+def text(tokens: Tokens) -> str:
+    """Return the next token."""
+    return tokens.next()
