@@ -1,4 +1,4 @@
-"""Inverse kinematics by the API: what is asked, what is judged, what stays as it was."""
+"""Inverse kinematics by the API: what is asked, what is checked, what stays as it was."""
 
 from pathlib import Path
 
@@ -13,9 +13,9 @@ from ravemj import IkFilterOptions, IkParameterization, IkReturn, IkReturnAction
 
 MODELS = Path(ravemj.__file__).parent.parent / "models"
 Type = IkParameterization.Type
-UNJUDGED = IkFilterOptions.IgnoreSelfCollisions
-EVERYWHERE = UNJUDGED | IkFilterOptions.IgnoreJointLimits
-POSTURE = [-0.1, 0.6, -1.0, -1.2, 1.1, -1.9]
+UNCHECKED = IkFilterOptions.IgnoreSelfCollisions
+EVERYWHERE = UNCHECKED | IkFilterOptions.IgnoreJointLimits
+CONFIGURATION = [-0.1, 0.6, -1.0, -1.2, 1.1, -1.9]
 """Of a PUMA: there are twelve ways to its pose, of which none collides."""
 
 PLANAR = """<Environment><Robot name="planar"><KinBody>
@@ -57,7 +57,7 @@ def planar():
 
 
 def at(arm, values):
-    """Where the tool is in a posture; the robot goes back."""
+    """Where the tool is in a configuration; the robot goes back."""
     with arm.GetRobot() as robot:
         robot.SetDOFValues(values, arm.GetArmIndices())
         return arm.GetTransform()
@@ -76,17 +76,17 @@ shares = st.lists(st.floats(0.01, 0.99), min_size=6, max_size=6)
 
 
 @given(shares, shares)
-def test_solutions_reach_their_goal_and_the_nearest_is_one_of_them(posture, start):
+def test_solutions_reach_their_goal_and_the_nearest_is_one_of_them(configuration, start):
     arm = puma_once()
     robot = arm.GetRobot()
     robot.SetTransform(ravemj.matrixFromAxisAngle(start[:3]))
     lower, upper = robot.GetDOFLimits()
-    values = lower + posture * (upper - lower)
+    values = lower + configuration * (upper - lower)
     T = at(arm, values)
-    everything = arm.FindIKSolutions(T, UNJUDGED)
+    everything = arm.FindIKSolutions(T, UNCHECKED)
     assert all(reaches(arm, row, T) for row in everything)
     robot.SetDOFValues(lower + start * (upper - lower))
-    best = arm.FindIKSolution(T, UNJUDGED)
+    best = arm.FindIKSolution(T, UNCHECKED)
     away = np.linalg.norm((everything - robot.GetDOFValues()) * robot.GetDOFWeights(), axis=1)
     nearest = np.linalg.norm((best - robot.GetDOFValues()) * robot.GetDOFWeights())
     assert reaches(arm, best, T)
@@ -104,11 +104,11 @@ def puma_once(kept=[]):  # noqa: B006 - loading it for each example takes long
 def test_further_turns_are_solutions_and_the_nearest_turn_is_taken(planar):
     robot = planar.GetRobot()
     goal = IkParameterization(at(planar, [0.3, 0.8])[:2, 3], Type.TranslationXY2D)
-    found = planar.FindIKSolutions(goal, UNJUDGED)
+    found = planar.FindIKSolutions(goal, UNCHECKED)
     assert sorted(np.round(found[:, 0], 6)) == sorted([*np.round([0.3, 0.3 - 2 * np.pi], 6), *rest(found, 0.3)])
     for start in (5.5, -5.5):
         robot.SetDOFValues([start, 0.8])
-        best = planar.FindIKSolution(goal, UNJUDGED)
+        best = planar.FindIKSolution(goal, UNCHECKED)
         away = np.linalg.norm(found - robot.GetDOFValues(), axis=1)
         np.testing.assert_allclose(best, found[np.argmin(away)])
 
@@ -121,19 +121,19 @@ def rest(found, value):
 
 
 def test_limits_are_seen_at_once_and_derive_nothing_anew(puma):
-    robot, T = puma.GetRobot(), at(puma, POSTURE)
+    robot, T = puma.GetRobot(), at(puma, CONFIGURATION)
     certificate = puma.ik_solver().certificate
-    count = len(puma.FindIKSolutions(T, UNJUDGED))
+    count = len(puma.FindIKSolutions(T, UNCHECKED))
     lower, upper = robot.GetDOFLimits()
     robot.SetDOFLimits(np.append([-0.2], lower[1:]), np.append([0.0], upper[1:]))
-    assert len(puma.FindIKSolutions(T, UNJUDGED)) < count
+    assert len(puma.FindIKSolutions(T, UNCHECKED)) < count
     robot.SetDOFLimits(np.full(6, -0.01), np.full(6, 0.01))
-    answer = puma.FindIKSolution(T, UNJUDGED, ikreturn=True)
+    answer = puma.FindIKSolution(T, UNCHECKED, ikreturn=True)
     assert answer.GetAction() == IkReturnAction.RejectJointLimits
-    assert puma.FindIKSolutions(T, UNJUDGED).shape == (0,)
+    assert puma.FindIKSolutions(T, UNCHECKED).shape == (0,)
     assert len(puma.FindIKSolutions(T, EVERYWHERE)) == 8
-    robot.SetDOFLimits(np.array(POSTURE), np.array(POSTURE))  # all joints are locked
-    np.testing.assert_allclose(puma.FindIKSolution(T, UNJUDGED), POSTURE, atol=1e-9)
+    robot.SetDOFLimits(np.array(CONFIGURATION), np.array(CONFIGURATION))  # all joints are locked
+    np.testing.assert_allclose(puma.FindIKSolution(T, UNCHECKED), CONFIGURATION, atol=1e-9)
     assert puma.ik_solver().certificate is certificate
 
 
@@ -147,7 +147,7 @@ def test_the_robot_is_as_before_and_so_is_what_it_holds(puma):
     ball.SetTransform(puma.GetTransform())
     robot.Grab(ball)
     robot.SetActiveDOFs([1, 0])
-    T = at(puma, POSTURE)
+    T = at(puma, CONFIGURATION)
     before = [robot.GetDOFValues(), ball.GetTransform(), robot.GetLinkTransformations()]
     puma.FindIKSolution(T, IkFilterOptions.CheckEnvCollisions)
     puma.FindIKSolutions(T, IkFilterOptions.CheckEnvCollisions)
@@ -161,35 +161,35 @@ def test_the_robot_is_as_before_and_so_is_what_it_holds(puma):
 # Filters and failures
 
 
-def test_a_filter_sees_each_solution_in_its_posture_nearest_first(puma):
-    robot, T = puma.GetRobot(), at(puma, POSTURE)
-    robot.SetDOFValues(POSTURE)
+def test_a_filter_sees_each_solution_in_its_configuration_nearest_first(puma):
+    robot, T = puma.GetRobot(), at(puma, CONFIGURATION)
+    robot.SetDOFValues(CONFIGURATION)
     seen = []
 
     def look(values, arm, goal):
         assert np.array_equal(robot.GetDOFValues(), values)
         assert robot.GetActiveDOFIndices().tolist() == arm.GetArmIndices().tolist()
         assert goal.GetType() == Type.Transform6D
-        seen.append(np.linalg.norm((values - POSTURE) * robot.GetDOFWeights()))
+        seen.append(np.linalg.norm((values - CONFIGURATION) * robot.GetDOFWeights()))
         return IkReturnAction.Reject
 
     handle = puma.GetIkSolver().RegisterCustomFilter(0, look)
-    assert puma.FindIKSolution(T, UNJUDGED) is None
+    assert puma.FindIKSolution(T, UNCHECKED) is None
     assert seen == sorted(seen)
-    assert len(seen) == len(puma.FindIKSolutions(T, UNJUDGED | IkFilterOptions.IgnoreCustomFilters))
-    answer = puma.FindIKSolution(T, UNJUDGED, ikreturn=True)
+    assert len(seen) == len(puma.FindIKSolutions(T, UNCHECKED | IkFilterOptions.IgnoreCustomFilters))
+    answer = puma.FindIKSolution(T, UNCHECKED, ikreturn=True)
     assert answer.GetAction() & 0x8001 == 0x8001
     assert len(answer.GetSolution()) == 0
     del handle
-    assert puma.FindIKSolution(T, UNJUDGED) is not None
+    assert puma.FindIKSolution(T, UNCHECKED) is not None
 
 
 def test_a_filter_can_end_the_search_attach_data_and_fail(puma):
-    T, solver = at(puma, POSTURE), puma.GetIkSolver()
+    T, solver = at(puma, CONFIGURATION), puma.GetIkSolver()
     said = [IkReturnAction.Success, IkReturnAction.Quit, IkReturnAction.Success]
     answers = iter(said)
     with solver.RegisterCustomFilter(0, lambda values, arm, goal: next(answers)):
-        assert puma.FindIKSolutions(T, UNJUDGED).shape == (0,)
+        assert puma.FindIKSolutions(T, UNCHECKED).shape == (0,)
 
     def attach(values, arm, goal):
         answer = IkReturn(IkReturnAction.Success)
@@ -198,11 +198,11 @@ def test_a_filter_can_end_the_search_attach_data_and_fail(puma):
         return answer
 
     with solver.RegisterCustomFilter(-5, attach):
-        answer = puma.FindIKSolution(T, UNJUDGED, ikreturn=True)
+        answer = puma.FindIKSolution(T, UNCHECKED, ikreturn=True)
         assert answer.GetMapData("grade").tolist() == [6]
         assert answer.GetUserData().GetType() == Type.Transform6D
         with puma.GetRobot() as robot:
-            robot.SetDOFValues(POSTURE)
+            robot.SetDOFValues(CONFIGURATION)
             here = puma.GetIkParameterization(Type.Transform6D, False)
             assert solver.CallFilters(here).GetMapData("grade").tolist() == [6]
         with pytest.raises(ravemj.openrave_exception, match="where the tool is"):
@@ -210,14 +210,14 @@ def test_a_filter_can_end_the_search_attach_data_and_fail(puma):
     with solver.RegisterCustomFilter(1, lambda values, arm, goal: 1 / 0):
         before = puma.GetRobot().GetDOFValues()
         with pytest.raises(ravemj.openrave_exception, match="ZeroDivisionError") as caught:
-            puma.FindIKSolution(T, UNJUDGED)
+            puma.FindIKSolution(T, UNCHECKED)
         assert caught.value.GetCode() == "Assert"
         assert np.array_equal(puma.GetRobot().GetDOFValues(), before)
-    assert puma.FindIKSolution(T, UNJUDGED) is not None
+    assert puma.FindIKSolution(T, UNCHECKED) is not None
 
 
 def test_failures_are_listed_with_their_reasons(puma):
-    T, env = at(puma, POSTURE), puma.GetRobot().GetEnv()
+    T, env = at(puma, CONFIGURATION), puma.GetRobot().GetEnv()
     wall = ravemj.RaveCreateKinBody(env, "")
     wall.InitFromBoxes([[*T[:3, 3], 0.005, 0.005, 0.005]])
     wall.SetName("wall")
@@ -239,8 +239,8 @@ def test_failures_are_listed_with_their_reasons(puma):
 
 
 def test_only_what_the_arm_moves_is_tested(puma):
-    """A base that stands in the floor is no reason to reject a posture: it is where it is."""
-    T, robot = at(puma, POSTURE), puma.GetRobot()
+    """A base that stands in the floor is no reason to reject a configuration: it is where it is."""
+    T, robot = at(puma, CONFIGURATION), puma.GetRobot()
     env = robot.GetEnv()
     floor = ravemj.RaveCreateKinBody(env, "")
     base = robot.GetLinks()[0].ComputeAABB()
@@ -260,17 +260,17 @@ def test_a_free_joint_is_searched_from_where_it_is_or_given():
     T = at(arm, values)
     (free,) = arm.ik_solver().free
     robot.SetDOFValues(values + 0.02, arm.GetArmIndices())
-    assert arm.FindIKSolution(T, UNJUDGED)[free] == pytest.approx(values[free] + 0.02)
+    assert arm.FindIKSolution(T, UNCHECKED)[free] == pytest.approx(values[free] + 0.02)
     robot.SetDOFValues(values, arm.GetArmIndices())
     shares = arm.GetFreeParameters()
     robot.SetDOFValues(values - 0.1, arm.GetArmIndices())
-    given_share = arm.FindIKSolutions(T, shares, UNJUDGED)
+    given_share = arm.FindIKSolutions(T, shares, UNCHECKED)
     assert np.abs(given_share - values).max(axis=1).min() < 1e-6
     assert np.ptp(given_share[:, free]) == 0
-    np.testing.assert_allclose(arm.FindIKSolution(T, freevalues=shares, filteroptions=UNJUDGED), values, atol=1e-6)
+    np.testing.assert_allclose(arm.FindIKSolution(T, freevalues=shares, filteroptions=UNCHECKED), values, atol=1e-6)
     wide = InverseKinematicsModel(robot, Type.Transform6D)
     assert wide.load(freeinc=[0.5])
-    found = np.unique(np.round(arm.FindIKSolutions(T, UNJUDGED)[:, free], 6))
+    found = np.unique(np.round(arm.FindIKSolutions(T, UNCHECKED)[:, free], 6))
     np.testing.assert_allclose(np.diff(found) % 0.5, 0, atol=1e-5)
     with pytest.raises(InverseKinematicsError, match="freeinc"):
         wide.setrobot([0.1, 0.2])
@@ -283,7 +283,7 @@ def test_samples_of_many_free_joints_stay_within_bounds():
     assert len(arm.ik_solver(Type.TranslationXY2D).free) == 5
     goal = arm.GetIkParameterization(Type.TranslationXY2D)
     assert len(arm.ik_solver(Type.TranslationXY2D).free_samples()) < 20_000
-    assert arm.FindIKSolution(goal, UNJUDGED) is not None
+    assert arm.FindIKSolution(goal, UNCHECKED) is not None
 
 
 # Many goals
@@ -302,7 +302,7 @@ def test_batches_answer_as_one_goal_after_the_other(puma):
     assert not found.valid[7].any()
     for T, rows, valid in zip(poses, found.solutions, found.valid, strict=True):
         assert all(reaches(puma, row, T) for row in rows[valid])
-        one = puma.FindIKSolutions(T, UNJUDGED)
+        one = puma.FindIKSolutions(T, UNCHECKED)
         assert all(np.abs(np.sin((one - row) / 2)).max(axis=1).min() < 1e-7 for row in rows[valid])
     assert robot.ik(poses[0]).valid.shape == (1, 8)
     assert "spherical wrist" in puma.ik_solver().describe()
@@ -324,7 +324,7 @@ def test_batches_of_places(planar):
 
 
 def test_solvers_go_with_tools_clones_and_robots(puma):
-    robot, solver, T = puma.GetRobot(), puma.GetIkSolver(), at(puma, POSTURE)
+    robot, solver, T = puma.GetRobot(), puma.GetIkSolver(), at(puma, CONFIGURATION)
     tool = puma.GetLocalToolTransform()
     puma.SetLocalToolTransform(tool)
     puma.SetLocalToolDirection([1, 0, 0])
@@ -332,13 +332,13 @@ def test_solvers_go_with_tools_clones_and_robots(puma):
     clone = robot.GetEnv().CloneSelf(ravemj.CloningOptions.Bodies)
     twin = clone.GetRobots()[0].GetManipulators()[0]
     assert twin.GetIkSolver().GetEnv() == clone
-    np.testing.assert_allclose(twin.FindIKSolutions(T, UNJUDGED), puma.FindIKSolutions(T, UNJUDGED))
+    np.testing.assert_allclose(twin.FindIKSolutions(T, UNCHECKED), puma.FindIKSolutions(T, UNCHECKED))
     tool[:3, 3] += 0.1
     puma.SetLocalToolTransform(tool)
     assert puma.GetIkSolver() is None
     assert puma.SetIkSolver(solver)
-    T = at(puma, POSTURE)
-    assert all(reaches(puma, row, T) for row in puma.FindIKSolutions(T, UNJUDGED))
+    T = at(puma, CONFIGURATION)
+    assert all(reaches(puma, row, T) for row in puma.FindIKSolutions(T, UNCHECKED))
     assert twin.GetIkSolver() is not None
     assert puma.SetIKSolver(None)
     assert puma.GetIkSolver() is None
@@ -348,14 +348,14 @@ def test_solvers_go_with_tools_clones_and_robots(puma):
 
 
 def test_names_make_solvers(puma, caplog):
-    env, T = puma.GetRobot().GetEnv(), at(puma, POSTURE)
+    env, T = puma.GetRobot().GetEnv(), at(puma, CONFIGURATION)
     model = InverseKinematicsModel(puma.GetRobot(), Type.Transform6D)
     solver = ravemj.RaveCreateIkSolver(env, model.getikname())
     assert solver.Supports(Type.Transform6D)
     with pytest.raises(ravemj.openrave_exception, match="SetIkSolver"):
         solver.GetNumFreeParameters()
     assert puma.SetIkSolver(solver)
-    assert puma.FindIKSolution(T, UNJUDGED) is not None
+    assert puma.FindIKSolution(T, UNCHECKED) is not None
     assert ravemj.RaveCreateIkSolver(env, "nonsense") is None
     assert "nonsense" in caplog.text
     with pytest.raises(ravemj.openrave_exception):

@@ -16,7 +16,7 @@ COMPLETE = ("RRRS", "RSRR", "RRSR", "SRRP", "PRRS", "RPPS", "RRLR", "LRX", "Rllp
 
 
 def same(chain, one, other):
-    """Whether rows show the same posture, shape (...)."""
+    """Whether rows show the same configuration, shape (...)."""
     away = np.where(chain.prismatic, one - other, 2 * np.sin((one - other) / 2))
     return np.abs(away).max(axis=-1) < 1e-5
 
@@ -215,7 +215,7 @@ def test_a_certificate_tells_a_wrong_solver():
 
 @settings(deadline=None, max_examples=60)
 @given(st.sampled_from(KINDS), st.integers(0, 2**32 - 1))
-def test_every_posture_is_among_the_solutions_of_its_pose(kind, seed):
+def test_every_configuration_is_among_the_solutions_of_its_pose(kind, seed):
     rng = np.random.default_rng(seed)
     chain = arm(rng, kind)
     derived = derive(chain)

@@ -34,12 +34,12 @@ def test_every_type_has_two_lines_at_least(task):
         assert row["solved by"] == made.kind(solver), MADE_BY
         assert row["free"] == ", ".join(f"{joint + 1}" for joint in solver.free), MADE_BY
         assert row["solved"] == "100 %"
-        assert row["own posture"] == ("100 %" if solver.complete else "")
+        assert row["own values"] == ("100 %" if solver.complete else "")
 
 
 def test_closed_forms_of_all_arms_find_everything():
     for row in [*made.cells(PAGE, made.OURS), *made.cells(PAGE, made.CORPUS)]:
-        assert row["own posture"] == "100 %", row
+        assert row["own values"] == "100 %", row
         assert float(row["solved"].split()[0]) >= 99.9, row
         assert float(row["search"].split()[0]) >= 99.9, row
 

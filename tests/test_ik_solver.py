@@ -1,4 +1,4 @@
-"""The solver in front: limits and turns, free joints, tasks, singular postures, searches, bad input, scenes."""
+"""The solver in front: limits and turns, free joints, tasks, singular configurations, searches, bad input, scenes."""
 
 import pickle
 from dataclasses import replace
@@ -45,7 +45,7 @@ def limited_values(chain, count, seed=0):
 
 
 class TestLimits:
-    def test_solutions_are_within_limits_and_contain_the_posture(self):
+    def test_solutions_are_within_limits_and_contain_the_configuration(self):
         solver = make_solver(LIMITED)
         for values in limited_values(LIMITED, 30):
             T = LIMITED.forward(values)
@@ -69,7 +69,7 @@ class TestLimits:
         np.testing.assert_allclose(np.sort(all_turns(chain, np.array([[np.pi]]))[:, 0]), [-np.pi, np.pi])
         np.testing.assert_allclose(all_turns(chain, np.array([[0.5]])), [[0.5]])
 
-    def test_without_an_end_every_posture_comes_once(self):
+    def test_without_an_end_every_configuration_comes_once(self):
         chain = Chain.of([[0, 0, 1]], [[0, 0, 0]], lower=[-np.inf], upper=[np.inf])
         np.testing.assert_allclose(all_turns(chain, np.array([[0.5], [-3.0]])), [[0.5], [-3.0]])
 
@@ -114,7 +114,7 @@ class TestLimits:
 
 class TestNearest:
     @pytest.mark.parametrize("chain", [LIMITED, PANDA_LIMITED])
-    def test_a_posture_is_nearest_to_itself(self, chain):
+    def test_a_configuration_is_nearest_to_itself(self, chain):
         solver = make_solver(chain)
         for values in limited_values(chain, 20):
             found = solver.nearest(chain.forward(values), values)
@@ -308,7 +308,7 @@ class TestNumeric:
 
     @pytest.mark.parametrize("chain", [LIMITED, PANDA_LIMITED])
     def test_it_comes_nearer_to_goals_out_of_reach_wherever_they_are(self, chain):
-        """Among them postures in which the arm is stretched, where seven joints have one motion less."""
+        """Among them configurations in which the arm is stretched, where seven joints have one motion less."""
         solver, rng = NumericSolver(chain), np.random.default_rng(3)
         for _ in range(150):
             values = rng.uniform(chain.lower, chain.upper)

@@ -9,7 +9,7 @@ from ik_arms import PANDA, PUMA, arm, pose
 from ravemj.ik import Chain, NumericSolver, Task, make_solver
 from ravemj.ik.derive import random_values
 from ravemj.ik.reductions import ReducedForm
-from ravemj.ik.residuals import Posture, linear
+from ravemj.ik.residuals import ToolMotion, linear
 from ravemj.ik.tasks import goal_poses
 
 LOCAL = np.array([0.1, -0.2, 0.05])
@@ -37,7 +37,7 @@ def quaternion(R):
 
 
 def goal_of(chain, task, values):
-    """The goal that a posture reaches."""
+    """The goal that a configuration reaches."""
     T = chain.forward(np.array(values))
     p, (x, y, z) = T[:3, 3], T[:3, :3] @ chain.direction
     u = np.array([x, y, z])
@@ -66,7 +66,7 @@ def goal_of(chain, task, values):
 
 
 def reaches(chain, task, goal, values):
-    """Whether a posture reaches a goal."""
+    """Whether a configuration reaches a goal."""
     T = chain.forward(np.array(values))
     u = T[:3, :3] @ chain.direction
     if task is Task.LOOK_AT:
@@ -84,13 +84,13 @@ def reaches(chain, task, goal, values):
 
 
 def same(chain, rows, values):
-    """Which rows are a posture, up to whole turns."""
+    """Which rows are a configuration, up to whole turns."""
     away = np.where(chain.prismatic, rows - values, 2 * np.sin((rows - values) / 2))
     return np.abs(away).max(axis=-1, initial=0.0) < 1e-5
 
 
 @pytest.mark.parametrize(("task", "kind", "how"), REDUCED)
-def test_reductions_find_all_postures(task, kind, how):
+def test_reductions_find_all_configurations(task, kind, how):
     chain = arm(np.random.default_rng(4), kind)
     solver = make_solver(chain, task)
     assert isinstance(solver.closed, ReducedForm)
@@ -115,7 +115,7 @@ def test_every_type_on_arms_with_more_joints_than_it_needs(task, chain):
     assert solver.describe().startswith("closed form" if solver.complete else "numeric")
     assert ("not complete" in solver.describe()) == (not solver.complete)
     for values in np.random.default_rng(2).uniform(-1, 1, (6, chain.dof)):
-        if task in HEADINGS:  # a direction in the plane is wanted, and random postures have none
+        if task in HEADINGS:  # a direction in the plane is wanted, and random configurations have none
             goal = np.append(0.4, chain.forward(values)[:3, 3] * 0.8)
             both = np.append(np.roll([np.cos(0.4), np.sin(0.4), 0], HEADINGS.index(task)), goal[1:])
             row = solver.nearest(goal, np.zeros(chain.dof))
@@ -187,7 +187,7 @@ def test_slopes_are_derivatives(task):
 
     def missing(at):
         T, jacobian = chain.forward(at), chain.forward_and_jacobian(at[None])[1][0]
-        return linear(chain, task, goal, Posture(T[:3, :3], T[:3, 3], jacobian), scale)
+        return linear(chain, task, goal, ToolMotion(T[:3, :3], T[:3, 3], jacobian), scale)
 
     if task in (Task.TRANSFORM, Task.ROTATION, Task.RAY, Task.LOOK_AT):
         values = wanted + 1e-9  # slopes of rotation vectors and projections are exact where nothing is missing

@@ -54,7 +54,7 @@ def ik(options: argparse.Namespace) -> int:
         print(arm.ik_solver(_kind(options)).describe())
         return 0
     reached = _reached(arm, options)
-    found = _judged(arm, reached if options.json else reached[:_MOST_ROWS])
+    found = _validated(arm, reached if options.json else reached[:_MOST_ROWS])
     if options.json:
         print(json.dumps([_entry(solution) for solution in found], indent=1))
     elif found:
@@ -149,7 +149,7 @@ def _reached(arm: Manipulator, options: argparse.Namespace) -> list[tuple[Floats
     return [(rows[index], str(names[index])) for index in order]
 
 
-def _judged(arm: Manipulator, reached: Sequence[tuple[Floats, str]]) -> list[_Solution]:
+def _validated(arm: Manipulator, reached: Sequence[tuple[Floats, str]]) -> list[_Solution]:
     """Return solutions with what speaks against them; the robot ends where it is."""
     robot = cast("Robot", arm.GetRobot())
     dofs, start = arm.GetArmIndices().tolist(), robot.GetDOFValues()

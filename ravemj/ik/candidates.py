@@ -24,16 +24,16 @@ def nearest_first(
     free: Floats | None = None,
     limits: bool = True,
 ) -> Iterator[Floats]:
-    """Yield the solutions, all turns within the limits, those near a posture first.
+    """Yield the solutions, all turns within the limits, those near a configuration first.
 
-    Free joints come before nearness: all solutions for the value nearest to the posture's come first.
+    Free joints come before nearness: all solutions for the value nearest to the configuration's come first.
 
     Args:
         solver: The solver.
         goal: A pose (4, 4), or what else its task asks for.
-        seed: The posture, shape (n,).
+        seed: The configuration, shape (n,).
         weights: What a radian or a metre of each joint counts, shape (n,); all the same if None.
-        free: Values of the free joints, shape (k,); None: samples, from the posture outwards.
+        free: Values of the free joints, shape (k,); None: samples, from the configuration outwards.
         limits: Whether limits count; if not, every branch comes once, with angles in [-pi, pi].
     """
     for rows in _groups(solver, goal, seed, free, limits=limits):
@@ -67,7 +67,7 @@ def _groups(solver: IKSolver, goal: Floats, seed: Floats, free: Floats | None, *
 
 
 def _with_singular(solver: IKSolver, rows: Floats, seed: Floats) -> Floats:
-    """Add to postures in which two joints turn about one line other angles of these."""
+    """Add to configurations in which two joints turn about one line other angles of these."""
     if solver.task is not Task.TRANSFORM:
         return rows
     found = redundancy.singular_rows(solver.chain, rows)
@@ -75,7 +75,7 @@ def _with_singular(solver: IKSolver, rows: Floats, seed: Floats) -> Floats:
 
 
 def _descended(solver: IKSolver, pose: Floats, seed: Floats) -> Floats:
-    """Return the solution below a posture, shape (1, n), or none, shape (0, n)."""
+    """Return the solution below a configuration, shape (1, n), or none, shape (0, n)."""
     found = solver.numeric.descend(pose, seed)
     return found.values[None][: int(found.error < ACCURATE)]
 

@@ -1,7 +1,7 @@
 """Chains: the joints of an arm as axes and points, its limits, and where its tool is.
 
-All is given in the frame of the base, in the posture in which every joint value is 0 (the product of exponentials:
-R. W. Brockett, 1983). A chain knows no links and no file format.
+All is given in the frame of the base, where every joint value is 0 (the product of exponentials: R. W. Brockett, 1983).
+A chain knows no links and no file format.
 """
 
 import itertools
@@ -18,7 +18,7 @@ Turns = Sequence[Floats] | Floats
 """For each joint cosines and sines, shape (2, …), or distances, (1, …); one array where all joints are revolute."""
 _IDENTITY = np.eye(3)
 _FEW = 128
-"""Up to so many postures, calls of numpy cost more than its arithmetic."""
+"""Up to so many configurations, calls of numpy cost more than its arithmetic."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -117,7 +117,7 @@ class Chain:
 
     @cached_property
     def wide(self) -> list[int]:
-        """Joints with limits that can show a posture in several turns."""
+        """Joints with limits that can show a configuration in several turns."""
         span = self.upper - self.lower
         several = self.turning & ~self.circular & np.isfinite(span) & (span >= 2 * np.pi - 1e-9)
         return np.nonzero(several)[0].tolist()
@@ -242,7 +242,7 @@ class Chain:
         return tool, jacobians
 
     def placed_axes(self, values: Floats) -> tuple[Floats, Floats]:
-        """Return the axes and a point on each, both (n, M, 3), in the postures of joint values (M, n)."""
+        """Return the axes and a point on each, both (n, M, 3), in the configurations of joint values (M, n)."""
         frames = np.array(self._frames(self.turns(values))[:-1])
         return frames[:, 2].transpose(0, 2, 1), frames[:, 3].transpose(0, 2, 1)
 

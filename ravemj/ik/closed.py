@@ -33,7 +33,7 @@ class Solutions:
     Attributes:
         values: Joint values, shape (N, B, n), angles in [-pi, pi]; rows that are no solutions have any numbers.
         valid: Which rows are solutions, shape (N, B).
-        merged: For which poses equal solutions were made one, shape (N,): those of singular postures.
+        merged: For which poses equal solutions were made one, shape (N,): those of singular configurations.
     """
 
     values: Floats

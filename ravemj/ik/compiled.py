@@ -1,4 +1,4 @@
-"""Forward kinematics and Jacobians of one posture by MuJoCo's C code; for batches the numpy of ``Chain`` is faster."""
+"""Forward kinematics and Jacobians of one configuration by MuJoCo; for batches the numpy of ``Chain`` is faster."""
 
 import itertools
 

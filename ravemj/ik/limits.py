@@ -1,4 +1,4 @@
-"""Whole turns: which angles that show the same posture are within the limits of an arm."""
+"""Whole turns: which angles that show the same configuration are within the limits of an arm."""
 
 import itertools
 from math import ceil, floor
@@ -41,7 +41,7 @@ def nearest_turns(
 
 
 def all_turns(chain: Chain, values: Floats) -> Floats:
-    """Return all rows (K, n) that show the postures of given rows and are within the limits.
+    """Return all rows (K, n) that show the configurations of given rows and are within the limits.
 
     A revolute joint with a range of more than a turn gives several values, several such joints all combinations.
     Circular joints give one value, in [-pi, pi].

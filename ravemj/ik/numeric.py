@@ -16,12 +16,12 @@ import numpy as np
 from ravemj.ik.chain import Chain
 from ravemj.ik.compiled import CompiledKinematics
 from ravemj.ik.limits import nearest_turns
-from ravemj.ik.residuals import Posture, linear, rotation_between
+from ravemj.ik.residuals import ToolMotion, linear, rotation_between
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats
 
 ACCURATE = 1e-9
-"""The error, in units of the reach and in radians, below which a posture is a solution."""
+"""The error, in units of the reach and in radians, below which a configuration is a solution."""
 Kinematics = Callable[[Floats], tuple[Floats, Floats, Floats]]
 _STEPS = 40
 _NEAREST_STEPS = 100
@@ -30,7 +30,7 @@ _DISTINCT = 1e-3
 
 @dataclass(frozen=True)
 class Nearest:
-    """The posture that comes nearest to a pose.
+    """The configuration that comes nearest to a pose.
 
     Attributes:
         values: Joint values, shape (n,).
@@ -44,7 +44,7 @@ class Nearest:
 
 
 class NumericSolver:
-    """Searches postures for poses, one after the other.
+    """Searches configurations for poses, one after the other.
 
     Attributes:
         chain: The arm.
@@ -92,10 +92,10 @@ class NumericSolver:
         return Nearest(at, float(np.sqrt(best)), step + 1)
 
     def _linear(self, pose: Floats, values: Floats, scale: Floats) -> tuple[Floats, Floats]:
-        """Return the scaled error of a posture and how it changes with the joint values."""
+        """Return the scaled error of a configuration and how it changes with the joint values."""
         rotation, place, jacobian = self._kinematics(values)
         if self.task is not Task.TRANSFORM:
-            return linear(self.chain, self.task, pose, Posture(rotation, place, jacobian), scale)
+            return linear(self.chain, self.task, pose, ToolMotion(rotation, place, jacobian), scale)
         missing = np.empty(6)
         missing[:3] = pose[:3, 3] - place
         missing[3:] = rotation_between(rotation, pose)
@@ -149,7 +149,7 @@ class NumericSolver:
         return float(np.abs(away).max())
 
     def nearest(self, pose: Floats, seed: Floats, weights: Floats | None = None) -> Nearest:
-        """Return the posture that comes as near to a pose as it can from a seed, reachable or not.
+        """Return the configuration that comes as near to a pose as it can from a seed, reachable or not.
 
         Every step makes the error smaller, by a damping that grows until it does.
 

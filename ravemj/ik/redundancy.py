@@ -1,4 +1,4 @@
-"""What is left open: joints that can have any value, and postures in which two joints turn about one line."""
+"""What is left open: joints that can have any value, and configurations in which two joints turn about one line."""
 
 import itertools
 from collections.abc import Iterator, Sequence
@@ -8,7 +8,7 @@ import numpy as np
 from ravemj.ik.chain import Chain
 from ravemj.ik.families.blocks import common_point
 from ravemj.ik.families.snapping import TOLERANCE, nominal
-from ravemj.ik.residuals import Posture, linear
+from ravemj.ik.residuals import ToolMotion, linear
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats, Screw, constant
 
@@ -17,19 +17,20 @@ SINGULAR_STEP = np.pi / 8
 MOST = 4096
 """Samples of all free joints together, at most."""
 _COAXIAL = 1e-9
-_POSTURES = 4
+_CONFIGURATIONS = 4
 
 
 def rank(chain: Chain, task: Task) -> int:
     """Return how many independent changes of what counts the joints can make."""
-    values = np.random.default_rng(7).uniform(-3, 3, (_POSTURES, chain.dof)) * np.where(chain.prismatic, 0.1, 1.0)
+    values = np.random.default_rng(7).uniform(-3, 3, (_CONFIGURATIONS, chain.dof)) * np.where(chain.prismatic, 0.1, 1.0)
     return max(int(np.linalg.matrix_rank(slope, tol=1e-4)) for slope in slopes(chain, task, values))
 
 
 def slopes(chain: Chain, task: Task, values: Floats, goal: Floats | None = None) -> list[Floats]:
-    """Return how what counts changes with the joint values in postures (M, n): each of shape (k, n).
+    """Return how what counts changes with the joint values in configurations (M, n): each of shape (k, n).
 
-    Lengths are in units of the reach. The goal is one that the posture reaches, if none is given, as a pose (4, 4).
+    Lengths are in units of the reach. Without a goal, a pose (4, 4), it is one that the configuration
+    reaches.
     """
     tools, jacobians = chain.forward(values), chain.forward_and_jacobian(values)[1]
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
@@ -40,7 +41,7 @@ def slopes(chain: Chain, task: Task, values: Floats, goal: Floats | None = None)
             wanted[:3, 3] += tool[:3, :3] @ chain.direction * chain.reach
         elif goal is None and task is Task.LOCAL_PLACE:
             wanted[3, :3] = 0.3, 0.2, 0.1
-        found.append(linear(chain, task, wanted, Posture(tool[:3, :3], tool[:3, 3], jacobian), scale)[1])
+        found.append(linear(chain, task, wanted, ToolMotion(tool[:3, :3], tool[:3, 3], jacobian), scale)[1])
     return found
 
 
@@ -112,7 +113,7 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
 
 
 def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, float]]:
-    """Find the postures, of rows (K, n), in which two joints turn about the same line.
+    """Find the configurations, of rows (K, n), in which two joints turn about the same line.
 
     Returns:
         For each of them the row, the two joints, and 1 or -1 for the same or the opposite direction.
@@ -130,12 +131,12 @@ def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, fl
 
 
 def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:
-    """Return other postures (K, n) with the tool's pose of one in which two joints turn about one line.
+    """Return other configurations (K, n) with the tool's pose of one in which two joints turn about one line.
 
     Args:
         chain: The arm.
-        singular: The posture, the joints and the sign, of ``singular_rows``.
-        seed: A posture that the first of the two joints, or the second one, shall be like in one of the answers.
+        singular: The configuration, the joints and the sign, of ``singular_rows``.
+        seed: A configuration that the first of the two joints, or the second one, shall be like in one of the answers.
     """
     row, first, second, sign = singular
     angles = np.arange(-np.pi + SINGULAR_STEP, np.pi + 1e-9, SINGULAR_STEP)

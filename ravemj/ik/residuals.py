@@ -1,4 +1,4 @@
-"""What a posture lacks of a goal, and how that changes with the joint values, for every type of goal.
+"""What a configuration lacks of a goal, and how that changes with the joint values, for every type of goal.
 
 Places count in units of the reach, rotations and directions in radians.
 """
@@ -13,31 +13,31 @@ from ravemj.ik.tasks import ALONG, ANGLES, Task
 from ravemj.ik.vectors import Floats, skew
 
 
-class Posture(NamedTuple):
+class ToolMotion(NamedTuple):
     """Where the tool is, and how it moves.
 
     Attributes:
         rotation: Its rotation, shape (3, 3).
-        place: Its place, shape (3,).
+        position: Its position, shape (3,).
         jacobian: Velocities of its origin and angular velocities, in base axes, shape (6, n).
     """
 
     rotation: Floats
-    place: Floats
+    position: Floats
     jacobian: Floats
 
 
-def linear(chain: Chain, task: Task, goal: Floats, posture: Posture, scale: Floats) -> tuple[Floats, Floats]:
+def linear(chain: Chain, task: Task, goal: Floats, tool: ToolMotion, scale: Floats) -> tuple[Floats, Floats]:
     """Return what is missing, shape (k,), and its slope, the change with the joint values, shape (k, n).
 
     Args:
         chain: The arm.
         task: What is asked for.
         goal: The goal as a pose, shape (4, 4); see ``goal_poses``.
-        posture: The posture.
+        tool: The tool at the configuration, and how it moves.
         scale: What each component of velocities and angular velocities counts, shape (6,).
     """
-    missing, slope = _MISSING[task](chain, task, goal, posture)
+    missing, slope = _MISSING[task](chain, task, goal, tool)
     counts = scale[_rows(task)]
     return missing * counts, slope * counts[:, None]
 
@@ -50,57 +50,57 @@ def _rows(task: Task) -> list[int]:
     return [0, 1, 2] if task is Task.LOCAL_PLACE else list(task.rows)
 
 
-def _pose(chain: Chain, task: Task, goal: Floats, posture: Posture) -> tuple[Floats, Floats]:
-    away, rows = goal[:3, 3] - posture.place, _rows(task)
-    return np.append(away, rotation_between(posture.rotation, goal))[rows], posture.jacobian[rows]
+def _pose(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+    away, rows = goal[:3, 3] - tool.position, _rows(task)
+    return np.append(away, rotation_between(tool.rotation, goal))[rows], tool.jacobian[rows]
 
 
-def _local_place(chain: Chain, task: Task, goal: Floats, posture: Posture) -> tuple[Floats, Floats]:
-    arm = posture.rotation @ goal[3, :3]
-    return goal[:3, 3] - posture.place - arm, posture.jacobian[:3] - skew(arm) @ posture.jacobian[3:]
+def _local_place(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+    arm = tool.rotation @ goal[3, :3]
+    return goal[:3, 3] - tool.position - arm, tool.jacobian[:3] - skew(arm) @ tool.jacobian[3:]
 
 
-def _direction(chain: Chain, task: Task, goal: Floats, posture: Posture) -> tuple[Floats, Floats]:
-    pointing, wanted = posture.rotation @ chain.direction, goal[:3, :3] @ chain.direction
-    return wanted - pointing, -skew(pointing) @ posture.jacobian[3:]
+def _direction(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+    pointing, wanted = tool.rotation @ chain.direction, goal[:3, :3] @ chain.direction
+    return wanted - pointing, -skew(pointing) @ tool.jacobian[3:]
 
 
-def _place_direction(chain: Chain, task: Task, goal: Floats, posture: Posture) -> tuple[Floats, Floats]:
-    bent, turned = _direction(chain, task, goal, posture)
+def _place_direction(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+    bent, turned = _direction(chain, task, goal, tool)
     rows = [ANGLES[task]] if task in ANGLES else [0, 1, 2]
-    away = goal[:3, 3] - posture.place
-    return np.append(away, bent[rows]), np.vstack([posture.jacobian[:3], turned[rows]])
+    away = goal[:3, 3] - tool.position
+    return np.append(away, bent[rows]), np.vstack([tool.jacobian[:3], turned[rows]])
 
 
-def _ray(chain: Chain, task: Task, goal: Floats, posture: Posture) -> tuple[Floats, Floats]:
-    missing, slope = _place_direction(chain, task, goal, posture)
+def _ray(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+    missing, slope = _place_direction(chain, task, goal, tool)
     wanted = goal[:3, :3] @ chain.direction
     across = np.eye(3) - np.outer(wanted, wanted)
     return np.append(across @ missing[:3], missing[3:]), np.vstack([across @ slope[:3], slope[3:]])
 
 
-def _look_at(chain: Chain, task: Task, goal: Floats, posture: Posture) -> tuple[Floats, Floats]:
-    away, pointing = goal[:3, 3] - posture.place, posture.rotation @ chain.direction
+def _look_at(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
+    away, pointing = goal[:3, 3] - tool.position, tool.rotation @ chain.direction
     distance = float(np.linalg.norm(away)) or 1e-12
-    wanted, (moves, turns) = away / distance, np.split(posture.jacobian, 2)
+    wanted, (moves, turns) = away / distance, np.split(tool.jacobian, 2)
     return wanted - pointing, (moves - np.outer(wanted, wanted @ moves)) / distance - skew(pointing) @ turns
 
 
-def _planar(chain: Chain, task: Task, goal: Floats, posture: Posture) -> tuple[Floats, Floats]:
+def _planar(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
     """As in OpenRAVE, the angle is that of the direction in the plane, or of the tool where it points out of it."""
-    pointing, wanted = posture.rotation @ chain.direction, goal[:3, :3] @ chain.direction
-    moves, turns = np.split(posture.jacobian, 2)
+    pointing, wanted = tool.rotation @ chain.direction, goal[:3, :3] @ chain.direction
+    moves, turns = np.split(tool.jacobian, 2)
     if np.abs(wanted[:2]).max() < 1e-9:
-        turn, heading = rotation_between(posture.rotation, goal)[2], turns[2]
+        turn, heading = rotation_between(tool.rotation, goal)[2], turns[2]
     else:
         turned = -skew(pointing) @ turns
         square = max(float(pointing[:2] @ pointing[:2]), 1e-12)
         turn = np.arctan2(pointing[0] * wanted[1] - pointing[1] * wanted[0], pointing[:2] @ wanted[:2])
         heading = (pointing[0] * turned[1] - pointing[1] * turned[0]) / square
-    return np.append((goal[:3, 3] - posture.place)[:2], turn), np.vstack([moves[:2], heading])
+    return np.append((goal[:3, 3] - tool.position)[:2], turn), np.vstack([moves[:2], heading])
 
 
-_MISSING: dict[Task, Callable[[Chain, Task, Floats, Posture], tuple[Floats, Floats]]] = {
+_MISSING: dict[Task, Callable[[Chain, Task, Floats, ToolMotion], tuple[Floats, Floats]]] = {
     **dict.fromkeys((Task.TRANSFORM, Task.ROTATION, Task.PLACE, Task.PLACE_XY), _pose),
     **dict.fromkeys((*ALONG, *ANGLES), _place_direction),
     Task.LOCAL_PLACE: _local_place,

@@ -14,19 +14,19 @@ from ravemj.ik.vectors import Floats
 _SINGULAR = 1e-6
 """Singular values below this, in units of the reach and in radians, are 0."""
 _JUMP = 0.5
-"""Where a joint moves more [rad or m] from one posture to the next, that is another branch."""
+"""Where a joint moves more [rad or m] from one configuration to the next, that is another branch."""
 
 
 def null_space(chain: Chain, values: Floats, task: Task = Task.TRANSFORM, goal: ArrayLike | None = None) -> Floats:
     """Return an orthonormal basis of the joint velocities that change nothing of what counts, shape (n, k).
 
-    In singular postures it has more columns than elsewhere.
+    In singular configurations it has more columns than elsewhere.
 
     Args:
         chain: The arm.
-        values: The posture, shape (n,).
+        values: The configuration, shape (n,).
         task: What counts.
-        goal: A goal that the posture reaches, if it is not for the posture to say, as with ``LOOK_AT``.
+        goal: A goal that the configuration reaches, if it is not for the configuration to say, as with ``LOOK_AT``.
     """
     pose = None if goal is None else goal_poses(chain, task, goal)
     slope = redundancy.slopes(chain, task, values[None], pose)[0]
@@ -38,7 +38,7 @@ def null_space(chain: Chain, values: Floats, task: Task = Task.TRANSFORM, goal: 
 def null_space_path(
     solver: IKSolver, goal: ArrayLike, start: Floats, along: Floats, *, step: float = 0.05, length: float = 2 * np.pi
 ) -> Floats:
-    """Return postures along a path that leaves a goal reached: through the null space, from a start on.
+    """Return configurations along a path that leaves a goal reached: through the null space, from a start on.
 
     It ends at a limit, where it comes back to its start, or after a length.
 
@@ -47,11 +47,11 @@ def null_space_path(
         goal: The goal, which the start reaches.
         start: Joint values, shape (n,).
         along: Joint velocities, shape (n,); the path begins with what of them is in the null space.
-        step: The distance between postures, in joint space [rad or m].
+        step: The distance between configurations, in joint space [rad or m].
         length: The greatest length of the path.
 
     Returns:
-        Postures, shape (M, n), the first of them the start.
+        Configurations, shape (M, n), the first of them the start.
 
     Raises:
         ValueError: nothing of ``along`` is in the null space.
@@ -81,16 +81,17 @@ def null_space_path(
 
 
 def sweep(solver: IKSolver, goal: ArrayLike, seed: Floats, *, step: float = 0.01) -> Floats:
-    """Return postures that reach a goal and change continuously while the free joint takes its values.
+    """Return configurations that reach a goal and change continuously while the free joint takes its values.
 
     Args:
         solver: A solver in closed form, with one free joint.
         goal: The goal.
-        seed: A posture, shape (n,); the sweep goes through the solution nearest to it.
+        seed: A configuration, shape (n,); the sweep goes through the solution nearest to it.
         step: The step of the free joint [rad or m].
 
     Returns:
-        Postures within the limits, shape (M, n), by the value of the free joint; none if the goal is out of reach.
+        Configurations within the limits, shape (M, n), by the value of the free joint; none if the goal is out of
+            reach.
 
     Raises:
         ValueError: the solver has no free joint, or several.
@@ -108,7 +109,7 @@ def sweep(solver: IKSolver, goal: ArrayLike, seed: Floats, *, step: float = 0.01
 
 
 def _followed(solver: IKSolver, pose: Floats, start: Floats, values: Floats) -> list[Floats]:
-    """Return the postures for values of the free joint, each the one nearest to that before it, as far as there are."""
+    """Return configurations for values of the free joint, each the one nearest to that before it, while there are."""
     assert solver.closed is not None
     found = solver.closed.solve(np.repeat(pose[None], len(values), axis=0), values[:, None])
     rows, last = list[Floats](), start

@@ -1,8 +1,8 @@
 """One way to ask for inverse kinematics, whatever answers: a closed form, one with sampled joints, or a search.
 
-Poses are those of the tool in the base. Limits, whole turns, free joints and singular postures are treated as OpenRAVE
-treats them: every solution within the limits is one, further turns included; a free joint is sampled from 0 or from the
-present value outwards; where two joints turn about one line, the first is shown at every pi/8.
+Poses are those of the tool in the base. Limits, whole turns, free joints and singular configurations are treated as
+OpenRAVE treats them: every solution within the limits is one, further turns included; a free joint is sampled from 0 or
+from the present value outwards; where two joints turn about one line, the first is shown at every pi/8.
 """
 
 import itertools
@@ -153,15 +153,15 @@ class IKSolver:
         weights: Floats | None = None,
         accept: Callable[[Floats], bool] | None = None,
     ) -> Floats | None:
-        """Return the solution within the limits that is nearest to a posture.
+        """Return the solution within the limits that is nearest to a configuration.
 
-        Free joints come first: the value nearest to theirs in the posture with any solution ends the search. In
-        singular postures a closed form shows some of infinitely many solutions; there one descent from the posture
-        adds what it finds. Where no sample has a solution, a short search is the last word.
+        Free joints come first: the value nearest to theirs in the configuration with any solution ends the search. In
+        singular configurations a closed form shows some of infinitely many solutions; there one descent from the
+        present configuration adds what it finds. Where no sample has a solution, a short search is the last word.
 
         Args:
             goal: A pose (4, 4), or what else the task asks for.
-            seed: The posture, shape (n,).
+            seed: The configuration, shape (n,).
             weights: What a radian or a metre of each joint counts, shape (n,); all the same if None.
             accept: Says whether a solution is good, for example free of collisions; the nearest ones are asked first.
 
@@ -191,7 +191,7 @@ class IKSolver:
         return None if found is None or (accept is not None and not accept(found)) else found
 
     def _descent(self, pose: Floats, seed: Floats) -> Floats:
-        """Return the solution below a posture, shape (1, n), or none, shape (0, n)."""
+        """Return the solution below a configuration, shape (1, n), or none, shape (0, n)."""
         found = self.numeric.descend(pose, seed)
         return found.values[None][: int(found.error < ACCURATE)]
 
@@ -216,11 +216,11 @@ class IKSolver:
         return None
 
     def approach(self, goal: ArrayLike, seed: Floats, weights: Floats | None = None) -> Nearest:
-        """Return the posture near a seed that comes nearest to a goal, reachable or not; for dragging a hand.
+        """Return the configuration near a seed that comes nearest to a goal, reachable or not; for dragging a hand.
 
         Args:
             goal: A pose (4, 4), or what else the task asks for.
-            seed: The present posture, shape (n,).
+            seed: The present configuration, shape (n,).
             weights: How much errors along x, y, z and about them count, shape (6,).
         """
         return self.numeric.nearest(goal_poses(self.chain, self.task, goal), seed, weights)

@@ -12,7 +12,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
 from ravemj.geometry_functions.ik_parameterization import goal_of_tool
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType
-from ravemj.rave.ik_judge import CHECK_ENV, IGNORE_FILTERS, IGNORE_LIMITS, IGNORE_SELF, Filter, Judge, Question
+from ravemj.rave.ik_validation import CHECK_ENV, IGNORE_FILTERS, IGNORE_LIMITS, IGNORE_SELF, Filter, Query, Validator
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
 from ravemj.rave.interface import Annotations, Interface
 from ravemj.rave.specification import IkParameterization
@@ -146,7 +146,7 @@ class IkSearch(Interface):
         lower, upper = solver.chain.lower[free], solver.chain.upper[free]
         return lower + checked_vector(given, count, "freevalues") * (upper - lower)
 
-    def _posture(self) -> Floats:
+    def _configuration(self) -> Floats:
         return self._owner().simulation_state.kinematics.values()[list(self._description().arm_dofs)]
 
     # Search
@@ -160,7 +160,7 @@ class IkSearch(Interface):
         numbers, free = self._numbers(goal), self._free_values(solver, shares)
         if options & IGNORE_LIMITS or free is not None:
             return next(self._nearest_first(solver, numbers, free, options), None)
-        return solver.nearest(numbers, self._posture(), weights=self._weights())
+        return solver.nearest(numbers, self._configuration(), weights=self._weights())
 
     def find_rows(self, goal: IkParameterization | Floats, shares: ArrayLike | None, options: int) -> Floats:
         """Return the joint values of ``find_all``, shape (K, n), fast where every solution is good."""
@@ -179,25 +179,25 @@ class IkSearch(Interface):
         failures: list[IkFailureInfo] | None = None,
         explain: bool = True,
     ) -> IkReturn:
-        """Return the good solution that is nearest to a posture.
+        """Return the good solution that is nearest to a configuration.
 
         Args:
             goal: The goal in the frame of the arm's base; an array is a pose of the tool (4, 4).
             shares: Where the free joints are in their ranges, shape (k,); None: anywhere.
             options: ``IkFilterOptions`` combined with ``|``.
-            seed: The posture, shape (n,); None: the present one.
+            seed: The configuration, shape (n,); None: the present one.
             failures: Gets what is rejected.
             explain: Whether the answer says why there is no solution.
         """
         solver = self.derived()
         numbers, free = self._numbers(goal), self._free_values(solver, shares)
-        start = self._posture() if seed is None else seed
-        with self._judge(goal, options, failures) as judge:
-            answer = judge.first(self._nearest_first(solver, numbers, free, options, start))
+        start = self._configuration() if seed is None else seed
+        with self._validator(goal, options, failures) as validator:
+            answer = validator.first(self._nearest_first(solver, numbers, free, options, start))
             if answer is None:
-                if explain and not judge.quit:
-                    judge.fall_short(*_shortfall(solver, numbers, free), limits=not options & IGNORE_LIMITS)
-                return judge.failure()
+                if explain and not validator.quit:
+                    validator.fall_short(*_shortfall(solver, numbers, free), limits=not options & IGNORE_LIMITS)
+                return validator.failure()
         from ravemj.ik.limits import distances
 
         away = distances(solver.chain, answer.GetSolution(), start, self._weights())
@@ -214,11 +214,11 @@ class IkSearch(Interface):
         """Return all good solutions; none if a filter ends the search. The arguments are those of ``find_one``."""
         solver = self.derived()
         rows = self._all_rows(solver, goal, shares, options)
-        with self._judge(goal, options, failures) as judge:
-            answers = judge.all(rows)
-            if not answers and failures is not None and not judge.quit:
+        with self._validator(goal, options, failures) as validator:
+            answers = validator.all(rows)
+            if not answers and failures is not None and not validator.quit:
                 free = self._free_values(solver, shares)
-                judge.fall_short(*_shortfall(solver, self._numbers(goal), free), limits=not options & IGNORE_LIMITS)
+                validator.fall_short(*_shortfall(solver, self._numbers(goal), free), limits=not options & IGNORE_LIMITS)
         return answers
 
     def _all_rows(
@@ -231,7 +231,7 @@ class IkSearch(Interface):
     def _nearest_first(
         self, solver: "IKSolver", numbers: Floats, free: Floats | None, options: int, start: Floats | None = None
     ) -> Iterator[Floats]:
-        seed, limits = self._posture() if start is None else start, not options & IGNORE_LIMITS
+        seed, limits = self._configuration() if start is None else start, not options & IGNORE_LIMITS
         from ravemj.ik.candidates import nearest_first
 
         return nearest_first(solver, numbers, seed, weights=self._weights(), free=free, limits=limits)
@@ -266,12 +266,14 @@ class IkSearch(Interface):
         tests = options & CHECK_ENV or not options & IGNORE_SELF
         return not tests and (bool(options & IGNORE_FILTERS) or not self._filters)
 
-    def _judge(self, goal: IkParameterization | Floats, options: int, failures: list[IkFailureInfo] | None) -> Judge:
+    def _validator(
+        self, goal: IkParameterization | Floats, options: int, failures: list[IkFailureInfo] | None
+    ) -> Validator:
         if isinstance(goal, np.ndarray):
             goal = IkParameterization(goal, _Type.Transform6D)
         filters = [] if options & IGNORE_FILTERS else self._filters
-        question = Question(self._owner(), self._arm, self._description(), goal, options, filters, failures)
-        return Judge(question)
+        query = Query(self._owner(), self._arm, self._description(), goal, options, filters, failures)
+        return Validator(query)
 
 
 def _shortfall(solver: "IKSolver", numbers: Floats, free: Floats | None) -> tuple[bool, bool]:

@@ -15,8 +15,8 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType
 from ravemj.rave.enums import InterfaceType
-from ravemj.rave.ik_judge import Filter, FilterFunction, solution
 from ravemj.rave.ik_search import IkSearch
+from ravemj.rave.ik_validation import Filter, FilterFunction, solution
 from ravemj.rave.ikreturn import IkReturn
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.specification import IkParameterization
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _LOG = logging.getLogger("ravemj")
 _NEAR = 1e-4
-"""Squared distance from the goal of a posture that ``CallFilters`` takes."""
+"""Squared distance from the goal of a configuration that ``CallFilters`` takes."""
 
 
 class IkSolver(IkSearch):
@@ -66,7 +66,7 @@ class IkSolver(IkSearch):
 
     def GetFreeParameters(self) -> Floats:
         """Return where the free joints of the robot are in their ranges, from 0 to 1, shape (k,)."""
-        solver, values = self.derived(), self._posture()
+        solver, values = self.derived(), self._configuration()
         free = list(solver.free)
         lower, upper = solver.chain.lower[free], solver.chain.upper[free]
         width = upper - lower
@@ -75,7 +75,7 @@ class IkSolver(IkSearch):
     # Filters
 
     def RegisterCustomFilter(self, priority: int, callback: FilterFunction) -> Handle:
-        """Let a function of yours judge solutions.
+        """Let a function of yours accept or reject solutions.
 
         Args:
             priority: Functions of higher priority are asked first; those above 0 before collisions are tested.
@@ -99,13 +99,13 @@ class IkSolver(IkSearch):
         return Handle(_remove, self._filters, entry)
 
     def CallFilters(self, ikparam: IkParameterization) -> IkReturn:
-        """Ask all filters about the posture in which the robot is.
+        """Ask all filters about the configuration in which the robot is.
 
         Args:
             ikparam: The goal, in the frame of the arm's base, where the tool is within 0.01 (m or rad).
 
         Returns:
-            The posture as a solution, with what the filters attach; or that they reject it.
+            The configuration as a solution, with what the filters attach; or that they reject it.
 
         Raises:
             ArgumentError: the tool is elsewhere.
@@ -114,19 +114,19 @@ class IkSolver(IkSearch):
         here = self._arm.GetIkParameterization(goal, False)
         if here.ComputeDistanceSqr(goal) > _NEAR:
             raise ArgumentError("CallFilters: ikparam is not where the tool is; it is relative to the arm's base")
-        row = self._posture()
+        row = self._configuration()
         answer = solution(row)
-        with self._judge(goal, 0, None) as judge:
-            return answer if judge.passes(judge.filters, row, answer) else judge.failure()
+        with self._validator(goal, 0, None) as validator:
+            return answer if validator.passes(validator.filters, row, answer) else validator.failure()
 
     # Search
 
     def Solve(self, ikparam: IkParameterization, q0: ArrayLike | None, *arguments: object, **named: object) -> IkReturn:
-        """Return the solution nearest to a posture: ``Solve(ikparam, q0, [freeparameters,] filteroptions)``.
+        """Return the solution nearest to a configuration: ``Solve(ikparam, q0, [freeparameters,] filteroptions)``.
 
         Args:
             ikparam: The goal, in the frame of the arm's base.
-            q0: The posture, shape (n,); None: the present one.
+            q0: The configuration, shape (n,); None: the present one.
             arguments: Values of the free joints as shares of their ranges, then ``IkFilterOptions``.
             named: The same by name.
         """

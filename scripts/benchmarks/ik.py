@@ -60,7 +60,7 @@ def _derived(name: str, chain: Chain) -> Row:
 
 
 def _batch(name: str, chain: Chain, limit: float | None) -> Row:
-    """Compare with MuJoCo's forward kinematics of one posture, in a loop, which slows down as we do."""
+    """Compare with MuJoCo's forward kinematics of one configuration, in a loop, which slows down as we do."""
     solver = make_solver(chain).closed
     if solver is None:
         raise RuntimeError(f"{name} has no closed form")

@@ -26,7 +26,7 @@ from ravemj.core.transforms import Floats, pose_of  # noqa: E402 - after the pat
 from ravemj.formats.readers import read_file  # noqa: E402
 from ravemj.ik import Chain, IKSolver, NumericSolver, Task, make_solver  # noqa: E402
 from ravemj.ik.arms import chain_of  # noqa: E402
-from ravemj.ik.residuals import Posture, linear  # noqa: E402
+from ravemj.ik.residuals import ToolMotion, linear  # noqa: E402
 from ravemj.ik.tasks import ANGLES, HEADINGS, goal_poses  # noqa: E402
 
 PAGE = ROOT / "docs" / "ik.md"
@@ -38,11 +38,11 @@ TIMED = ("worst error", "time", "its time")
 """Columns that differ between machines."""
 CORPUS = "## Published robots\n"
 _ARMS_HEAD = """\
-| robot | manipulator | joints | solved by | free | solved | own posture | worst error | time | search | its time |
+| robot | manipulator | joints | solved by | free | solved | own values | worst error | time | search | its time |
 |---|---|---:|---|---|---:|---:|---:|---:|---:|---:|
 """
 _TYPES_HEAD = """\
-| type of goal | robot | solved by | free | solved | own posture | worst error | time |
+| type of goal | robot | solved by | free | solved | own values | worst error | time |
 |---|---|---|---|---:|---:|---:|---:|
 """
 HEAD = """\
@@ -70,9 +70,9 @@ everywhere = solver.solve(np.stack([T_base_tool] * 1000))  # many poses at once
 
 ## From the axes to a solver
 
-**An arm is a list of lines.** From the base to the tool, each joint is an axis and a point on it, in the posture in
-which all values are 0 (the product of exponentials, R. W. Brockett 1983). Everything follows from these lines, whatever
-file they come from: nothing is compiled, and a solver is found in about ten milliseconds when it is first asked for.
+**An arm is a list of lines.** From the base to the tool, each joint is an axis and a point on it, where all values
+are 0 (the product of exponentials, R. W. Brockett 1983). Everything follows from these lines, whatever file they come
+from: nothing is compiled, and a solver is found in about ten milliseconds when it is first asked for.
 
 **Families.** Six joints with a pose to reach are six equations in six unknowns. They fall apart when three neighbouring
 joints form a *block*: axes that meet in a point (a spherical wrist or shoulder), parallel axes (as in the UR arms),
@@ -107,18 +107,18 @@ out of reach, which is what dragging a hand needs.
 
 ## How to read the tables
 
-Goals are those of random postures, uniform within the limits. *Solved*: a solution within the limits was found, from
-the middle of the range. *Own posture*: the posture that made the goal is among the solutions, free joints having their
-values. *Worst error*: of any entry of the tool's pose. *Time*: of one goal, the nearest solution, median on a busy
-core. *Search*: what the search finds when it has to do without the closed form.
+Goals are those of random configurations, uniform within the limits. *Solved*: a solution within the limits was
+found, from the middle of the range. *Own values*: those that made the goal are among the solutions, free joints
+keeping theirs. *Worst error*: of any entry of the tool's pose. *Time*: of one goal, the nearest solution, median on a
+busy core. *Search*: what the search finds when it has to do without the closed form.
 
 """
 OURS = "## The robots of `models/`\n"
 TYPES = "## Every type of goal\n"
 _TYPES_NOTE = f"""\
 {TYPE_POSES} goals of each type, for arms that have more joints than most of them need. Of the three types with `Norm`,
-the goals are those of postures in which the tool's direction is in their plane. Where nothing stands in *own posture*,
-the search answers, whose list is not complete.
+the goals are those of configurations in which the tool's direction is in their plane. Where nothing stands in
+*own values*, the search answers, whose list is not complete.
 """
 _CORPUS_NOTE = """\
 Manipulators with four to seven joints of robots that people published for OpenRAVE; those with the same numbers once.
@@ -197,7 +197,7 @@ def type_row(arm: Arm, task: Task, poses: int = TYPE_POSES) -> list[str]:
 
 
 def _level(chain: Chain, task: Task, values: Floats) -> Floats:
-    """Return postures in which the tool's direction is in the plane that a task wants, found from others."""
+    """Return configurations in which the tool's direction is in the plane that a task wants, found from others."""
     search = NumericSolver(chain, task)
     goals = goal_poses(chain, task, np.array([goal_of(chain, task, row) for row in values]))
     found = [search.solve(goal, row, starts=5) for goal, row in zip(goals, values, strict=True)]
@@ -213,20 +213,20 @@ def _answers(solver: IKSolver, values: Floats, goals: Floats) -> list[str]:
     solved = [(row, goal) for row, goal in zip(found, goals, strict=True) if row is not None]
     errors = [distance(chain, solver.task, goal, row) for row, goal in solved]
     free = ", ".join(f"{joint + 1}" for joint in solver.free)
-    shares = [_share(len(solved), len(goals)), own_postures(solver, values, goals)]
+    shares = [_share(len(solved), len(goals)), own_values(solver, values, goals)]
     return [kind(solver), free, *shares, f"{max(errors):.0e}", f"{took:.0f} µs"]
 
 
 def distance(chain: Chain, task: Task, goal: Floats, values: Floats) -> float:
-    """Return what a posture lacks of a goal, the greatest component [m or rad]."""
+    """Return what a configuration lacks of a goal, the greatest component [m or rad]."""
     pose, tool = goal_poses(chain, task, goal), chain.forward(values)
     jacobian = chain.forward_and_jacobian(values[None])[1][0]
-    missing, _ = linear(chain, task, pose, Posture(tool[:3, :3], tool[:3, 3], jacobian), np.ones(6))
+    missing, _ = linear(chain, task, pose, ToolMotion(tool[:3, :3], tool[:3, 3], jacobian), np.ones(6))
     return float(np.abs(missing).max())
 
 
 def goal_of(chain: Chain, task: Task, values: Floats) -> Floats:
-    """Return the goal of a type that a posture reaches, with OpenRAVE's numbers."""
+    """Return the goal of a type that a configuration reaches, with OpenRAVE's numbers."""
     tool = chain.forward(values)
     place, direction = tool[:3, 3], tool[:3, :3] @ chain.direction
     if task is Task.TRANSFORM:
@@ -263,8 +263,8 @@ def kind(solver: IKSolver) -> str:
     return "search" if solver.closed is None else f"{solver.closed.family.name}: {solver.closed.family.equations}"
 
 
-def own_postures(solver: IKSolver, values: Floats, goals: Floats) -> str:
-    """Return the share of postures that are among the solutions of their goals, free joints having their values."""
+def own_values(solver: IKSolver, values: Floats, goals: Floats) -> str:
+    """Return the share of configurations that are among the solutions of their goals; free joints keep their values."""
     if solver.closed is None:
         return ""
     poses = goal_poses(solver.chain, solver.task, goals)

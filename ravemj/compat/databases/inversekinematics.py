@@ -20,7 +20,7 @@ from ravemj.rave.environment import Environment
 from ravemj.rave.iksolver import IkSolver
 
 _LOG = logging.getLogger("ravemj")
-_UNJUDGED = IkFilterOptions.IgnoreSelfCollisions | IkFilterOptions.IgnoreCustomFilters
+_UNCHECKED = IkFilterOptions.IgnoreSelfCollisions | IkFilterOptions.IgnoreCustomFilters
 _WRONG = 1e-8
 """Squared distance from the goal beyond which a solution is wrong."""
 
@@ -216,7 +216,7 @@ class InverseKinematicsModel(SolvedJoints):
     # Trials
 
     def testik(self, iktests: str | int, jacobianthreshold: object = None) -> tuple[float, float]:
-        """Ask for places of the tool in random postures within the limits.
+        """Ask for places of the tool in random configurations within the limits.
 
         Args:
             iktests: How many, as a number or a text.
@@ -230,7 +230,7 @@ class InverseKinematicsModel(SolvedJoints):
         reached = wrong = 0
         with self.robot:
             for goal in goals:
-                values = self.manip.FindIKSolution(goal, _UNJUDGED)
+                values = self.manip.FindIKSolution(goal, _UNCHECKED)
                 if values is not None:
                     reached += 1
                     self.robot.SetDOFValues(values, self.manip.GetArmIndices(), CheckLimitsAction.Nothing)
@@ -238,7 +238,7 @@ class InverseKinematicsModel(SolvedJoints):
         return reached / len(goals), wrong / len(goals)
 
     def perftiming(self, num: int) -> list[float]:
-        """Return how long it takes to find all solutions [s], for places of the tool in random postures.
+        """Return how long it takes to find all solutions [s], for places of the tool in random configurations.
 
         Args:
             num: How many places.
@@ -246,7 +246,7 @@ class InverseKinematicsModel(SolvedJoints):
         times: list[float] = []
         for goal in self._random_goals(num):
             start = time.perf_counter()
-            self.manip.FindIKSolutions(goal, _UNJUDGED)
+            self.manip.FindIKSolutions(goal, _UNCHECKED)
             times.append(time.perf_counter() - start)
         return times
 

@@ -117,7 +117,7 @@ def _commute(arm: Arm, slider: int, other: int) -> bool:
 
 
 def _examples(arm: Arm, start: Floats) -> tuple[Transform, Locked]:
-    """Return motions of an arm in random postures, and the values of its locked joints there."""
+    """Return motions of an arm in random configurations, and the values of its locked joints there."""
     rng = np.random.default_rng(_SEED)
     seen: Transform | None = None
     locked: dict[int, Floats] = {}

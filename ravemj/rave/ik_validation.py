@@ -1,4 +1,4 @@
-"""Which solutions of inverse kinematics are good: filters of users, and collisions, in the posture of the solution."""
+"""Which solutions of inverse kinematics are good: filters of users, and collisions, with the robot at the solution."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -48,8 +48,8 @@ class Filter:
     function: FilterFunction
 
 
-class Question(NamedTuple):
-    """What solutions are judged by.
+class Query(NamedTuple):
+    """What solutions are validated against.
 
     Attributes:
         robot: The robot.
@@ -70,8 +70,8 @@ class Question(NamedTuple):
     failures: list[IkFailureInfo] | None = None
 
 
-class Judge:
-    """Judges solutions inside its ``with``, after which the robot is as before.
+class Validator:
+    """Validates solutions inside its ``with``, after which the robot is as before.
 
     Attributes:
         filters: The filters, those of high priority first.
@@ -79,22 +79,22 @@ class Judge:
         quit: Whether the search is over.
     """
 
-    def __init__(self, question: Question) -> None:
-        self._question = question
-        self._state = question.robot.simulation_state
-        self.filters = sorted(question.filters, key=lambda one: -one.priority)
-        self._options = question.options
-        self._tests = bool(question.options & CHECK_ENV or not question.options & IGNORE_SELF)
+    def __init__(self, query: Query) -> None:
+        self._query = query
+        self._state = query.robot.simulation_state
+        self.filters = sorted(query.filters, key=lambda one: -one.priority)
+        self._options = query.options
+        self._tests = bool(query.options & CHECK_ENV or not query.options & IGNORE_SELF)
         self._end_is_free = False
-        self._started = 0 if question.failures is None else len(question.failures)
+        self._started = 0 if query.failures is None else len(query.failures)
         self.action = 0
         self.quit = False
 
     def __enter__(self) -> Self:
         self._state.simulation.lock.acquire()
         self._saved = self._state.configuration()
-        self._chosen = self._question.robot.active_choice
-        self._question.robot.active_choice = ActiveChoice(np.array(self._question.description.arm_dofs, dtype=int))
+        self._chosen = self._query.robot.active_choice
+        self._query.robot.active_choice = ActiveChoice(np.array(self._query.description.arm_dofs, dtype=int))
         self._values = self._state.kinematics.values()
         return self
 
@@ -102,7 +102,7 @@ class Judge:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         """Bring the robot back to where it was."""
-        self._question.robot.active_choice = self._chosen
+        self._query.robot.active_choice = self._chosen
         self._state.restore(self._saved)
         self._state.simulation.lock.release()
 
@@ -131,7 +131,7 @@ class Judge:
         if not (self.filters or self._tests):
             return answer
         values = self._values.copy()
-        values[list(self._question.description.arm_dofs)] = row
+        values[list(self._query.description.arm_dofs)] = row
         self._state.set_values(values)
         before = [one for one in self.filters if one.priority > 0]
         if not self.passes(before, row, answer) or self._collides(row):
@@ -159,9 +159,9 @@ class Judge:
         Raises:
             RavemjError: with the code ``Assert``, it raises something, or says something that means nothing.
         """
-        question = self._question
+        query = self._query
         try:
-            said: Any = one.function(row.copy(), question.arm, IkParameterization(question.goal))
+            said: Any = one.function(row.copy(), query.arm, IkParameterization(query.goal))
         except Exception as error:
             message = f"a filter of inverse kinematics raised {type(error).__name__}: {error}"
             raise RavemjError(message, ErrorCode.Assert) from error
@@ -175,14 +175,14 @@ class Judge:
         return said
 
     def _collides(self, row: Floats) -> bool:
-        """Return whether the posture of a solution, which the robot has, collides."""
-        options, state, arm = self._options, self._state, self._question.description
+        """Return whether the robot, which is at the solution, collides."""
+        options, state, arm = self._options, self._state, self._query.description
         if not self._tests:
             return False
         check_env, check_self = options & CHECK_ENV, not options & IGNORE_SELF
         world = state.simulation.collisions()
         without_end = bool(options & _IGNORE_END)
-        if check_env and not without_end and self._question.goal.GetType() == IkParameterization.Type.Transform6D:
+        if check_env and not without_end and self._query.goal.GetType() == IkParameterization.Type.Transform6D:
             # All solutions have the end at the same place.
             if not self._end_is_free and self._hits(world, arms.end_and_others(world, state, arm), row, 0x83):
                 self.quit = True
@@ -199,17 +199,17 @@ class Judge:
 
     def _hits(self, world: CollisionWorld, pairs: Pairs, row: Floats, action: int) -> bool:
         """Test pairs; where there is a collision, reject the solution."""
-        report = None if self._question.failures is None else CollisionReport()
-        hit = self._question.robot.GetEnv().GetCollisionChecker().answer(world, pairs, report)
+        report = None if self._query.failures is None else CollisionReport()
+        hit = self._query.robot.GetEnv().GetCollisionChecker().answer(world, pairs, report)
         if hit:
             self._reject(row, action, "collision", report)
         return hit
 
     def _reject(self, row: Floats, action: int, why: str, report: CollisionReport | None = None) -> None:
         self.action |= int(action)
-        if self._question.failures is not None:
-            info = IkFailureInfo(IkReturnAction(action), row.copy(), self._question.goal, report, why)
-            self._question.failures.append(info)
+        if self._query.failures is not None:
+            info = IkFailureInfo(IkReturnAction(action), row.copy(), self._query.goal, report, why)
+            self._query.failures.append(info)
 
     def fall_short(self, unreached: bool, limited: bool, *, limits: bool) -> None:
         """Take note that the goal is out of reach, or, where limits count, that solutions are beyond them."""
@@ -221,7 +221,7 @@ class Judge:
     def failure(self) -> IkReturn:
         """Return the answer where no solution is good."""
         answer = IkReturn(self.action | _REJECT)
-        failures = self._question.failures
+        failures = self._query.failures
         answer.name_failures([] if failures is None else list(range(self._started, len(failures))))
         return answer
 
