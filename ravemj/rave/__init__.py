@@ -7,9 +7,9 @@ objects is ravemj's own.
 from ravemj.core.handles import Handle as UserData
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
-from ravemj.rave.body.grippers import ConnectedBody
 from ravemj.rave.body.saving import StateSaver
 from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
+from ravemj.rave.connected_body import ConnectedBody
 from ravemj.rave.controllers import (
     Controller,
     IdealController,

@@ -19,7 +19,6 @@ from ravemj.geometry_functions import DOFAffine
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.rave.body.active import ActiveChoice, ActiveDofs
 from ravemj.rave.body.affine import default_kinds
-from ravemj.rave.body.grippers import Grippers
 from ravemj.rave.body.manipulators import Manipulators
 from ravemj.rave.body.saving import Restorer, StateSaver
 from ravemj.rave.controllers import Controller, IdealController
@@ -52,7 +51,7 @@ POLL = 1e-3
 """How often [s] ``WaitForController`` looks."""
 
 
-class Robot(ActiveDofs, Manipulators, Grippers, KinBody):
+class Robot(ActiveDofs, Manipulators, KinBody):
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine

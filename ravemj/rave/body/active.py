@@ -15,8 +15,6 @@ from ravemj.rave.body.affine import AffineSettings, affine_numbers
 from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.body.configuration import Configuration
 from ravemj.rave.body.dynamics import Dynamics
-from ravemj.rave.body.limits import Limits
-from ravemj.rave.body.velocities import Velocities
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.bodies import body_groups
@@ -36,7 +34,7 @@ class ActiveChoice(NamedTuple):
     axis: Vec3 = Z_AXIS
 
 
-class ActiveDofs(AffineSettings, BodyCollision, Velocities, Dynamics, Limits, Configuration):
+class ActiveDofs(AffineSettings, BodyCollision, Dynamics, Configuration):
     """The active DOFs of a robot: some of its joints, then parts of its base's pose, which move all of it."""
 
     active_choice: ActiveChoice

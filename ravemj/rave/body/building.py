@@ -15,7 +15,6 @@ from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.scene import Geometry, KinBody
 from ravemj.model.scene import TriMesh as Triangles
 from ravemj.model.shape_bodies import body_of_geometries, box_geometries, shape_geometry, sphere_geometries
-from ravemj.rave.body.identity import Identity
 from ravemj.rave.body.structure import Structure
 from ravemj.rave.enums import UpdateFromInfoResult
 from ravemj.rave.infos import ExtractInfoOptions, GeometryInfo, JointInfo, KinBodyInfo, LinkInfo, body_of
@@ -23,7 +22,7 @@ from ravemj.rave.infos.link import geometries_of
 from ravemj.rave.trimesh import TriMesh, checked_mesh
 
 
-class Building(Structure, Identity):
+class Building(Structure):
     """Makes the body anew; it must not be in an environment meanwhile."""
 
     _internal = ("extracted",)

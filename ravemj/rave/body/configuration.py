@@ -1,4 +1,4 @@
-"""The configuration of a body: joint values and poses."""
+"""The configuration of a body, joint values and poses, and its velocities."""
 
 from collections.abc import Sequence
 from types import EllipsisType
@@ -7,24 +7,32 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import FLOAT, checked_indices, checked_numbers, checked_transform, checked_vector
+from ravemj.core.arrays import (
+    FLOAT,
+    checked_indices,
+    checked_numbers,
+    checked_point,
+    checked_transform,
+    checked_vector,
+)
 from ravemj.core.transforms import Floats, Ints, pose_of
-from ravemj.engine.kinematics import BodyKinematics
-from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, send_warning
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import DOFAffine
-from ravemj.rave.body.base import BodyPart
+from ravemj.rave.body.given_values import full_values, full_velocities, limited_velocities, settled_values
+from ravemj.rave.body.limits import Limits
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.trajectories.bodies import body_groups, configuration_values, split_configuration
 
-ROUNDING = 2e-10
-"""How far outside its limits [rad or m] OpenRAVE moves a value without a warning."""
-
 _UNLIMITED = int(CheckLimitsAction.Nothing)  # looking up a member of an enum takes as long as placing a pendulum
 
 
-class Configuration(BodyPart):
-    """Joint values, the poses of the body and its links, and both as one vector with its specification."""
+class Configuration(Limits):
+    """Joint values, the poses of the body and its links, both as one vector with its specification, and velocities.
+
+    By velocities nothing moves, but accelerations and inverse dynamics depend on them. What is kept are the velocities
+    of the links; those of the DOFs are read off them, as in OpenRAVE. So set joint values first, then velocities.
+    """
 
     def GetDOFValues(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the joint values.
@@ -88,56 +96,13 @@ class Configuration(BodyPart):
             ):
                 target = values
             else:
-                target = self._full_values(kinematics, values, dofindices)
+                target = full_values(state.scene, kinematics, values, dofindices)
             if not kinematics.limits.contain(target):
-                target = self._settled(target, checklimits)
+                target = settled_values(state.scene, kinematics, target, checklimits)
             kinematics.set_values(target, clamp_mimic=checklimits != _UNLIMITED)
             state.moved()
         finally:
             lock.release()
-
-    def _full_values(self, kinematics: BodyKinematics, values: ArrayLike, dofindices: "ArrayLike | None") -> Floats:
-        """Return one value for each DOF, in DOF order."""
-        given = checked_numbers(values, "SetDOFValues")
-        dof = kinematics.dof
-        if dofindices is None:
-            if given.shape == (dof,):
-                return given
-            if dof:
-                raise ArgumentError(
-                    f"SetDOFValues: values has shape {given.shape}, and '{self.GetName()}' has {dof} DOFs: give {dof} "
-                    f"numbers, or dofindices"
-                )
-            return np.zeros(0)
-        indices = checked_indices(dofindices, dof)
-        if given.ndim != 1 or len(given) < len(indices):
-            raise ArgumentError(f"SetDOFValues: values has shape {given.shape} for {len(indices)} dofindices")
-        full = kinematics.values()
-        full[indices] = given[: len(indices)]
-        return full
-
-    def _settled(self, target: Floats, checklimits: int) -> Floats:
-        """Replace NaN by the present values and, as ``checklimits`` says, values outside the limits."""
-        kinematics = self._state.kinematics
-        if np.isinf(target).any():
-            raise ArgumentError(f"SetDOFValues: values are {target}, and should be finite")
-        target = np.where(np.isnan(target), kinematics.values(), target)
-        if checklimits == CheckLimitsAction.Nothing:
-            return target
-        limited = kinematics.limits.clamp(target)
-        outside = np.flatnonzero(np.abs(target - limited) > ROUNDING)
-        if len(outside) and checklimits != CheckLimitsAction.CheckLimitsSilent:
-            self._report_limits(target, outside[0], checklimits)
-        return limited
-
-    def _report_limits(self, target: Floats, dof: np.intp, checklimits: int) -> None:
-        joint, axis = self._state.scene.joint_of_dof(int(dof)), self._state.scene.dof_axes[dof]
-        limits = f"[{axis.lower:.6g}, {axis.upper:.6g}]"
-        message = f"joint '{joint.name}' is set to {target[dof]:.6g}, outside its limits {limits}"
-        if checklimits == CheckLimitsAction.CheckLimitsThrow:
-            raise ArgumentError(message)
-        diagnostic = Diagnostic("warning", "value-outside-limits", f"{message}; it stops at the limit", joint.source)
-        send_warning(diagnostic)
 
     @property
     def qpos_indices(self) -> Ints:
@@ -305,3 +270,108 @@ class Configuration(BodyPart):
         """
         joint_values, pose = split_configuration(checked_numbers(values, "values"), self.GetDOF())
         self.SetTransformWithDOFValues(pose.matrix(), joint_values, checklimits)
+
+    def GetDOFVelocities(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
+        """Return the joint velocities that the velocities of the links show.
+
+        Args:
+            indices: Which DOFs, in which order; left out: all. None and [] are no DOFs, as in OpenRAVE.
+
+        Returns:
+            Velocities [rad/s, for sliders m/s], shape (dof,); a copy.
+
+        Raises:
+            IndexError: there is no such DOF.
+        """
+        with self._simulation.lock:
+            velocities = self._state.dynamics.dof_velocities(self._state.link_velocities())
+        return velocities if indices is ... else velocities[checked_indices(indices, len(velocities))]
+
+    def SetDOFVelocities(
+        self,
+        dofvelocities: ArrayLike,
+        linear: "ArrayLike | None" = None,
+        angular: "ArrayLike | None" = None,
+        checklimits: int = CheckLimitsAction.CheckLimits,
+        indices: "ArrayLike | None" = None,
+    ) -> None:
+        """Set the joint velocities: the links get the velocities that follow, and so does what they hold.
+
+        OpenRAVE has three forms: ``(dofvelocities)``, ``(dofvelocities, checklimits, indices)`` and
+        ``(dofvelocities, linear, angular, checklimits)``. In the first two the base keeps its velocity.
+
+        Args:
+            dofvelocities: Velocities [rad/s, for sliders m/s], as many as there are DOFs, or as there are indices;
+                without indices further numbers do not count.
+            linear: Velocity of the first link's origin in the world [m/s], shape (3,); a number is ``checklimits``.
+            angular: Angular velocity of the first link in the world [rad/s], shape (3,); behind a number it is
+                ``indices``.
+            checklimits: What to do with values outside the velocity limits, a ``CheckLimitsAction``.
+            indices: Which DOFs, in which order; the others keep their velocities. None: all.
+
+        Raises:
+            ArgumentError: the number of velocities is wrong or one is infinite; with ``CheckLimitsThrow``, one is
+                outside its limits. Nothing has changed then.
+            IndexError: there is no such DOF.
+
+        Example:
+            >>> robot.SetDOFVelocities([0.5, -0.2])
+            >>> robot.GetLinkVelocities()[2]
+        """
+        if linear is not None and np.ndim(linear) == 0:
+            checklimits, indices = int(np.asarray(linear)), angular if indices is None else indices
+            linear = angular = None
+        with self._simulation.lock:
+            velocities = self._state.link_velocities()
+            base = np.zeros(6) if not len(velocities) else velocities[0]
+            if linear is not None:
+                base[:3] = checked_point(linear, "SetDOFVelocities: linear")
+            if angular is not None:
+                base[3:] = checked_point(angular, "SetDOFVelocities: angular")
+            rates = full_velocities(self._state, dofvelocities, indices)
+            rates = limited_velocities(self._state.scene, self.GetDOFVelocityLimits(), rates, checklimits)
+            if len(velocities):
+                self._state.set_link_velocities(self._state.dynamics.link_velocities(rates, base))
+
+    def GetLinkVelocities(self) -> Floats:
+        """Return the velocities of all links, in world axes.
+
+        Returns:
+            For each link that of its origin [m/s] and the angular one [rad/s], shape (links, 6); a copy.
+        """
+        with self._simulation.lock:
+            return self._state.link_velocities()
+
+    def SetLinkVelocities(self, velocities: ArrayLike) -> None:
+        """Set the velocities of all links, in world axes; those of the DOFs follow from the differences.
+
+        Args:
+            velocities: For each link that of its origin [m/s] and the angular one [rad/s], shape (links, 6).
+
+        Raises:
+            ArgumentError: the shape is wrong, or something is infinite. Nothing has changed then.
+        """
+        shape = (len(self._state.scene.links), 6)
+        checked = checked_numbers(velocities, "SetLinkVelocities")
+        if checked.shape != shape or not np.isfinite(checked).all():
+            raise ArgumentError(f"SetLinkVelocities: has shape {checked.shape}, and should be finite, of shape {shape}")
+        with self._simulation.lock:
+            self._state.set_link_velocities(checked)
+
+    def SetVelocity(self, linear: ArrayLike, angular: ArrayLike) -> bool:
+        """Let the whole body move as one, with its joints at rest.
+
+        Args:
+            linear: Velocity of the first link's origin in the world [m/s], shape (3,).
+            angular: Angular velocity in the world [rad/s], shape (3,).
+
+        Returns:
+            False for a body without links.
+        """
+        moved = checked_vector(linear, 3, "SetVelocity: linear")
+        turned = checked_vector(angular, 3, "SetVelocity: angular")
+        if not self._state.scene.links:
+            return False
+        with self._simulation.lock:
+            self._state.set_velocity(moved, turned)
+        return True

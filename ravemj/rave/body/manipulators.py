@@ -1,17 +1,18 @@
-"""The manipulators of a robot, and which one is active."""
+"""The manipulators of a robot, which one is active, and the descriptions of its grippers."""
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, NoReturn, cast
 
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import also_named, checked_kind
-from ravemj.errors import ArgumentError, Diagnostics, ErrorCode, RavemjError, send_warnings
+from ravemj.errors import ArgumentError, Diagnostics, ErrorCode, RavemjError, UnsupportedError, send_warnings
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.model import hashes
 from ravemj.model.manipulators import check_reach, freeze_manipulator
 from ravemj.rave.arm_ik import IkBatch
 from ravemj.rave.body.base import BodyPart
-from ravemj.rave.infos import ManipulatorInfo
+from ravemj.rave.connected_body import CONNECTED, ConnectedBody
+from ravemj.rave.infos import ConnectedBodyInfo, GripperInfo, ManipulatorInfo
 from ravemj.rave.manipulator import Manipulator
 
 if TYPE_CHECKING:
@@ -20,7 +21,10 @@ if TYPE_CHECKING:
 
 
 class Manipulators(BodyPart):
-    """The arms of a robot. Calls that name none refer to the active one, which is the first until another is set."""
+    """The arms of a robot. Calls that name none refer to the active one, which is the first until another is set.
+
+    Descriptions of grippers, which manipulators name, are only kept.
+    """
 
     _active_manipulator: str | None
     """Name of the active one; None: the first."""
@@ -28,6 +32,8 @@ class Manipulators(BodyPart):
     """Solvers of inverse kinematics, by the names of their arms."""
 
     _manipulators: tuple[Manipulator, ...] = ()
+
+    _grippers: tuple[GripperInfo, ...] = ()
 
     def GetManipulators(self, manipname: str | None = None) -> list[Manipulator]:
         """Return the manipulators, in the order of the file.
@@ -176,3 +182,93 @@ class Manipulators(BodyPart):
             raise ArgumentError(f"SetActiveManipulator: '{self.GetName()}' has no manipulator {name}; it has {known}")
         self._active_manipulator = name or ""
         return self.GetActiveManipulator()
+
+    def GetGripperInfos(self) -> list[GripperInfo]:
+        """Return the descriptions of the grippers."""
+        return list(self._grippers)
+
+    def GetGripperInfo(self, name: str) -> GripperInfo | None:
+        """Return the description of a gripper, or None.
+
+        Args:
+            name: Its name.
+        """
+        return next((info for info in self._grippers if info._name == name), None)  # pyright: ignore[reportPrivateUsage] - OpenRAVE's field
+
+    def AddGripperInfo(self, gripperInfo: GripperInfo, removeduplicate: bool = False) -> bool:
+        """Add the description of a gripper.
+
+        Args:
+            gripperInfo: The description.
+            removeduplicate: Whether it replaces one of the same name.
+
+        Returns:
+            True.
+
+        Raises:
+            openrave_exception: there is one of that name, or it has none. Nothing has changed then.
+        """
+        name = checked_kind(gripperInfo, GripperInfo, "AddGripperInfo: gripperInfo")._name  # pyright: ignore[reportPrivateUsage] - as above
+        if not name or (self.GetGripperInfo(name) is not None and not removeduplicate):
+            raise ArgumentError(f"AddGripperInfo: a gripper cannot be called '{name}': that is empty, or taken")
+        self.RemoveGripperInfo(name)
+        self._grippers = (*self._grippers, gripperInfo)
+        return True
+
+    def RemoveGripperInfo(self, name: str) -> bool:
+        """Forget the description of a gripper; return whether it was there.
+
+        Args:
+            name: Its name.
+        """
+        gone = self.GetGripperInfo(name)
+        self._grippers = tuple(info for info in self._grippers if info is not gone)
+        return gone is not None
+
+    def GetConnectedBodies(self) -> list[ConnectedBody]:
+        """Return the connected bodies: none."""
+        return []
+
+    def GetConnectedBody(self, bodyname: str) -> None:
+        """Return the connected body of a name: None.
+
+        Args:
+            bodyname: The name.
+        """
+
+    def GetConnectedBodyActiveStates(self) -> list[int]:
+        """Return for each connected body whether it is active: an empty list."""
+        return []
+
+    def SetConnectedBodyActiveStates(self, activestates: list[int]) -> None:
+        """Accept no states, since there are no connected bodies.
+
+        Args:
+            activestates: An empty list.
+
+        Raises:
+            UnsupportedError: it has members.
+        """
+        if len(activestates):
+            raise UnsupportedError("SetConnectedBodyActiveStates", CONNECTED)
+
+    def AddConnectedBody(self, connectedbodyinfo: ConnectedBodyInfo, removeduplicate: bool = False) -> NoReturn:
+        """Refuse to connect a body, and to return it.
+
+        Args:
+            connectedbodyinfo: Its description.
+            removeduplicate: Whether it replaces one of the same name.
+
+        Raises:
+            UnsupportedError: always; ``InitFromRobotInfo`` makes a robot of all its links and joints.
+        """
+        raise UnsupportedError("AddConnectedBody", CONNECTED)
+
+    def RemoveConnectedBody(self, connectedbody: ConnectedBody) -> bool:
+        """Return False: no body is connected.
+
+        Args:
+            connectedbody: The body.
+        """
+        del connectedbody
+        return False

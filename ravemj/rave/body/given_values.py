@@ -1,0 +1,122 @@
+"""Joint values and velocities as users give them: some or all, within the limits or not."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ravemj.core.arrays import checked_first, checked_indices, checked_numbers, checked_vector
+from ravemj.core.transforms import Floats
+from ravemj.engine.kinematics import BodyKinematics
+from ravemj.engine.simulation import BodyState
+from ravemj.errors import ArgumentError, Diagnostic, send_warning
+from ravemj.model.scene import KinBody
+from ravemj.rave.enums import CheckLimitsAction
+
+_VALUE_ROUNDING = 2e-10
+"""How far outside its limits [rad or m] OpenRAVE moves a value without a warning."""
+
+_VELOCITY_ROUNDING = 1e-10
+"""How far beyond its limit [rad/s or m/s] a velocity counts as within."""
+
+
+def full_values(body: KinBody, kinematics: BodyKinematics, values: ArrayLike, dofindices: "ArrayLike | None") -> Floats:
+    """Return a value for each DOF, in DOF order.
+
+    Args:
+        body: The body, whose name messages are about.
+        kinematics: Its kinematics, which has the values of the other DOFs.
+        values: Values that a user gave.
+        dofindices: Which DOFs they are of; None: all.
+
+    Raises:
+        ArgumentError: they are too few or too many.
+    """
+    given, dof = checked_numbers(values, "SetDOFValues"), kinematics.dof
+    if dofindices is None:
+        if given.shape == (dof,):
+            return given
+        if dof:
+            raise ArgumentError(
+                f"SetDOFValues: values has shape {given.shape}, and '{body.name}' has {dof} DOFs: give {dof} "
+                f"numbers, or dofindices"
+            )
+        return np.zeros(0)
+    indices = checked_indices(dofindices, dof)
+    if given.ndim != 1 or len(given) < len(indices):
+        raise ArgumentError(f"SetDOFValues: values has shape {given.shape} for {len(indices)} dofindices")
+    full = kinematics.values()
+    full[indices] = given[: len(indices)]
+    return full
+
+
+def full_velocities(state: BodyState, velocities: ArrayLike, indices: "ArrayLike | None") -> Floats:
+    """Return a velocity for each DOF; those without one among ``indices`` keep theirs."""
+    dof = state.dof
+    if indices is None:
+        return checked_first(velocities, dof, "SetDOFVelocities") if dof else np.zeros(0)
+    chosen = checked_indices(indices, dof)
+    full = state.dynamics.dof_velocities(state.link_velocities())
+    full[chosen] = checked_vector(velocities, len(chosen), "SetDOFVelocities")
+    return full
+
+
+def settled_values(body: KinBody, kinematics: BodyKinematics, target: Floats, checklimits: int) -> Floats:
+    """Return joint values with the present ones in place of NaN and, as ``checklimits`` says, within the limits.
+
+    Args:
+        body: The body, whose name and joints messages are about.
+        kinematics: Its kinematics, which has limits and present values.
+        target: Joint values [rad or m], shape (dof,).
+        checklimits: A ``CheckLimitsAction``.
+
+    Raises:
+        ArgumentError: a value is infinite, or, with ``CheckLimitsThrow``, outside its limits.
+    """
+    if np.isinf(target).any():
+        raise ArgumentError(f"SetDOFValues: values are {target}, and should be finite")
+    target = np.where(np.isnan(target), kinematics.values(), target)
+    if checklimits == CheckLimitsAction.Nothing:
+        return target
+    limited = kinematics.limits.clamp(target)
+    outside = np.flatnonzero(np.abs(target - limited) > _VALUE_ROUNDING)
+    if len(outside):
+        dof = int(outside[0])
+        axis = body.dof_axes[dof]
+        message = f"is set to {target[dof]:.6g}, outside its limits [{axis.lower:.6g}, {axis.upper:.6g}]"
+        _report(body, dof, message, "; it stops at the limit", checklimits)
+    return limited
+
+
+def limited_velocities(body: KinBody, limits: Floats, velocities: Floats, checklimits: int) -> Floats:
+    """Return joint velocities, as ``checklimits`` says within the limits.
+
+    Args:
+        body: The body, whose joints messages are about.
+        limits: Velocity limits [rad/s or m/s], shape (dof,).
+        velocities: Joint velocities, shape (dof,).
+        checklimits: A ``CheckLimitsAction``.
+
+    Raises:
+        ArgumentError: with ``CheckLimitsThrow``, one is outside its limits.
+    """
+    if checklimits == CheckLimitsAction.Nothing:
+        return velocities
+    if np.count_nonzero(np.abs(velocities) <= limits) == len(velocities):  # most often, and faster than what follows
+        return velocities
+    limited = np.clip(velocities, -limits, limits)
+    outside = np.flatnonzero(np.abs(velocities - limited) > _VELOCITY_ROUNDING)
+    if len(outside):
+        dof = int(outside[0])
+        message = f"should have velocity {velocities[dof]:.6g}, and its limit is {limits[dof]:.6g}"
+        _report(body, dof, message, ", which it gets", checklimits)
+    return limited
+
+
+def _report(body: KinBody, dof: int, message: str, effect: str, checklimits: int) -> None:
+    """Warn about a value outside its limits, or raise, or do neither, as ``checklimits`` says."""
+    if checklimits == CheckLimitsAction.CheckLimitsSilent:
+        return
+    joint = body.joint_of_dof(dof)
+    message = f"joint '{joint.name}' {message}"
+    if checklimits == CheckLimitsAction.CheckLimitsThrow:
+        raise ArgumentError(message)
+    send_warning(Diagnostic("warning", "value-outside-limits", message + effect, joint.source))
