@@ -1,12 +1,10 @@
 """Limits, resolutions and weights of the affine DOFs: the parts of the base's pose that can be active."""
 
-# ruff: noqa: D102 - the docstrings of the methods come from the table
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import wraps
 from inspect import Signature, signature
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,9 +13,8 @@ from ravemj.core.arrays import checked_vector
 from ravemj.core.transforms import Floats, Vec3
 from ravemj.engine.affine import translation_columns
 from ravemj.geometry_functions.affine import DOFAffine
-from ravemj.rave.body.base import BodyPart
 
-Topic = TypeVar("Topic", bound=BodyPart)
+Topic = TypeVar("Topic")
 
 
 @dataclass
@@ -29,6 +26,10 @@ class AffineKind:
     max_velocity: Floats
     resolution: Floats
     weight: Floats
+
+
+class _WithKinds(Protocol):
+    affine_kinds: dict[str, AffineKind]
 
 
 class _Kind(NamedTuple):
@@ -93,8 +94,8 @@ def default_kinds() -> dict[str, AffineKind]:
     }
 
 
-def _from_table(topic: type[Topic]) -> type[Topic]:
-    """Give the methods of a class, of which only the signatures are written, bodies and docstrings."""
+def with_affine_settings(topic: type[Topic]) -> type[Topic]:
+    """Give the methods for affine DOFs of a class, of which only the signatures are written, bodies and docstrings."""
     for kind, about in _KINDS.items():
         for setting, (fields, what) in _SETTINGS.items():
             words = what.format(**about._asdict())
@@ -105,8 +106,8 @@ def _from_table(topic: type[Topic]) -> type[Topic]:
     return topic
 
 
-def _getter(kind: str, fields: tuple[str, ...]) -> Callable[["AffineSettings"], Floats | tuple[Floats, ...]]:
-    def get(self: "AffineSettings") -> Floats | tuple[Floats, ...]:
+def _getter(kind: str, fields: tuple[str, ...]) -> Callable[[_WithKinds], Floats | tuple[Floats, ...]]:
+    def get(self: _WithKinds) -> Floats | tuple[Floats, ...]:
         first, *more = (getattr(self.affine_kinds[kind], field).copy() for field in fields)
         return (first, *more) if more else first
 
@@ -114,7 +115,7 @@ def _getter(kind: str, fields: tuple[str, ...]) -> Callable[["AffineSettings"], 
 
 
 def _setter(kind: str, fields: tuple[str, ...], arguments: Signature) -> Callable[..., None]:
-    def set_(self: "AffineSettings", *values: ArrayLike, **named: ArrayLike) -> None:
+    def set_(self: _WithKinds, *values: ArrayLike, **named: ArrayLike) -> None:
         _, *given = arguments.bind(self, *values, **named).arguments.values()
         settings = self.affine_kinds[kind]
         count = len(settings.lower)
@@ -124,46 +125,3 @@ def _setter(kind: str, fields: tuple[str, ...], arguments: Signature) -> Callabl
             setattr(settings, field, numbers)
 
     return set_
-
-
-@_from_table
-class AffineSettings(BodyPart):
-    """Limits, resolutions and weights of the parts of the base's pose that can be active."""
-
-    affine_kinds: dict[str, AffineKind]
-
-    def GetAffineTranslationLimits(self) -> tuple[Floats, Floats]: ...
-    def SetAffineTranslationLimits(self, lower: ArrayLike, upper: ArrayLike) -> None: ...
-    def GetAffineTranslationMaxVels(self) -> Floats: ...
-    def SetAffineTranslationMaxVels(self, velocities: ArrayLike) -> None: ...
-    def GetAffineTranslationResolution(self) -> Floats: ...
-    def SetAffineTranslationResolution(self, resolution: ArrayLike) -> None: ...
-    def GetAffineTranslationWeights(self) -> Floats: ...
-    def SetAffineTranslationWeights(self, weights: ArrayLike) -> None: ...
-
-    def GetAffineRotationAxisLimits(self) -> tuple[Floats, Floats]: ...
-    def SetAffineRotationAxisLimits(self, lower: ArrayLike, upper: ArrayLike) -> None: ...
-    def GetAffineRotationAxisMaxVels(self) -> Floats: ...
-    def SetAffineRotationAxisMaxVels(self, velocities: ArrayLike) -> None: ...
-    def GetAffineRotationAxisResolution(self) -> Floats: ...
-    def SetAffineRotationAxisResolution(self, resolution: ArrayLike) -> None: ...
-    def GetAffineRotationAxisWeights(self) -> Floats: ...
-    def SetAffineRotationAxisWeights(self, weights: ArrayLike) -> None: ...
-
-    def GetAffineRotation3DLimits(self) -> tuple[Floats, Floats]: ...
-    def SetAffineRotation3DLimits(self, lower: ArrayLike, upper: ArrayLike) -> None: ...
-    def GetAffineRotation3DMaxVels(self) -> Floats: ...
-    def SetAffineRotation3DMaxVels(self, velocities: ArrayLike) -> None: ...
-    def GetAffineRotation3DResolution(self) -> Floats: ...
-    def SetAffineRotation3DResolution(self, resolution: ArrayLike) -> None: ...
-    def GetAffineRotation3DWeights(self) -> Floats: ...
-    def SetAffineRotation3DWeights(self, weights: ArrayLike) -> None: ...
-
-    def GetAffineRotationQuatLimits(self) -> tuple[Floats, Floats]: ...
-    def SetAffineRotationQuatLimits(self, lower: ArrayLike, upper: ArrayLike) -> None: ...
-    def GetAffineRotationQuatMaxVels(self) -> Floats: ...
-    def SetAffineRotationQuatMaxVels(self, velocities: ArrayLike) -> None: ...
-    def GetAffineRotationQuatResolution(self) -> Floats: ...
-    def SetAffineRotationQuatResolution(self, resolution: ArrayLike) -> None: ...
-    def GetAffineRotationQuatWeights(self) -> Floats: ...
-    def SetAffineRotationQuatWeights(self, weights: ArrayLike) -> None: ...
