@@ -22,9 +22,10 @@ from ravemj.rave.body.base import BodyPart
 from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.collision_extras import CheckerExtras
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
-from ravemj.rave.interface import Annotations, checked_environment
+from ravemj.rave.interface import checked_environment
 from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionPairInfo, CollisionReport, Part
+from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -14,7 +14,7 @@ from ravemj.errors import ErrorCode, RavemjError, SourceError
 from ravemj.rave.body.base import both_locks
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.collision import Collision
-from ravemj.rave.env.described import Described
+from ravemj.rave.env.description import Description
 from ravemj.rave.env.drawing import Drawing
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.saving import Saving
@@ -27,7 +27,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Described, Loading, Saving, Collision, Drawing, Viewing):
+class Environment(Description, Loading, Saving, Collision, Drawing, Viewing):
     """A world with robots and other bodies.
 
     Example:

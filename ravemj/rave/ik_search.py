@@ -14,8 +14,9 @@ from ravemj.geometry_functions.ik_parameterization import goal_of_tool
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType
 from ravemj.rave.ik_validation import CHECK_ENV, IGNORE_FILTERS, IGNORE_LIMITS, IGNORE_SELF, Filter, Query, Validator
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
-from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.interface import Interface
 from ravemj.rave.specification import IkParameterization
+from ravemj.rave.user_data import Annotations
 
 # Half of what ravemj takes to be imported would be for inverse kinematics, which most scripts do without.
 # ruff: noqa: PLC0415

@@ -23,9 +23,9 @@ from ravemj.rave.body.saving import Restorer, StateSaver, body_restorers
 from ravemj.rave.enums import CheckLimitsAction, GrabbedInfoCheckResult, InterfaceType, JointType, SaveParameters
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, GrabbedInfo, JointInfo, KinBodyInfo, LinkInfo
-from ravemj.rave.interface import Annotations
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
+from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

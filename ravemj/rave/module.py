@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
-from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.interface import Interface
+from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -10,7 +10,8 @@ from ravemj.core.transforms import ZERO, Floats, Vec3
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import InterfaceType, PhysicsEngineOptions
-from ravemj.rave.interface import Annotations, Interface, checked_environment
+from ravemj.rave.interface import Interface, checked_environment
+from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.engine.physics import Loads

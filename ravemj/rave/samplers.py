@@ -12,7 +12,8 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions.sequences import halton
 from ravemj.rave.enums import InterfaceType, Interval
-from ravemj.rave.interface import Annotations, Interface, checked_environment
+from ravemj.rave.interface import Interface, checked_environment
+from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -16,7 +16,7 @@ from ravemj.model import hashes, scene
 from ravemj.rave.enums import InterfaceType, SensorCommand, SensorType
 from ravemj.rave.infos import AttachedSensorInfo
 from ravemj.rave.infos.sensor import CameraGeomData, CameraIntrinsics, SensorGeometry
-from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.interface import Interface
 from ravemj.rave.link import Link
 from ravemj.rave.sensor_data import (
     DATA,
@@ -30,6 +30,7 @@ from ravemj.rave.sensor_data import (
     SensorData,
     TactileSensorData,
 )
+from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.robot import Robot

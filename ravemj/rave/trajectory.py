@@ -14,8 +14,9 @@ from ravemj.core.output import AnyPath, new_file
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
-from ravemj.rave.interface import Annotations, Interface, checked_environment
+from ravemj.rave.interface import Interface, checked_environment
 from ravemj.rave.specification import ConfigurationSpecification
+from ravemj.rave.user_data import Annotations
 from ravemj.trajectories.groups import Group
 from ravemj.trajectories.serialization import AS_TEXT, Stored, read, to_bytes, to_text
 from ravemj.trajectories.waypoints import Waypoints

@@ -9,8 +9,9 @@ from ravemj.core.arrays import checked_indices, checked_transform, checked_vecto
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
-from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.interface import Interface
 from ravemj.rave.trajectory import Trajectory
+from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -11,7 +11,7 @@ from ravemj.core.handles import Handle
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
-from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.env.contents import Contents
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.report import CollisionReport
 
@@ -23,7 +23,7 @@ class CollisionCallbackHandle(Handle):
     """Keeps a function registered; it is not called any more once this is closed or gone."""
 
 
-class Collision(EnvironmentPart):
+class Collision(Contents):
     """Collision checking: what touches what, and what rays hit."""
 
     _internal = ("collision_callbacks",)

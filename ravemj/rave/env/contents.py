@@ -2,23 +2,32 @@
 
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, cast
+from weakref import WeakValueDictionary
 
 from ravemj.core.arguments import also_named, checked_kind
+from ravemj.core.handles import Handle
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
-from ravemj.model import scene
-from ravemj.model.triangles import links_triangles
 from ravemj.rave.enums import InterfaceAddMode, TriangulateOptions
-from ravemj.rave.env.base import BodyCallback, BodyCallbackHandle, EnvironmentPart
+from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.env.triangulation import chosen, triangles
 from ravemj.rave.interface import Interface
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.module import Module
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor
-from ravemj.rave.trimesh import TriMesh, trimesh_of
+from ravemj.rave.trimesh import TriMesh
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
+    from ravemj.rave.environment import Environment
+
+BodyCallback = Callable[[KinBody, int], object]
+"""A function of a body, and 1 when it was added or 0 when it was removed."""
+
+
+class BodyCallbackHandle(Handle):
+    """Keeps a function registered; it is not called any more once this is closed or gone."""
 
 
 class Contents(EnvironmentPart):
@@ -31,6 +40,43 @@ class Contents(EnvironmentPart):
     Everything = TriangulateOptions.Everything
     Body = TriangulateOptions.Body
     AllExceptBody = TriangulateOptions.AllExceptBody
+
+    _internal = ("wrap",)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._objects: WeakValueDictionary[BodyState, KinBody] = WeakValueDictionary()
+        self._kept_objects: dict[BodyState, KinBody] = {}  # of bodies that are in the environment
+        self._body_callbacks: list[BodyCallback] = []
+        self._modules: list[Module] = []
+
+    @property
+    def _environment(self) -> "Environment":
+        return cast("Environment", self)
+
+    def wrap(self, state: BodyState) -> KinBody:
+        """Return the one object that users have for a body."""
+        with self._simulation.lock:
+            found = self._kept_objects.get(state) or self._objects.get(state)
+            if found is None:
+                found = (Robot if state.scene.is_robot else KinBody)(self._environment, state)
+                self._objects[state] = found
+            if state.index:
+                self._kept_objects[state] = found
+            return found
+
+    def _remove_all(self) -> None:
+        """Take all bodies out of the environment."""
+        gone = [self.wrap(state) for state in self._simulation.bodies] if self._body_callbacks else []
+        self._simulation.clear()
+        self._kept_objects.clear()
+        for body in gone:
+            self._tell_of_body(body, 0)
+
+    def _tell_of_body(self, body: KinBody, action: int) -> None:
+        """Call the functions of ``RegisterBodyCallback``: 1, a body was added; 0, it was removed."""
+        for callback in tuple(self._body_callbacks):
+            callback(body, action)
 
     @also_named(anonymous="addMode")
     def Add(self, interface: Interface, addMode: Any = None, cmdargs: str = "") -> None:  # noqa: ANN401 - OpenRAVE's
@@ -271,7 +317,7 @@ class Contents(EnvironmentPart):
         """
         checked_kind(body, KinBody, "Triangulate: body")
         with self._simulation.lock:
-            return _triangles([body.simulation_state])
+            return triangles([body.simulation_state])
 
     def TriangulateScene(self, options: int = TriangulateOptions.Everything, name: str = "") -> TriMesh:
         """Return the shapes of several bodies as triangles, in the world as they stand now.
@@ -280,9 +326,8 @@ class Contents(EnvironmentPart):
             options: Which bodies, a ``TriangulateOptions``.
             name: The name that ``Body`` and ``AllExceptBody`` mean.
         """
-        takes = _CHOICES[TriangulateOptions(options)]
         with self._simulation.lock:
-            return _triangles(state for state in self._simulation.bodies if takes(state.scene, name))
+            return triangles(chosen(self._simulation.bodies, TriangulateOptions(options), name))
 
     def AddModule(self, module: Module | None, args: str = "") -> int:
         """Add a module and start it.
@@ -334,23 +379,8 @@ class Contents(EnvironmentPart):
         return BodyCallbackHandle(self._body_callbacks.remove, callback)
 
 
-_CHOICES: dict[TriangulateOptions, Callable[[scene.KinBody, str], bool]] = {
-    TriangulateOptions.Obstacles: lambda body, name: not body.is_robot,
-    TriangulateOptions.Robots: lambda body, name: body.is_robot,
-    TriangulateOptions.Everything: lambda body, name: True,
-    TriangulateOptions.Body: lambda body, name: body.name == name,
-    TriangulateOptions.AllExceptBody: lambda body, name: body.name != name,
-}
-
-
 def _renames(mode: object) -> bool:
     """Return whether a taken name is changed: True, or a mode without strict checking of names."""
     if mode is None or isinstance(mode, bool):
         return bool(mode)
     return not InterfaceAddMode(int(cast("int", mode))) & InterfaceAddMode.StrictNameChecking
-
-
-def _triangles(bodies: Iterable[BodyState]) -> TriMesh:
-    """Return all shapes of bodies in the world."""
-    parts = [links_triangles(body.scene.links, body.link_transforms()) for body in bodies]
-    return trimesh_of(scene.Mesh.merged(parts))

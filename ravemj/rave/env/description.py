@@ -1,19 +1,37 @@
-"""What an environment is called, and the notes and units that belong to it."""
+"""Environments as infos and as OpenRAVE's JSON; their names, notes and units."""
 
-from collections.abc import Iterable
+# The fields of infos have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any, cast
+
+import numpy as np
 
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import UnsupportedError
-from ravemj.rave.env.base import EnvironmentPart
+from ravemj.errors import ArgumentError, UnsupportedError
+from ravemj.model import scene
+from ravemj.model.shape_bodies import FROM_SCRIPT
+from ravemj.rave.enums import UpdateFromInfoMode, UpdateFromInfoResult
+from ravemj.rave.env.simulation import Simulating
+from ravemj.rave.infos import EnvironmentBaseInfo, KinBodyInfo
+from ravemj.rave.kinbody import KinBody
 from ravemj.rave.library import RaveGetHomeDirectory
+from ravemj.rave.robot import Robot
 from ravemj.rave.units import LengthUnit, UnitInfo
 
 OTHER_UNITS = "environments in other units than metres, kilograms, radians and seconds"
 
 
-class Description(EnvironmentPart):
-    """Name, description, keywords and numbers of an environment, and its units, which are always the same."""
+Json = Mapping[str, Any]
+
+
+class Description(Simulating):
+    """Name, description, keywords and numbers of an environment, its units, and all of it as an info or as JSON.
+
+    The units are always the same.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -121,3 +139,131 @@ class Description(EnvironmentPart):
         checked_kind(unitInfo, UnitInfo, "SetUnitInfo: unitInfo")
         if replace(unitInfo, timeStampUnit=UnitInfo().timeStampUnit) != UnitInfo():
             raise UnsupportedError(f"SetUnitInfo({LengthUnit(unitInfo.lengthUnit).name}, …)", OTHER_UNITS)
+
+    def ExtractInfo(self) -> EnvironmentBaseInfo:
+        """Return the description of the environment as it stands, a copy."""
+        with self._simulation.lock:
+            return EnvironmentBaseInfo(
+                _vBodyInfos=[body.ExtractInfo() for body in self.GetBodies()],
+                _gravity=self.GetPhysicsEngine().GetGravity(),
+                _description=self.GetDescription(),
+                _keywords=self.GetKeywords(),
+                _uInt64Parameters=dict(self._numbers),
+            )
+
+    def UpdateFromInfo(
+        self, info: EnvironmentBaseInfo, updateMode: int = UpdateFromInfoMode.Exact
+    ) -> tuple[list[KinBody], list[KinBody], list[KinBody]]:
+        """Become what an info describes: bodies are added, changed and removed.
+
+        Args:
+            info: The description.
+            updateMode: Whether bodies that it does not name go, an ``UpdateFromInfoMode``.
+
+        Returns:
+            The bodies that were added, those that were changed, and those that were removed.
+
+        Raises:
+            openrave_exception: a body is described by nothing that can be.
+        """
+        checked_kind(info, EnvironmentBaseInfo, "UpdateFromInfo: info")
+        added: list[KinBody] = []
+        changed: list[KinBody] = []
+        with self._simulation.lock:
+            named = {one._name for one in info._vBodyInfos}
+            exact = UpdateFromInfoMode(updateMode) == UpdateFromInfoMode.Exact
+            removed = [body for body in self.GetBodies() if exact and body.GetName() not in named]
+            for body in removed:
+                self.Remove(body)
+            for one in info._vBodyInfos:
+                self._take_info(one, added, changed)
+            self.GetPhysicsEngine().SetGravity(np.asarray(info._gravity))
+            self._description, self._keywords = info._description, list(info._keywords)
+            self._numbers = dict(info._uInt64Parameters)
+        return added, changed, removed
+
+    def _take_info(self, info: KinBodyInfo, added: list[KinBody], changed: list[KinBody]) -> None:
+        body = self.GetKinBody(info._name)
+        if body is not None and body.IsRobot() == info._isRobot:
+            result = body.UpdateFromKinBodyInfo(info)
+            if result == UpdateFromInfoResult.Success:
+                changed.append(body)
+            if result != UpdateFromInfoResult.RequireReinitialize:
+                return
+        if body is not None:
+            self.Remove(body)
+            changed.append(self._add_info(info))
+        else:
+            added.append(self._add_info(info))
+
+    def _add_info(self, info: KinBodyInfo) -> KinBody:
+        body = self._new_body(is_robot=info._isRobot)
+        body.InitFromKinBodyInfo(info)
+        self.AddKinBody(body)
+        return body
+
+    def _new_body(self, *, is_robot: bool) -> KinBody:
+        nothing = scene.KinBody(name="", is_robot=is_robot, links=(), joints=(), passive_joints=(), source=FROM_SCRIPT)
+        return self.wrap(self._simulation.create(nothing))
+
+    def LoadJSON(
+        self,
+        envInfo: Json,
+        updateMode: int = UpdateFromInfoMode.OnlySpecifiedBodiesExact,
+        atts: Mapping[str, str] | None = None,
+        uri: str = "",
+    ) -> bool:
+        """Take over an environment in OpenRAVE's JSON; see ``UpdateFromInfo``.
+
+        Args:
+            envInfo: The environment, as a dict.
+            updateMode: As there.
+            atts: Not used.
+            uri: Not used.
+
+        Returns:
+            True.
+        """
+        del atts, uri
+        info = (
+            EnvironmentBaseInfo()
+            if "gravity" in envInfo
+            else EnvironmentBaseInfo(_gravity=self.GetPhysicsEngine().GetGravity())
+        )
+        info.DeserializeJSON(dict(envInfo))
+        self.UpdateFromInfo(info, updateMode)
+        return True
+
+    def ReadKinBodyJSON(self, envInfo: Json, atts: Mapping[str, str] | None = None, uri: str = "") -> KinBody | None:
+        """Return the first body of an environment in OpenRAVE's JSON, without adding it; None where it has none.
+
+        Args:
+            envInfo: The environment, as a dict.
+            atts: Not used.
+            uri: What the body's ``GetURI`` returns.
+        """
+        del atts
+        info = EnvironmentBaseInfo()
+        info.DeserializeJSON(dict(envInfo))
+        if not info._vBodyInfos:
+            return None
+        first = info._vBodyInfos[0]
+        first._uri = uri
+        body = self._new_body(is_robot=first._isRobot)
+        body.InitFromKinBodyInfo(first)
+        return body
+
+    def ReadRobotJSON(self, envInfo: Json, atts: Mapping[str, str] | None = None, uri: str = "") -> Robot | None:
+        """Return the first robot of an environment in OpenRAVE's JSON, without adding it; None where it has none.
+
+        Args:
+            envInfo: The environment, as a dict.
+            atts: Not used.
+            uri: What the robot's ``GetURI`` returns.
+        """
+        bodies = cast("Sequence[Json]", envInfo.get("bodies", ()))
+        robots = [one for one in bodies if one.get("isRobot")]
+        body = self.ReadKinBodyJSON({**envInfo, "bodies": robots}, atts, uri)
+        if body is not None and not isinstance(body, Robot):
+            raise ArgumentError("ReadRobotJSON: the body is no robot")
+        return body

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, Source, SourceError, send_warnings
 from ravemj.model.scene import Mesh
-from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.env.contents import Contents
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.rave.trimesh import TriMesh, trimesh_of
@@ -27,7 +27,7 @@ _Argument = KinBody | Text | Attributes | None
 _LOG = logging.getLogger("ravemj")
 
 
-class Loading(EnvironmentPart):
+class Loading(Contents):
     """Loads models."""
 
     def Load(self, filename: Text, atts: Attributes | None = None) -> bool:

@@ -1,21 +1,29 @@
-"""Simulation time and physics."""
+"""Simulation time, physics, and the state of bodies that is published meanwhile."""
 
 import math
+from typing import Any
 
 from ravemj.core.arguments import checked_kind
 from ravemj.engine.clock import Clock
 from ravemj.engine.simulation import DEFAULT_GRAVITY
 from ravemj.errors import ArgumentError, RavemjError
-from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.env.contents import Contents
+from ravemj.rave.kinbody import KinBody
 from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.robot import Robot
 
+State = dict[str, Any]
+"""The published state of a body; see ``GetPublishedBodies``."""
 
-class Simulating(EnvironmentPart):
+
+class Simulating(Contents):
     """Simulation time: each step runs physics, then controllers, then sensors.
 
     Time passes by itself from the first command to a controller, or the first question for the time, until
     ``StopSimulation``; before that no thread runs. While ``with env:`` holds the environment, it stands still.
+
+    What is published are copies of poses and joint values, for those who do not take the lock:
+    ``UpdatePublishedBodies`` makes them and, always, time that runs.
     """
 
     _internal = ("clock",)
@@ -25,6 +33,7 @@ class Simulating(EnvironmentPart):
         self._clock = Clock(self._simulation.lock, self._advance)
         self._engine = PhysicsEngine(self._environment, "GenericPhysicsEngine", DEFAULT_GRAVITY)
         self._engine.attach()
+        self._published: list[State] = []
 
     def StartSimulation(self, timestep: float, realtime: bool = True) -> None:
         """Run simulation time in a thread.
@@ -107,6 +116,64 @@ class Simulating(EnvironmentPart):
         """Return the physics engine, which holds gravity and moves bodies; never None."""
         return self._engine
 
+    def UpdatePublishedBodies(self, timeout: float = 0.0) -> None:
+        """Publish the state of the bodies for ``GetPublishedBodies``. Viewers show every change at once anyway.
+
+        Args:
+            timeout: Without meaning.
+        """
+        del timeout
+        with self._simulation.lock:
+            self._published = [_state(self.wrap(state)) for state in self._simulation.bodies]
+
+    def GetPublishedBodies(self, timeout: float = 0.0) -> list[State]:
+        """Return the published state of all bodies.
+
+        While time runs by itself (see ``StopSimulation``), it is the present one; else that of the last
+        ``UpdatePublishedBodies``.
+
+        Args:
+            timeout: Without meaning.
+
+        Returns:
+            For each body a dict: ``body``, ``name``, ``uri``, ``environmentid``, ``updatestamp``, ``jointvalues``
+            [rad or m], and ``linktransforms``, a list of ``T_world_link``; of a robot also ``activeManipulatorName``
+            and ``activeManipulatorTransform``.
+        """
+        del timeout
+        if self._clock.is_allowed:  # OpenRAVE's thread publishes at each of its steps
+            self.UpdatePublishedBodies()
+        return [dict(state) for state in self._published]
+
+    def GetPublishedBody(self, name: str, timeout: float = 0.0) -> State | None:
+        """Return the published state of one body, as in ``GetPublishedBodies``, or None.
+
+        Args:
+            name: Its name.
+            timeout: Without meaning.
+        """
+        return next((state for state in self.GetPublishedBodies(timeout) if state["name"] == name), None)
+
+    def GetPublishedBodyJointValues(self, name: str, timeout: float = 0.0) -> Any:  # noqa: ANN401 - an array or None
+        """Return the published joint values of one body [rad or m], shape (dof,), or None.
+
+        Args:
+            name: Its name.
+            timeout: Without meaning.
+        """
+        state = self.GetPublishedBody(name, timeout)
+        return None if state is None else state["jointvalues"]
+
+    def GetPublishedBodyTransformsMatchingPrefix(self, prefix: str, timeout: float = 0.0) -> dict[str, Any]:
+        """Return the published ``T_world_body`` of the bodies whose names start with a text, by their names.
+
+        Args:
+            prefix: The text.
+            timeout: Without meaning.
+        """
+        states = (state for state in self.GetPublishedBodies(timeout) if state["name"].startswith(prefix))
+        return {state["name"]: state["linktransforms"][0] for state in states if state["linktransforms"]}
+
     @property
     def clock(self) -> Clock:
         """The clock of simulation time; below the OpenRAVE API."""
@@ -126,3 +193,19 @@ def _checked_step(timestep: float, name: str, least: float = 0.0) -> float:
     if not (math.isfinite(timestep) and timestep >= least):
         raise ArgumentError(f"{name}: timestep is {timestep}, and should be a time in seconds")
     return float(timestep)
+
+
+def _state(body: KinBody) -> State:
+    state: State = {
+        "body": body,
+        "name": body.GetName(),
+        "uri": body.GetURI(),
+        "environmentid": body.GetEnvironmentBodyIndex(),
+        "updatestamp": body.GetUpdateStamp(),
+        "jointvalues": body.GetDOFValues(),
+        "linktransforms": body.GetLinkTransformations(),
+    }
+    arm = body.GetActiveManipulator() if isinstance(body, Robot) else None
+    if arm is not None and arm.GetEndEffector() is not None:
+        state |= {"activeManipulatorName": arm.GetName(), "activeManipulatorTransform": arm.GetTransform()}
+    return state

@@ -8,12 +8,13 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.handles import Handle
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import InterfaceType, PlannerAction, PlannerStatusCode
-from ravemj.rave.interface import Annotations, Interface
+from ravemj.rave.interface import Interface
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlannerProgress, PlannerStatus
 from ravemj.rave.planning.values import Values
 from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
+from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
