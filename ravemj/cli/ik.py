@@ -47,7 +47,7 @@ def ik(options: argparse.Namespace) -> int:
         check_picture(options.output)
     env = load_model(options)
     arm = _arm(env, options.manip)
-    robot = cast("Robot", arm.GetRobot())
+    robot = arm.GetRobot()
     if options.start is not None:
         robot.SetDOFValues(_start(options.start, robot))
     if options.describe:
@@ -151,7 +151,7 @@ def _reached(arm: Manipulator, options: argparse.Namespace) -> list[tuple[Floats
 
 def _validated(arm: Manipulator, reached: Sequence[tuple[Floats, str]]) -> list[_Solution]:
     """Return solutions with what speaks against them; the robot ends where it is."""
-    robot = cast("Robot", arm.GetRobot())
+    robot = arm.GetRobot()
     dofs, start = arm.GetArmIndices().tolist(), robot.GetDOFValues()
     solutions: list[_Solution] = []
     for values, branch in reached:
@@ -188,7 +188,7 @@ def _entry(solution: _Solution) -> dict[str, object]:
 
 
 def _print_table(arm: Manipulator, found: Sequence[_Solution], count: int) -> None:
-    robot = cast("Robot", arm.GetRobot())
+    robot = arm.GetRobot()
     joints = [robot.GetJointFromDOFIndex(dof) for dof in arm.GetArmIndices()]
     turns = [joint.IsRevolute(0) for joint in joints]
     title = f"Joint values of '{arm.GetName()}' of '{robot.GetName()}', the nearest to the present ones first"
@@ -206,7 +206,7 @@ def _value(value: float, turns: bool) -> str:
 
 def _draw(env: Environment, arm: Manipulator, found: Sequence[_Solution], options: argparse.Namespace) -> None:
     """Draw the robot at the first solution, and a transparent copy of it at each other one."""
-    robot, dofs = cast("Robot", arm.GetRobot()), arm.GetArmIndices()
+    robot, dofs = arm.GetRobot(), arm.GetArmIndices()
     if found:
         robot.SetDOFValues(found[0].values, dofs, checklimits=0)
     for number, solution in enumerate(found[1:], 2):

@@ -1,7 +1,7 @@
 """Inverse kinematics of an arm."""
 
 import logging
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast, overload
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,20 +10,27 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, inverse, pose_of
 from ravemj.errors import ArgumentError, RavemjError
-from ravemj.geometry_functions.ik_parameterization import moved_goal
-from ravemj.geometry_functions.ik_types import IkParameterizationType, goal_size
-from ravemj.rave.arm_goals import ArmGoals
+from ravemj.geometry_functions.ik_parameterization import goal_of_tool, moved_goal
+from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType, goal_size
+from ravemj.model import hashes
+from ravemj.rave.arm_base import ArmPart
 from ravemj.rave.ik_search import task_of
 from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
 from ravemj.rave.iksolver import IkSolver, split_options
-from ravemj.rave.specification import IkParameterization
+from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
 
 if TYPE_CHECKING:
     from ravemj.ik import IKSolver
-    from ravemj.rave.robot import Robot
 
 _LOG = logging.getLogger("ravemj")
 _Type = IkParameterizationType
+
+WITH_DIRECTION = {
+    _Type.Direction3D,
+    _Type.Ray4D,
+    _Type.TranslationDirection5D,
+}
+"""Types of goals that depend on the direction of the tool."""
 
 
 class IkBatch(NamedTuple):
@@ -40,18 +47,14 @@ class IkBatch(NamedTuple):
     branches: list[str]
 
 
-class ArmIk(ArmGoals):
-    """Joint values that take the tool to goals."""
+class ArmIk(ArmPart):
+    """Joint values that take the tool to goals, and where it is, as a goal."""
 
     # Solvers
 
-    @property
-    def _owner(self) -> "Robot":
-        return cast("Robot", self._robot)
-
     def GetIkSolver(self) -> IkSolver | None:
         """Return the solver of inverse kinematics, or None as long as there is none."""
-        return self._owner.ik_solvers.get(self._scene.name)
+        return self._robot.ik_solvers.get(self._scene.name)
 
     def SetIkSolver(self, iksolver: IkSolver | None) -> bool:
         """Give the arm a solver in place of the one before.
@@ -63,15 +66,15 @@ class ArmIk(ArmGoals):
             Whether it fits the arm; if not, the log says why.
         """
         if iksolver is None:
-            self._owner.ik_solvers.pop(self._scene.name, None)
+            self._robot.ik_solvers.pop(self._scene.name, None)
             return True
         solver = checked_kind(iksolver, IkSolver, "SetIkSolver: iksolver")
         try:
-            solver.attach(self._owner, self._scene.name)
+            solver.attach(self._robot, self._scene.name)
         except ValueError as error:
             _LOG.warning("%s", error)
             return False
-        self._owner.ik_solvers[self._scene.name] = solver
+        self._robot.ik_solvers[self._scene.name] = solver
         return True
 
     SetIKSolver = SetIkSolver
@@ -240,7 +243,7 @@ class ArmIk(ArmGoals):
         try:
             if solver is not None and solver.kind == iktype:
                 return solver.derived()
-            kept = self._owner.arm_solvers
+            kept = self._robot.arm_solvers
             own = kept.setdefault((self._scene.name, _Type(iktype)), ArmSolver(task_of(_Type(iktype))))
             return own.of(self._state.scene, self._scene)
         except ValueError as error:
@@ -274,6 +277,57 @@ class ArmIk(ArmGoals):
         except ValueError as error:
             raise ArgumentError(f"goals: {error}") from error
         return IkBatch(found.values, found.valid, _branch_names(solver, found.values.shape[1]))
+
+    def GetIkParameterization(
+        self, iktype: IkParameterizationType | IkParameterization | int, inworld: bool = True
+    ) -> IkParameterization:
+        """Return where the tool is now, as a goal.
+
+        Args:
+            iktype: The type of goal, or a goal of that type, whose point of the tool is kept; so are its custom
+                values. Of a point that is looked at, the foot on the ray of the tool is taken.
+            inworld: True: in the world. False: in the base link of the arm.
+        """
+        like = iktype if isinstance(iktype, IkParameterization) else None
+        kind = _Type(iktype if like is None else like.GetType())
+        if kind not in GOAL_TYPES:
+            raise ArgumentError(f"GetIkParameterization: iktype is {kind.name}, and should be a type of goal")
+        T_world_base = self._T_world_base()
+        T_frame_tool, in_base = self.GetTransform(), not inworld or "Angle" in kind.name
+        if in_base:
+            T_frame_tool = inverse(T_world_base) @ T_frame_tool
+        direction = np.array(self._scene.direction)
+        values = goal_of_tool(kind, T_frame_tool, direction, None if like is None else like.GetValues())
+        if in_base and inworld:  # angles to the axes of the base
+            values = moved_goal(kind, values, pose_of(T_world_base))
+        goal = IkParameterization() if like is None else IkParameterization(like)
+        goal.SetValues(values, kind)
+        return goal
+
+    def GetIkConfigurationSpecification(
+        self, iktype: IkParameterizationType | int, interpolation: str = ""
+    ) -> ConfigurationSpecification:
+        """Return the layout of a goal of this arm in a trajectory.
+
+        Args:
+            iktype: The type of goal.
+            interpolation: How the values change between waypoints.
+        """
+        names = self._robot.GetName(), self._scene.name
+        return IkParameterization.GetConfigurationSpecificationFromType(iktype, interpolation, *names)
+
+    def GetInverseKinematicsStructureHash(self, iktype: IkParameterizationType | int) -> str:
+        """Return a text that is the same for arms that one solver fits: 32 hexadecimal digits.
+
+        Args:
+            iktype: The type of goal.
+        """
+        kind = _Type(iktype)
+        tool, direction = kind != _Type.Transform6D, kind in WITH_DIRECTION
+        return hashes.of_inverse_kinematics(self._state.scene, self._scene, kind.name, tool=tool, direction=direction)
+
+    def _T_world_base(self) -> Floats:
+        return np.eye(4) if self._scene.base is None else self._state.link_transform(self._scene.base)
 
 
 def _without_flag(arguments: tuple[object, ...], ikreturn: bool) -> tuple[tuple[object, ...], bool]:

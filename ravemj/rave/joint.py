@@ -17,10 +17,9 @@ from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
 from ravemj.rave.joint_limits import JointLimits
 from ravemj.rave.link import Link
-from ravemj.rave.parameters import Parametrized
 
 
-class Joint(JointLimits, Parametrized):
+class Joint(JointLimits):
     """A joint between two links; ``body.GetJoints()`` makes it."""
 
     Type = JointType

@@ -14,10 +14,9 @@ from ravemj.rave.enums import GeometryType
 from ravemj.rave.geometry import Geometry
 from ravemj.rave.infos import GeometryInfo, LinkInfo
 from ravemj.rave.link_geometries import LinkGeometries
-from ravemj.rave.parameters import Parametrized
 
 
-class Link(LinkGeometries, Parametrized):
+class Link(LinkGeometries):
     """A rigid part of a body; ``body.GetLinks()`` makes it."""
 
     Geometry = Geometry

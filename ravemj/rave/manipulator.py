@@ -1,71 +1,29 @@
 """Arms of a robot."""
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Ints, pose_of, wxyz_from_rows, wxyz_jacobian
-from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError, RavemjError
-from ravemj.geometry_functions.ik_types import IkParameterizationType
-from ravemj.model import chains, hashes, scene
-from ravemj.model.manipulators import joint_dofs
-from ravemj.rave.arm_collision import ArmCollision
-from ravemj.rave.arm_gripper import ArmGripper
-from ravemj.rave.arm_ik import ArmIk
+from ravemj.errors import ArgumentError
+from ravemj.model import hashes
+from ravemj.rave.arm_end import ArmEnd
+from ravemj.rave.arm_ik import WITH_DIRECTION, ArmIk
 from ravemj.rave.infos import ManipulatorInfo
-from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 from ravemj.rave.specification import ConfigurationSpecification
 
 if TYPE_CHECKING:
-    from ravemj.rave.kinbody import KinBody
+    from ravemj.rave.robot import Robot
 
 _SAME = 1e-12
 """Tools that differ less are the same."""
-_WITH_DIRECTION = {
-    IkParameterizationType.Direction3D,
-    IkParameterizationType.Ray4D,
-    IkParameterizationType.TranslationDirection5D,
-}
 
 
-class Tool(NamedTuple):
-    """What is computed with at a manipulator.
-
-    Attributes:
-        arm: The description that it was made of.
-        T_effector_tool: Pose of the tool in the effector, shape (4, 4).
-        origin: Its last column.
-        dofs: DOF indices of the joints, shape (n,).
-    """
-
-    arm: scene.Manipulator
-    T_effector_tool: Floats
-    origin: Floats
-    dofs: Ints
-
-
-class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
+class Manipulator(ArmEnd, ArmIk):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
-
-    def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
-        self._robot = robot
-        self._state = state
-        self._index = index
-        self._known: Tool | None = None
-
-    @property
-    def _scene(self) -> scene.Manipulator:
-        return self._state.scene.manipulators[self._index]
-
-    def GetName(self) -> str:
-        """Return the manipulator's name."""
-        return self._scene.name
 
     def SetName(self, name: str) -> None:
         """Give the manipulator another name.
@@ -85,7 +43,7 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
         """Return the id of the manipulator in OpenRAVE's JSON: empty."""
         return ""
 
-    def GetRobot(self) -> "KinBody":
+    def GetRobot(self) -> "Robot":
         """Return the robot that the manipulator belongs to."""
         return self._robot
 
@@ -103,36 +61,6 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
 
     def _link(self, index: int | None) -> Link | None:
         return None if index is None else Link(self._robot, self._state, index)
-
-    def GetTransform(self) -> Floats:
-        """Return the pose of the tool in the world.
-
-        Returns:
-            ``T_world_tool``, shape (4, 4): that of the effector times the local tool transform.
-
-        Raises:
-            openrave_exception: the manipulator has no effector.
-        """
-        effector = self._checked_effector()
-        with self._state.simulation.lock:
-            return self._state.link_transform(effector).dot(self._tool().T_effector_tool)
-
-    GetEndEffectorTransform = GetGraspTransform = GetTransform
-
-    def _checked_effector(self) -> int:
-        effector = self._scene.effector
-        if effector is None:
-            raise RavemjError(f"manipulator '{self.GetName()}' has no end effector")
-        return effector
-
-    def _tool(self) -> Tool:
-        """Return the tool and the joints as arrays, which are made anew when the description is another one."""
-        arm = self._scene
-        if self._known is None or self._known.arm is not arm:
-            T_effector_tool = arm.T_effector_tool.matrix()
-            dofs = np.array(arm.arm_dofs, dtype=np.int_)
-            self._known = Tool(arm, T_effector_tool, T_effector_tool[:, 3].copy(), dofs)
-        return self._known
 
     def GetVelocity(self) -> Floats:
         """Return the velocity of the tool, in world axes.
@@ -215,15 +143,9 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
             raise ArgumentError("SetLocalToolDirection: direction is zero, and should point somewhere")
         solver, unit = self.GetIkSolver(), given / length
         turned = not np.allclose(unit, self._scene.direction, rtol=0, atol=_SAME)
-        if turned and solver is not None and solver.kind in _WITH_DIRECTION:
+        if turned and solver is not None and solver.kind in WITH_DIRECTION:
             self.SetIkSolver(None)
         self._edit(direction=tuple(unit.tolist()))
-
-    def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Manipulator
-        with self._state.simulation.lock:
-            arms = list(self._state.scene.manipulators)
-            arms[self._index] = replace(arms[self._index], **changes)
-            self._state.edit(manipulators=tuple(arms))
 
     def GetArmIndices(self) -> Ints:
         """Return the DOF indices of the joints between base and effector, the base first.
@@ -242,27 +164,6 @@ class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
     def GetArmDOFValues(self) -> Floats:
         """Return the joint values of the arm [rad or m], in the order of ``GetArmIndices()``, shape (n,)."""
         return self._robot.GetDOFValues(self.GetArmIndices())
-
-    def GetChildJoints(self) -> list[Joint]:
-        """Return the joints beyond the arm, for instance those of fingers."""
-        return self._robot.GetJoints(chains.joints_beyond(self._state.scene, self._scene))
-
-    def GetChildDOFIndices(self) -> list[int]:
-        """Return the DOFs of ``GetChildJoints()``."""
-        joints = chains.joints_beyond(self._state.scene, self._scene)
-        return [dof for joint in joints for dof in joint_dofs(self._state.scene, joint)]
-
-    def GetChildLinks(self) -> list[Link]:
-        """Return the effector, the links that are fixed to it, and those beyond."""
-        return self._robot.GetLinks(chains.links_beyond(self._state.scene, self._scene))
-
-    def IsChildLink(self, link: Link) -> bool:
-        """Return whether a link is among ``GetChildLinks()``."""
-        return link in self.GetChildLinks()
-
-    def GetIndependentLinks(self) -> list[Link]:
-        """Return the links that neither the arm nor the gripper moves."""
-        return self._robot.GetLinks(chains.independent_links(self._state.scene, self._scene))
 
     def GetKinematicsStructureHash(self) -> str:
         """Return a text that is the same for arms of the same joints and tool: 32 hexadecimal digits."""

@@ -1,11 +1,20 @@
-"""What links and joints have in common."""
+"""What links and joints have in common, among it numbers and texts that scripts attach."""
 
 from abc import abstractmethod
+from collections.abc import Hashable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_numbers
+from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.simulation import BodyState
 from ravemj.model import scene
+from ravemj.model.scene import Parameters
 
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
@@ -24,6 +33,10 @@ class Member(ApiObject):
     def _scene(self) -> scene.Link | scene.Joint:
         """The description as it stands."""
 
+    @abstractmethod
+    def _set_parameters(self, parameters: Parameters) -> None:
+        """Replace all parameters; the caller holds the lock."""
+
     def GetName(self) -> str:
         """Return the name."""
         return self._scene.name
@@ -39,6 +52,73 @@ class Member(ApiObject):
 
     def UpdateInfo(self) -> None:
         """Do nothing: ``GetInfo`` always gives the present state."""
+
+    def GetFloatParameters(self, name: str | None = None, index: int = -1) -> dict[str, Floats] | Floats | float | None:
+        """Return numbers that ``SetFloatParameters`` attached.
+
+        Args:
+            name: Which; None: all of them.
+            index: Which number of them; below 0: all.
+
+        Returns:
+            An array of shape (n,), a number where an index was given, None for an unknown name, or all arrays by name.
+        """
+        found = {key: np.array(values) for key, values in self._scene.parameters.floats}
+        if name is None or name not in found:
+            return found if name is None else None
+        return found[name] if index < 0 else float(found[name][index])
+
+    def SetFloatParameters(self, key: str, parameters: ArrayLike) -> None:
+        """Attach numbers under a name.
+
+        Args:
+            key: The name.
+            parameters: The numbers; [] removes them.
+        """
+        self._set_parameter("floats", key, tuple(checked_numbers(parameters, "SetFloatParameters").ravel().tolist()))
+
+    def GetIntParameters(self, name: str | None = None, index: int = -1) -> dict[str, Ints] | Ints | int | None:
+        """Return integers that ``SetIntParameters`` attached, as ``GetFloatParameters`` does.
+
+        Args:
+            name: Which; None: all of them.
+            index: Which number of them; below 0: all.
+        """
+        found = {key: np.array(values, dtype=np.int_) for key, values in self._scene.parameters.integers}
+        if name is None or name not in found:
+            return found if name is None else None
+        return found[name] if index < 0 else int(found[name][index])
+
+    def SetIntParameters(self, key: str, parameters: ArrayLike) -> None:
+        """Attach integers under a name.
+
+        Args:
+            key: The name.
+            parameters: The integers; [] removes them.
+        """
+        numbers = checked_numbers(parameters, "SetIntParameters").ravel().astype(np.int_)
+        self._set_parameter("integers", key, tuple(numbers.tolist()))
+
+    def GetStringParameters(self, name: str | None = None) -> dict[str, str] | str | None:
+        """Return the text that ``SetStringParameters`` attached under a name, or None; without a name, all of them."""
+        found = dict(self._scene.parameters.texts)
+        return found if name is None else found.get(name)
+
+    def SetStringParameters(self, key: str, value: str) -> None:
+        """Attach a text under a name.
+
+        Args:
+            key: The name.
+            value: The text; an empty one removes it.
+        """
+        self._set_parameter("texts", key, checked_kind(value, str, "SetStringParameters: value", "a text"))
+
+    def _set_parameter(self, field: str, key: str, value: Hashable) -> None:
+        with self._state.simulation.lock:
+            items: tuple[tuple[str, Hashable], ...] = getattr(self._scene.parameters, field)
+            kept = tuple(item for item in items if item[0] != key)
+            changed = replace(self._scene.parameters, **{field: (*kept, (key, value)) if value else kept})
+            self._set_parameters(changed)
 
     def __eq__(self, other: object) -> bool:
         return type(other) is type(self) and self._state is other._state and self._index == other._index

@@ -1,6 +1,5 @@
-"""Collision of the end of an arm."""
+"""The end of an arm: its links, its gripper, what these hold and what they collide with."""
 
-from abc import abstractmethod
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
@@ -9,13 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_transform
-from ravemj.core.transforms import Floats, inverse
+from ravemj.core.arrays import checked_transform, checked_vector
+from ravemj.core.transforms import Floats, Ints, inverse
 from ravemj.engine.collision import arms
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
-from ravemj.model import scene
+from ravemj.model import chains, scene
+from ravemj.model.manipulators import joint_dofs
+from ravemj.rave.arm_base import ArmPart
+from ravemj.rave.joint import Joint
+from ravemj.rave.link import Link
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.specification import IkParameterization
 
@@ -26,19 +29,94 @@ Target = ArrayLike | IkParameterization | CollisionReport | None
 """Where a tool should be, or, where that is left out, the report that follows it."""
 
 
-class ArmCollision:
-    """Tests of the links beyond the arm, also where the tool is not now, and of the links before it."""
+class ArmEnd(ArmPart):
+    """Links and joints beyond the arm; of a gripper the sign in which each joint closes, and the bodies that it holds.
 
-    _robot: "KinBody"
-    _state: BodyState
+    Collisions are tested of the links beyond the arm, also where the tool is not now, and of those before it.
+    """
 
-    @property
-    @abstractmethod
-    def _scene(self) -> scene.Manipulator: ...
+    def GetChildJoints(self) -> list[Joint]:
+        """Return the joints beyond the arm, for instance those of fingers."""
+        return self._robot.GetJoints(chains.joints_beyond(self._state.scene, self._scene))
 
-    @abstractmethod
-    def GetTransform(self) -> Floats:
-        """Return ``T_world_tool``."""
+    def GetChildDOFIndices(self) -> list[int]:
+        """Return the DOFs of ``GetChildJoints()``."""
+        joints = chains.joints_beyond(self._state.scene, self._scene)
+        return [dof for joint in joints for dof in joint_dofs(self._state.scene, joint)]
+
+    def GetChildLinks(self) -> list[Link]:
+        """Return the effector, the links that are fixed to it, and those beyond."""
+        return self._robot.GetLinks(chains.links_beyond(self._state.scene, self._scene))
+
+    def IsChildLink(self, link: Link) -> bool:
+        """Return whether a link is among ``GetChildLinks()``."""
+        return link in self.GetChildLinks()
+
+    def GetIndependentLinks(self) -> list[Link]:
+        """Return the links that neither the arm nor the gripper moves."""
+        return self._robot.GetLinks(chains.independent_links(self._state.scene, self._scene))
+
+    def GetGripperIndices(self) -> Ints:
+        """Return the DOF indices of the gripper's joints."""
+        return np.array(self._scene.gripper_dofs, dtype=np.int_)
+
+    GetGripperJoints = GetGripperIndices
+
+    def GetGripperDOF(self) -> int:
+        """Return the number of DOFs of the gripper."""
+        return len(self._scene.gripper_dofs)
+
+    def GetGripperDOFValues(self) -> Floats:
+        """Return the joint values of the gripper [rad or m], in the order of ``GetGripperIndices()``, shape (n,)."""
+        return self._robot.GetDOFValues(self.GetGripperIndices())
+
+    def GetChuckingDirection(self) -> Ints:
+        """Return for each DOF of the gripper the sign of closing: 1, 0 or -1."""
+        return np.array(self._scene.chucking_direction, dtype=np.int_)
+
+    GetClosingDirection = GetChuckingDirection
+
+    def SetChuckingDirection(self, chuckingdirection: ArrayLike) -> None:
+        """Set for each DOF of the gripper the sign of closing.
+
+        Args:
+            chuckingdirection: -1, 0 or 1 for each of the gripper's DOFs.
+        """
+        count = len(self._scene.gripper_dofs)
+        signs = checked_vector(chuckingdirection, count, "SetChuckingDirection: chuckingdirection")
+        self._edit(chucking_direction=tuple(signs.tolist()))
+
+    SetClosingDirection = SetChuckingDirection
+
+    def IsGrabbing(self, body: "KinBody") -> bool:
+        """Return whether the effector, or a link beyond it, holds a body.
+
+        Args:
+            body: The body.
+        """
+        return self._robot.IsGrabbing(body) in self.GetChildLinks()
+
+    def ReleaseAllGrabbed(self) -> None:
+        """Let go of all bodies that the effector and the links beyond it hold."""
+        with self._state.simulation.lock:
+            for link in self.GetChildLinks():
+                self._robot.ReleaseAllGrabbedWithLink(link)
+
+    def GetGripperName(self) -> str:
+        """Return the name of the ``GripperInfo`` that describes the gripper; empty where nobody says."""
+        return self._scene.gripper_name
+
+    def GetRestrictGraspSetNames(self) -> list[str]:
+        """Return the sets of grasps that the arm is restricted to: none."""
+        return []
+
+    def GetToolChangerConnectedBodyToolName(self) -> str:
+        """Return the tool of a connected body that a tool changer puts on here; empty: no tool changer is known."""
+        return ""
+
+    def GetToolChangerLinkName(self) -> str:
+        """Return the link that a tool changer docks to; empty: no tool changer is known."""
+        return ""
 
     def CheckEndEffectorCollision(
         self,

@@ -1,0 +1,85 @@
+"""What the topics of an arm's API share."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ravemj.core.api_object import ApiObject
+from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.simulation import BodyState
+from ravemj.errors import RavemjError
+from ravemj.model import scene
+
+if TYPE_CHECKING:
+    from ravemj.rave.robot import Robot
+
+
+class Tool(NamedTuple):
+    """What is computed with at a manipulator.
+
+    Attributes:
+        arm: The description that it was made of.
+        T_effector_tool: Pose of the tool in the effector, shape (4, 4).
+        origin: Its last column.
+        dofs: DOF indices of the joints, shape (n,).
+    """
+
+    arm: scene.Manipulator
+    T_effector_tool: Floats
+    origin: Floats
+    dofs: Ints
+
+
+class ArmPart(ApiObject):
+    """Part of the API of a manipulator, about one topic; ``Manipulator`` joins the parts."""
+
+    def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:
+        self._robot = robot
+        self._state = state
+        self._index = index
+        self._known: Tool | None = None
+
+    @property
+    def _scene(self) -> scene.Manipulator:
+        return self._state.scene.manipulators[self._index]
+
+    def GetName(self) -> str:
+        """Return the manipulator's name."""
+        return self._scene.name
+
+    def GetTransform(self) -> Floats:
+        """Return the pose of the tool in the world.
+
+        Returns:
+            ``T_world_tool``, shape (4, 4): that of the effector times the local tool transform.
+
+        Raises:
+            openrave_exception: the manipulator has no effector.
+        """
+        effector = self._checked_effector()
+        with self._state.simulation.lock:
+            return self._state.link_transform(effector).dot(self._tool().T_effector_tool)
+
+    GetEndEffectorTransform = GetGraspTransform = GetTransform
+
+    def _checked_effector(self) -> int:
+        effector = self._scene.effector
+        if effector is None:
+            raise RavemjError(f"manipulator '{self.GetName()}' has no end effector")
+        return effector
+
+    def _tool(self) -> Tool:
+        """Return the tool and the joints as arrays, which are made anew when the description is another one."""
+        arm = self._scene
+        if self._known is None or self._known.arm is not arm:
+            T_effector_tool = arm.T_effector_tool.matrix()
+            dofs = np.array(arm.arm_dofs, dtype=np.int_)
+            self._known = Tool(arm, T_effector_tool, T_effector_tool[:, 3].copy(), dofs)
+        return self._known
+
+    def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Manipulator
+        with self._state.simulation.lock:
+            arms = list(self._state.scene.manipulators)
+            arms[self._index] = replace(arms[self._index], **changes)
+            self._state.edit(manipulators=tuple(arms))
