@@ -9,14 +9,13 @@
 ``CamelCase`` names are OpenRAVE's, with OpenRAVE's meaning; ``snake_case`` names are ravemj's own.
 """
 
-import ravemj.core.signals  # pyright: ignore[reportUnusedImport] - first, so that Ctrl-C ends a command from here on
+import ravemj.core.signals  # noqa: F401  # pyright: ignore[reportUnusedImport] - first, so that Ctrl-C ends commands from here on
 
 # isort: split
 
 import importlib
 from typing import TYPE_CHECKING
 
-import ravemj.engine.mujoco_import  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco
 from ravemj import geometry_functions, rave
 from ravemj.compat import names
 from ravemj.compat.extension import load_ipython_extension as load_ipython_extension  # for %load_ext ravemj
@@ -34,11 +33,11 @@ from ravemj.errors import (
 )
 from ravemj.formats.shipped import model_path
 from ravemj.geometry_functions import *  # noqa: F403 - as its __all__ lists them
-from ravemj.rave import *  # noqa: F403 - OpenRAVE's names, which ravemj/rave/__init__.py lists
 
 if TYPE_CHECKING:
     from ravemj.compat import databases, interfaces, misc, planningutils
     from ravemj.gui.viewers import Viewer
+    from ravemj.rave import *  # noqa: F403 - as its __all__ lists them
     from ravemj.rave.recording import record
     from ravemj.trajectories.motion import Motion, read_motion
 
@@ -71,7 +70,7 @@ __all__ = [
 __all__ += geometry_functions.__all__
 __all__ += rave.__all__
 
-_LATE = {
+_LATE = dict.fromkeys(rave.__all__, "ravemj.rave") | {
     "Motion": "ravemj.trajectories.motion",
     "Viewer": "ravemj.gui.viewers",
     "read_motion": "ravemj.trajectories.motion",
@@ -80,12 +79,14 @@ _LATE = {
 
 
 def __getattr__(name: str) -> object:
-    """Import a module of OpenRAVE's, or what most scripts do without, when it is asked for."""
+    """Import what is asked for, so that ``import ravemj`` does not import all of it, nor MuJoCo."""
     if name in names.PUBLIC:
         return importlib.import_module(f"ravemj.{name}")
-    if name in _LATE:
-        return getattr(importlib.import_module(_LATE[name]), name)
-    raise AttributeError(f"module 'ravemj' has no attribute '{name}'")
+    if name not in _LATE:
+        raise AttributeError(f"module 'ravemj' has no attribute '{name}'")
+    value = getattr(importlib.import_module(_LATE[name]), name)
+    globals()[name] = value
+    return value
 
 
 def __dir__() -> list[str]:

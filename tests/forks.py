@@ -20,8 +20,15 @@ from pathlib import Path
 from tempfile import TemporaryFile
 
 IMPORTED = [
-    "ravemj.cli",
-    "ravemj.formats.readers",
+    "ravemj.cli.check",
+    "ravemj.cli.convert",
+    "ravemj.cli.diff",
+    "ravemj.cli.ik",
+    "ravemj.cli.info",
+    "ravemj.cli.pictures",
+    "ravemj.cli.sessions",
+    "ravemj.cli.view",
+    "ravemj.formats.collada.scenes",
     "av",
     "fissix",
     "imageio.v3",

@@ -346,7 +346,7 @@ def names(monkeypatch):
     trajectory.Insert(0, [0, 0, 0, 0, 0.1, 0.2, 0.3, 1])
     link = here.robot.GetLinks()[1]
     return {
-        **vars(ravemj),
+        **{name: getattr(ravemj, name) for name in ravemj.__all__},
         **vars(here),
         **{"table": here.env.GetKinBody("table"), "link": link, "geometry": link.GetGeometries()[0]},
         **{"joint": here.robot.GetJoints()[0], "arm": here.robot.GetActiveManipulator()},

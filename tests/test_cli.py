@@ -24,6 +24,7 @@ from command_line import (
     plain,
     pose,
     ravemj_command,
+    run,
 )
 from PIL import Image, ImageSequence
 from waiting import PATIENCE, await_that
@@ -429,6 +430,14 @@ def test_help_names_every_command(folder):
     printed = said(ravemj_command(folder, "--help"))
     assert all(re.search(rf"^    {command} +\w", printed, re.MULTILINE) for command in COMMANDS)
     assert re.fullmatch(r"ravemj \d+\.\d+\.\d+\n", said(ravemj_command(folder, "--version")))
+
+
+@pytest.mark.parametrize("words", [["--help"], ["--version"], ["ik", "--help"]])
+def test_help_needs_no_mujoco(folder, words):
+    (folder / "mujoco.py").write_text("raise ImportError('this mujoco cannot be imported')")
+    code = f"import sys; sys.argv = {['ravemj', *words]}; from ravemj.cli import main; sys.exit(main())"
+    assert "ravemj" in said(run(folder, "-c", code))
+    assert "this mujoco" in run(folder, "-c", "import ravemj; ravemj.load").stderr
 
 
 # What goes wrong

@@ -173,7 +173,7 @@ def test_ctrl_c_in_the_installed_script(tmp_path):
     script = tmp_path / "ravemj"  # as pip writes it
     script.write_text("import sys\nfrom ravemj.cli import main\nif __name__ == '__main__':\n    sys.exit(main())\n")
     path = f"{tmp_path}{os.pathsep}{PACKAGE_ROOT}"
-    done = run(PACKAGE_ROOT, script, "--help", variables={"PYTHONPATH": path, "AT": "mujoco"})
+    done = run(PACKAGE_ROOT, script, "--help", variables={"PYTHONPATH": path, "AT": "argparse"})
     assert (done.returncode, done.stdout, done.stderr) == INTERRUPTED
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import ravemj
+from ravemj.rave.lazy_imports import MODULE_OF
 
 PACKAGE = Path(ravemj.__file__).parent
 
@@ -190,13 +191,34 @@ def run(code: str) -> str:
 
 def test_import_loads_no_slow_or_optional_package():
     slow = {"IPython", "imageio", "av", "PIL", "rich", "trimesh", "fcl", "coacd", "scipy"}
-    loaded = set(run("import ravemj, sys; print(*{name.split('.')[0] for name in sys.modules})").split())
+    loaded = set(
+        run("import ravemj, sys; ravemj.Environment; print(*{name.split('.')[0] for name in sys.modules})").split()
+    )
     assert not slow & loaded
+
+
+def test_import_loads_no_mujoco_before_it_is_needed():
+    code = "import ravemj, sys; print('mujoco' in sys.modules); ravemj.Environment; print('mujoco' in sys.modules)"
+    assert run(code).split() == ["False", "True"]
+
+
+def test_mujoco_is_imported_behind_what_prepares_it():
+    rooms = {room(path) for path in modules() for node in tree(path).body if "import mujoco" in ast.unparse(node)[:13]}
+    assert "engine" in rooms
+    for name in rooms:
+        assert "ravemj.engine.mujoco_import" in imports(PACKAGE / name / "__init__.py")
+
+
+def test_lazy_imports_are_those_that_type_checkers_see():
+    (typed,) = (node for node in tree(PACKAGE / "rave" / "__init__.py").body if isinstance(node, ast.If))
+    homes = {alias.name: node.module for node in typed.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+    assert homes == MODULE_OF
+    assert MODULE_OF.keys() <= set(ravemj.rave.__all__)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_import_loads_no_gl():
-    maps = run("import ravemj; print(open('/proc/self/maps').read())")
+    maps = run("import ravemj; ravemj.Environment; print(open('/proc/self/maps').read())")
     assert not re.findall(r"lib(?:EGL|OSMesa)\S*", maps)
 
 

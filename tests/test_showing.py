@@ -87,7 +87,7 @@ def shown(env):
 
 def evaluated(text):
     """What an expression is in a script that imports all of ravemj."""
-    return eval(text, dict(vars(ravemj)))
+    return eval(text, {name: getattr(ravemj, name) for name in ravemj.__all__})
 
 
 def test_repr_leads_back(env):

@@ -3,6 +3,9 @@
 import argparse
 import math
 
+TO_STANDARD_OUTPUT = "-"
+"""What stands for standard output in place of a file."""
+
 _LONGEST_SIDE = 16384
 
 

@@ -8,13 +8,14 @@ import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from typing import TYPE_CHECKING, TextIO
 
-from ravemj.cli.checking import Finding
 from ravemj.core.signals import on_signal
 from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, Source, SourceError
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
+
+    from ravemj.cli.checking import Finding
 
 _LEAST_WIDTH = 100
 _PLACES = 4
@@ -27,7 +28,7 @@ def print_error(error: RavemjError) -> None:
     print(" ".join(text.split()), file=sys.stderr)
 
 
-def print_findings(findings: Iterable[Diagnostic | Finding], file: TextIO | None = None) -> None:
+def print_findings(findings: "Iterable[Diagnostic | Finding]", file: TextIO | None = None) -> None:
     """Print findings; those that differ only in places or names share a line.
 
     Args:

@@ -7,14 +7,13 @@ import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
+from ravemj.cli.argument_types import TO_STANDARD_OUTPUT
 from ravemj.cli.console import print_findings
 from ravemj.cli.models import failure_of, load_model
 from ravemj.engine.export import is_folder, marked, translate, write_file, write_folder
 from ravemj.errors import Diagnostic, Diagnostics, OutputError, RavemjWarning
 from ravemj.formats.mjcf import Options
 from ravemj.rave import Environment
-
-TO_STANDARD_OUTPUT = "-"
 
 _FORMATS = {
     (".dae", ".zae"): "collada",

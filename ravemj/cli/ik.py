@@ -14,7 +14,7 @@ from ravemj.cli.models import load_model
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Source, SourceError
 from ravemj.geometry_functions import matrixFromPose
-from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType, goal_size
+from ravemj.geometry_functions.ik_types import IkParameterizationType, goal_size
 from ravemj.graphics.video import check_picture, write_picture
 from ravemj.rave import CollisionReport, Environment, RaveCreateRobot, Robot
 from ravemj.rave.manipulator import Manipulator
@@ -22,9 +22,6 @@ from ravemj.rave.manipulator import Manipulator
 _MOST_ROWS = 16
 _GHOST = 0.75  # transparency
 _POSE, _POINT = 7, 3
-
-TYPE_NAMES = sorted(kind.name for kind in GOAL_TYPES)
-"""What ``--type`` takes."""
 
 
 class _Solution(NamedTuple):

@@ -2,13 +2,16 @@
 
 import argparse
 import difflib
-from collections.abc import Iterable, Sequence
+import importlib
+from collections.abc import Callable, Iterable, Sequence
 from typing import NoReturn, TypeAlias
 
-from ravemj.cli import check, convert, diff, ik, info, pictures, sessions, view
-from ravemj.cli.argument_types import colour, port, positive, size, target, vector
+from ravemj.cli.argument_types import TO_STANDARD_OUTPUT, colour, port, positive, size, target, vector
 from ravemj.formats.shipped import SHIPPED_MODELS
+from ravemj.geometry_functions.ik_types import GOAL_TYPES
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
+
+_GOAL_TYPES = sorted(kind.name for kind in GOAL_TYPES)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -78,6 +81,15 @@ def _command(commands: Commands, name: str, summary: str, *examples: str) -> arg
     )
 
 
+def _late(module: str, function: str) -> Callable[[argparse.Namespace], int]:
+    """Return the function of a command, which imports its module when it is called: help needs none of them."""
+
+    def run(options: argparse.Namespace) -> int:
+        return getattr(importlib.import_module(f"ravemj.cli.{module}"), function)(options)
+
+    return run
+
+
 def _add_model(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "model",
@@ -122,7 +134,7 @@ def _add_view(commands: Commands) -> None:
         help="interface that serves the page (127.0.0.1, which only browsers of this machine reach)",
     )
     parser.add_argument("--port", type=port, default=0, metavar="P", help="port of the page; default: one that is free")
-    parser.set_defaults(run=view.view)
+    parser.set_defaults(run=_late("view", "view"))
 
 
 def _add_play(commands: Commands) -> None:
@@ -160,7 +172,7 @@ def _add_play(commands: Commands) -> None:
     )
     parser.add_argument("--fps", type=positive, default=30.0, metavar="N", help="frames in a second (30)")
     _add_picture_options(parser, "size of the video (640x480); windows have a size of their own")
-    parser.set_defaults(run=pictures.play)
+    parser.set_defaults(run=_late("pictures", "play"))
 
 
 def _add_render(commands: Commands) -> None:
@@ -177,7 +189,7 @@ def _add_render(commands: Commands) -> None:
         "--q", type=vector, metavar="Q", help="joint values of the first robot, rad or m, separated by commas"
     )
     _add_picture_options(parser, "size of the picture (640x480)")
-    parser.set_defaults(run=pictures.render)
+    parser.set_defaults(run=_late("pictures", "render"))
 
 
 def _add_convert(commands: Commands) -> None:
@@ -196,7 +208,7 @@ def _add_convert(commands: Commands) -> None:
         "-o",
         "--output",
         type=target,
-        default=convert.TO_STANDARD_OUTPUT,
+        default=TO_STANDARD_OUTPUT,
         metavar="TARGET",
         help="a folder (no suffix, or a final /), or the MJCF file itself, with meshes in assets/ beside it; "
         "default: standard output, for models without meshes",
@@ -227,7 +239,7 @@ def _add_convert(commands: Commands) -> None:
         action="store_true",
         help='let meshes collide as several convex parts, not as one hull; needs pip install "ravemj[decompose]"',
     )
-    parser.set_defaults(run=convert.convert)
+    parser.set_defaults(run=_late("convert", "convert"))
 
 
 def _add_check(commands: Commands) -> None:
@@ -242,7 +254,7 @@ def _add_check(commands: Commands) -> None:
     parser.add_argument("models", nargs="+", metavar="FILE", help="OpenRAVE XML or COLLADA files")
     parser.add_argument("--strict", action="store_true", help="exit with 1 for warnings, too")
     parser.add_argument("--json", action="store_true", help="print the findings as JSON, each place by itself")
-    parser.set_defaults(run=check.check_models)
+    parser.set_defaults(run=_late("check", "check_models"))
 
 
 def _add_diff(commands: Commands) -> None:
@@ -264,7 +276,7 @@ def _add_diff(commands: Commands) -> None:
         f"{MESH_TOLERANCE:g}",
     )
     parser.add_argument("--json", action="store_true", help="print the differences as JSON")
-    parser.set_defaults(run=diff.diff)
+    parser.set_defaults(run=_late("diff", "diff"))
 
 
 def _add_info(commands: Commands) -> None:
@@ -277,7 +289,7 @@ def _add_info(commands: Commands) -> None:
     )
     _add_model(parser)
     parser.add_argument("--json", action="store_true", help="print all numbers as JSON")
-    parser.set_defaults(run=info.info)
+    parser.set_defaults(run=_late("info", "info"))
 
 
 def _add_ik(commands: Commands) -> None:
@@ -301,10 +313,10 @@ def _add_ik(commands: Commands) -> None:
     what.add_argument("--describe", action="store_true", help="say how the arm is solved, and how well that was proved")
     parser.add_argument(
         "--type",
-        choices=ik.TYPE_NAMES,
+        choices=_GOAL_TYPES,
         metavar="TYPE",
         help="type of goal, as in OpenRAVE: Translation3D for three values, else Transform6D; "
-        f"or {', '.join(name for name in ik.TYPE_NAMES if name not in {'Transform6D', 'Translation3D'})}",
+        f"or {', '.join(name for name in _GOAL_TYPES if name not in {'Transform6D', 'Translation3D'})}",
     )
     parser.add_argument("--manip", metavar="NAME", help="which manipulator; default: the active one")
     parser.add_argument(
@@ -318,7 +330,7 @@ def _add_ik(commands: Commands) -> None:
         "-o", "--output", type=target, metavar="FILE", help="picture with an arm at each solution; .png, .jpg or .webp"
     )
     parser.add_argument("--size", type=size, default=(640, 480), metavar="WxH", help="size of the picture (640x480)")
-    parser.set_defaults(run=ik.ik)
+    parser.set_defaults(run=_late("ik", "ik"))
 
 
 def _add_run(commands: Commands) -> None:
@@ -337,13 +349,13 @@ def _add_run(commands: Commands) -> None:
     )
     parser.add_argument("script", metavar="SCRIPT", help="Python file")
     parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="arguments of the script")
-    parser.set_defaults(run=sessions.run)
+    parser.set_defaults(run=_late("sessions", "run"))
 
 
 def _add_shell(commands: Commands) -> None:
     parser = _command(commands, "shell", "open IPython with env, robot and viewer of a model", "ravemj shell puma560")
     _add_model(parser)
-    parser.set_defaults(run=sessions.shell)
+    parser.set_defaults(run=_late("sessions", "shell"))
 
 
 def _add_alias(commands: Commands) -> None:
@@ -359,11 +371,11 @@ def _add_alias(commands: Commands) -> None:
         "--install", action="store_true", help="put a package openravepy, which forwards to ravemj, into this Python"
     )
     action.add_argument("--remove", action="store_true", help="take it out again")
-    parser.set_defaults(run=sessions.alias)
+    parser.set_defaults(run=_late("sessions", "alias"))
 
 
 def _add_doctor(commands: Commands) -> None:
     parser = _command(
         commands, "doctor", "say what can draw pictures here, and how to install what cannot", "ravemj doctor"
     )
-    parser.set_defaults(run=pictures.doctor)
+    parser.set_defaults(run=_late("pictures", "doctor"))

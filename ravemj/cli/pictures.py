@@ -7,7 +7,6 @@ import platform
 import sys
 from pathlib import Path
 
-import mujoco
 import numpy as np
 
 from ravemj.cli.console import console, progress, table
@@ -119,6 +118,8 @@ def _explain_rays(backend: str) -> None:
 
 def doctor(options: argparse.Namespace) -> int:
     """List the renderers that work here, and how to install those that do not."""
+    import mujoco  # noqa: PLC0415 - behind the modules that prepare it
+
     del options
     print(f"Python {platform.python_version()}, MuJoCo {mujoco.mj_versionString()}, {platform.platform()}")
     print(f"display: {'yes' if has_display() else 'none, so viewers have no window'}\n")

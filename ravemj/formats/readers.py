@@ -72,7 +72,7 @@ def _holds_collada(path: str) -> bool:
         return False
 
 
-def _read_collada(path: str, given: Attributes, read_content: Callable[[Context, float], collada.Content]) -> Reading:
+def _read_collada(path: str, given: Attributes, read_content: "Callable[[Context, float], collada.Content]") -> Reading:
     context, source = Context(), Source(path)
     check_given(given, source, context)
     bodies: list[KinBody] = []

@@ -1,1 +1,3 @@
 """Viewers: mouse and keys, windows, pages in a browser."""
+
+import ravemj.engine.mujoco_import  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco

@@ -7,6 +7,10 @@ Chains and poses are arrays; nothing here knows robots, files or windows. Nothin
 the axes, by numbers (``derive``), proved by random configurations, and answers batches of poses.
 """
 
+import ravemj.engine.mujoco_import  # noqa: F401  # pyright: ignore[reportUnusedImport] - before all that imports mujoco
+
+# isort: split
+
 from ravemj.ik.chain import Chain
 from ravemj.ik.closed import ClosedForm, Solutions
 from ravemj.ik.derive import Certificate, derive

@@ -4,192 +4,196 @@
 objects is ravemj's own.
 """
 
+import importlib
+from typing import TYPE_CHECKING
+
 from ravemj.core.handles import Handle as UserData
 from ravemj.errors import ErrorCode, RavemjError
-from ravemj.geometry_functions.ik_types import IkParameterizationType
-from ravemj.rave.body.saving import StateSaver
-from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
-from ravemj.rave.connected_body import ConnectedBody
-from ravemj.rave.controllers import (
-    Controller,
-    IdealController,
-    MultiController,
-    RaveCreateController,
-    RaveCreateMultiController,
-    VelocityController,
-)
-from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
-from ravemj.rave.enums import (
-    AdjacentOptions,
-    CheckLimitsAction,
-    CloningOptions,
-    CollisionAction,
-    CollisionOptions,
-    ConstraintFilterOptions,
-    DebugLevel,
-    EnvironmentCreateOptions,
-    GeometryType,
-    GrabbedInfoCheckResult,
-    IkFilterOptions,
-    IkReturnAction,
-    InterfaceAddMode,
-    InterfaceType,
-    Interval,
-    JointType,
-    PhysicsEngineOptions,
-    PlannerAction,
-    PlannerStatusCode,
-    SaveParameters,
-    SelectionOptions,
-    SensorType,
-    SerializationOptions,
-    TriangulateOptions,
-    UpdateFromInfoMode,
-    UpdateFromInfoResult,
-)
-from ravemj.rave.environment import (
-    Environment,
-    RaveDestroy,
-    RaveGetEnvironment,
-    RaveGetEnvironmentId,
-    RaveGetEnvironments,
-    load,
-)
-from ravemj.rave.geometry import Geometry
-from ravemj.rave.graph_handle import GraphHandle
-from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
-from ravemj.rave.iksolver import IkSolver, RaveCreateIkSolver
-from ravemj.rave.infos import (
-    AttachedSensorInfo,
-    AxialSlice,
-    ConnectedBodyInfo,
-    ElectricMotorActuatorInfo,
-    EnvironmentBaseInfo,
-    ExtractInfoOptions,
-    GeometryInfo,
-    GrabbedInfo,
-    GripperInfo,
-    JointControlInfo_ExternalDevice,
-    JointControlInfo_IO,
-    JointControlInfo_RobotController,
-    JointControlMode,
-    JointInfo,
-    KinBodyInfo,
-    LinkInfo,
-    ManipulatorInfo,
-    RobotBaseInfo,
-    SideWall,
-    SideWallType,
-)
-from ravemj.rave.infos.sensor import (
-    ActuatorGeomData,
-    CameraGeomData,
-    CameraIntrinsics,
-    Force6DGeomData,
-    IMUGeomData,
-    JointEncoderGeomData,
-    LaserGeomData,
-    OdometryGeomData,
-    SensorGeometry,
-    TactileGeomData,
-)
-from ravemj.rave.interface import Interface
-from ravemj.rave.joint import Joint
-from ravemj.rave.kinbody import KinBody
-from ravemj.rave.library import (
-    GetMicroTime,
-    GetMilliTime,
-    GetNanoTime,
-    RaveFindDatabaseFile,
-    RaveFindLocalFile,
-    RaveGetDataAccess,
-    RaveGetDefaultViewerType,
-    RaveGetHomeDirectory,
-    RaveGetPluginInfo,
-    RaveInitialize,
-    RaveInvertFileLookup,
-    RaveLoadPlugin,
-    RaveReloadPlugins,
-    RaveSetDataAccess,
-)
-from ravemj.rave.link import Link
-from ravemj.rave.logs import (
-    RaveGetDebugLevel,
-    RaveLog,
-    RaveLogDebug,
-    RaveLogError,
-    RaveLogFatal,
-    RaveLogInfo,
-    RaveLogVerbose,
-    RaveLogWarn,
-    RaveSetDebugLevel,
-)
-from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.module import Module
-from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
-from ravemj.rave.planning import (
-    Planner,
-    PlannerProgress,
-    PlannerStatus,
-    PlanningError,
-    RaveCreatePlanner,
-)
-from ravemj.rave.plugins import (
-    RaveCreateModule,
-    RaveCreateProblem,
-    RaveCreateSensor,
-    RaveCreateViewer,
-    RaveGetLoadedInterfaces,
-)
-from ravemj.rave.readables import Readable, ReadableInterface, SerializableData, stringreaders, xmlreaders
-from ravemj.rave.registry import (
-    ManageData,
-    PluginInfo,
-    RaveClone,
-    RaveCreateInterface,
-    RaveCreateSensorSystem,
-    RaveHasInterface,
-    SensorSystem,
-)
-from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact
-from ravemj.rave.robot import Robot
-from ravemj.rave.samplers import RaveCreateSpaceSampler, SampleDataType, SpaceSampler
-from ravemj.rave.sensor_data import CameraSensorData, SensorData
-from ravemj.rave.sensors import AttachedSensor, Sensor
-from ravemj.rave.specification import (
-    ConfigurationSpecification,
-    IkParameterization,
-    RaveGetAffineConfigurationSpecification,
-)
-from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
-from ravemj.rave.trimesh import TriMesh
-from ravemj.rave.units import (
-    AngleUnit,
-    GetAngleUnitConversionScale,
-    GetAngleUnitFromString,
-    GetAngleUnitStandardValue,
-    GetAngleUnitString,
-    GetLengthUnitConversionScale,
-    GetLengthUnitFromString,
-    GetLengthUnitStandardValue,
-    GetLengthUnitString,
-    GetMassUnitConversionScale,
-    GetMassUnitFromString,
-    GetMassUnitStandardValue,
-    GetMassUnitString,
-    GetTimeDurationUnitConversionScale,
-    GetTimeDurationUnitFromString,
-    GetTimeDurationUnitStandardValue,
-    GetTimeDurationUnitString,
-    GetTimeStampUnitString,
-    LengthUnit,
-    MassUnit,
-    TimeDurationUnit,
-    TimeStampUnit,
-    UnitInfo,
-)
+from ravemj.rave.lazy_imports import MODULE_OF
 
-KinBodyStateSaver = RobotStateSaver = StateRestoreContext = StateSaver
+if TYPE_CHECKING:  # at run time as MODULE_OF says
+    from ravemj.geometry_functions.ik_types import IkParameterizationType
+    from ravemj.rave.body.saving import KinBodyStateSaver, RobotStateSaver, StateRestoreContext, StateSaver
+    from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
+    from ravemj.rave.connected_body import ConnectedBody
+    from ravemj.rave.controllers import (
+        Controller,
+        IdealController,
+        MultiController,
+        RaveCreateController,
+        RaveCreateMultiController,
+        VelocityController,
+    )
+    from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
+    from ravemj.rave.enums import (
+        AdjacentOptions,
+        CheckLimitsAction,
+        CloningOptions,
+        CollisionAction,
+        CollisionOptions,
+        ConstraintFilterOptions,
+        DebugLevel,
+        EnvironmentCreateOptions,
+        GeometryType,
+        GrabbedInfoCheckResult,
+        IkFilterOptions,
+        IkReturnAction,
+        InterfaceAddMode,
+        InterfaceType,
+        Interval,
+        JointType,
+        PhysicsEngineOptions,
+        PlannerAction,
+        PlannerStatusCode,
+        SaveParameters,
+        SelectionOptions,
+        SensorType,
+        SerializationOptions,
+        TriangulateOptions,
+        UpdateFromInfoMode,
+        UpdateFromInfoResult,
+    )
+    from ravemj.rave.environment import (
+        Environment,
+        RaveDestroy,
+        RaveGetEnvironment,
+        RaveGetEnvironmentId,
+        RaveGetEnvironments,
+        load,
+    )
+    from ravemj.rave.geometry import Geometry
+    from ravemj.rave.graph_handle import GraphHandle
+    from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
+    from ravemj.rave.iksolver import IkSolver, RaveCreateIkSolver
+    from ravemj.rave.infos import (
+        AttachedSensorInfo,
+        AxialSlice,
+        ConnectedBodyInfo,
+        ElectricMotorActuatorInfo,
+        EnvironmentBaseInfo,
+        ExtractInfoOptions,
+        GeometryInfo,
+        GrabbedInfo,
+        GripperInfo,
+        JointControlInfo_ExternalDevice,
+        JointControlInfo_IO,
+        JointControlInfo_RobotController,
+        JointControlMode,
+        JointInfo,
+        KinBodyInfo,
+        LinkInfo,
+        ManipulatorInfo,
+        RobotBaseInfo,
+        SideWall,
+        SideWallType,
+    )
+    from ravemj.rave.infos.sensor import (
+        ActuatorGeomData,
+        CameraGeomData,
+        CameraIntrinsics,
+        Force6DGeomData,
+        IMUGeomData,
+        JointEncoderGeomData,
+        LaserGeomData,
+        OdometryGeomData,
+        SensorGeometry,
+        TactileGeomData,
+    )
+    from ravemj.rave.interface import Interface
+    from ravemj.rave.joint import Joint
+    from ravemj.rave.kinbody import KinBody
+    from ravemj.rave.library import (
+        GetMicroTime,
+        GetMilliTime,
+        GetNanoTime,
+        RaveFindDatabaseFile,
+        RaveFindLocalFile,
+        RaveGetDataAccess,
+        RaveGetDefaultViewerType,
+        RaveGetHomeDirectory,
+        RaveGetPluginInfo,
+        RaveInitialize,
+        RaveInvertFileLookup,
+        RaveLoadPlugin,
+        RaveReloadPlugins,
+        RaveSetDataAccess,
+    )
+    from ravemj.rave.link import Link
+    from ravemj.rave.logs import (
+        RaveGetDebugLevel,
+        RaveLog,
+        RaveLogDebug,
+        RaveLogError,
+        RaveLogFatal,
+        RaveLogInfo,
+        RaveLogVerbose,
+        RaveLogWarn,
+        RaveSetDebugLevel,
+    )
+    from ravemj.rave.manipulator import Manipulator
+    from ravemj.rave.module import Module
+    from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
+    from ravemj.rave.planning import (
+        Planner,
+        PlannerProgress,
+        PlannerStatus,
+        PlanningError,
+        RaveCreatePlanner,
+    )
+    from ravemj.rave.plugins import (
+        RaveCreateModule,
+        RaveCreateProblem,
+        RaveCreateSensor,
+        RaveCreateViewer,
+        RaveGetLoadedInterfaces,
+    )
+    from ravemj.rave.readables import Readable, ReadableInterface, SerializableData, stringreaders, xmlreaders
+    from ravemj.rave.registry import (
+        ManageData,
+        PluginInfo,
+        RaveClone,
+        RaveCreateInterface,
+        RaveCreateSensorSystem,
+        RaveHasInterface,
+        SensorSystem,
+    )
+    from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact
+    from ravemj.rave.robot import Robot
+    from ravemj.rave.samplers import RaveCreateSpaceSampler, SampleDataType, SpaceSampler
+    from ravemj.rave.sensor_data import CameraSensorData, SensorData
+    from ravemj.rave.sensors import AttachedSensor, Sensor
+    from ravemj.rave.specification import (
+        ConfigurationSpecification,
+        IkParameterization,
+        RaveGetAffineConfigurationSpecification,
+    )
+    from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
+    from ravemj.rave.trimesh import TriMesh
+    from ravemj.rave.units import (
+        AngleUnit,
+        GetAngleUnitConversionScale,
+        GetAngleUnitFromString,
+        GetAngleUnitStandardValue,
+        GetAngleUnitString,
+        GetLengthUnitConversionScale,
+        GetLengthUnitFromString,
+        GetLengthUnitStandardValue,
+        GetLengthUnitString,
+        GetMassUnitConversionScale,
+        GetMassUnitFromString,
+        GetMassUnitStandardValue,
+        GetMassUnitString,
+        GetTimeDurationUnitConversionScale,
+        GetTimeDurationUnitFromString,
+        GetTimeDurationUnitStandardValue,
+        GetTimeDurationUnitString,
+        GetTimeStampUnitString,
+        LengthUnit,
+        MassUnit,
+        TimeDurationUnit,
+        TimeStampUnit,
+        UnitInfo,
+    )
 
 OpenRAVEException = openrave_exception = RavemjError
 
@@ -377,3 +381,12 @@ __all__ = [
     "stringreaders",
     "xmlreaders",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """Import the module of a name when it is asked for."""
+    if name not in MODULE_OF:
+        raise AttributeError(f"module 'ravemj.rave' has no attribute '{name}'")
+    value = getattr(importlib.import_module(MODULE_OF[name]), name)
+    globals()[name] = value
+    return value

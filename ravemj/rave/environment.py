@@ -4,9 +4,7 @@ import itertools
 import os
 import weakref
 from types import TracebackType
-from typing import Any, Self
-
-import mujoco
+from typing import TYPE_CHECKING, Any, Self
 
 from ravemj.core.arguments import also_named
 from ravemj.engine.simulation import Simulation
@@ -22,6 +20,9 @@ from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
 from ravemj.rave.robot import Robot
+
+if TYPE_CHECKING:
+    import mujoco
 
 _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
@@ -204,17 +205,17 @@ class Environment(Description, Loading, Saving, Collision, Drawing, Viewing):
         return self._simulation.compiled().mjcf.text
 
     @property
-    def spec(self) -> mujoco.MjSpec:
+    def spec(self) -> "mujoco.MjSpec":
         """MuJoCo's editable form of the environment, for cameras and actuators of your own."""
         return self._simulation.compiled().spec
 
     @property
-    def model(self) -> mujoco.MjModel:
+    def model(self) -> "mujoco.MjModel":
         """The compiled MuJoCo model; a new one after bodies were added."""
         return self._simulation.compiled().model
 
     @property
-    def data(self) -> mujoco.MjData:
+    def data(self) -> "mujoco.MjData":
         """The state of the MuJoCo model, as the bodies are now."""
         return self._simulation.compiled().data
 

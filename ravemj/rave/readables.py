@@ -1,7 +1,6 @@
 """Values that scripts attach to interfaces under an id, as OpenRAVE's readers of custom tags do."""
 
 from typing import Any
-from xml.sax.saxutils import escape
 
 from ravemj.core.api_object import ApiObject
 
@@ -23,6 +22,8 @@ class Readable(ApiObject):
         Args:
             options: Not used.
         """
+        from xml.sax.saxutils import escape  # noqa: PLC0415 - imports urllib, which is slow
+
         del options
         return f"<{self._id}>{escape(str(self._data))}</{self._id}>"
 

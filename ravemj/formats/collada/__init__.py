@@ -6,13 +6,16 @@ What a file refers to may stand in other files. Whatever leads nowhere is report
 """
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ravemj.errors import Diagnostics, Source, SourceError
-from ravemj.formats.collada.library import Library
-from ravemj.formats.collada.scenes import Content, read_document
-from ravemj.formats.meshes.collada.document import ColladaDocument
+
+if TYPE_CHECKING:
+    from ravemj.formats.collada.library import Library
+    from ravemj.formats.collada.scenes import Content
+    from ravemj.formats.meshes.collada.document import ColladaDocument
 
 SUFFIXES = (".dae", ".zae")
 """Ends of the names of the files, in lower case."""
@@ -24,7 +27,7 @@ def read_file(
     files: list[str],
     included_from: Source | None = None,
     scale: float = 1.0,
-) -> Content:
+) -> "Content":
     """Read a ``.dae`` or ``.zae`` file.
 
     Args:
@@ -37,6 +40,8 @@ def read_file(
     Raises:
         SourceError: The file is broken, or something in it is impossible.
     """
+    from ravemj.formats.collada.library import Library  # noqa: PLC0415 - lxml is slow to import
+
     path, wanted = split_uri(uri)
     library = Library(diagnostics, files, included_from, scale)
     return _read(library, path, lambda: library.open_file(path), wanted)
@@ -53,7 +58,7 @@ def split_uri(uri: str) -> tuple[str, str]:
     return (path, name) if path.lower().endswith(SUFFIXES) else (uri, "")
 
 
-def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str], scale: float = 1.0) -> Content:
+def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str], scale: float = 1.0) -> "Content":
     """Read a document that is no file, as ``read_file`` reads a file.
 
     Args:
@@ -63,11 +68,15 @@ def read_text(data: bytes, name: str, diagnostics: Diagnostics, files: list[str]
         files: Takes the paths of the files that are read.
         scale: What all lengths are multiplied by.
     """
+    from ravemj.formats.collada.library import Library  # noqa: PLC0415 - lxml is slow to import
+
     library = Library(diagnostics, files, None, scale)
     return _read(library, name, lambda: library.open_text(data, name))
 
 
-def _read(library: Library, path: str, opened: Callable[[], ColladaDocument], wanted: str = "") -> Content:
+def _read(library: "Library", path: str, opened: "Callable[[], ColladaDocument]", wanted: str = "") -> "Content":
+    from ravemj.formats.collada.scenes import read_document  # noqa: PLC0415 - lxml is slow to import
+
     try:
         with np.errstate(all="ignore"):  # what is not finite in the end is refused
             return read_document(library, opened(), wanted)

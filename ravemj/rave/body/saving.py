@@ -118,3 +118,7 @@ def _structure(body: "KinBody") -> tuple[int, int]:
 def _set_axes(body: BodyPart, kept: Mapping[str, Sequence[float]]) -> None:
     state = body.simulation_state
     state.edit_axes(with_fields(state.scene.dof_axes, range(len(state.scene.dof_axes)), kept))
+
+
+KinBodyStateSaver = RobotStateSaver = StateRestoreContext = StateSaver
+"""The names that OpenRAVE has for it."""
