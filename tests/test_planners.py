@@ -350,3 +350,15 @@ def test_a_touching_start_is_jittered_and_left(env, robot):
     assert trajectory.GetWaypoint(-1, spec) == pytest.approx([0.5, 1.0])
     with pytest.raises(ravemj.PlanningError, match="start: it collides"):
         helper.MoveActiveJoints(goal=[0.5, 1.0], jitter=0)
+
+
+def test_what_joints_do_not_move_is_no_obstacle_of_theirs(env, robot):
+    box(env, "floor", [0, 0, -0.1, 0.3, 0.3, 0.1])
+    assert env.CheckCollision(robot)  # the base stands on it
+    assert planned(robot, parameters(robot))[0] == PlannerStatus.HasSolution
+    params = parameters(robot)
+    params.add_constraint(lambda values: True)  # this takes the slow test
+    assert planned(robot, params)[0] == PlannerStatus.HasSolution
+    env.GetKinBody("floor").SetTransform(ravemj.matrixFromPose([1, 0, 0, 0, 0, 0, 0.2]))
+    status = planned(robot, parameters(robot))[0]
+    assert re.search(r"start: it collides: \(arm:upper.*floor", status.description), status.description
