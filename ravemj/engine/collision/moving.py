@@ -19,8 +19,9 @@ _KEY = 1 << 31
 def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
     """Return a fast test of values of some joints, or None where joints have to be set one by one.
 
-    It looks at what the joints move. It answers for a body that stays as it is otherwise, in a world that stays as it is; the caller holds the lock all
-    the time. The model of the world is moved, the body itself is not: ``body.moved()`` brings it back.
+    It looks at what the joints move, and answers for a body that stays as it is otherwise, in a world that stays as it
+    is; the caller holds the lock all the time. The model of the world is moved, the body itself is not:
+    ``body.moved()`` brings it back.
 
     Args:
         body: The body; what it holds moves along.
