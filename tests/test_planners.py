@@ -360,5 +360,5 @@ def test_what_joints_do_not_move_is_no_obstacle_of_theirs(env, robot):
     params.add_constraint(lambda values: True)  # this takes the slow test
     assert planned(robot, params)[0] == PlannerStatus.HasSolution
     env.GetKinBody("floor").SetTransform(ravemj.matrixFromPose([1, 0, 0, 0, 0, 0, 0.2]))
-    status = planned(robot, parameters(robot))[0]
-    assert re.search("start: it collides: link 'upper' of 'arm' with link .* of 'floor'", status.description), status.description
+    described = planned(robot, parameters(robot))[0].description
+    assert re.match("start: it collides: link 'upper' of 'arm' with link .* of 'floor'", described), described

@@ -10,6 +10,7 @@ class Parser(argparse.ArgumentParser):
     """Reports a wrong argument in one line."""
 
     def error(self, message: str) -> NoReturn:
+        """End with a wrong argument in one line."""
         self.exit(2, f"{self.prog}: error: {message}; see {self.prog} --help\n")
 
     def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride] - its overloads
