@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from ravemj.rave import *  # noqa: F403 - as its __all__ lists them
     from ravemj.rave.recording import record
     from ravemj.trajectories.motion import Motion, read_motion
+    from ravemj.trajectories.motion_writing import write_motion
 
 __version__ = "0.1.0"
 
@@ -66,6 +67,7 @@ __all__ = [
     "planningutils",
     "read_motion",
     "record",
+    "write_motion",
 ]
 __all__ += geometry_functions.__all__
 __all__ += rave.__all__
@@ -75,6 +77,7 @@ _LATE = dict.fromkeys(rave.__all__, "ravemj.rave") | {
     "Viewer": "ravemj.gui.viewers",
     "read_motion": "ravemj.trajectories.motion",
     "record": "ravemj.rave.recording",
+    "write_motion": "ravemj.trajectories.motion_writing",
 }
 
 
