@@ -60,7 +60,7 @@ def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
 
 
 def _axes(name: str, joint: Joint, T_base_parent: Pose) -> list[tuple[bool, Axis, Vec3, Vec3]]:
-    """Return for each axis of a joint whether it slides, the axis, its direction and a point, in the base at values of 0."""
+    """Return for each axis of a joint whether it slides, itself, its direction and a point, in the base at 0."""
     if joint.mimic is not None or joint.kind == "spherical":
         what = "follows other joints" if joint.mimic is not None else "is spherical"
         raise ValueError(f"joint '{joint.name}' in {name} {what}: inverse kinematics needs joints of one value each")

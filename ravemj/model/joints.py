@@ -123,9 +123,9 @@ def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
     turned = multiply(now.wxyz, conjugate(rest.wxyz))
     if joint.kind == "spherical":
         return tuple(part if abs(part) > ROUNDING else 0.0 for part in rotation_vector(turned))
-    if len(joint.axes) > 1:
+    axis, *others = joint.axes
+    if others:
         return tuple(axis.reference for axis in joint.axes)
-    axis = joint.axes[0]
     if axis.direction == ZERO:
         return (0.0,)
     if joint.kind == "slider":

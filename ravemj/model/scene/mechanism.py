@@ -22,7 +22,7 @@ AXES: dict[JointKind, str] = {
     "pr": "RP",
     "pp": "PP",
 }
-"""For each kind of joint its axes, the carrying one first: R turns, P slides; OpenRAVE's names have the last one first."""
+"""For each kind of joint its axes, the carrying one first: R turns, P slides; names have them the other way round."""
 
 OWN_SHAPES = "self"
 """Name of the group of a link's own shapes, which is kept while another group replaces them."""
