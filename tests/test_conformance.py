@@ -13,12 +13,6 @@ NOT_COPIED = {
         r"inverse_dynamics",
         "without written derivatives OpenRAVE leaves the follower out of its dynamics",
     ),
-    "gap-58-dae-cylindrical": ("", "ravemj has no joint that turns and slides; the first axis counts, with a warning"),
-    "gap-72-mesh-absolute-missing": (
-        r"diffuse|ambient|geometries",
-        "OpenRAVE takes an absolute path for found without looking; all missing meshes look the same here",
-    ),
-    "gap-74-obj-quads": (r"mesh", "a concave polygon of five corners that OpenRAVE's importer cuts with an overlap"),
 }
 """Cases in which ravemj differs: a pattern of the places, and why."""
 

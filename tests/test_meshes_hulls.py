@@ -159,6 +159,14 @@ def test_ears_of_star_shaped_polygons(radii, axes):
     assert whole.shape == (3,)
 
 
+def test_bent_polygons_are_cut_from_the_last_corner():
+    """As ear clipping does it, which starts with the first corner; only quadrilaterals have a rule of their own."""
+    hexagon = np.array([[2, 0, 0], [1, 2, 1], [-1, 2, 0], [-2, 0, 1], [-1, -2, 0], [1, -2, 1]], float)
+    cut = clipped(hexagon, np.array([0]), np.array([6]))
+    assert cut.tolist() == [[5, 0, 1], [5, 1, 2], [5, 2, 3], [5, 3, 4]]
+    assert [set(one) for one in clip_ears(hexagon).tolist()] == [set(one) for one in cut.tolist()]
+
+
 @settings(max_examples=60)
 @given(st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=1, max_size=30))
 def test_any_polygon_is_cut_somehow(points):

@@ -427,6 +427,24 @@ class TestIncludes:
         assert [link.name for link in robot.links] == ["l_A", "l_B", "r_A", "r_B"]
         assert [joint.name for joint in robot.joints] == ["l_j", "r_j"]
 
+    def test_absolute_paths_count_as_found(self, write):
+        """OpenRAVE makes a reddish empty mesh of an absolute path that leads nowhere, but of STL files."""
+        write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "t.obj")
+        geom = '<Geom type="trimesh">{}<vertices>0 0 0 1 0 0 0 1 0</vertices></Geom>'
+        lost, grey, white = (1.0, 0.5, 0.5), (0.6, 0.6, 0.6), (1.0, 1.0, 1.0)
+        for tags, triangles, colours in (
+            ("<collision>/gone/x.iv</collision>", [0], [lost]),
+            ("<data>/gone/x.obj</data><render>/gone/y.obj</render>", [0, 0], [lost, lost]),
+            ("<data>/gone/x.obj</data><render>t.obj</render>", [0, 1], [lost, grey]),
+            ("<data>t.obj</data><render>/gone/x.obj</render>", [1], [grey]),
+            ("<data>/gone/x.stl</data>", [1], [white]),
+            ("<data>gone/x.obj</data>", [1], [white]),
+        ):
+            reading = read(write(f'<KinBody name="k"><Body name="a">{geom.format(tags)}</Body></KinBody>'))
+            parts = reading.scene.bodies[0].links[0].geometries
+            assert [len(part.shape.mesh.triangles) for part in parts] == triangles, tags
+            assert [part.diffuse for part in parts] == [pytest.approx(colour) for colour in colours], tags
+
     def test_missing_file_is_a_warning(self, write):
         reading = read(write('<Environment>\n<Robot name="r" file="gone.xml"/></Environment>'))
         assert reading.failure is None

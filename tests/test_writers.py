@@ -33,6 +33,7 @@ KNOWN_LOSSES = {
     ("collada", "errors-38-manipulator-unknown-link"): {"manipulators"},  # COLLADA has none without both links
     ("collada", "errors-39-manipulator-empty"): {"manipulators"},
     ("collada", "errors-46-mimic-circular"): {"follows DOFs"},  # an equation that OpenRAVE throws away
+    ("openrave", "gap-58-dae-cylindrical"): {"kind", "pose"},  # OpenRAVE XML has no such joint; its first axis is kept
     ("openrave", "willowgarage-pr2.zae"): {"direction"},  # of a weld, which OpenRAVE XML turns about the z axis
     ("openrave", "calibration_board.dae"): {"shapes"},  # OpenRAVE XML has no such shape; a box stands for it
 }

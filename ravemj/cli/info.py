@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from ravemj.cli.console import console, table
 from ravemj.cli.models import load_model
 from ravemj.cli.summary import dof_starts, summarize
-from ravemj.model.scene import AttachedSensor, Axis, Joint, KinBody, Link, Manipulator
+from ravemj.model.scene import AttachedSensor, Joint, KinBody, Link, Manipulator
 
 
 def info(options: argparse.Namespace) -> int:
@@ -89,7 +89,7 @@ class _Tree:
         elif joint.static:
             parts.append("fixed")
         else:
-            parts.extend(f"{_limits(axis)}{_unit(joint, axis)}" for axis in joint.axes)
+            parts.extend(_limits(joint, place) for place in range(len(joint.axes)))
         return f"{joint.name}: {', '.join(parts)}"
 
 
@@ -122,7 +122,7 @@ def _dofs(body: KinBody) -> object:
     for joint, first in zip(body.joints, dof_starts(body), strict=True):
         for dof, axis in enumerate(joint.axes, first):
             numbers = (axis.value, axis.max_velocity, axis.max_acceleration, axis.max_torque, axis.weight)
-            limits = "fixed" if joint.static else f"{_limits(axis)}{_unit(joint, axis)}"
+            limits = "fixed" if joint.static else _limits(joint, dof - first)
             rows.add_row(str(dof), joint.name, limits, *map(_number, numbers))
     return rows
 
@@ -163,12 +163,10 @@ def _link_name(links: Sequence[Link], index: int | None) -> str:
     return "none" if index is None else links[index].name
 
 
-def _limits(axis: Axis) -> str:
-    return "circular" if axis.circular else f"{_number(axis.lower)} to {_number(axis.upper)}"
-
-
-def _unit(joint: Joint, axis: Axis) -> str:
-    return "" if axis.circular else " m" if joint.kind == "slider" else " rad"
+def _limits(joint: Joint, place: int) -> str:
+    axis = joint.axes[place]
+    unit = "m" if joint.slides(place) else "rad"
+    return "circular" if axis.circular else f"{_number(axis.lower)} to {_number(axis.upper)} {unit}"
 
 
 def _number(value: float) -> str:

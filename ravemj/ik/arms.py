@@ -35,7 +35,7 @@ def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
     if not way or not manipulator.arm_dofs:
         raise ValueError(f"{name} has no joint that moves between its base and its effector: name links farther apart")
     T_base_link = Pose()
-    moving: list[tuple[Joint, Axis, Vec3, Vec3]] = []
+    moving: list[tuple[bool, Axis, Vec3, Vec3]] = []
     for index in way:
         joint = body.all_joints[index]
         locked_later = index < len(body.joints) and set(joint_dofs(body, index)) <= set(manipulator.arm_dofs)
@@ -50,7 +50,7 @@ def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
     return Chain.of(
         [direction for _, _, direction, _ in moving],
         [point for _, _, _, point in moving],
-        prismatic=[joint.kind == "slider" for joint, _, _, _ in moving],
+        prismatic=[slides for slides, _, _, _ in moving],
         lower=[axis.lower for axis in axes],
         upper=[axis.upper for axis in axes],
         circular=[axis.circular for axis in axes],
@@ -59,16 +59,16 @@ def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
     )
 
 
-def _axes(name: str, joint: Joint, T_base_parent: Pose) -> list[tuple[Joint, Axis, Vec3, Vec3]]:
-    """Return for each axis of a joint the joint, the axis, its direction and a point, in the base at values of 0."""
+def _axes(name: str, joint: Joint, T_base_parent: Pose) -> list[tuple[bool, Axis, Vec3, Vec3]]:
+    """Return for each axis of a joint whether it slides, itself, its direction and a point, in the base at 0."""
     if joint.mimic is not None or joint.kind == "spherical":
         what = "follows other joints" if joint.mimic is not None else "is spherical"
         raise ValueError(f"joint '{joint.name}' in {name} {what}: inverse kinematics needs joints of one value each")
     directions = directions_at(joint, [0.0] * len(joint.axes))
     point = (T_base_parent @ Pose(joint.anchor)).position
     return [
-        (joint, axis, rotate(T_base_parent.wxyz, direction), point)
-        for axis, direction in zip(joint.axes, directions, strict=True)
+        (joint.slides(index), axis, rotate(T_base_parent.wxyz, direction), point)
+        for index, (axis, direction) in enumerate(zip(joint.axes, directions, strict=True))
     ]
 
 

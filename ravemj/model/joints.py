@@ -69,18 +69,27 @@ def relative_pose(joint: Joint, values: Sequence[float]) -> Pose:
 
 def displaced_pose(joint: Joint, values: Sequence[float]) -> Pose:
     """Return the pose of a joint's child in its parent at the given values [rad or m], also of a weld."""
-    if joint.kind == "slider":
-        (axis,), (value,) = joint.axes, values
-        motion = Pose(scale(axis.direction, value - axis.reference))
-    else:
-        motion = about(joint.anchor, rotation(joint, values))
-    return motion @ joint.T_parent_child
+    if joint.kind == "spherical":
+        return about(joint.anchor, wxyz_from_rotation_vector((values[0], values[1], values[2]))) @ joint.T_parent_child
+    displaced = joint.T_parent_child
+    for index in range(len(joint.axes) - 1, -1, -1):
+        displaced = _motion(joint, index, values[index]) @ displaced
+    return displaced
+
+
+def _motion(joint: Joint, index: int, value: float) -> Pose:
+    """Return the displacement by one axis of a joint."""
+    axis = joint.axes[index]
+    way = value - axis.reference
+    if joint.slides(index):
+        return Pose(scale(axis.direction, way))
+    return about(joint.anchor, wxyz_from_axis_angle(axis.direction, way))
 
 
 def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
     """Return the directions of a joint's axes in its parent at given values; the second one turns with the first."""
     directions = [axis.direction for axis in joint.axes]
-    if joint.kind == "hinge2":
+    if joint.kind in {"hinge2", "pr"}:
         first = joint.axes[0]
         directions[1] = rotate(wxyz_from_axis_angle(first.direction, values[0] - first.reference), directions[1])
     return directions
@@ -91,16 +100,6 @@ def reported_anchor(joint: Joint) -> Vec3:
     if joint.kind != "slider":
         return joint.anchor
     return add(joint.anchor, scale(joint.axes[0].direction, -joint.axes[0].reference))
-
-
-def rotation(joint: Joint, values: Sequence[float]) -> Wxyz:
-    """Return the rotation of a joint from ``T_parent_child``, in the parent's axes."""
-    if joint.kind == "spherical":
-        return wxyz_from_rotation_vector((values[0], values[1], values[2]))
-    turned: Wxyz = (1.0, 0.0, 0.0, 0.0)
-    for axis, value in zip(joint.axes, values, strict=True):
-        turned = multiply(turned, wxyz_from_axis_angle(axis.direction, value - axis.reference))
-    return turned
 
 
 def about(anchor: Vec3, wxyz: Wxyz) -> Pose:
@@ -124,9 +123,9 @@ def measured_values(joint: Joint, now: Pose) -> tuple[float, ...]:
     turned = multiply(now.wxyz, conjugate(rest.wxyz))
     if joint.kind == "spherical":
         return tuple(part if abs(part) > ROUNDING else 0.0 for part in rotation_vector(turned))
-    if joint.kind == "hinge2":
+    axis, *others = joint.axes
+    if others:
         return tuple(axis.reference for axis in joint.axes)
-    (axis,) = joint.axes
     if axis.direction == ZERO:
         return (0.0,)
     if joint.kind == "slider":

@@ -36,14 +36,15 @@ def motion_bounds(body: KinBody) -> Floats:
 
 
 def _joint_reach(body: KinBody, joint: Joint) -> Floats:
-    """Return for each axis of a joint the greatest distance of the shapes that it moves; for a slider 1."""
+    """Return for each axis of a joint the greatest distance of the shapes that it moves; for one that slides 1."""
     if joint.kind == "slider":
         return np.ones(1)
     if joint.static or not joint.places_child:
         return np.zeros(len(joint.axes))
     axis = _direction_in_child(joint, np.array(joint.axes[0].direction)) if joint.kind == "hinge" else np.zeros(3)
     reach = _farthest(body, joint.child, _point_in_child(joint, np.array(joint.anchor)), axis)
-    return np.full(len(joint.axes), max(0.0, reach))
+    reach = max(0.0, reach + _stroke(joint))
+    return np.array([1.0 if joint.slides(axis) else reach for axis in range(len(joint.axes))])
 
 
 def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
@@ -71,14 +72,17 @@ def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
             anchor = np.array(joint.anchor)
             beyond = _farthest(body, joint.child, _point_in_child(joint, anchor), np.zeros(3))
             off = across @ (anchor - point)
+            beyond += _stroke(joint)
         found.append(beyond + float(np.linalg.norm(off)))
     return max(found)
 
 
 def _stroke(joint: Joint) -> float:
-    """Return the greatest displacement of a slider from ``T_parent_child``; 0 for a weld."""
-    (axis, *_) = joint.axes
-    return 0.0 if joint.static else max(abs(axis.lower - axis.reference), abs(axis.upper - axis.reference))
+    """Return the greatest displacement by the axes that slide from ``T_parent_child``; 0 for a weld."""
+    if joint.static:
+        return 0.0
+    sliding = (axis for index, axis in enumerate(joint.axes) if joint.slides(index))
+    return sum(max(abs(axis.lower - axis.reference), abs(axis.upper - axis.reference)) for axis in sliding)
 
 
 def _point_in_child(joint: Joint, point: Floats) -> Floats:

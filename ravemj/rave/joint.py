@@ -15,6 +15,7 @@ from ravemj.model.mimic import Equations, leaders, with_equations
 from ravemj.model.scene import Parameters
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
+from ravemj.rave.infos.joint import type_of
 from ravemj.rave.joint_limits import JointLimits
 from ravemj.rave.link import Link
 
@@ -26,7 +27,7 @@ class Joint(JointLimits):
 
     def GetType(self) -> JointType:
         """Return the kind of joint."""
-        return JointType[self._scene.kind.capitalize()]
+        return type_of(self._scene.kind)
 
     def GetJointIndex(self) -> int:
         """Return the joint's position in ``body.GetJoints()``; -1 for a passive joint."""
@@ -147,11 +148,11 @@ class Joint(JointLimits):
 
     def IsRevolute(self, axis: int = 0) -> bool:
         """Return whether an axis turns; as in OpenRAVE, a spherical joint has none that does."""
-        return 0 <= axis < len(self._scene.axes) and self._scene.kind in {"hinge", "hinge2"}
+        return 0 <= axis < len(self._scene.axes) and self._scene.kind != "spherical" and not self._scene.slides(axis)
 
     def IsPrismatic(self, axis: int = 0) -> bool:
         """Return whether an axis slides."""
-        return 0 <= axis < len(self._scene.axes) and self._scene.kind == "slider"
+        return 0 <= axis < len(self._scene.axes) and self._scene.slides(axis)
 
     def IsCircular(self, axis: int = 0) -> bool:
         """Return whether the joint turns without end.

@@ -81,7 +81,7 @@ class Chain:
                 source = ("dof", kinematics.first_dofs[index] + axis)
             elif any(mimic.joint == index for mimic in kinematics.mimic.joints):
                 source = ("mimic", index)
-            kind = "hinge" if joint.kind == "hinge2" else joint.kind
+            kind = "spherical" if joint.kind == "spherical" else "slider" if joint.slides(axis) else "hinge"
             frame, reference = T_step_parent @ T_parent_frame, joint.axes[axis].reference
             step = self._append(Step(kind, step, frame, source, reference, self._coordinate_of_qpos[qpos], joint.child))
             T_step_parent = inverse(T_parent_frame)

@@ -37,7 +37,7 @@ class JointAxes:
         self.slides = np.array([index for index, joint in enumerate(joints) if joint.kind == "slider"], dtype=int)
         self.slide_parents = self.parents[self.slides]
         self.slide_parent_ids, self.slide_child_ids = self.parent_ids[self.slides], body_ids[self.children[self.slides]]
-        self.special = [(index, joint) for index, joint in enumerate(joints) if joint.kind in {"spherical", "hinge2"}]
+        self.special = [(index, joint) for index, joint in enumerate(joints) if len(joint.axes) > 1]
 
 
 class JointVelocities:
@@ -75,7 +75,7 @@ class JointVelocities:
                 rotation = self._kinematics.data.xmat[self._kinematics.body_ids[joint.parent]].reshape(3, 3)
                 shown[index] = self._spherical_velocity(joint, rotation.T @ turning)
             else:
-                shown[index] = np.linalg.pinv(self._two_axes(joint)) @ turning
+                shown[index] = self._two_rates(joint, velocities)
         return shown
 
     def _of_first_axes(self, velocities: Floats, of: JointAxes) -> Floats:
@@ -92,11 +92,24 @@ class JointVelocities:
             rates[slides] = (axes[slides] * moving).dot(_ONES)
         return rates
 
-    def _two_axes(self, joint: Joint) -> Floats:
-        """Return the axes of a ``hinge2`` as columns, shape (3, 2)."""
+    def _two_rates(self, joint: Joint, velocities: Floats) -> Floats:
+        """Return the velocities of a joint with two axes, shape (2,)."""
+        data, model = self._kinematics.data, self._kinematics.model
         places = self._kinematics.joint_qpos[self._kinematics.body.all_joints.index(joint)]
-        ids = np.flatnonzero(np.isin(self._kinematics.model.jnt_qposadr, places))
-        return self._kinematics.data.xaxis[ids].T if places else np.zeros((3, 2))
+        if not places:
+            return np.zeros(2)
+        ids = np.flatnonzero(np.isin(model.jnt_qposadr, places))
+        axes, parent, child = data.xaxis[ids], velocities[joint.parent], velocities[joint.child]
+        if joint.kind == "hinge2":
+            return np.linalg.pinv(axes.T) @ (child[3:] - parent[3:])
+        place = data.xpos[self._kinematics.body_ids[joint.child]]
+        arm = place - data.xpos[self._kinematics.body_ids[joint.parent]]
+        shown = np.concatenate([child[:3] - parent[:3] - np.cross(parent[3:], arm), child[3:] - parent[3:]])
+        columns = [
+            [*axis, 0, 0, 0] if joint.slides(index) else [*np.cross(axis, place - data.xanchor[ids[index]]), *axis]
+            for index, axis in enumerate(axes)
+        ]
+        return np.linalg.pinv(np.array(columns).T) @ shown
 
     def _spherical_velocity(self, joint: Joint, turning: Floats) -> Floats:
         """Return the rate of a rotation vector, for an angular velocity in the parent's axes."""

@@ -101,7 +101,7 @@ class BodyWriter:
         out = self._sections.kinematics_models
         with out.inside("joint", sid=f"joint{index}", name=joint.name):
             for place, direction in enumerate(self._directions(joint)):
-                with out.inside("prismatic" if joint.kind == "slider" else "revolute", sid=f"axis{place}"):
+                with out.inside("prismatic" if joint.slides(place) else "revolute", sid=f"axis{place}"):
                     out.element("axis", direction)
             if joint.kind == "spherical":
                 with out.inside("extra", type=PROFILE):
@@ -135,7 +135,7 @@ class BodyWriter:
                 nodes.element("translate", anchor)
                 for place, direction in enumerate(self._directions(body.all_joints[joint])):
                     sid = f"joint{self._number}.{joint}_axis{place}"
-                    if body.all_joints[joint].kind == "slider":
+                    if body.all_joints[joint].slides(place):
                         nodes.element("translate", ZERO, sid=sid)
                     else:
                         nodes.element("rotate", (*direction, 0.0), sid=sid)

@@ -6,6 +6,7 @@ from ravemj.formats.collada.references import References
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, words
 from ravemj.model.builder import BodyBuilder, JointBuilder
 from ravemj.model.mimic import Equations
+from ravemj.model.scene import AXES
 
 
 def read_formulas(
@@ -69,7 +70,7 @@ class _FormulaReader:
 
     def _in_metres(self, joint: JointBuilder, text: str) -> str:
         """Return the text of a position in metres or radians, from units of the file."""
-        return f"{self._metres:f}*({text})" if joint.kind == "slider" and self._metres != 1 else text
+        return f"{self._metres:f}*({text})" if AXES[joint.kind][0] == "P" and self._metres != 1 else text
 
     def _source(self, path: str) -> str | None:
         """Return the text for the value of a joint in units of the file."""
@@ -77,7 +78,9 @@ class _FormulaReader:
         if index is None:
             return None
         joint = self._body.joints[index]
-        return f"({1 / self._metres:f}*{joint.name})" if joint.kind == "slider" and self._metres != 1 else joint.name
+        return (
+            f"({1 / self._metres:f}*{joint.name})" if AXES[joint.kind][0] == "P" and self._metres != 1 else joint.name
+        )
 
     def _joint(self, path: str) -> int | None:
         found = self._references.resolve(path, self._model) if path else None

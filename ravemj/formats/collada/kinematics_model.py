@@ -31,11 +31,11 @@ from ravemj.formats.collada.supplement import own_techniques
 from ravemj.formats.collada.visual import Node, transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers
 from ravemj.model.builder import BodyBuilder, JointBuilder, LinkBuilder
-from ravemj.model.scene import Axis, JointKind
+from ravemj.model.scene import AXES, Axis, JointKind
 
 _MAX_LINKS = 20_000
 _SHIFT = 1e-6  # of nodes, below which nobody sees it
-_AXES: dict[JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "spherical": 3}
+_KINDS: dict[str, JointKind] = {axes: kind for kind, axes in AXES.items() if kind != "spherical"}
 _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.:/-]")
 
 
@@ -283,7 +283,8 @@ class ModelReader:
             T_first_second=T_parent_child,
             anchor=T_parent_frame.position,
             axes=tuple(
-                self._axis(axis, info, T_parent_frame) for axis, info in zip(axes[: _AXES[kind]], infos, strict=False)
+                self._axis(axis, info, T_parent_frame)
+                for axis, info in zip(axes[: len(AXES[kind])], infos, strict=False)
             ),
             weld_turn=self._weld_turn(kind, axes[0], infos[0], T_parent_frame, T_parent_child),
             enabled=all(self._axes.is_active(info) for info in infos),
@@ -291,15 +292,13 @@ class ModelReader:
         )
 
     def _kind(self, joint: Element, axes: list[Element]) -> JointKind:
-        kinds = [local_name(axis) for axis in axes]
-        if len(kinds) == 3 and next(own_techniques(joint), None) is not None:
+        written = "".join("R" if local_name(axis) == "revolute" else "P" for axis in axes)
+        if len(written) == 3 and next(own_techniques(joint), None) is not None:
             return "spherical"
-        if kinds == ["revolute", "revolute"]:
-            return "hinge2"
-        if len(kinds) > 1:
-            message = f"a joint with the axes {', '.join(kinds)} is more than ravemj can move; the first counts"
+        if written not in _KINDS:
+            message = f"a joint with {len(written)} axes is more than ravemj can move; the first counts"
             self._library.warn("unknown-type", message, joint)
-        return "hinge" if kinds[0] == "revolute" else "slider"
+        return _KINDS.get(written, _KINDS[written[0]])
 
     def _axis(self, element: Element, info: AxisInfo, T_parent_frame: Pose) -> Axis:
         return self._axes.read(element, rotate(T_parent_frame.wxyz, _direction(element)), info)

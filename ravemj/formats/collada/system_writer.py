@@ -71,7 +71,7 @@ class SystemWriter:
         out, joint = self._sections.systems, self._body.all_joints[index]
         sid = f"{self._name}_axis{index}_{place}"
         with out.inside("axis_info", sid=sid, axis=f"{self._joint_path(index)}/axis{place}"):
-            circular = axis.circular and joint.kind != "slider"
+            circular = axis.circular and not joint.slides(place)
             if axis.circular and not circular:
                 message = f"the slider '{joint.name}' is circular, as none is in COLLADA; there it has limits"
                 self._diagnostics.warn("not-written", message, joint.source)
@@ -86,15 +86,15 @@ class SystemWriter:
                     out.element("int", first + place)
             if not circular:
                 with out.inside("limits"):
-                    _write_value(out, "min", "float", _in_file(joint, axis.lower))
-                    _write_value(out, "max", "float", _in_file(joint, axis.upper))
+                    _write_value(out, "min", "float", _in_file(joint, place, axis.lower))
+                    _write_value(out, "max", "float", _in_file(joint, place, axis.upper))
 
     def _write_motion(self, index: int, place: int, axis: Axis) -> None:
         """Write the largest velocity and acceleration of an axis."""
         out, joint = self._sections.systems, self._body.all_joints[index]
         with out.inside("axis_info", axis=f"{self._name}_kinematics/{self._name}_axis{index}_{place}"):
-            _write_value(out, "speed", "float", _in_file(joint, axis.max_velocity))
-            _write_value(out, "acceleration", "float", _in_file(joint, axis.max_acceleration))
+            _write_value(out, "speed", "float", _in_file(joint, place, axis.max_velocity))
+            _write_value(out, "acceleration", "float", _in_file(joint, place, axis.max_acceleration))
 
     def _write_scene(self) -> None:
         """Write the instance in the kinematics scene, and the bindings to nodes and values."""
@@ -120,7 +120,7 @@ class SystemWriter:
                 with out.inside("axis"):
                     out.element("param", f"{scope}_joint{index}_axis{place}")
                 _write_value(
-                    out, "value", "float", _in_file(joint, axis.value) if index < len(self._body.joints) else 0
+                    out, "value", "float", _in_file(joint, place, axis.value) if index < len(self._body.joints) else 0
                 )
 
     def _write_extras(self) -> None:
@@ -220,9 +220,9 @@ class SystemWriter:
         return f"{self._model_of_joint[index]}/joint{index}"
 
 
-def _in_file(joint: Joint, value: float) -> float:
-    """Return a value in degrees, that of a slider in metres."""
-    return value if joint.kind == "slider" else settled.degrees(value)
+def _in_file(joint: Joint, place: int, value: float) -> float:
+    """Return a value of an axis in degrees, where it slides in metres."""
+    return value if joint.slides(place) else settled.degrees(value)
 
 
 def _write_parameter(out: XmlText, name: str, kind: str, value: float | bool) -> None:

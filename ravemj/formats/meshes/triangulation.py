@@ -40,13 +40,24 @@ def clipped(points: Floats, starts: Ints, sizes: Ints) -> Ints:
     Returns:
         As ``fans``.
     """
-    quads = sizes == 4
-    concave = _concave(points, starts, sizes) & ~quads
-    plain = ~(concave | quads)
-    pieces = [fans(starts[plain], sizes[plain]), _halves(points, starts[quads])]
+    quads, large = sizes == 4, sizes > 4
+    concave = _concave(points, starts, sizes) & large
+    convex = large & ~concave
+    pieces = [
+        fans(starts[sizes < 4], sizes[sizes < 4]),
+        _fans_about_the_last(starts[convex], sizes[convex]),
+        _halves(points, starts[quads]),
+    ]
     for start, size in zip(starts[concave].tolist(), sizes[concave].tolist(), strict=True):
         pieces.append(start + clip_ears(points[start : start + size]))
     return np.concatenate(pieces)
+
+
+def _fans_about_the_last(starts: Ints, sizes: Ints) -> Ints:
+    """Triangulate convex polygons as ear clipping does it, whose ears are the corners from the first one on."""
+    triangles = fans(starts, sizes)
+    first = np.repeat(starts + sizes - 1, np.maximum(sizes - 2, 0))
+    return np.stack([first, triangles[:, 1] - 1, triangles[:, 2] - 1], axis=1)
 
 
 def _halves(points: Floats, starts: Ints) -> Ints:
@@ -69,6 +80,8 @@ def _halves(points: Floats, starts: Ints) -> Ints:
 def clip_ears(polygon: Floats) -> Ints:
     """Triangulate one polygon by ear clipping; a corner that repeats the one before it is left out.
 
+    The search for the next ear goes on behind the last one, as in OpenRAVE's importer (conformance case ``gap-74``).
+
     Args:
         polygon: Its corners in order, shape (n, 3).
 
@@ -83,7 +96,7 @@ def clip_ears(polygon: Floats) -> Ints:
         position, needed = _ear(flat[left])
         tests -= needed
         triangles.append((left[position - 1], left[position], left[(position + 1) % len(left)]))
-        del left[position]
+        left = left[position + 1 :] + left[:position]
     triangles += [(left[0], left[i], left[i + 1]) for i in range(1, len(left) - 1)]
     return np.array(triangles, np.int_).reshape(-1, 3)
 

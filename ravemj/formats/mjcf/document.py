@@ -206,7 +206,8 @@ class _Writer:
         if not joint.places_child or joint.static or not (active or follows) or joint.axes[0].direction == ZERO:
             return ()
         first = self._given.give("joint", body, name)
-        return (first, self._given.give("joint", body, f"{name}_1")) if joint.kind == "hinge2" else (first,)
+        one = len(joint.axes) == 1 or joint.kind == "spherical"
+        return (first,) if one else (first, self._given.give("joint", body, f"{name}_1"))
 
     def _write_tree(
         self, index: int, body: KinBody, names: BodyNames, joints: tuple[Joint, ...], welds: WeldGroups
@@ -273,12 +274,12 @@ class _Writer:
         if joint.kind == "spherical" and names:
             self.bodies.element("joint", joint.source, name=names[0], type="ball", pos=position)
             return
-        for name, axis in zip(names, joint.axes, strict=False):
+        for index, (name, axis) in enumerate(zip(names, joint.axes, strict=False)):
             self.bodies.element(
                 "joint",
                 joint.source,
                 name=name,
-                type="slide" if joint.kind == "slider" else "hinge",
+                type="slide" if joint.slides(index) else "hinge",
                 pos=position,
                 axis=rotate(conjugate(joint.T_parent_child.wxyz), axis.direction),
                 **_range(axis),

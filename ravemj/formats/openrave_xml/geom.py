@@ -38,6 +38,7 @@ CYLINDER_TURN = Pose(ZERO, wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi / 2))
 """In XML a cylinder lies along y, in memory along z."""
 
 _NO_PART = MeshPart(Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=int)))
+_REDDISH = replace(_NO_PART, diffuse=(1.0, 0.5, 0.5), ambient=(0.1, 0.0, 0.0))
 
 
 class GeometryScope(NamedTuple):
@@ -186,20 +187,30 @@ def read_geometries(element: Element, scope: GeometryScope, context: Context) ->
 
 def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geometry]:
     """Return the geometries of a trimesh: of the collision file, else of the render file, else of its vertices."""
+    found: list[Geometry] = []
     for file in (geom.collision, geom.render):
         parts = _parts(geom, file, element, scope)
+        drawn = geom.render if parts and file is geom.collision else None
+        surfaces = _surfaces(geom, drawn, element, scope)
+        displays = [surfaces, *[None if surfaces is None else ()] * (len(parts) - 1)]
+        found += [
+            _geometry(geom, element, TriMesh(_scaled(part.mesh, geom, scope)), scope, part, display)
+            for part, display in zip(parts or _lost(file), displays, strict=False)
+        ]
         if parts:
-            drawn = geom.render if file is geom.collision and geom.collision is not None else None
-            surfaces = _surfaces(geom, drawn, element, scope)
-            displays = [surfaces, *[None if surfaces is None else ()] * (len(parts) - 1)]
-            geometries = [
-                _geometry(geom, element, TriMesh(_scaled(part.mesh, geom, scope)), scope, part, display)
-                for part, display in zip(parts, displays, strict=True)
-            ]
-            return [geometries[0], *(replace(geometry, name="") for geometry in geometries[1:])]
+            break
+    if found:
+        return [found[0], *(replace(geometry, name="") for geometry in found[1:])]
     corners = np.array(geom.vertices).reshape(-1, 3)
     mesh = Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
     return [_geometry(geom, element, TriMesh(_scaled(mesh, geom, scope)), scope, MeshPart(mesh), None)]
+
+
+def _lost(file: MeshFile | None) -> tuple[MeshPart, ...]:
+    """Return what OpenRAVE makes of a file that is not there: of an absolute path, which it trusts, an empty mesh."""
+    if file is None or not os.path.isabs(file.name) or file.name.lower().endswith(".stl") or os.path.isfile(file.name):
+        return ()
+    return (_REDDISH,)
 
 
 def _geometry(

@@ -20,11 +20,10 @@ from ravemj.formats.openrave_xml.values import (
 )
 from ravemj.model.builder import BodyBuilder, JointBuilder
 from ravemj.model.mimic import Equations
-from ravemj.model.scene import UNLIMITED, Axis, JointKind
+from ravemj.model.scene import AXES, UNLIMITED, Axis, JointKind
 
 _KINDS: dict[str, JointKind] = {"hinge": "hinge", "slider": "slider", "hinge2": "hinge2", "spherical": "spherical"}
 _DEFAULT_LIMIT: dict[JointKind, float] = {"hinge": math.pi, "slider": 10.0, "hinge2": math.pi, "spherical": 100.0}
-_AXES: dict[JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "spherical": 3}
 _PLAIN_AXIS = Axis(ZERO)
 _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -200,7 +199,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
         return
     kind = _read_kind(element, context)
     circular = not is_false(element.attributes.get("circular", "false"))
-    spans = [UNLIMITED if circular and index == 0 else _DEFAULT_LIMIT[kind] for index in range(_AXES[kind])]
+    spans = [UNLIMITED if circular and index == 0 else _DEFAULT_LIMIT[kind] for index in range(len(AXES[kind]))]
     limits: list[dict[str, float]] = [{"lower": -span, "upper": span} for span in spans]
     reader = _JointReader(context, body, kind, scale_attribute(element), circular, limits)
     context.walk(element, JOINT_TAGS, JOINT_IGNORED, reader)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose, conjugate, rotate
 from ravemj.errors import Diagnostics
@@ -10,11 +11,12 @@ from ravemj.formats.openrave_xml.part_names import PartNames
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.joints import poses_at, rests
 from ravemj.model.limits import clamp
-from ravemj.model.scene import Axis, Joint, KinBody, Mimic
+from ravemj.model.scene import Axis, Joint, JointKind, KinBody, Mimic
 
 _NEAR = 1e-9  # of points [m] and of unit vectors
 _Z = (0.0, 0.0, 1.0)
 _AXIS_TAGS = {"hinge": ("axis",), "slider": ("axis",), "hinge2": ("axis1", "axis2"), "spherical": ()}
+_FIRST_AXES: dict[JointKind, JointKind] = {"rp": "slider", "pr": "hinge", "pp": "slider"}
 
 
 def listed_poses(body: KinBody) -> list[Pose]:
@@ -34,6 +36,19 @@ def needs_values(body: KinBody) -> bool:
 def _initial(body: KinBody, index: int, axis: Axis) -> float:
     """Return the value at the listed poses; a joint that neither has DOFs nor follows others stays where it is."""
     return axis.value if rests(body, body.all_joints[index]) else axis.reference
+
+
+def writable(body: KinBody, diagnostics: Diagnostics) -> KinBody:
+    """Return a body whose joints the format knows: of two axes of which one slides the first is kept."""
+    joints: list[Joint] = []
+    for joint in body.all_joints:
+        if joint.kind in _FIRST_AXES:
+            message = f"OpenRAVE XML has no joint of the type '{joint.kind}'; of '{joint.name}' the first axis is kept"
+            diagnostics.warn("not-written", message, joint.source)
+            joint = replace(joint, kind=_FIRST_AXES[joint.kind], axes=joint.axes[:1])  # noqa: PLW2901
+        joints.append(joint)
+    count = len(body.joints)
+    return replace(body, joints=tuple(joints[:count]), passive_joints=tuple(joints[count:]))
 
 
 class JointWriter:

@@ -10,7 +10,7 @@ from ravemj.core.transforms import ZERO, Pose
 from ravemj.errors import Diagnostics, OutputError
 from ravemj.formats import settled
 from ravemj.formats.openrave_xml.geom_writer import GeomWriter, MeshFormat, write_pose
-from ravemj.formats.openrave_xml.joint_writer import JointWriter, listed_poses, needs_values
+from ravemj.formats.openrave_xml.joint_writer import JointWriter, listed_poses, needs_values, writable
 from ravemj.formats.openrave_xml.mass import single
 from ravemj.formats.openrave_xml.part_names import PartNames
 from ravemj.formats.openrave_xml.sensor import known_type
@@ -76,6 +76,7 @@ class _Writer:
         if not body.name or " " in body.name or not body.name.isprintable():
             raise OutputError(f"OpenRAVE reads no body with the name {body.name!r}; give it one without spaces")
         joined = None if body.joined_links_adjacent else 0
+        body = writable(body, self.diagnostics)
         names = PartNames(body, self.diagnostics)
         if not body.is_robot:
             if body.manipulators or body.sensors:

@@ -14,8 +14,8 @@ from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.playback import SPEEDS, Playback
 from ravemj.gui.interaction.selection import Selector
 
-_WIDEST = {"slider": (1.0, "m"), "other": (math.pi, "rad")}
-"""How far a slider goes to each side where the joint's limits are much wider, and its unit."""
+_WIDEST = {True: (1.0, "m"), False: (math.pi, "rad")}
+"""How far a control goes to each side where the limits of the axis are much wider, and its unit; True: it slides."""
 
 _MUCH = 4.0
 """How many times wider than that limits are that no slider can cover."""
@@ -175,7 +175,7 @@ class Controls:
 def _joint(body: BodyState, dof: int, value: float) -> Control:
     limits = body.scene.dof_axes[dof]
     joint, axis = joint_and_axis(body, dof)
-    reach, unit = _WIDEST.get(joint.kind, _WIDEST["other"])
+    reach, unit = _WIDEST[joint.slides(axis)]
     shown, lower, upper = value, limits.lower, limits.upper
     if limits.circular:
         lower, upper, shown = -math.pi, math.pi, math.remainder(value, math.tau)

@@ -53,8 +53,8 @@ def turn_by_edge(body: BodyState, cube: Cube, grip: Grip, ray: Ray) -> Follow:
 def move_joint(body: BodyState, dof: int, handle: JointHandle, point: Floats, ray: Ray) -> Follow:
     """Let a joint follow the pointer, which holds a point of its handle, as far as its limits go."""
     start = float(body.kinematics.values()[dof])
-    joint, _ = joint_and_axis(body, dof)
-    measure = Slide(handle.axis, point).way if joint.kind == "slider" else Turn(*_about(handle), point, ray).angle
+    joint, axis = joint_and_axis(body, dof)
+    measure = Slide(handle.axis, point).way if joint.slides(axis) else Turn(*_about(handle), point, ray).angle
 
     return lambda ray: set_dof(body, dof, start + measure(ray))
 

@@ -117,10 +117,12 @@ def _strip(points: Floats) -> Primitives:
 def _frame(body: BodyState, joint: Joint, axis: int, values: Sequence[float]) -> Floats:
     """Return the frame of an axis in the world: z along it, x fixed to the joint's child."""
     T_world_parent, T_world_child = (body.link_transform(link) for link in (joint.parent, joint.child))
-    direction = np.array(directions_at(joint, values)[axis])
+    directions = directions_at(joint, values)
+    direction = np.array(directions[axis])
     anchor = np.array(joint.anchor)
-    if joint.kind == "slider":
-        anchor += (values[0] - joint.axes[0].reference) * direction
+    for index in range(axis + 1):
+        if joint.slides(index):
+            anchor += (values[index] - joint.axes[index].reference) * np.array(directions[index])
     z = T_world_parent[:3, :3] @ direction
     in_child = z @ T_world_child[:3, :3]
     aside = np.eye(3)[0 if abs(in_child[0]) < 0.9 else 1]

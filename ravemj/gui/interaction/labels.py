@@ -24,7 +24,7 @@ def joint_line(body: BodyState, dof: int) -> str:
     joint, axis = joint_and_axis(body, dof)
     value = float(body.kinematics.values()[dof])
     which = f", axis {axis}" if len(joint.axes) > 1 else ""
-    shown = f"{_number(value)} m" if joint.kind == "slider" else f"{_number(value)} rad, {_angle(value)} deg"
+    shown = f"{_number(value)} m" if joint.slides(axis) else f"{_number(value)} rad, {_angle(value)} deg"
     return f"Joint {joint.name}{which}, DOF {dof}: {shown}"
 
 

@@ -6,6 +6,7 @@ angles radians, masses kilograms. Links are referred to by their index in ``KinB
 
 from ravemj.model.scene.body import AttachedSensor, Intrinsics, KinBody, Manipulator
 from ravemj.model.scene.mechanism import (
+    AXES,
     NO_PARAMETERS,
     OWN_SHAPES,
     UNLIMITED,
@@ -41,6 +42,7 @@ from ravemj.model.scene.shapes import (
 from ravemj.model.scene.world import Scene, View
 
 __all__ = [
+    "AXES",
     "NO_PARAMETERS",
     "OWN_SHAPES",
     "SHAPE_TYPES",

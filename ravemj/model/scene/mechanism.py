@@ -11,7 +11,18 @@ from ravemj.model.scene.shapes import Geometry
 if TYPE_CHECKING:
     from ravemj.model.expressions import Expression
 
-JointKind = Literal["hinge", "slider", "hinge2", "spherical"]
+JointKind = Literal["hinge", "slider", "hinge2", "spherical", "rp", "pr", "pp"]
+
+AXES: dict[JointKind, str] = {
+    "hinge": "R",
+    "slider": "P",
+    "hinge2": "RR",
+    "spherical": "RRR",
+    "rp": "PR",
+    "pr": "RP",
+    "pp": "PP",
+}
+"""For each kind of joint its axes, the carrying one first: R turns, P slides; names have them the other way round."""
 
 OWN_SHAPES = "self"
 """Name of the group of a link's own shapes, which is kept while another group replaces them."""
@@ -149,8 +160,8 @@ class Joint(Record):
 
     Attributes:
         name: Its name.
-        kind: ``hinge``, ``slider``, ``hinge2`` (two axes, the second carried by the first) or ``spherical`` (a rotation
-            vector in the parent's axes).
+        kind: ``hinge``, ``slider``, ``spherical`` (a rotation vector in the parent's axes), or two axes, of which the
+            first carries the second: ``hinge2``, and those that slide, too: ``rp``, ``pr`` and ``pp``; see ``AXES``.
         parent: Index of the link nearer to link 0.
         child: Index of the link farther from link 0.
         T_parent_child: Relative pose of the two at ``Axis.reference``.
@@ -173,6 +184,10 @@ class Joint(Record):
     mimic: Mimic | None = None
     parameters: Parameters = NO_PARAMETERS
     source: Source
+
+    def slides(self, axis: int = 0) -> bool:
+        """Tell whether an axis slides; else it turns."""
+        return AXES[self.kind][axis] == "P"
 
     @property
     def equation(self) -> "Expression | None":

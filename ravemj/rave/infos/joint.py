@@ -40,8 +40,10 @@ _KINDS: dict[JointType, scene.JointKind] = {
     JointType.Slider: "slider",
     JointType.Hinge2: "hinge2",
     JointType.Spherical: "spherical",
+    JointType.RP: "rp",
+    JointType.PR: "pr",
+    JointType.PP: "pp",
 }
-_AXES: dict[scene.JointKind, int] = {"hinge": 1, "slider": 1, "hinge2": 2, "spherical": 3}
 _AXIS_FIELDS = (
     ("_vresolution", "resolution", 0.02),
     ("_vmaxvel", "max_velocity", 10.0),
@@ -68,7 +70,7 @@ class JointInfo(ParameterFields):
     """A joint between two links. Fields with a number for each axis may be longer than there are axes.
 
     Attributes:
-        _type: The kind of joint, a ``JointType``: Hinge, Slider, Hinge2 or Spherical.
+        _type: The kind of joint, a ``JointType``: Hinge, Slider, Hinge2, Spherical, RP, PR or PP.
         _name: Its name.
         _linkname0: Name of the one link; anchor and axes are in its frame.
         _linkname1: Name of the other.
@@ -143,7 +145,7 @@ class JointInfo(ParameterFields):
             field: np.array([getattr(axis, name) for axis in joint.axes]) for field, name, _ in _AXIS_FIELDS
         }
         return cls(
-            _type=JointType[joint.kind.capitalize()],
+            _type=type_of(joint.kind),
             _name=joint.name,
             _linkname0=body.links[joint.parent].name,
             _linkname1=body.links[joint.child].name,
@@ -194,14 +196,16 @@ class JointInfo(ParameterFields):
         """
         kind = _KINDS.get(JointType(self._type))
         if kind is None:
-            message = f"joint '{self._name}' is of type {JointType(self._type).name}; ravemj has hinge, slider, hinge2 "
-            raise RavemjError(f"{message}and spherical", ErrorCode.NotImplemented)
+            message = (
+                f"joint '{self._name}' is of type {JointType(self._type).name}; ravemj has {', '.join(scene.AXES)}"
+            )
+            raise RavemjError(message, ErrorCode.NotImplemented)
         names = [link.name for link in links]
         for name in (self._linkname0, self._linkname1):
             if name not in names:
                 raise ArgumentError(f"joint '{self._name}' names a link '{name}'; there are {', '.join(names)}")
         first, second = names.index(self._linkname0 or ""), names.index(self._linkname1 or "")
-        values = per_axis(self._vcurrentvalues, _AXES[kind], 0.0, "JointInfo._vcurrentvalues")
+        values = per_axis(self._vcurrentvalues, len(scene.AXES[kind]), 0.0, "JointInfo._vcurrentvalues")
         axes = self._made_axes(kind, values)
         anchor = vector(self._vanchor, "JointInfo._vanchor")
         T_first_second = links[first].pose.inverse() @ links[second].pose
@@ -253,6 +257,11 @@ class JointInfo(ParameterFields):
     def _equations(self) -> Equations | None:
         first = self._vmimic[0] if self._vmimic else None
         return Equations(*map(str, first)) if first and any(first) else None
+
+
+def type_of(kind: scene.JointKind) -> JointType:
+    """Return OpenRAVE's type of a kind of joint."""
+    return next(number for number, known in _KINDS.items() if known == kind)
 
 
 _TWO_AXES = (JointType.RR, JointType.RP, JointType.PR, JointType.PP)
