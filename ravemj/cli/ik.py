@@ -140,11 +140,19 @@ def _start(path: str, robot: Robot) -> list[float]:
 
 
 def _reached(arm: Manipulator, options: argparse.Namespace) -> list[tuple[Floats, str]]:
-    """Return the joint values that reach the goal and their branches, those nearest to the present values first."""
+    """Return the joint values that reach the goal and their branches, those nearest to the present values first.
+
+    Of each angle the turn comes that is within the limits, if one is.
+    """
+    from ravemj.ik.limits import nearest_turns  # noqa: PLC0415 - slow to import
+
     found = arm.ik(_goal(options), _kind(options), limits=False)
     valid = found.valid[0]
-    rows = found.solutions[0][valid]
-    order = np.argsort(np.linalg.norm(rows - arm.GetArmDOFValues(), axis=1), kind="stable")
+    rows, here = found.solutions[0][valid], arm.GetArmDOFValues()
+    chain = arm.ik_solver(_kind(options)).chain
+    moved, _ = nearest_turns(chain, rows, here)  # which also puts what is beyond a limit onto it
+    rows = rows + 2 * np.pi * chain.turning * np.round((moved - rows) / (2 * np.pi))
+    order = np.argsort(np.linalg.norm(rows - here, axis=1), kind="stable")
     names = np.array(found.branches)[valid]
     return [(rows[index], str(names[index])) for index in order]
 
