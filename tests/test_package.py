@@ -120,14 +120,14 @@ def circles(typing: bool) -> list[set[str]]:
 
 
 NAME_EACH_OTHER = """
-    rave.arm_collision rave.arm_goals rave.arm_gripper rave.arm_ik rave.body.active rave.body.building
-    rave.body.collision rave.body.configuration rave.body.geometry_groups rave.body.grabbing rave.body.manipulators
-    rave.body.saving rave.body.structure rave.body.velocities rave.collision rave.collision_extras
-    rave.configuration_data rave.controllers rave.controllers.base rave.controllers.ideal rave.controllers.multi
-    rave.controllers.velocity rave.env.base rave.env.collision rave.env.contents rave.env.described
-    rave.env.description rave.env.drawing rave.env.loading rave.env.publishing rave.env.saving rave.env.simulation
-    rave.env.viewing rave.environment rave.ik_judge rave.ik_search rave.ikreturn rave.iksolver rave.interface
-    rave.joint rave.joint_limits rave.kinbody rave.link rave.link_geometries rave.manipulator rave.member
+    rave.arm_collision rave.arm_goals rave.arm_gripper rave.arm_ik rave.arm_redundancy rave.body.active
+    rave.body.building rave.body.collision rave.body.configuration rave.body.geometry_groups rave.body.grabbing
+    rave.body.manipulators rave.body.saving rave.body.structure rave.body.velocities rave.collision
+    rave.collision_extras rave.configuration_data rave.controllers rave.controllers.base rave.controllers.ideal
+    rave.controllers.multi rave.controllers.velocity rave.env.base rave.env.collision rave.env.contents
+    rave.env.described rave.env.description rave.env.drawing rave.env.loading rave.env.publishing rave.env.saving
+    rave.env.simulation rave.env.viewing rave.environment rave.ik_judge rave.ik_search rave.ikreturn rave.iksolver
+    rave.interface rave.joint rave.joint_limits rave.kinbody rave.link rave.link_geometries rave.manipulator rave.member
     rave.module rave.parameters rave.physics rave.report rave.robot rave.sensors rave.specification rave.tables
     rave.trajectory
 """

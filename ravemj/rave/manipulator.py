@@ -16,7 +16,7 @@ from ravemj.model import chains, hashes, scene
 from ravemj.model.manipulators import joint_dofs
 from ravemj.rave.arm_collision import ArmCollision
 from ravemj.rave.arm_gripper import ArmGripper
-from ravemj.rave.arm_ik import ArmIk
+from ravemj.rave.arm_redundancy import ArmRedundancy
 from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
@@ -50,7 +50,7 @@ class Tool(NamedTuple):
     dofs: Ints
 
 
-class Manipulator(ArmCollision, ArmGripper, ArmIk, ApiObject):
+class Manipulator(ArmCollision, ArmGripper, ArmRedundancy, ApiObject):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
     def __init__(self, robot: "KinBody", state: BodyState, index: int) -> None:
