@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
     from ravemj.rave.recording import record
     from ravemj.trajectories.motion import Motion, read_motion
+    from ravemj.trajectories.motion_writing import write_motion
 
 __version__ = "0.1.0"
 
@@ -67,6 +68,7 @@ __all__ = [
     "planningutils",
     "read_motion",
     "record",
+    "write_motion",
 ]
 __all__ += geometry_functions.__all__
 __all__ += rave.__all__
@@ -76,6 +78,7 @@ _LATE = {
     "Viewer": "ravemj.gui.viewers",
     "read_motion": "ravemj.trajectories.motion",
     "record": "ravemj.rave.recording",
+    "write_motion": "ravemj.trajectories.motion_writing",
 }
 
 

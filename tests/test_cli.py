@@ -34,7 +34,7 @@ from ravemj.graphics.rendering import contexts
 
 DATA = Path(__file__).resolve().parent / "data"
 MODELS = DATA.parent.parent / "models"
-COMMANDS = ["play", "render", "convert", "check", "diff", "info", "ik", "run", "shell", "alias", "doctor"]
+COMMANDS = ["play", "render", "convert", "check", "diff", "info", "ik", "plan", "run", "shell", "alias", "doctor"]
 SMALL = ("--size", "96x72")
 CSV = "time,Joint1,Joint0\n0,0,0\n0.5,0,1.5707963267948966\n1,0,3.141592653589793\n"
 
@@ -412,6 +412,70 @@ def test_ik_out_of_reach(folder):
     assert "out of reach" in done.stdout
 
 
+PENDULUM_AND = '<Environment><Robot file="double-pendulum.xml"/>{}</Environment>'
+WALL = """<KinBody name="wall{0}"><Body name="wall{0}" type="static"><Translation>0 {0} 0.18</Translation>
+<Geom type="box"><extents>0.1 0.01 0.15</extents></Geom></Body></KinBody>"""
+ROUND_THE_WALL = ("plan", "walled.xml", "--from", "level.json", "--to", "2.9,0")
+
+
+@pytest.fixture
+def walled(folder) -> Path:
+    (folder / "walled.xml").write_text(PENDULUM_AND.format(WALL.format(0.25)))
+    (folder / "level.json").write_text('{"Joint0": 1.57}')
+    return folder
+
+
+@pytest.mark.parametrize("name", ["plan.csv", "plan.npz"])
+def test_plan_writes_a_motion_round_a_wall_that_play_takes(walled, name):
+    printed = said(ravemj_command(walled, *ROUND_THE_WALL, "-o", name))
+    found = r"found after \d+ iterations in [\d.]+ s: [\d.]+ s of motion, \d+ waypoints\nwrote "
+    assert re.fullmatch(found + name + "\n", printed)
+    env = ravemj.load(walled / "walled.xml")
+    robot = env.GetRobots()[0]
+    motion = ravemj.read_motion(walled / name, ["Joint0", "Joint1"], [0, 0])
+    assert motion.values[0].tolist() == [1.57, 0]
+    assert np.cos(motion.values[-1]) == pytest.approx(np.cos([2.9, 0]))
+    for values in motion.frames(200):
+        robot.SetDOFValues(values)
+        assert not env.CheckCollision(robot)
+    again = ravemj_command(walled, *ROUND_THE_WALL, "-o", f"again-{name}")
+    assert again.stdout.partition(" in ")[0] == printed.partition(" in ")[0]
+    assert ravemj.read_motion(walled / f"again-{name}", ["Joint0", "Joint1"], [0, 0]).values.tolist() == (
+        motion.values.tolist()
+    ), "one seed, one motion"
+    said(ravemj_command(walled, "play", "walled.xml", "--trajectory", name, "-o", "a.gif", *SMALL, "--fps", "2"))
+
+
+def test_plan_draws_trees_also_of_a_search_in_vain(walled):
+    picture = (*SMALL, "-o", "a.png", "--show-tree")
+    assert "wrote a.png" in ravemj_command(walled, *ROUND_THE_WALL, *picture).stdout
+    drawn = np.asarray(Image.open(walled / "a.png")).astype(int)
+    reddish = drawn[..., 0] - drawn[..., 2] > 100
+    assert (reddish & (drawn[..., 1] > 80)).any(), "the tree of the goal is orange"
+    (walled / "a.png").unlink()
+    sides = "".join(WALL.format(side).replace("0.15", "0.5").replace("0.18", "0") for side in (0.1, -0.1))
+    (walled / "walled.xml").write_text(PENDULUM_AND.format(sides))
+    in_vain = ("plan", "walled.xml", "--to", "3.14,0", "--time-limit", "0.2")
+    done = ravemj_command(walled, *in_vain, *picture)
+    assert (done.returncode, done.stdout) == (1, "wrote a.png\n")
+    why = r"ravemj: error: no motion: the time was used up after \d+ iterations, with \d+ configurations\n"
+    assert re.fullmatch(why, done.stderr)
+    done = ravemj_command(walled, *in_vain, "-o", "a.mp4")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert not (walled / "a.mp4").exists()
+
+
+def test_plan_takes_the_tool_of_a_named_arm_to_a_pose(folder):
+    words = ("plan", "workshop", "--manip", "panda_arm", "--pose", "0.3,0.3,0.7,0,1,0,0", "-o", "plan.csv")
+    said(ravemj_command(folder, *words))
+    env = ravemj.load(ravemj.model_path("workshop"))
+    robot = env.GetRobot("panda")
+    names = [joint.GetName() for joint in robot.GetJoints()]
+    robot.SetDOFValues(ravemj.read_motion(folder / "plan.csv", names, robot.GetDOFValues()).values[-1])
+    goal = ravemj.matrixFromPose([0, 1, 0, 0, 0.3, 0.3, 0.7])
+    assert np.allclose(robot.GetActiveManipulator().GetTransform(), goal, atol=1e-6)
+
+
 def test_doctor_says_what_draws_here(folder):
     printed = said(ravemj_command(folder, "doctor"))
     assert "display: none" in printed
@@ -555,6 +619,22 @@ BAD_WORDS = [
     ("ik puma560 --to 0,0,1 --from gone.json", 1, "gone.json: error: "),
     ("ik puma560 --to 0,0,1 --from three.json", 1, "three.json: error: these are no 6 joint values"),
     ("ik puma560", 2, "ravemj ik: error: .*--to"),
+    ("plan puma560", 2, "ravemj plan: error: .*--to"),
+    ("plan puma560 --to 0,0,0,0,0,0 --pose 0,0,0", 2, "ravemj plan: error: .*--pose"),
+    ("plan puma560 --to 0,0,0,0,0,0 --seed -1", 2, "ravemj plan: error: .*'-1' is no whole number"),
+    ("plan puma560 --to 0,0,0,0,0,0 --time-limit 0", 2, "ravemj plan: error: .*--time-limit"),
+    ("plan puma560 --to 1,2", 1, "ravemj: error: --to has 2 values, and 'arm' has 6 joints: joint1, joint2"),
+    ("plan puma560 --to 0,0,0,0,0,0 -o a.avi", 1, "ravemj: error: .*a.avi.*mp4"),
+    ("plan puma560 --to 0,0,0,0,0,0 -o gone/a.csv", 1, "ravemj: error: .*gone"),
+    ("plan puma560 --to 9,0,0,0,0,0", 1, r"ravemj: error: no motion: goal: joint 'joint1' is 9, outside its limits \["),
+    ("plan puma560 --to -2.4,-0.7,-2.9,-1.3,1,-3.2", 1, ".*no motion: goal: it collides: link 'base' .*'link4' of"),
+    ("plan puma560 --pose 9,9,9", 1, "ravemj: error: no motion: no joint values take 'arm' there"),
+    ("plan workshop --manip panda_arm --pose 0.2,0.2,0.35,0,1,0,0", 1, ".*no motion: all .*; the nearest: .* hits table"),
+    ("plan puma560 --pose 1,2", 1, "ravemj: error: --pose has 2 values"),
+    ("plan puma560 --pose 0,0,1,0,0,0,0", 1, "ravemj: error: --pose: the quaternion"),
+    ("plan env.xml --pose 0,0,1", 1, "ravemj: error: there is no manipulator"),
+    ("plan puma560 --manip leg --to 0,0,1", 1, "ravemj: error: there is no manipulator 'leg'; the model has arm"),
+    ("plan puma560 --to 0,0,0,0,0,0 --from gone.json", 1, "gone.json: error: "),
     ("run gone.py", 1, "gone.py: error: "),
 ]
 

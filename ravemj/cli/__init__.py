@@ -20,7 +20,7 @@ from ravemj.errors import OutputError, RavemjError
 
 __all__ = ["main"]
 
-_VECTOR_OPTIONS = {"--to", "--q", "--background"}
+_VECTOR_OPTIONS = {"--to", "--pose", "--q", "--background"}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -95,11 +95,16 @@ def console() -> "Console":
 
 
 @contextlib.contextmanager
-def progress(task: str, total: int) -> Generator[Callable[[int], None]]:
-    """Show a bar with the frames done and the time left, if standard error is a terminal.
+def progress(task: str, total: float, unit: str = "frames") -> Generator[Callable[[float], None]]:
+    """Show a bar with what is done and the time left, if standard error is a terminal.
+
+    Args:
+        task: What is done.
+        total: How much there is to do.
+        unit: Of what.
 
     Yields:
-        Takes the number of frames done so far.
+        Takes how much is done so far.
     """
     if not sys.stderr.isatty():
         yield lambda done: None
@@ -111,7 +116,7 @@ def progress(task: str, total: int) -> Generator[Callable[[int], None]]:
         bars.TextColumn("{task.description}"),
         bars.BarColumn(),
         bars.MofNCompleteColumn(),
-        bars.TextColumn("frames"),
+        bars.TextColumn(unit),
         bars.TimeRemainingColumn(),
     )
     bar = bars.Progress(*columns, console=Console(stderr=True), transient=True)

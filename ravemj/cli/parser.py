@@ -1,49 +1,20 @@
 """The arguments of the commands, with their help."""
 
 import argparse
-import difflib
-from collections.abc import Iterable, Sequence
-from typing import NoReturn, TypeAlias
+from typing import TypeAlias
 
-from ravemj.cli import check, convert, diff, ik, info, pictures, sessions, view
-from ravemj.cli.words import colour, port, positive, size, target, vector
+from ravemj.cli import check, convert, diff, ik, info, pictures, plan, sessions, view
+from ravemj.cli.argument_parser import Parser
+from ravemj.cli.words import colour, port, positive, seed, size, target, vector
 from ravemj.formats.shipped import SHIPPED_MODELS
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
-
-
-class _Parser(argparse.ArgumentParser):
-    """Reports a wrong argument in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: error: {message}; see {self.prog} --help\n")
-
-    def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride] - its overloads
-        self, args: Sequence[str] | None = None, namespace: argparse.Namespace | None = None
-    ) -> tuple[argparse.Namespace, list[str]]:
-        """Refuse what a command does not know, so that the message names the command."""
-        parsed, unknown = super().parse_known_args(args, namespace or argparse.Namespace())
-        if unknown:
-            self.error(f"unknown: {' '.join(unknown)}{_did_you_mean(unknown[0], self._option_string_actions)}")
-        return parsed, unknown
-
-    def _check_value(self, action: argparse.Action, value: object) -> None:
-        """Refuse a value that is no choice, with the nearest one."""
-        if action.choices is not None and value not in action.choices:
-            choices = [str(choice) for choice in action.choices]
-            guess = _did_you_mean(str(value), choices)
-            raise argparse.ArgumentError(action, f"'{value}' is none of {', '.join(choices)}{guess}")
-
-
-def _did_you_mean(word: str, known: Iterable[str]) -> str:
-    close = difflib.get_close_matches(word, known, 1)
-    return f"; did you mean {close[0]}?" if close else ""
 
 
 def make_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line; ``run`` of its result is the command's function."""
     from ravemj import __version__  # noqa: PLC0415 - ravemj is being imported when this module is
 
-    parser = _Parser(
+    parser = Parser(
         prog="ravemj",
         description="OpenRAVE's models, tutorial, Python API and GUI, on MuJoCo.",
         epilog="ravemj COMMAND --help explains a command, with examples.",
@@ -58,6 +29,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_diff(commands)
     _add_info(commands)
     _add_ik(commands)
+    _add_plan(commands)
     _add_run(commands)
     _add_shell(commands)
     _add_alias(commands)
@@ -65,7 +37,7 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-Commands: TypeAlias = "argparse._SubParsersAction[_Parser]"  # pyright: ignore[reportPrivateUsage]
+Commands: TypeAlias = "argparse._SubParsersAction[Parser]"  # pyright: ignore[reportPrivateUsage]
 
 
 def _command(commands: Commands, name: str, summary: str, *examples: str) -> argparse.ArgumentParser:
@@ -86,6 +58,16 @@ def _add_model(parser: argparse.ArgumentParser) -> None:
         f"{', '.join(SHIPPED_MODELS)}",
     )
     parser.add_argument("--strict", action="store_true", help="take warnings about the model for errors")
+
+
+def _add_arm_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--manip", metavar="NAME", help="which manipulator; default: the active one")
+    parser.add_argument(
+        "--from",
+        dest="start",
+        metavar="FILE",
+        help="joint values to start from, as JSON: a list, or an object with names of joints; default: the model's",
+    )
 
 
 def _add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> None:
@@ -306,19 +288,59 @@ def _add_ik(commands: Commands) -> None:
         help="type of goal, as in OpenRAVE: Translation3D for three values, else Transform6D; "
         f"or {', '.join(name for name in ik.TYPE_NAMES if name not in {'Transform6D', 'Translation3D'})}",
     )
-    parser.add_argument("--manip", metavar="NAME", help="which manipulator; default: the active one")
-    parser.add_argument(
-        "--from",
-        dest="start",
-        metavar="FILE",
-        help="joint values to start from, as JSON: a list, or an object with names of joints; default: the model's",
-    )
+    _add_arm_options(parser)
     parser.add_argument("--json", action="store_true", help="print all solutions as JSON, not the nearest ones alone")
     parser.add_argument(
         "-o", "--output", type=target, metavar="FILE", help="picture with an arm at each solution; .png, .jpg or .webp"
     )
     parser.add_argument("--size", type=size, default=(640, 480), metavar="WxH", help="size of the picture (640x480)")
     parser.set_defaults(run=ik.ik)
+
+
+def _add_plan(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "plan",
+        "find a motion without collisions, and write it as a table, a picture or a video",
+        'ravemj plan puma560 --to "1.2,0.4,-0.3,0,0.5,0"',
+        'ravemj plan puma560 --pose "0.3,0.3,0.9,0.7071,0,0.7071,0" -o plan.mp4',
+        'ravemj plan workshop --manip panda_arm --to "1,0.6,0,-1.6,0,2.2,0.8" -o plan.csv',
+        'ravemj plan scara --to "1.5,-2,0.1,0" -o trees.png --show-tree',
+    )
+    _add_model(parser)
+    goal = parser.add_mutually_exclusive_group(required=True)
+    goal.add_argument(
+        "--to",
+        type=vector,
+        metavar="Q",
+        help="joint values of the goal, of the arm or of all joints of the robot: rad or m, separated by commas",
+    )
+    goal.add_argument(
+        "--pose",
+        type=vector,
+        metavar="POSE",
+        help="goal of the tool in the world: x,y,z,qw,qx,qy,qz, or x,y,z and any rotation; m",
+    )
+    _add_arm_options(parser)
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=target,
+        metavar="FILE",
+        help="motion as .csv or .npz, which play takes; picture of start, goal and way as .png or .jpg; or video as "
+        ".mp4, .gif, .webp, or a folder for PNG frames",
+    )
+    parser.add_argument(
+        "--show-tree",
+        action="store_true",
+        help="draw where the trees of the planner take the hand: blue from the start, orange from the goal; a picture "
+        "shows them also where no motion was found",
+    )
+    parser.add_argument("--time-limit", type=positive, default=10.0, metavar="S", help="seconds for the search (10)")
+    parser.add_argument("--seed", type=seed, default=0, metavar="N", help="another number finds another motion (0)")
+    parser.add_argument("--fps", type=positive, default=30.0, metavar="N", help="frames in a second (30)")
+    _add_picture_options(parser, "size of the picture or video (640x480)")
+    parser.set_defaults(run=plan.plan)
 
 
 def _add_run(commands: Commands) -> None:

@@ -39,7 +39,8 @@ def play(options: argparse.Namespace) -> int:
     shot = Shot(camera, background, Format(*options.size), options.fps)
     if options.output is None and _play_in_window(env, body, motion, shot):
         return 0
-    return _write_video(options.output or f"{Path(options.model).stem}.mp4", env, body, motion, shot)
+    write_video(options.output or f"{Path(options.model).stem}.mp4", env, body, motion, shot)
+    return 0
 
 
 def _motion(options: argparse.Namespace, body: KinBody) -> Motion:
@@ -84,15 +85,14 @@ def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot)
     return True
 
 
-def _write_video(path: str, env: Environment, body: KinBody, motion: Motion, shot: Shot) -> int:
+def write_video(path: str, env: Environment, body: KinBody, motion: Motion, shot: Shot) -> None:
+    """Write a video of a motion, and say so."""
     count = motion.number_of_frames(shot.fps)
     with progress(f"drawing {path}", count) as advance:
         write_frames(path, draw_frames(env, body, motion, shot), shot.fps, on_frame=advance)
-    backend = env.renderer.backend(shot.form)
-    _explain_rays(backend)
-    seconds = f"{motion.duration:g} s, {count} frames of {shot.form.width}x{shot.form.height} by {backend}"
-    print(f"wrote {os.path.abspath(path)} ({seconds})")
-    return 0
+    explain_rays(env, shot.form)
+    frames = f"{count} frames of {shot.form.width}x{shot.form.height} by {env.renderer.backend(shot.form)}"
+    print(f"wrote {os.path.abspath(path)} ({motion.duration:g} s, {frames})")
 
 
 def render(options: argparse.Namespace) -> int:
@@ -106,14 +106,14 @@ def render(options: argparse.Namespace) -> int:
     width, height = options.size
     matrix = None if camera is None else camera.T_world_camera
     write_picture(options.output, env.render(width, height, camera=matrix, background=options.background))
-    _explain_rays(env.renderer.backend(Format(width, height, shadows=True)))
+    explain_rays(env, Format(width, height, shadows=True))
     print(f"wrote {options.output}")
     return 0
 
 
-def _explain_rays(backend: str) -> None:
+def explain_rays(env: Environment, form: Format) -> None:
     """Say how to get OpenGL if a picture was ray-cast for lack of it."""
-    if backend == RAY and requested_backend() is None:
+    if env.renderer.backend(form) == RAY and requested_backend() is None:
         print(f"ravemj: no OpenGL here, so rays drew the picture; faster: {INSTALL['egl']}", file=sys.stderr)
 
 

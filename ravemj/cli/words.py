@@ -4,6 +4,7 @@ import argparse
 import math
 
 _LONGEST_SIDE = 16384
+_MOST_DIGITS = 9
 
 
 def target(text: str) -> str:
@@ -34,6 +35,13 @@ def positive(text: str) -> float:
     if number <= 0:
         raise argparse.ArgumentTypeError(f"{text} is not above 0")
     return number
+
+
+def seed(text: str) -> int:
+    """Return the seed of random numbers: a whole number from 0 on."""
+    if not (text.isascii() and text.isdecimal() and len(text) <= _MOST_DIGITS):
+        raise argparse.ArgumentTypeError(f"'{text}' is no whole number from 0 on, of at most {_MOST_DIGITS} digits")
+    return int(text)
 
 
 def port(text: str) -> int:

@@ -19,8 +19,9 @@ _KEY = 1 << 31
 def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
     """Return a fast test of values of some joints, or None where joints have to be set one by one.
 
-    It answers for a body that stays as it is otherwise, in a world that stays as it is; the caller holds the lock all
-    the time. The model of the world is moved, the body itself is not: ``body.moved()`` brings it back.
+    It looks at what the joints move, and answers for a body that stays as it is otherwise, in a world that stays as it
+    is; the caller holds the lock all the time. The model of the world is moved, the body itself is not:
+    ``body.moved()`` brings it back.
 
     Args:
         body: The body; what it holds moves along.
@@ -32,15 +33,11 @@ def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool
     places = world.model.qpos_indices(body)[list(dofs)]
     if kinematics.displaced or followed & set(dofs) or (places < 0).any():
         return None
-    every, moved = _pairs(world, body, None), _pairs(world, body, MovedBy(tuple(dofs)))
-    fixed = every[~np.isin(_keys(every), _keys(np.concatenate([moved, moved[:, ::-1]])))]
-    if world.collide(world.make_pairs(fixed[:, 0], fixed[:, 1])):
-        return lambda values: True
-    return _MovingTest(world, body, places, moved)
+    return _MovingTest(world, body, places, _pairs(world, body, MovedBy(tuple(dofs))))
 
 
-def _pairs(world: CollisionWorld, body: BodyState, moved: MovedBy | None) -> Ints:
-    """Return the pairs of geoms that joints move against each other, or all that are tested, shape (n, 2)."""
+def _pairs(world: CollisionWorld, body: BodyState, moved: MovedBy) -> Ints:
+    """Return the pairs of geoms that joints move against each other, shape (n, 2)."""
     sets = (body_and_others(world, body, moved), itself(world, body, moved))
     return np.concatenate([np.stack([one.first, one.second], axis=1) for one in sets])
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Vec3
 from ravemj.engine.collision.moving import moving_test
-from ravemj.engine.collision.questions import body_and_others, itself
+from ravemj.engine.collision.questions import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
 from ravemj.planning.space import Coordinates, Space
@@ -157,22 +157,24 @@ class Bodies:
         return moving_test(self._parts[0].body.simulation_state, self._parts[0].dofs)
 
     def collision(self, report: CollisionReport | None = None) -> int:
-        """Return how the bodies collide as they are: ``FREE``, ``ENV_COLLISION`` or ``SELF_COLLISION``."""
-        checker = self._env.GetCollisionChecker()
-        plain = type(checker) is CollisionChecker and not self._env.collision_callbacks
+        """Return how the bodies collide as they are: ``FREE``, ``ENV_COLLISION`` or ``SELF_COLLISION``.
+
+        As with OpenRAVE's option ``ActiveDOFs``, what the values do not move does not count: a base that stands on the
+        floor touches it wherever the arm is.
+        """
+        checker, world = self._env.GetCollisionChecker(), self._simulation.collisions()
         for body in self.bodies:
-            if plain and report is None:
-                world, state = self._simulation.collisions(), body.simulation_state
-                if world.collide(body_and_others(world, state)):
-                    return ENV_COLLISION
-                if world.collide(itself(world, state)):
-                    return SELF_COLLISION
-                continue
-            if self._env.CheckCollision(body, report=report):
+            state, moved = body.simulation_state, self._moved(body)
+            if checker.answer(world, body_and_others(world, state, moved), report):
                 return ENV_COLLISION
-            if body.CheckSelfCollision(report):
+            if checker.answer(world, itself(world, state, moved), report):
                 return SELF_COLLISION
         return FREE
+
+    def _moved(self, body: "KinBody") -> MovedBy | None:
+        """Return what moves of a body; None: all of it."""
+        parts = [part for part in self._parts if part.body is body]
+        return MovedBy(tuple(dof for part in parts for dof in part.dofs)) if all(part.dofs for part in parts) else None
 
 
 def _part(env: "Environment", group: Group) -> _Part:

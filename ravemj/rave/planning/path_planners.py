@@ -34,7 +34,17 @@ class PathPlanner(Planner):
 
     def __init__(self, *arguments: Any) -> None:  # noqa: ANN401 - passed on
         super().__init__(*arguments)
-        self._goal_index = self._start_index = -1
+        self._search_made: Search | None = None
+
+    @property
+    def search(self) -> Search | None:
+        """How the last search went, with its trees, also where it found nothing; None before the first one.
+
+        Example:
+            >>> for tree in planner.search.trees:
+            ...     configurations, lines = tree.nodes(), tree.lines()
+        """
+        return self._search_made
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
         if values.bodies is None:
@@ -75,7 +85,7 @@ class PathPlanner(Planner):
                 status = self._failed(f"{name}: a constraint does not allow it")
             else:
                 values.problem(configuration, int(ConstraintFilterOptions.RecommendedOptions), report)
-                status = self._failed(f"{name}: it collides: {report}")
+                status = self._failed(f"{name}: it collides: {_links(report)}")
                 status.report = report
         status.jointValues = configuration
         return status
@@ -97,7 +107,7 @@ class PathPlanner(Planner):
             budget = Budget(iterations, numbers["_nmaxplanningtime"] / 1000, self._proceed)
             random = np.random.default_rng(int(numbers["_nrandomgeneratorseed"]))
             search = self._search(edges, starts, goals, budget, random, values)
-        self._goal_index, self._start_index = search.goal, search.start
+        self._search_made = search
         if search.path is None:
             return self._ended(search)
         spaced = search.path if values.postprocessing[0] else _spaced(edges, search.path, numbers["_fsteplength"])
@@ -133,17 +143,21 @@ class PathPlanner(Planner):
             return PlannerStatus("a callback asked for any path", PlannerStatusCode.InterruptedWithSolution)
         return self._solved(f"found after {search.iterations} iterations")
 
+    def _ends(self) -> tuple[int, int]:
+        """Return which start and which goal the last path connects; -1: none."""
+        return (-1, -1) if self._search_made is None else (self._search_made.start, self._search_made.goal)
+
     def _get_goal_index(self, arguments: str) -> str:
         del arguments
-        return str(self._goal_index)
+        return str(self._ends()[1])
 
     def _get_start_index(self, arguments: str) -> str:
         del arguments
-        return str(self._start_index)
+        return str(self._ends()[0])
 
     def _get_both_indices(self, arguments: str) -> str:
         del arguments
-        return f"{self._start_index} {self._goal_index}"
+        return "{} {}".format(*self._ends())
 
     _commands: ClassVar = {
         "GetGoalIndex": _get_goal_index,
@@ -252,6 +266,12 @@ def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
         parts = np.arange(1, count)[:, None] / count
         rows += [start + parts * space.difference(end, start), end[None]]
     return np.concatenate(rows)
+
+
+def _links(report: CollisionReport) -> str:
+    """Return which links collide."""
+    links = [link for link in (report.plink1, report.plink2) if link is not None]
+    return " with ".join(f"link '{link.GetName()}' of '{link.GetParent().GetName()}'" for link in links)
 
 
 def _described(values: Values, index: int) -> str:
