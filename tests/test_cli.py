@@ -382,12 +382,15 @@ def test_ik_finds_all_that_reach_a_pose_and_says_what_speaks_against_them(folder
 
 
 def test_ik_prints_a_table_describes_the_solver_and_draws_every_solution(folder):
-    done = ravemj_command(folder, "ik", "puma560", "--to", REACHED, "-o", "arms.png", "--size", "80x60")
+    done = ravemj_command(
+        folder, "ik", "puma560", "--to", REACHED, "-o", "arms.png", "--size", "80x60", "--background", "lime"
+    )
     assert done.returncode == 0
     assert done.stdout.count("°") == 48
     assert "wrote arms.png" in done.stdout
     with Image.open(folder / "arms.png") as picture:
         assert picture.size == (80, 60)
+        assert picture.getpixel((0, 0)) == (0, 255, 0)
     described = said(ravemj_command(folder, "ik", "puma560", "--describe"))
     assert "spherical wrist" in described
     assert "64 of 64" in described
@@ -629,7 +632,11 @@ BAD_WORDS = [
     ("plan puma560 --to 9,0,0,0,0,0", 1, r"ravemj: error: no motion: goal: joint 'joint1' is 9, outside its limits \["),
     ("plan puma560 --to -2.4,-0.7,-2.9,-1.3,1,-3.2", 1, ".*no motion: goal: it collides: link 'base' .*'link4' of"),
     ("plan puma560 --pose 9,9,9", 1, "ravemj: error: no motion: no joint values take 'arm' there"),
-    ("plan workshop --manip panda_arm --pose 0.2,0.2,0.35,0,1,0,0", 1, ".*no motion: all .*; the nearest: .* hits table"),
+    (
+        "plan workshop --manip panda_arm --pose 0.2,0.2,0.35,0,1,0,0",
+        1,
+        ".*no motion: all .*; the nearest: .* hits table",
+    ),
     ("plan puma560 --pose 1,2", 1, "ravemj: error: --pose has 2 values"),
     ("plan puma560 --pose 0,0,1,0,0,0,0", 1, "ravemj: error: --pose: the quaternion"),
     ("plan env.xml --pose 0,0,1", 1, "ravemj: error: there is no manipulator"),

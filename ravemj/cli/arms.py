@@ -106,10 +106,12 @@ def reached(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> 
 
     found = arm.ik(goal, kind, limits=False)
     valid = found.valid[0]
-    rows, here = found.solutions[0][valid], arm.GetArmDOFValues()
+    rows: Floats = found.solutions[0][valid]
+    here = arm.GetArmDOFValues()
     chain = arm.ik_solver(kind).chain
     moved, _ = nearest_turns(chain, rows, here)  # which also puts what is beyond a limit onto it
-    rows = rows + 2 * np.pi * chain.turning * np.round((moved - rows) / (2 * np.pi))
+    turns: Floats = np.where(chain.turning, np.round((moved - rows) / (2 * np.pi)), 0.0)
+    rows += 2 * np.pi * turns
     order = np.argsort(np.linalg.norm(rows - here, axis=1), kind="stable")
     names = np.array(found.branches)[valid]
     return [(rows[index], str(names[index])) for index in order]
