@@ -121,7 +121,7 @@ def circles(typing: bool) -> list[set[str]]:
 
 
 NAME_EACH_OTHER = """
-    rave.arm_base rave.arm_end rave.arm_ik rave.body.active rave.body.building rave.body.collision
+    rave.arm_base rave.arm_end rave.arm_ik rave.arm_redundancy rave.body.active rave.body.building rave.body.collision
     rave.body.configuration rave.body.manipulators rave.body.saving rave.body.structure rave.collision
     rave.collision_extras rave.configuration_data rave.controllers rave.controllers.base rave.controllers.ideal
     rave.controllers.multi rave.controllers.velocity rave.env.collision rave.env.contents rave.env.description

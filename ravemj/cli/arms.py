@@ -98,11 +98,21 @@ def start_values(path: str, robot: Robot) -> list[float]:
 
 
 def reached(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> list[tuple[Floats, str]]:
-    """Return the joint values that reach a goal and their branches, those nearest to the present values first."""
+    """Return the joint values that reach a goal and their branches, those nearest to the present values first.
+
+    Of each angle the turn comes that is within the limits, if one is.
+    """
+    from ravemj.ik.limits import nearest_turns  # noqa: PLC0415 - slow to import
+
     found = arm.ik(goal, kind, limits=False)
     valid = found.valid[0]
-    rows = found.solutions[0][valid]
-    order = np.argsort(np.linalg.norm(rows - arm.GetArmDOFValues(), axis=1), kind="stable")
+    rows: Floats = found.solutions[0][valid]
+    here = arm.GetArmDOFValues()
+    chain = arm.ik_solver(kind).chain
+    moved, _ = nearest_turns(chain, rows, here)  # which also puts what is beyond a limit onto it
+    turns: Floats = np.where(chain.turning, np.round((moved - rows) / (2 * np.pi)), 0.0)
+    rows += 2 * np.pi * turns
+    order = np.argsort(np.linalg.norm(rows - here, axis=1), kind="stable")
     names = np.array(found.branches)[valid]
     return [(rows[index], str(names[index])) for index in order]
 

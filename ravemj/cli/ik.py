@@ -13,6 +13,7 @@ from ravemj.cli.models import load_model
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import IkParameterizationType, goal_size
+from ravemj.graphics.rendering.camera_file import read_camera
 from ravemj.graphics.video import check_picture, write_picture
 from ravemj.rave import Environment
 from ravemj.rave.manipulator import Manipulator
@@ -103,4 +104,5 @@ def _draw(env: Environment, arm: Manipulator, found: Sequence[Solution], options
         robot.SetDOFValues(found[0].values, dofs, checklimits=0)
     for number, solution in enumerate(found[1:], 2):
         add_ghost(robot, number, solution.values, dofs)
-    write_picture(options.output, env.render(*options.size))
+    camera = None if options.camera is None else read_camera(options.camera).T_world_camera
+    write_picture(options.output, env.render(*options.size, camera=camera, background=options.background))

@@ -306,7 +306,7 @@ def _add_ik(commands: Commands) -> None:
     parser.add_argument(
         "-o", "--output", type=target, metavar="FILE", help="picture with an arm at each solution; .png, .jpg or .webp"
     )
-    parser.add_argument("--size", type=size, default=(640, 480), metavar="WxH", help="size of the picture (640x480)")
+    _add_picture_options(parser, "size of the picture (640x480)")
     parser.set_defaults(run=_late("ik", "ik"))
 
 

@@ -10,7 +10,8 @@ from ravemj.core.transforms import Floats, Ints, pose_of, wxyz_from_rows, wxyz_j
 from ravemj.errors import ArgumentError
 from ravemj.model import hashes
 from ravemj.rave.arm_end import ArmEnd
-from ravemj.rave.arm_ik import WITH_DIRECTION, ArmIk
+from ravemj.rave.arm_ik import WITH_DIRECTION
+from ravemj.rave.arm_redundancy import ArmRedundancy
 from ravemj.rave.infos import ManipulatorInfo
 from ravemj.rave.link import Link
 from ravemj.rave.specification import ConfigurationSpecification
@@ -22,7 +23,7 @@ _SAME = 1e-12
 """Tools that differ less are the same."""
 
 
-class Manipulator(ArmEnd, ArmIk):
+class Manipulator(ArmEnd, ArmRedundancy):
     """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
 
     def SetName(self, name: str) -> None:
