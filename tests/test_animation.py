@@ -10,6 +10,7 @@ import zlib
 import numpy as np
 import pytest
 from browsers import CHROMIUM, FLAGS, NEEDS_A_BROWSER
+from command_line import ravemj_command, said
 from conftest import MODELS
 from PIL import Image
 
@@ -369,3 +370,13 @@ class TestInABrowser:
     def test_without_webgl_the_page_says_so(self, env, opened):
         player = opened(env.animation().html, "HTMLCanvasElement.prototype.getContext = () => null")
         assert "no WebGL2" in player.page.inner_text("#error")
+
+
+def test_the_command_writes_pages(folder):
+    printed = said(ravemj_command(folder, "play", "env.xml", "-o", "Swing.HTML", "--to", "1,-1", "--duration", "2"))
+    assert printed.startswith("wrote ")
+    document = Page((folder / "Swing.HTML").read_text()).document
+    assert document["frames"] == 61
+    failed = ravemj_command(folder, "play", "env.xml", "-o", "nowhere/swing.html")
+    assert failed.returncode == 1
+    assert "there is no folder nowhere" in failed.stderr

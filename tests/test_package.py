@@ -120,7 +120,7 @@ def circles(typing: bool) -> list[set[str]]:
 
 
 NAME_EACH_OTHER = """
-    rave.arm_collision rave.arm_goals rave.arm_gripper rave.arm_ik rave.body.active rave.body.building
+    rave.animations rave.arm_collision rave.arm_goals rave.arm_gripper rave.arm_ik rave.body.active rave.body.building
     rave.body.collision rave.body.configuration rave.body.geometry_groups rave.body.grabbing rave.body.manipulators
     rave.body.saving rave.body.structure rave.body.velocities rave.collision rave.collision_extras
     rave.configuration_data rave.controllers rave.controllers.base rave.controllers.ideal rave.controllers.multi
@@ -128,7 +128,7 @@ NAME_EACH_OTHER = """
     rave.env.description rave.env.drawing rave.env.loading rave.env.publishing rave.env.saving rave.env.simulation
     rave.env.viewing rave.environment rave.ik_judge rave.ik_search rave.ikreturn rave.iksolver rave.interface
     rave.joint rave.joint_limits rave.kinbody rave.link rave.link_geometries rave.manipulator rave.member
-    rave.module rave.parameters rave.physics rave.report rave.robot rave.sensors rave.specification rave.tables
+    rave.module rave.parameters rave.physics rave.recording rave.report rave.robot rave.sensors rave.specification rave.tables
     rave.trajectory
 """
 """Classes of the API whose methods take and return one another, and the topics that make them up."""

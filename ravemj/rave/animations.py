@@ -1,6 +1,7 @@
 """Motions as pages that play them."""
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,9 +10,13 @@ from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
 from ravemj.graphics.simulation_renderer import checked_colour
 from ravemj.graphics.webgl.animation import Animation, Appearance, Recording, animation_page
-from ravemj.rave import CheckLimitsAction, Environment, KinBody
+from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.recording import camera_for_motion, moving_body, within_limits
 from ravemj.trajectories.motion import Motion
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+    from ravemj.rave.kinbody import KinBody
 
 _ASPECT = 4 / 3
 """Width of a picture divided by its height for which the first view is chosen; the page has any."""
@@ -20,9 +25,9 @@ _LOWEST_FPS, _HIGHEST_FPS = 0.01, 1000
 
 
 def animate(
-    env: Environment,
+    env: "Environment",
     motion: Motion | None,
-    robot: KinBody | None = None,
+    robot: "KinBody | None" = None,
     fps: float = 30.0,
     camera: ArrayLike | None = None,
     background: ArrayLike | None = None,
@@ -48,7 +53,7 @@ def animate(
         )
 
 
-def _recorded(env: Environment, body: KinBody | None, motion: Motion | None, fps: float) -> Recording:
+def _recorded(env: "Environment", body: "KinBody | None", motion: Motion | None, fps: float) -> Recording:
     """Move the body as the motion says, and return where everything was."""
     rows: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     for values in _frames(body, motion, fps):
@@ -65,7 +70,7 @@ def _recorded(env: Environment, body: KinBody | None, motion: Motion | None, fps
     )
 
 
-def _frames(body: KinBody | None, motion: Motion | None, fps: float) -> Iterator[np.ndarray]:
+def _frames(body: "KinBody | None", motion: Motion | None, fps: float) -> Iterator[np.ndarray]:
     """Yield the joint values of each frame, with the body there."""
     if body is None or motion is None:
         yield np.zeros(0) if body is None else body.GetDOFValues()
