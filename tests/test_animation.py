@@ -10,7 +10,7 @@ import zlib
 import numpy as np
 import pytest
 from browsers import CHROMIUM, FLAGS, NEEDS_A_BROWSER
-from command_line import ravemj_command, said
+from command_line import run
 from conftest import MODELS
 from PIL import Image
 
@@ -373,10 +373,11 @@ class TestInABrowser:
 
 
 def test_the_command_writes_pages(folder):
-    printed = said(ravemj_command(folder, "play", "env.xml", "-o", "Swing.HTML", "--to", "1,-1", "--duration", "2"))
-    assert printed.startswith("wrote ")
-    document = Page((folder / "Swing.HTML").read_text()).document
-    assert document["frames"] == 61
-    failed = ravemj_command(folder, "play", "env.xml", "-o", "nowhere/swing.html")
+    command = ("-m", "ravemj", "play", "env.xml", "-o")
+    done = run(folder, *command, "Swing.HTML", "--to", "1,-1", "--duration", "2")
+    assert done.stdout.startswith("wrote ")
+    assert done.stderr == ""
+    assert Page((folder / "Swing.HTML").read_text()).document["frames"] == 61
+    failed = run(folder, *command, "nowhere/swing.html")
     assert failed.returncode == 1
     assert "there is no folder nowhere" in failed.stderr
