@@ -13,6 +13,7 @@ html_title = "ravemj"
 html_theme = "furo"
 html_static_path = ["extensions/pages.css"]
 html_css_files = ["pages.css"]
+html_extra_path = ["motions"]  # beside the pages that hold them
 html_copy_source = html_show_sourcelink = False
 html_show_copyright = html_show_sphinx = False
 

@@ -39,7 +39,8 @@ def test_every_block_prints_what_the_page_says_and_draws_its_pictures(folder):
     for printed, said in blocks:
         assert printed.replace(note_on_rays(), "") == said
     shown = re.findall(r"!\[.+\]\(pictures/(tutorial-.+)\)", PAGE)
-    assert sorted(shown) == sorted(path.name for path in folder.glob("tutorial-*"))
+    pages = re.findall(r"\]\(motions/(tutorial-[^)]+)\)", PAGE)
+    assert sorted([*shown, *pages]) == sorted(path.name for path in folder.glob("tutorial-*"))
     for name in shown:
         drawn, kept = (np.asarray(Image.open(path / name), float) for path in (folder, DOCS / "pictures"))
         assert drawn.shape == kept.shape

@@ -124,8 +124,9 @@ def _add_play(commands: Commands) -> None:
     parser = _command(
         commands,
         "play",
-        "play a motion of a robot: in a window, or into a video",
+        "play a motion of a robot: in a window, or into a video or a page",
         "ravemj play pendulum",
+        "ravemj play pendulum -o swing.html    # a page that plays, turns and zooms by itself",
         "ravemj play env.xml -o pendulum.mp4 --camera camera.json",
         'ravemj play pendulum -o frames/ --to "1.57,-1.57" --duration 2',
         "ravemj play env.xml -o swing.gif --trajectory swing.csv --fps 25",
@@ -136,7 +137,7 @@ def _add_play(commands: Commands) -> None:
         "--output",
         type=target,
         metavar="FILE",
-        help=".mp4, .gif, .webp, or a folder for PNG frames; without a display: MODEL.mp4",
+        help=".mp4, .gif, .webp, .html, or a folder for PNG frames; without a display: MODEL.mp4",
     )
     goal = parser.add_mutually_exclusive_group()
     goal.add_argument(

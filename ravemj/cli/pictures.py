@@ -11,6 +11,7 @@ import numpy as np
 
 from ravemj.cli.console import console, progress, table
 from ravemj.cli.models import load_model
+from ravemj.core.output import check_file
 from ravemj.core.signals import signals_raised
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering.camera_file import read_camera
@@ -28,18 +29,28 @@ from ravemj.trajectories.motion import Motion, read_motion
 def play(options: argparse.Namespace) -> int:
     """Play a motion: in a window, or into a video."""
     if options.output is not None:
-        check_target(options.output)
+        check_file(options.output) if _is_page(options.output) else check_target(options.output)
     camera = None if options.camera is None else read_camera(options.camera)
     env = load_model(options)
     body = moving_body(env)
     motion = within_limits(body, _motion(options, body))
     camera = camera or camera_for_motion(env, body, motion, options.size[0] / options.size[1])
     background = env.background if options.background is None else tuple(options.background)
+    if options.output is not None and _is_page(options.output):
+        env.save_html(
+            options.output, motion, robot=body, fps=options.fps, camera=camera.T_world_camera, background=background
+        )
+        print(f"wrote {os.path.abspath(options.output)} ({motion.duration:g} s; any browser plays it)")
+        return 0
     shot = Shot(camera, background, Format(*options.size), options.fps)
     if options.output is None and _play_in_window(env, body, motion, shot):
         return 0
     write_video(options.output or f"{Path(options.model).stem}.mp4", env, body, motion, shot)
     return 0
+
+
+def _is_page(output: str) -> bool:
+    return Path(output).suffix.lower() == ".html"
 
 
 def _motion(options: argparse.Namespace, body: KinBody) -> Motion:

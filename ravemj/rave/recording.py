@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,8 +11,12 @@ from numpy.typing import ArrayLike
 from ravemj.errors import ArgumentError, Diagnostic, send_warning
 from ravemj.graphics.rendering import Camera
 from ravemj.graphics.simulation_renderer import Format, Frame, checked_colour, fitting_view
-from ravemj.rave import CheckLimitsAction, Environment, KinBody
+from ravemj.rave.enums import CheckLimitsAction
 from ravemj.trajectories.motion import Motion
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
+    from ravemj.rave.kinbody import KinBody
 
 _POSES_FOR_THE_VIEW = 17
 
@@ -34,11 +38,11 @@ class Shot(NamedTuple):
 
 
 def record(  # noqa: PLR0913 - keyword arguments
-    env: Environment,
+    env: "Environment",
     path: str | os.PathLike[str],
     motion: Motion,
     *,
-    robot: KinBody | None = None,
+    robot: "KinBody | None" = None,
     width: int = 640,
     height: int = 480,
     fps: float = 30.0,
@@ -86,7 +90,7 @@ def record(  # noqa: PLR0913 - keyword arguments
     return write_frames(path, draw_frames(env, body, allowed, shot), fps, on_frame=on_frame)
 
 
-def draw_frames(env: Environment, body: KinBody, motion: Motion, shot: Shot) -> Iterator[Frame]:
+def draw_frames(env: "Environment", body: "KinBody", motion: Motion, shot: Shot) -> Iterator[Frame]:
     """Yield the frames of a motion, moving the body from one to the next."""
     for values in motion.frames(shot.fps):
         with env:
@@ -95,7 +99,7 @@ def draw_frames(env: Environment, body: KinBody, motion: Motion, shot: Shot) -> 
         yield frame
 
 
-def moving_body(env: Environment) -> KinBody:
+def moving_body(env: "Environment") -> "KinBody":
     """Return the body that moves where none is named: the first robot with joints.
 
     Raises:
@@ -108,7 +112,7 @@ def moving_body(env: Environment) -> KinBody:
     raise ArgumentError(f"there is no robot with joints to move; the bodies are: {names or 'none'}")
 
 
-def within_limits(body: KinBody, motion: Motion) -> Motion:
+def within_limits(body: "KinBody", motion: Motion) -> Motion:
     """Return the motion with all values moved into the joints' limits; a warning names each joint concerned.
 
     Raises:
@@ -131,7 +135,7 @@ def within_limits(body: KinBody, motion: Motion) -> Motion:
     return Motion(motion.times, values)
 
 
-def camera_for_motion(env: Environment, body: KinBody, motion: Motion, aspect: float) -> Camera:
+def camera_for_motion(env: "Environment", body: "KinBody", motion: Motion, aspect: float) -> Camera:
     """Return the viewer's camera, else the file's, else a view of everything that the motion sweeps over.
 
     Args:

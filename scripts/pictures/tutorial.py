@@ -16,6 +16,7 @@ from typing import Any
 _BLOCK = re.compile(r"^```(python|ipython|sh|xml (?=\S)|text) *(\S*)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
 _COLOUR = re.compile(r"\x1b\[[\d;]*m|\r")
 _LINK = re.compile(r"\]\((?!https?:|#)(?=[^)]+\))")
+_FRAME = re.compile(r"^<iframe .*</iframe>\n*", re.MULTILINE)  # notebooks show none
 
 Cell = dict[str, Any]
 
@@ -28,7 +29,7 @@ def main(folder: Path) -> None:
     with tempfile.TemporaryDirectory() as place:
         outputs(text, Path(place))
         for picture in Path(place).glob("tutorial-*.*"):
-            shutil.copy(picture, folder / "pictures")
+            shutil.copy(picture, folder / ("motions" if picture.suffix == ".html" else "pictures"))
 
 
 def notebook(page: str) -> str:
@@ -70,7 +71,8 @@ def _code(language: str, file: str, content: str) -> Cell:
 
 
 def _markdown(prose: str) -> Cell:
-    return {"cell_type": "markdown", "metadata": {}, "source": _LINK.sub("](../", prose)}
+    source = _LINK.sub("](../", _FRAME.sub("", prose))
+    return {"cell_type": "markdown", "metadata": {}, "source": source}
 
 
 def outputs(text: str, folder: Path) -> list[tuple[str, str]]:

@@ -2,17 +2,24 @@
 
 import os
 import weakref
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from numpy.typing import ArrayLike
 
+from ravemj.core.output import AnyPath, check_file
 from ravemj.graphics.rendering import Camera
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer, checked_colour
 from ravemj.rave.env.base import EnvironmentPart
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ravemj.graphics.webgl.animation import Animation
     from ravemj.gui.viewers import Viewer
     from ravemj.gui.viewers.web import WebViewer
+    from ravemj.rave.environment import Environment
+    from ravemj.rave.kinbody import KinBody
+    from ravemj.trajectories.motion import Motion
 
 
 class Viewing(EnvironmentPart):
@@ -156,6 +163,74 @@ class Viewing(EnvironmentPart):
         view = self.default_camera(width / height) if camera is None else Camera.from_matrix(camera)
         colour = self.background if background is None else checked_colour(background)
         return self._renderer.render(view, colour, Format(width, height, shadows=True))
+
+    def animation(
+        self,
+        motion: "Motion | None" = None,
+        *,
+        robot: "KinBody | None" = None,
+        fps: float = 30.0,
+        camera: ArrayLike | None = None,
+        background: ArrayLike | None = None,
+    ) -> "Animation":
+        """Return a page that plays a motion, and turns and zooms without a server; notebooks show it.
+
+        The page draws with WebGL, in the browser. Drawings of scripts are in it and stand still.
+
+        Args:
+            motion: Joint values over time; values outside the limits are moved to them, with a warning. The robot
+                stays at the motion's end. None: a still scene.
+            robot: Which body moves; None: the first robot with joints.
+            fps: Poses in a second; the page draws as many pictures as the screen shows, and mixes the poses.
+            camera: ``T_world_camera`` at first, 4x4, z forward and y down; None: the viewer's, else the file's, else a
+                view of the whole motion.
+            background: Red, green, blue from 0 to 1; None: the viewer's, else the file's, else white.
+
+        Returns:
+            The page: ``save("swing.html")`` writes it, ``html`` is its text.
+
+        Raises:
+            ArgumentError: an argument is wrong, or there is no robot to move.
+
+        Example:
+            >>> swing = ravemj.Motion.line([0, 0], [3.14, 0], duration=1.0)
+            >>> env.animation(swing).save("swing.html")
+        """
+        from ravemj.rave.animations import animate  # noqa: PLC0415 - few scripts want it
+
+        self._check_alive()
+        return animate(cast("Environment", self), motion, robot, fps, camera, background)
+
+    def save_html(
+        self,
+        path: AnyPath,
+        motion: "Motion | None" = None,
+        *,
+        robot: "KinBody | None" = None,
+        fps: float = 30.0,
+        camera: ArrayLike | None = None,
+        background: ArrayLike | None = None,
+    ) -> "Path":
+        """Write a motion, or the scene as it is, as one HTML file that needs neither a server nor a network.
+
+        Args:
+            path: The file.
+            motion: See ``animation``, as for the other arguments.
+            robot: Which body moves.
+            fps: Poses in a second.
+            camera: ``T_world_camera`` at first.
+            background: Red, green, blue from 0 to 1.
+
+        Returns:
+            The path.
+
+        Raises:
+            ArgumentError: an argument is wrong.
+            OutputError: the file cannot be written; nothing is left behind then.
+        """
+        check_file(path)
+        page = self.animation(motion, robot=robot, fps=fps, camera=camera, background=background)
+        return page.save(path)
 
     def default_camera(self, aspect: float = 4 / 3) -> Camera:
         """Return the camera of pictures that name none: the viewer's, else the file's, else one that shows all.

@@ -631,6 +631,8 @@ class MjModel:
     mesh_pos: Floats
     mesh_quat: Floats
     mesh_vert: Floats32
+    mesh_normal: Floats32
+    mesh_normaladr: Ints
     mesh_vertadr: Ints
     mesh_vertnum: Ints
     na: int

@@ -1,0 +1,160 @@
+"""A motion as one HTML file, which turns, zooms and plays without a server."""
+
+import html
+import math
+import re
+from importlib import resources
+from pathlib import Path
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from ravemj.core.output import AnyPath, new_file
+from ravemj.core.transforms import Floats
+from ravemj.graphics.rendering import Camera
+from ravemj.graphics.rendering.camera import bounding_sphere
+from ravemj.graphics.webgl.packing import Package, pack_scene
+from ravemj.model.drawing import NOTHING, Primitives
+
+_HEIGHT = 480
+"""Of a page in a notebook [pixels]."""
+
+_STILL = 1e-9
+"""A body that moves less than this [m, and parts of a unit quaternion] stands still."""
+
+
+class Recording(NamedTuple):
+    """What moved.
+
+    Attributes:
+        fps: Frames in a second.
+        positions: Of all bodies of the model in the world, shape (frames, bodies, 3) [m].
+        rotations: Their quaternions wxyz, shape (frames, bodies, 4).
+        values: Of the joints, shape (frames, joints) [rad or m].
+        names: Of the joints.
+        units: Of their values: ``rad`` or ``m``.
+    """
+
+    fps: float
+    positions: Floats
+    rotations: Floats
+    values: Floats
+    names: list[str]
+    units: list[str]
+
+
+class Appearance(NamedTuple):
+    """How the page begins.
+
+    Attributes:
+        camera: Where it looks from.
+        background: Red, green and blue from 0 to 1.
+        title: What it is called.
+    """
+
+    camera: Camera
+    background: tuple[float, float, float]
+    title: str
+
+
+class Animation(NamedTuple):
+    """A page that plays a motion; the last line of a notebook's cell shows it.
+
+    Attributes:
+        html: The whole page.
+    """
+
+    html: str
+
+    def save(self, path: AnyPath) -> Path:
+        """Write the page to a file.
+
+        Raises:
+            OutputError: the file cannot be written; nothing is left behind then.
+        """
+        with new_file(path) as temporary:
+            temporary.write_text(self.html, encoding="utf-8")
+        return Path(path)
+
+    def _repr_html_(self) -> str:
+        """Return what notebooks show."""
+        return (
+            f'<iframe srcdoc="{html.escape(self.html)}" title="motion" allow="fullscreen" '
+            f'style="width: 100%; height: {_HEIGHT}px; border: 0"></iframe>'
+        )
+
+    def __repr__(self) -> str:
+        return f"Animation(<page of {len(self.html) / 1e6:.2f} MB>)"
+
+
+def animation_page(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    recording: Recording,
+    appearance: Appearance,
+    drawings: Primitives = NOTHING,
+) -> str:
+    """Return a page that plays a recording; it holds all that it needs.
+
+    Args:
+        model: The compiled model.
+        data: Its state; bodies that do not move in the recording stay where they are in it.
+        recording: The poses.
+        appearance: How the page begins.
+        drawings: What scripts have drawn; it does not move.
+    """
+    package = Package()
+    pack_scene(package, model, drawings)
+    _pack_recording(package, recording)
+    _pack_view(package, model, data, appearance)
+    parts = {
+        "title": html.escape(appearance.title),
+        "style": _file("animation.css"),
+        "camera": _file("camera.js"),
+        "renderer": _file("renderer.js"),
+        "player": _file("animation.js"),
+        "scene": package.text(),
+    }
+    return re.sub(r"{{(\w+)}}", lambda match: parts[match[1]], _file("animation.html"))
+
+
+def _pack_recording(package: Package, recording: Recording) -> None:
+    frames, bodies = recording.positions.shape[:2]
+    poses = np.concatenate([recording.positions, _continuous(recording.rotations)], axis=2)
+    moving = np.flatnonzero((np.ptp(poses, axis=0) > _STILL).any(axis=1))
+    still = np.array([body for body in range(bodies) if body not in moving], dtype=np.intp)
+    package.document["fps"], package.document["frames"] = recording.fps, frames
+    package.document["still"] = {"bodies": still.tolist(), "poses": package.array(poses[0, still].astype(np.float32))}
+    package.document["moving"] = {"bodies": moving.tolist()}
+    package.document["joints"] = [
+        {"name": name, "unit": unit} for name, unit in zip(recording.names, recording.units, strict=True)
+    ]
+    if moving.size:
+        package.document["moving"] |= package.quantized(poses[:, moving].reshape(frames, -1))
+    if recording.names:
+        package.document["values"] = package.quantized(recording.values)
+
+
+def _continuous(rotations: Floats) -> Floats:
+    """Return quaternions (frames, bodies, 4) of which each is on the same side as the one before."""
+    turns = np.sign(np.einsum("fbi,fbi->fb", rotations[1:], rotations[:-1]))
+    signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=0)
+    return np.concatenate([rotations[:1], rotations[1:] * signs[:, :, None]])
+
+
+def _pack_view(package: Package, model: mujoco.MjModel, data: mujoco.MjData, appearance: Appearance) -> None:
+    center, radius = bounding_sphere(model, data)
+    camera = appearance.camera
+    distance = float((center - camera.position) @ camera.rotation[:, 2])
+    package.document["view"] = {
+        "rotation": camera.rotation.reshape(-1).tolist(),
+        "position": camera.position.tolist(),
+        "fovy": camera.fovy if camera.calibration is None else math.radians(45),
+        "distance": max(distance, 0.1 * radius),
+    }
+    package.document["background"] = list(appearance.background)
+
+
+def _file(name: str) -> str:
+    return (resources.files("ravemj.graphics.webgl") / "page" / name).read_text(encoding="utf-8")

@@ -1,0 +1,138 @@
+"""Bytes for browsers: numbers of 16 bits, differences where neighbours are alike, all compressed."""
+
+import base64
+import json
+import zlib
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats
+from ravemj.graphics.webgl.surfaces import Mesh, round_mesh, surfaces
+from ravemj.model.drawing import NOTHING, PrimitiveBatch, Primitives
+
+_STEPS = 65535
+_WIDE = 65536
+"""So many corners need indices of 32 bits."""
+
+
+class Package:
+    """A JSON document whose arrays stand behind it as bytes.
+
+    Layout: length of the document (4 bytes, little endian), the document, the arrays. ``{"at", "count", "type"}`` in
+    the document names an array by its first byte, how many numbers it has and ``i8``, ``u16``, ``u32`` or ``f32``.
+    """
+
+    def __init__(self) -> None:
+        self.document: dict[str, Any] = {}
+        self._arrays: list[bytes] = []
+        self._length = 0
+
+    def array(self, numbers: NDArray[Any]) -> dict[str, Any]:
+        """Add an array; return what names it in the document."""
+        content = np.ascontiguousarray(numbers).tobytes()
+        content += b"\0" * (-len(content) % 4)  # typed arrays of browsers begin at multiples of their elements' size
+        kind = f"{numbers.dtype.kind}{8 * numbers.dtype.itemsize}"
+        name = {"at": self._length, "count": int(numbers.size), "type": kind}
+        self._arrays.append(content)
+        self._length += len(content)
+        return name
+
+    def quantized(self, numbers: Floats) -> dict[str, Any]:
+        """Add the columns of an array (N, k) as 16 bits each, between the least and the largest number of the column.
+
+        The error is at most 1/131070 of a column's range. The array has the columns one after the other, each number
+        as the difference from the one before.
+        """
+        low, high = numbers.min(axis=0), numbers.max(axis=0)
+        step = np.where(high > low, (high - low) / _STEPS, 1.0)
+        whole = np.rint((numbers - low) / step).astype(np.uint16)
+        return {
+            "low": low.tolist(),
+            "step": step.tolist(),
+            "columns": self.array(np.diff(whole.T, prepend=np.uint16(0))),
+        }
+
+    def content(self) -> bytes:
+        """Return all of it, compressed (zlib)."""
+        document = json.dumps(self.document, separators=(",", ":")).encode()
+        document += b" " * (-len(document) % 4)
+        return zlib.compress(len(document).to_bytes(4, "little") + document + b"".join(self._arrays), 9)
+
+    def text(self) -> str:
+        """Return all of it, compressed and as letters."""
+        return base64.b64encode(self.content()).decode()
+
+
+def pack_scene(package: Package, model: mujoco.MjModel, drawings: Primitives = NOTHING) -> None:
+    """Add the surfaces of a model, its lights and drawings.
+
+    Args:
+        package: Gets ``meshes``, ``shapes``, ``bodies``, ``lights`` and ``drawings``.
+        model: The compiled model.
+        drawings: What scripts have drawn.
+    """
+    shown = surfaces(model)
+    package.document["meshes"] = [_packed_mesh(package, mesh) for mesh in shown.meshes]
+    package.document["shapes"] = [
+        {
+            "mesh": shape.mesh,
+            "body": shape.body,
+            "rows": [round(number, 9) for number in shape.T_body_shape.reshape(-1).tolist()],
+            "rgba": [round(part, 4) for part in shape.rgba.tolist()],
+        }
+        for shape in shown.shapes
+    ]
+    package.document["bodies"] = [model.body(number).name for number in range(model.nbody)]
+    package.document["lights"] = _lights(model)
+    if drawings.spheres.sizes.size:
+        package.document["ball"] = _packed_mesh(package, round_mesh(0.0))
+    names = ("points", "spheres", "lines", "triangles")
+    package.document["drawings"] = {
+        name: _packed_batch(package, batch)
+        for name, batch in zip(names, drawings.batches, strict=True)
+        if batch.sizes.size
+    }
+
+
+def _packed_mesh(package: Package, mesh: Mesh) -> dict[str, Any]:
+    kind = np.uint32 if len(mesh.positions) >= _WIDE else np.uint16
+    corners = np.diff(mesh.triangles.reshape(-1).astype(kind), prepend=kind(0))
+    return {
+        "positions": package.quantized(mesh.positions),
+        "normals": package.array(octahedral(mesh.normals)),
+        "corners": package.array(corners),
+    }
+
+
+def octahedral(normals: Floats) -> NDArray[np.int8]:
+    """Return unit vectors (N, 3) as two numbers each, (N, 2): folded onto a square, within 1 degree.
+
+    Source: Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2), 2014.
+    """
+    folded = normals / np.maximum(np.abs(normals).sum(axis=1, keepdims=True), 1e-12)
+    square = folded[:, :2].copy()
+    lower = folded[:, 2] < 0
+    square[lower] = (1 - np.abs(folded[lower, 1::-1])) * np.where(folded[lower, :2] < 0, -1.0, 1.0)
+    return np.rint(127 * square).astype(np.int8)
+
+
+def _packed_batch(package: Package, batch: PrimitiveBatch) -> dict[str, Any]:
+    return {
+        "corners": package.array(batch.corners.astype(np.float32)),
+        "sizes": package.array(batch.sizes.astype(np.float32)),
+        "rgba": package.array(np.clip(batch.rgba, 0, 1).astype(np.float32)),
+    }
+
+
+def _lights(model: mujoco.MjModel) -> list[dict[str, Any]]:
+    """Return the lights, all directional; the first is that of the camera, which has no direction of its own."""
+    head = model.vis.headlight
+    lights = [{name: getattr(head, name).tolist() for name in ("ambient", "diffuse", "specular")}]
+    for number in range(model.nlight):
+        light = model.light(number)
+        colours = {name: getattr(light, name).tolist() for name in ("ambient", "diffuse", "specular")}
+        lights.append({**colours, "direction": light.dir.tolist()})
+    return lights

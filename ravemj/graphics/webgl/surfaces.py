@@ -1,0 +1,184 @@
+"""The surfaces of a compiled model as triangles: few, since shapes of one kind share theirs."""
+
+import math
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats
+from ravemj.graphics.rendering.visibility import drawn_geoms, geom_rgba
+
+Triangles = NDArray[np.uint32]
+
+_SLICES, _STACKS = 40, 20
+"""Facets around and along round shapes."""
+
+_PLANE = 1000.0
+"""Half the side of a plane that has no end [m]."""
+
+
+class Mesh(NamedTuple):
+    """Triangles whose corners have normals.
+
+    Attributes:
+        positions: Corners, shape (N, 3).
+        normals: Unit normals there, shape (N, 3).
+        triangles: Three corners each, shape (M, 3), counterclockwise seen from outside.
+    """
+
+    positions: Floats
+    normals: Floats
+    triangles: Triangles
+
+
+class Shape(NamedTuple):
+    """A mesh that moves with a body of the model.
+
+    Attributes:
+        mesh: Number of the mesh.
+        body: Number of the body in the model.
+        T_body_shape: Pose with the scale in its columns, shape (3, 4) [m].
+        rgba: Colour and opacity, 0 to 1.
+    """
+
+    mesh: int
+    body: int
+    T_body_shape: Floats
+    rgba: Floats
+
+
+class Surfaces(NamedTuple):
+    """All that is drawn of a model."""
+
+    meshes: list[Mesh]
+    shapes: list[Shape]
+
+
+def surfaces(model: mujoco.MjModel) -> Surfaces:
+    """Return the surfaces of all geoms that pictures show."""
+    meshes: list[Mesh] = []
+    numbers: dict[tuple[int, ...], int] = {}
+    colours = geom_rgba(model)
+    shapes: list[Shape] = []
+    for geom in np.flatnonzero(drawn_geoms(model)).tolist():
+        kind, data = int(model.geom_type[geom]), int(model.geom_dataid[geom])
+        size = model.geom_size[geom]
+        key = _key(kind, data, size)
+        if key not in numbers:
+            numbers[key] = len(meshes)
+            meshes.append(_mesh(model, kind, data, size))
+        rotation = np.empty(9)
+        mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
+        placed = np.column_stack([rotation.reshape(3, 3) * _scale(kind, size), model.geom_pos[geom]])
+        shapes.append(Shape(numbers[key], int(model.geom_bodyid[geom]), placed, colours[geom]))
+    return Surfaces(meshes, shapes)
+
+
+def _key(kind: int, data: int, size: Floats) -> tuple[int, ...]:
+    """Return what geoms have in common that share a mesh."""
+    if kind == mujoco.mjtGeom.mjGEOM_MESH:
+        return kind, data
+    if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
+        return kind, round(1000 * size[1] / size[0])  # its ends stay round only if it is scaled evenly
+    return (kind,)
+
+
+def _scale(kind: int, size: Floats) -> Floats:
+    """Return by what the axes of the shared mesh are multiplied, shape (3,)."""
+    if kind == mujoco.mjtGeom.mjGEOM_MESH:
+        return np.ones(3)
+    if kind in (mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_CAPSULE):
+        return np.full(3, size[0])
+    if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+        return np.array([size[0], size[0], size[1]])
+    if kind == mujoco.mjtGeom.mjGEOM_PLANE:
+        return np.array([*np.where(size[:2] > 0, size[:2], _PLANE), 1.0])
+    return np.array(size)
+
+
+def _mesh(model: mujoco.MjModel, kind: int, data: int, size: Floats) -> Mesh:
+    if kind == mujoco.mjtGeom.mjGEOM_MESH:
+        return _mesh_of_model(model, data)
+    if kind == mujoco.mjtGeom.mjGEOM_CAPSULE:
+        return round_mesh(size[1] / size[0])
+    if kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
+        return _cylinder()
+    if kind == mujoco.mjtGeom.mjGEOM_BOX:
+        return _box()
+    if kind == mujoco.mjtGeom.mjGEOM_PLANE:
+        corners = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+        return Mesh(corners, np.tile([0.0, 0, 1], (4, 1)), np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32))
+    return round_mesh(0.0)  # spheres and ellipsoids
+
+
+def _mesh_of_model(model: mujoco.MjModel, number: int) -> Mesh:
+    """Return a mesh as MuJoCo draws it; corners with several normals are there several times."""
+    first, count = int(model.mesh_faceadr[number]), int(model.mesh_facenum[number])
+    faces = model.mesh_face[first : first + count].reshape(-1).astype(np.int64)
+    normals = model.mesh_facenormal[first : first + count].reshape(-1).astype(np.int64)
+    pairs, corners = np.unique(faces * (normals.max(initial=0) + 1) + normals, return_inverse=True)
+    _, representatives = np.unique(corners, return_index=True)
+    del pairs
+    at = int(model.mesh_vertadr[number]) + faces[representatives]
+    towards = int(model.mesh_normaladr[number]) + normals[representatives]
+    return Mesh(
+        model.mesh_vert[at].astype(np.float64),
+        model.mesh_normal[towards].astype(np.float64),
+        corners.reshape(-1, 3).astype(np.uint32),
+    )
+
+
+def _box() -> Mesh:
+    positions: list[list[float]] = []
+    normals: list[list[float]] = []
+    for axis in range(3):
+        for side in (-1.0, 1.0):
+            for one, other in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+                corner = [0.0, 0.0, 0.0]
+                corner[axis], corner[(axis + 1) % 3], corner[(axis + 2) % 3] = side, one * side, other
+                positions.append(corner)
+                normals.append([side if index == axis else 0.0 for index in range(3)])
+    starts = 4 * np.arange(6, dtype=np.uint32)[:, None, None]
+    triangles = (starts + np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)).reshape(-1, 3)
+    return Mesh(np.array(positions), np.array(normals), triangles)
+
+
+def round_mesh(half_length: float) -> Mesh:
+    """Return a sphere of radius 1, pulled apart along z by a cylinder where the half length is more than 0."""
+    polar = np.linspace(0, math.pi, _STACKS + 1)
+    rings = np.stack([np.sin(polar), np.cos(polar)], axis=1)
+    shift = np.where(np.arange(_STACKS + 1) <= _STACKS // 2, half_length, -half_length)
+    if half_length:  # the equator is there twice, once at either end of the cylinder
+        middle = _STACKS // 2
+        rings = np.insert(rings, middle, rings[middle], axis=0)
+        shift = np.insert(shift, middle + 1, -half_length)
+    return _revolved(rings + np.stack([0 * shift, shift], axis=1), rings)
+
+
+def _cylinder() -> Mesh:
+    """Return a cylinder of radius 1 along z from -1 to 1."""
+    profile = np.array([[0.0, 1], [1, 1], [1, 1], [1, -1], [1, -1], [0, -1]])
+    normals = np.array([[0.0, 1], [0, 1], [1, 0], [1, 0], [0, -1], [0, -1]])
+    return _revolved(profile, normals)
+
+
+def _revolved(profile: Floats, normals: Floats) -> Mesh:
+    """Turn a profile, from the top down, about z; rows are distances from the axis and heights."""
+    turn = np.linspace(0, 2 * math.pi, _SLICES + 1)
+    around = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+
+    def spread(rows: Floats) -> Floats:
+        flat = rows[:, None, :1] * around
+        return np.concatenate([flat, np.broadcast_to(rows[:, None, 1:], (*flat.shape[:2], 1))], axis=2).reshape(-1, 3)
+
+    number = np.arange(len(profile) * len(turn), dtype=np.uint32).reshape(len(profile), -1)
+    upper, lower = number[:-1], number[1:]
+    near = np.stack([upper[:, :-1], lower[:, :-1], lower[:, 1:]], axis=-1).reshape(-1, 3)
+    far = np.stack([upper[:, :-1], lower[:, 1:], upper[:, 1:]], axis=-1).reshape(-1, 3)
+    positions = spread(profile)
+    triangles = np.concatenate([near, far])
+    corners = positions[triangles]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    return Mesh(positions, spread(normals), triangles[areas > 1e-12])  # none at the poles, nor where a ring is twice
