@@ -1,17 +1,12 @@
 """The arguments of the commands, with their help."""
 
 import argparse
-import importlib
-from collections.abc import Callable
-from typing import TypeAlias
 
 from ravemj.cli.argument_parser import Parser
-from ravemj.cli.argument_types import TO_STANDARD_OUTPUT, colour, port, positive, seed, size, target, vector
-from ravemj.formats.shipped import SHIPPED_MODELS
-from ravemj.geometry_functions.ik_types import GOAL_TYPES
+from ravemj.cli.argument_types import TO_STANDARD_OUTPUT, port, positive, target, vector
+from ravemj.cli.arm_parsers import add_ik, add_plan
+from ravemj.cli.shared_options import Commands, add_model, add_picture_options, command, late
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
-
-_GOAL_TYPES = sorted(kind.name for kind in GOAL_TYPES)
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -32,8 +27,8 @@ def make_parser() -> argparse.ArgumentParser:
     _add_check(commands)
     _add_diff(commands)
     _add_info(commands)
-    _add_ik(commands)
-    _add_plan(commands)
+    add_ik(commands)
+    add_plan(commands)
     _add_run(commands)
     _add_shell(commands)
     _add_alias(commands)
@@ -41,66 +36,8 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-Commands: TypeAlias = "argparse._SubParsersAction[Parser]"  # pyright: ignore[reportPrivateUsage]
-
-
-def _command(commands: Commands, name: str, summary: str, *examples: str) -> argparse.ArgumentParser:
-    return commands.add_parser(
-        name,
-        help=summary,
-        description=f"{summary[0].upper()}{summary[1:]}.",
-        epilog="examples:\n" + "\n".join(f"  {example}" for example in examples),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-
-
-def _late(module: str, function: str) -> Callable[[argparse.Namespace], int]:
-    """Return the function of a command, which imports its module when it is called: help needs none of them."""
-
-    def run(options: argparse.Namespace) -> int:
-        return getattr(importlib.import_module(f"ravemj.cli.{module}"), function)(options)
-
-    return run
-
-
-def _add_model(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "model",
-        metavar="MODEL",
-        help="OpenRAVE XML or COLLADA file: an environment, a robot or a kinbody; or a model that comes with ravemj: "
-        f"{', '.join(SHIPPED_MODELS)}",
-    )
-    parser.add_argument("--strict", action="store_true", help="take warnings about the model for errors")
-
-
-def _add_arm_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--manip", metavar="NAME", help="which manipulator; default: the active one")
-    parser.add_argument(
-        "--from",
-        dest="start",
-        metavar="FILE",
-        help="joint values to start from, as JSON: a list, or an object with names of joints; default: the model's",
-    )
-
-
-def _add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> None:
-    parser.add_argument("--size", type=size, default=(640, 480), metavar="WxH", help=size_help)
-    parser.add_argument(
-        "--camera",
-        metavar="FILE",
-        help="camera as a 4x4 matrix in JSON or text: z forward, y down; default: all in view",
-    )
-    parser.add_argument(
-        "--background",
-        type=colour,
-        metavar="COLOUR",
-        help="background: red, green and blue from 0 to 1, as 0.8,0.85,0.9, or a CSS name or #rrggbb; default: the "
-        "model's, or white",
-    )
-
-
 def _add_view(commands: Commands) -> None:
-    parser = _command(
+    parser = command(
         commands,
         "view",
         "show a model in a window, or as a page in a browser, and move it with the mouse",
@@ -108,7 +45,7 @@ def _add_view(commands: Commands) -> None:
         "ravemj view --web workshop            # prints the address of the page; Ctrl-C ends it",
         "ravemj view --web --port 8080 robot.xml",
     )
-    _add_model(parser)
+    add_model(parser)
     parser.add_argument("--web", action="store_true", help="a page, also where there is a display for a window")
     parser.add_argument(
         "--host",
@@ -117,11 +54,11 @@ def _add_view(commands: Commands) -> None:
         help="interface that serves the page (127.0.0.1, which only browsers of this machine reach)",
     )
     parser.add_argument("--port", type=port, default=0, metavar="P", help="port of the page; default: one that is free")
-    parser.set_defaults(run=_late("view", "view"))
+    parser.set_defaults(run=late("view", "view"))
 
 
 def _add_play(commands: Commands) -> None:
-    parser = _command(
+    parser = command(
         commands,
         "play",
         "play a motion of a robot: in a window, or into a video or a page",
@@ -131,7 +68,7 @@ def _add_play(commands: Commands) -> None:
         'ravemj play pendulum -o frames/ --to "1.57,-1.57" --duration 2',
         "ravemj play env.xml -o swing.gif --trajectory swing.csv --fps 25",
     )
-    _add_model(parser)
+    add_model(parser)
     parser.add_argument(
         "-o",
         "--output",
@@ -155,29 +92,29 @@ def _add_play(commands: Commands) -> None:
         "--duration", type=positive, metavar="S", help="seconds the motion takes; default: 1, or as the file says"
     )
     parser.add_argument("--fps", type=positive, default=30.0, metavar="N", help="frames in a second (30)")
-    _add_picture_options(parser, "size of the video (640x480); windows have a size of their own")
-    parser.set_defaults(run=_late("pictures", "play"))
+    add_picture_options(parser, "size of the video (640x480); windows have a size of their own")
+    parser.set_defaults(run=late("pictures", "play"))
 
 
 def _add_render(commands: Commands) -> None:
-    parser = _command(
+    parser = command(
         commands,
         "render",
         "draw a picture of a model",
         "ravemj render workshop -o workshop.png",
         'ravemj render pendulum -o pendulum.png --q "0.785,0.785" --size 1280x720',
     )
-    _add_model(parser)
+    add_model(parser)
     parser.add_argument("-o", "--output", type=target, required=True, metavar="FILE", help=".png, .jpg or .webp")
     parser.add_argument(
         "--q", type=vector, metavar="Q", help="joint values of the first robot, rad or m, separated by commas"
     )
-    _add_picture_options(parser, "size of the picture (640x480)")
-    parser.set_defaults(run=_late("pictures", "render"))
+    add_picture_options(parser, "size of the picture (640x480)")
+    parser.set_defaults(run=late("pictures", "render"))
 
 
 def _add_convert(commands: Commands) -> None:
-    parser = _command(
+    parser = command(
         commands,
         "convert",
         "translate a model to MJCF, MuJoCo's format, to COLLADA or to OpenRAVE XML",
@@ -187,7 +124,7 @@ def _add_convert(commands: Commands) -> None:
         "ravemj convert scara -o scara.robot.xml      # OpenRAVE XML, and meshes/ for meshes",
         "ravemj convert pendulum | less",
     )
-    _add_model(parser)
+    add_model(parser)
     parser.add_argument(
         "-o",
         "--output",
@@ -223,11 +160,11 @@ def _add_convert(commands: Commands) -> None:
         action="store_true",
         help='let meshes collide as several convex parts, not as one hull; needs pip install "ravemj[decompose]"',
     )
-    parser.set_defaults(run=_late("convert", "convert"))
+    parser.set_defaults(run=late("convert", "convert"))
 
 
 def _add_check(commands: Commands) -> None:
-    parser = _command(
+    parser = command(
         commands,
         "check",
         "find what is wrong in models, and what OpenRAVE passes over in silence",
@@ -238,11 +175,11 @@ def _add_check(commands: Commands) -> None:
     parser.add_argument("models", nargs="+", metavar="FILE", help="OpenRAVE XML or COLLADA files")
     parser.add_argument("--strict", action="store_true", help="exit with 1 for warnings, too")
     parser.add_argument("--json", action="store_true", help="print the findings as JSON, each place by itself")
-    parser.set_defaults(run=_late("check", "check_models"))
+    parser.set_defaults(run=late("check", "check_models"))
 
 
 def _add_diff(commands: Commands) -> None:
-    parser = _command(
+    parser = command(
         commands,
         "diff",
         "compare two models by their numbers; exit with 1 where they differ",
@@ -260,105 +197,24 @@ def _add_diff(commands: Commands) -> None:
         f"{MESH_TOLERANCE:g}",
     )
     parser.add_argument("--json", action="store_true", help="print the differences as JSON")
-    parser.set_defaults(run=_late("diff", "diff"))
+    parser.set_defaults(run=late("diff", "diff"))
 
 
 def _add_info(commands: Commands) -> None:
-    parser = _command(
+    parser = command(
         commands,
         "info",
         "show the links, joints, manipulators and sensors of a model",
         "ravemj info panda",
         "ravemj info panda --json > panda.json",
     )
-    _add_model(parser)
+    add_model(parser)
     parser.add_argument("--json", action="store_true", help="print all numbers as JSON")
-    parser.set_defaults(run=_late("info", "info"))
-
-
-def _add_ik(commands: Commands) -> None:
-    parser = _command(
-        commands,
-        "ik",
-        "find the joint values that take the tool of an arm to a goal",
-        'ravemj ik puma560 --to "0.3,0.3,0.9,0.7071,0,0.7071,0"',
-        'ravemj ik puma560 --to "0.3,0.3,0.9,0.7071,0,0.7071,0" -o arms.png',
-        'ravemj ik scara --to "0.3,0.2" --type TranslationXY2D --json',
-        "ravemj ik panda --describe",
-    )
-    _add_model(parser)
-    what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument(
-        "--to",
-        type=vector,
-        metavar="GOAL",
-        help="the goal in the world: x,y,z, or x,y,z,qw,qx,qy,qz, or the values of another type of goal; m and rad",
-    )
-    what.add_argument("--describe", action="store_true", help="say how the arm is solved, and how well that was proved")
-    parser.add_argument(
-        "--type",
-        choices=_GOAL_TYPES,
-        metavar="TYPE",
-        help="type of goal, as in OpenRAVE: Translation3D for three values, else Transform6D; "
-        f"or {', '.join(name for name in _GOAL_TYPES if name not in {'Transform6D', 'Translation3D'})}",
-    )
-    _add_arm_options(parser)
-    parser.add_argument("--json", action="store_true", help="print all solutions as JSON, not the nearest ones alone")
-    parser.add_argument(
-        "-o", "--output", type=target, metavar="FILE", help="picture with an arm at each solution; .png, .jpg or .webp"
-    )
-    _add_picture_options(parser, "size of the picture (640x480)")
-    parser.set_defaults(run=_late("ik", "ik"))
-
-
-def _add_plan(commands: Commands) -> None:
-    parser = _command(
-        commands,
-        "plan",
-        "find a motion without collisions, and write it as a table, a picture or a video",
-        'ravemj plan puma560 --to "1.2,0.4,-0.3,0,0.5,0"',
-        'ravemj plan puma560 --pose "0.3,0.3,0.9,0.7071,0,0.7071,0" -o plan.mp4',
-        'ravemj plan workshop --manip panda_arm --to "1,0.6,0,-1.6,0,2.2,0.8" -o plan.csv',
-        'ravemj plan scara --to "1.5,-2,0.1,0" -o trees.png --show-tree',
-    )
-    _add_model(parser)
-    goal = parser.add_mutually_exclusive_group(required=True)
-    goal.add_argument(
-        "--to",
-        type=vector,
-        metavar="Q",
-        help="joint values of the goal, of the arm or of all joints of the robot: rad or m, separated by commas",
-    )
-    goal.add_argument(
-        "--pose",
-        type=vector,
-        metavar="POSE",
-        help="goal of the tool in the world: x,y,z,qw,qx,qy,qz, or x,y,z and any rotation; m",
-    )
-    _add_arm_options(parser)
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=target,
-        metavar="FILE",
-        help="motion as .csv or .npz, which play takes; picture of start, goal and way as .png or .jpg; or video as "
-        ".mp4, .gif, .webp, or a folder for PNG frames",
-    )
-    parser.add_argument(
-        "--show-tree",
-        action="store_true",
-        help="draw where the trees of the planner take the hand: blue from the start, orange from the goal; a picture "
-        "shows them also where no motion was found",
-    )
-    parser.add_argument("--time-limit", type=positive, default=10.0, metavar="S", help="seconds for the search (10)")
-    parser.add_argument("--seed", type=seed, default=0, metavar="N", help="another number finds another motion (0)")
-    parser.add_argument("--fps", type=positive, default=30.0, metavar="N", help="frames in a second (30)")
-    _add_picture_options(parser, "size of the picture or video (640x480)")
-    parser.set_defaults(run=_late("plan", "plan"))
+    parser.set_defaults(run=late("info", "info"))
 
 
 def _add_run(commands: Commands) -> None:
-    parser = _command(
+    parser = command(
         commands,
         "run",
         "run a script that imports openravepy, on ravemj",
@@ -373,17 +229,17 @@ def _add_run(commands: Commands) -> None:
     )
     parser.add_argument("script", metavar="SCRIPT", help="Python file")
     parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="arguments of the script")
-    parser.set_defaults(run=_late("sessions", "run"))
+    parser.set_defaults(run=late("sessions", "run"))
 
 
 def _add_shell(commands: Commands) -> None:
-    parser = _command(commands, "shell", "open IPython with env, robot and viewer of a model", "ravemj shell puma560")
-    _add_model(parser)
-    parser.set_defaults(run=_late("sessions", "shell"))
+    parser = command(commands, "shell", "open IPython with env, robot and viewer of a model", "ravemj shell puma560")
+    add_model(parser)
+    parser.set_defaults(run=late("sessions", "shell"))
 
 
 def _add_alias(commands: Commands) -> None:
-    parser = _command(
+    parser = command(
         commands,
         "alias",
         "let scripts that import openravepy run on ravemj by themselves",
@@ -395,11 +251,11 @@ def _add_alias(commands: Commands) -> None:
         "--install", action="store_true", help="put a package openravepy, which forwards to ravemj, into this Python"
     )
     action.add_argument("--remove", action="store_true", help="take it out again")
-    parser.set_defaults(run=_late("sessions", "alias"))
+    parser.set_defaults(run=late("sessions", "alias"))
 
 
 def _add_doctor(commands: Commands) -> None:
-    parser = _command(
+    parser = command(
         commands, "doctor", "say what can draw pictures here, and how to install what cannot", "ravemj doctor"
     )
-    parser.set_defaults(run=_late("pictures", "doctor"))
+    parser.set_defaults(run=late("pictures", "doctor"))

@@ -1,0 +1,67 @@
+"""What the parsers of several commands share."""
+
+import argparse
+import importlib
+from collections.abc import Callable
+from typing import TypeAlias
+
+from ravemj.cli.argument_parser import Parser
+from ravemj.cli.argument_types import colour, size
+from ravemj.formats.shipped import SHIPPED_MODELS
+
+Commands: TypeAlias = "argparse._SubParsersAction[Parser]"  # pyright: ignore[reportPrivateUsage]
+
+
+def command(commands: Commands, name: str, summary: str, *examples: str) -> argparse.ArgumentParser:
+    """Add a command.
+
+    Args:
+        commands: The parser of all commands.
+        name: What it is called.
+        summary: What it does, beginning with a verb in lower case.
+        examples: Lines of a shell that use it.
+    """
+    return commands.add_parser(
+        name,
+        help=summary,
+        description=f"{summary[0].upper()}{summary[1:]}.",
+        epilog="examples:\n" + "\n".join(f"  {example}" for example in examples),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+
+
+def late(module: str, function: str) -> Callable[[argparse.Namespace], int]:
+    """Return the function of a command, which imports its module when it is called: help needs none of them."""
+
+    def run(options: argparse.Namespace) -> int:
+        return getattr(importlib.import_module(f"ravemj.cli.{module}"), function)(options)
+
+    return run
+
+
+def add_model(parser: argparse.ArgumentParser) -> None:
+    """Add the model that a command is about."""
+    parser.add_argument(
+        "model",
+        metavar="MODEL",
+        help="OpenRAVE XML or COLLADA file: an environment, a robot or a kinbody; or a model that comes with ravemj: "
+        f"{', '.join(SHIPPED_MODELS)}",
+    )
+    parser.add_argument("--strict", action="store_true", help="take warnings about the model for errors")
+
+
+def add_picture_options(parser: argparse.ArgumentParser, size_help: str) -> None:
+    """Add size, camera and background of pictures."""
+    parser.add_argument("--size", type=size, default=(640, 480), metavar="WxH", help=size_help)
+    parser.add_argument(
+        "--camera",
+        metavar="FILE",
+        help="camera as a 4x4 matrix in JSON or text: z forward, y down; default: all in view",
+    )
+    parser.add_argument(
+        "--background",
+        type=colour,
+        metavar="COLOUR",
+        help="background: red, green and blue from 0 to 1, as 0.8,0.85,0.9, or a CSS name or #rrggbb; default: the "
+        "model's, or white",
+    )
