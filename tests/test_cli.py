@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -748,3 +749,38 @@ def test_commands_import_what_they_need_and_raise_no_warnings_of_python(folder, 
 
 def test_plain_removes_what_steers_terminals():
     assert plain("\x1b[?25l\x1b[32mgreen\x1b[0m\r\n") == "green\n"
+
+
+COMPLETE = """eval "$("$PYTHON" -m ravemj completion bash)"
+ravemj() { "$PYTHON" -m ravemj "$@"; }
+for COMP_LINE in "$@"; do
+    COMP_POINT=${#COMP_LINE} COMP_WORDS=($COMP_LINE) COMP_CWORD=$((${#COMP_WORDS[@]} - 1)) COMPREPLY=()
+    _python_argcomplete ravemj
+    echo "${COMPREPLY[@]}"
+done
+"""
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+def test_bash_completes_commands_options_and_models(folder):
+    (folder / "puma.dae").touch()
+    (folder / "puma.txt").touch()
+    lines = ["ravemj pl", "ravemj render env.xml --back", "ravemj play pu", "ravemj completion f"]
+    command = ["bash", "-c", COMPLETE, "bash", *lines]
+    done = subprocess.run(
+        command, cwd=folder, env={**os.environ, "PYTHON": sys.executable}, capture_output=True, text=True, check=True
+    )
+    assert [line.split() for line in done.stdout.splitlines()] == [
+        ["play", "plan"],
+        ["--background"],
+        ["puma560", "puma.dae"],
+        ["fish"],
+    ]
+
+
+@pytest.mark.parametrize("shell", ["zsh", "fish"])
+def test_other_shells_get_their_own_words(folder, shell):
+    printed = said(ravemj_command(folder, "completion", shell))
+    assert "ravemj" in printed
+    if shutil.which(shell):
+        subprocess.run([shell, "-n"], input=printed, text=True, check=True)

@@ -55,6 +55,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(arguments: Sequence[str]) -> int:
     parser = make_parser()
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks how the words go on, and takes no further output
+        from argcomplete import autocomplete  # noqa: PLC0415 - only then
+
+        autocomplete(parser)
     if not arguments:
         parser.print_help(sys.stderr)
         return 2

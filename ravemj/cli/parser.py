@@ -5,7 +5,7 @@ import argparse
 from ravemj.cli.argument_parser import Parser
 from ravemj.cli.argument_types import TO_STANDARD_OUTPUT, port, positive, target, vector
 from ravemj.cli.arm_parsers import add_ik, add_plan
-from ravemj.cli.shared_options import Commands, add_model, add_picture_options, command, late
+from ravemj.cli.shared_options import Commands, add_model, add_picture_options, command, complete_models, late
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
 
 
@@ -33,6 +33,7 @@ def make_parser() -> argparse.ArgumentParser:
     _add_shell(commands)
     _add_alias(commands)
     _add_doctor(commands)
+    _add_completion(commands)
     return parser
 
 
@@ -172,7 +173,7 @@ def _add_check(commands: Commands) -> None:
         "ravemj check --strict models/*.xml",
         "ravemj check --json robot.xml      # a list of file, line, code, severity, message, hint, included_from",
     )
-    parser.add_argument("models", nargs="+", metavar="FILE", help="OpenRAVE XML or COLLADA files")
+    complete_models(parser.add_argument("models", nargs="+", metavar="FILE", help="OpenRAVE XML or COLLADA files"))
     parser.add_argument("--strict", action="store_true", help="exit with 1 for warnings, too")
     parser.add_argument("--json", action="store_true", help="print the findings as JSON, each place by itself")
     parser.set_defaults(run=late("check", "check_models"))
@@ -187,7 +188,7 @@ def _add_diff(commands: Commands) -> None:
         "ravemj diff old.robot.xml new.robot.xml --json      # a list of part, quantity, first, second, difference",
     )
     for name in ("first", "second"):
-        parser.add_argument(name, metavar=name.upper(), help="OpenRAVE XML or COLLADA file")
+        complete_models(parser.add_argument(name, metavar=name.upper(), help="OpenRAVE XML or COLLADA file"))
     parser.add_argument(
         "--tolerance",
         type=positive,
@@ -259,3 +260,16 @@ def _add_doctor(commands: Commands) -> None:
         commands, "doctor", "say what can draw pictures here, and how to install what cannot", "ravemj doctor"
     )
     parser.set_defaults(run=late("pictures", "doctor"))
+
+
+def _add_completion(commands: Commands) -> None:
+    parser = command(
+        commands,
+        "completion",
+        "print what lets a shell complete commands, options and models",
+        'eval "$(ravemj completion bash)"                                  # in ~/.bashrc',
+        'autoload -U compinit; compinit; eval "$(ravemj completion zsh)"   # in ~/.zshrc',
+        "ravemj completion fish > ~/.config/fish/completions/ravemj.fish",
+    )
+    parser.add_argument("shell", choices=["bash", "zsh", "fish"], metavar="SHELL", help="bash, zsh or fish")
+    parser.set_defaults(run=late("completion", "print_completion"))

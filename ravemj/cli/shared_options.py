@@ -39,14 +39,26 @@ def late(module: str, function: str) -> Callable[[argparse.Namespace], int]:
     return run
 
 
+def complete_models(argument: argparse.Action) -> None:
+    """Let shells complete an argument with names and files of models."""
+
+    def completer(prefix: str, **_: object) -> list[str]:
+        from ravemj.cli.completion import models  # noqa: PLC0415 - only where a shell asks
+
+        return models(prefix)
+
+    argument.completer = completer  # pyright: ignore[reportAttributeAccessIssue] - argcomplete's
+
+
 def add_model(parser: argparse.ArgumentParser) -> None:
     """Add the model that a command is about."""
-    parser.add_argument(
+    model = parser.add_argument(
         "model",
         metavar="MODEL",
         help="OpenRAVE XML or COLLADA file: an environment, a robot or a kinbody; or a model that comes with ravemj: "
         f"{', '.join(SHIPPED_MODELS)}",
     )
+    complete_models(model)
     parser.add_argument("--strict", action="store_true", help="take warnings about the model for errors")
 
 
