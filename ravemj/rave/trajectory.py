@@ -43,6 +43,7 @@ class Trajectory(Interface):
     """
 
     _interface_type = InterfaceType.trajectory
+    _internal = ("waypoints",)
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
         self._env = env
@@ -68,7 +69,13 @@ class Trajectory(Interface):
             raise ArgumentError("Init: spec is None, and should be a ConfigurationSpecification")
         self._waypoints = Waypoints(_groups(spec))
 
-    def _known(self) -> Waypoints:
+    @property
+    def waypoints(self) -> Waypoints:
+        """The waypoints, below the OpenRAVE API.
+
+        Raises:
+            openrave_exception: ``Init`` was not called.
+        """
         if self._waypoints is None:
             raise RavemjError("the trajectory has no specification yet; call Init(spec) first", ErrorCode.Assert)
         return self._waypoints
@@ -107,13 +114,13 @@ class Trajectory(Interface):
         if isinstance(spec, bool | int | np.bool_):
             spec, overwrite = None, bool(spec)
         given = spec if group is None else group
-        waypoints, numbers = self._known(), checked_numbers(data, "data").ravel()
+        waypoints, numbers = self.waypoints, checked_numbers(data, "data").ravel()
         groups = waypoints.groups if given is None else _groups(given)
         waypoints.insert(index, numbers, groups, overwrite=overwrite, find_body=self._env.simulation.body)
 
     def Remove(self, startindex: int, endindex: int) -> None:
         """Remove the waypoints from ``startindex`` to before ``endindex``."""
-        self._known().remove(startindex, endindex)
+        self.waypoints.remove(startindex, endindex)
 
     def GetNumWaypoints(self) -> int:
         """Return the number of waypoints.
@@ -122,7 +129,7 @@ class Trajectory(Interface):
             >>> for index in range(trajectory.GetNumWaypoints()):
             ...     point = trajectory.GetWaypoint(index)
         """
-        return len(self._known())
+        return len(self.waypoints)
 
     def GetWaypoint(self, index: int, spec: Spec | None = None) -> Floats:
         """Return a waypoint; a copy.
@@ -138,7 +145,7 @@ class Trajectory(Interface):
             >>> last = trajectory.GetWaypoint(-1)
             >>> values = trajectory.GetWaypoint(-1, robot.GetConfigurationSpecification())
         """
-        count = len(self._known())
+        count = len(self.waypoints)
         if not -count <= index < count:
             raise ArgumentError(f"index: is {index}, and there are {count} waypoints", ErrorCode.Assert)
         start = index % count
@@ -162,7 +169,7 @@ class Trajectory(Interface):
             endindex: The one behind the last.
             spec: The layout of the answer; None: that of the trajectory.
         """
-        return self._as(self._known().rows(startindex, endindex), spec)
+        return self._as(self.waypoints.rows(startindex, endindex), spec)
 
     def GetAllWaypoints2D(self, spec: Spec | None = None) -> Floats:
         """Return all waypoints, shape (n, dof); a copy.
@@ -170,14 +177,14 @@ class Trajectory(Interface):
         Args:
             spec: What their numbers should be; None: as in the trajectory.
         """
-        return self.GetWaypoints2D(0, len(self._known()), spec)
+        return self.GetWaypoints2D(0, len(self.waypoints), spec)
 
     def _as(self, rows: Floats, spec: Spec | None) -> Floats:
-        return rows if spec is None else self._known().as_layout(rows, _groups(spec), self._env.simulation.body)
+        return rows if spec is None else self.waypoints.as_layout(rows, _groups(spec), self._env.simulation.body)
 
     def GetDuration(self) -> float:
         """Return when the last waypoint is [s]; 0 without a group ``deltatime``."""
-        return self._known().duration()
+        return self.waypoints.duration()
 
     def GetFirstWaypointIndexAfterTime(self, time: float) -> int:
         """Return the first waypoint at a time [s] or later; from the end on, the number of waypoints.
@@ -185,7 +192,7 @@ class Trajectory(Interface):
         Raises:
             ArgumentError: there is no group ``deltatime``.
         """
-        return self._known().first_after(time)
+        return self.waypoints.first_after(time)
 
     def Sample(self, time: float, spec: Spec | None = None) -> Floats:
         """Return the configuration at a time, interpolated as the groups say.
@@ -207,7 +214,7 @@ class Trajectory(Interface):
             >>> trajectory.Sample(0.5)
         """
         find = self._env.simulation.body
-        return self._as(self._known().sample(time, restamped=spec is None, find_body=find)[None], spec)[0]
+        return self._as(self.waypoints.sample(time, restamped=spec is None, find_body=find)[None], spec)[0]
 
     def SampleFromPrevious(self, data: ArrayLike, time: float, spec: Spec) -> Floats:
         """Return the configuration at a time; what the trajectory lacks is taken from ``data``. See ``Sample``.
@@ -217,7 +224,7 @@ class Trajectory(Interface):
             time: Seconds from the start.
             spec: The layout of the data.
         """
-        source = self._known().sample(time, restamped=False, find_body=self._env.simulation.body)
+        source = self.waypoints.sample(time, restamped=False, find_body=self._env.simulation.body)
         target = ConfigurationSpecification(spec)
         return self.GetConfigurationSpecification().ConvertDataFromPrevious(data, target, source, 1, self._env)
 
@@ -296,7 +303,7 @@ class Trajectory(Interface):
         Returns:
             Bytes, in UTF-8 for XML.
         """
-        stored = Stored(self._known(), self.GetDescription())
+        stored = Stored(self.waypoints, self.GetDescription())
         return to_text(stored, self._xmlid).encode() if (options or 0) & AS_TEXT else to_bytes(stored)
 
     def deserialize(self, data: bytes | str) -> Self:

@@ -42,6 +42,17 @@ def held(interpolation: str, part: float, ends: Ends) -> Floats:
     return first if part <= ROUNDING else second
 
 
+def between(ends: Ends, part: float) -> Floats:
+    """Return the values on the straight line, which rounding takes nowhere beyond the ends, as ``curve`` may.
+
+    Args:
+        ends: The values at both waypoints.
+        part: The part of the way.
+    """
+    first, second = ends
+    return np.clip((1.0 - part) * first + part * second, np.minimum(first, second), np.maximum(first, second))
+
+
 def curve(interpolation: str, ends: Ends, derivatives: Sequence[Ends], duration: float) -> Floats:
     """Return the curve from one waypoint to the next.
 

@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, Source, SourceError
+from ravemj.trajectories.interpolation import between
 
 _TIME = "time"
 _SAME_FRAME = 1e-6  # frames: a motion that ends this close to a frame ends on it
@@ -102,9 +103,8 @@ class Motion:
         after = int(np.searchsorted(self.times, t, side="right"))
         if after in {0, len(self.times)}:
             return self.values[min(after, len(self.times) - 1)].copy()
-        (t0, t1), (a, b) = self.times[after - 1 : after + 1], self.values[after - 1 : after + 1]
-        weight = (t - t0) / (t1 - t0)
-        return np.clip((1.0 - weight) * a + weight * b, np.minimum(a, b), np.maximum(a, b))
+        (t0, t1), (first, second) = self.times[after - 1 : after + 1], self.values[after - 1 : after + 1]
+        return between((first, second), float((t - t0) / (t1 - t0)))
 
     def number_of_frames(self, fps: float) -> int:
         """Return how many frames ``frames(fps)`` yields.

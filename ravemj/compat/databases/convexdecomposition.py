@@ -1,6 +1,6 @@
 """Convex parts of the links; MuJoCo makes its own hulls."""
 
-from ravemj.compat.databases.model import DatabaseGenerator, refusing
+from ravemj.compat.databases.model import DatabaseGenerator, lacking, refusing
 from ravemj.rave.robot import Robot
 
 PARTS = "files of convex parts"
@@ -17,6 +17,33 @@ class ConvexDecompositionError(Exception):
         return str(self.msg)
 
 
+@lacking(
+    PARTS,
+    {
+        "ComputePaddedConvexDecompositionFromTriMesh": "trimesh padding",
+        "ComputePaddedConvexHullFromTriMesh": "trimesh padding",
+        "GetGeometryInfosFromLink": "ilink preservetransform color",
+        "LoadHDF5": "",
+        "LoadPickle": "",
+        "SaveHDF5": "",
+        "SavePickle": "",
+        "ShowLink": "ilink progressive",
+        "generate": "padding minTriangleConvexHullThresh convexHullLinks **named",
+        "getfilename": "read",
+        "getversion": "",
+        "setrobot": "",
+        "show": "options",
+        "testPointsInside": "points",
+    },
+    static={
+        "ComputeHullPlanes": "hull thresh",
+        "CreateOptionParser": "",
+        "GenerateTrimeshFromHulls": "hulls",
+        "PadMesh": "vertices indices padding mergeDuplicated rtol atol setNormalsAwayFromCenter",
+        "RunFromParser": "Model parser args **named",
+        "transformHull": "T hull",
+    },
+)
 class ConvexDecompositionModel(DatabaseGenerator):
     """Convex parts of the links, which need no computing here: collisions use hulls anyway.
 
@@ -29,8 +56,6 @@ class ConvexDecompositionModel(DatabaseGenerator):
         del padding
         super().__init__(robot)
 
-    capability = PARTS
-
     def load(self) -> bool:
         """Return whether there is something to use: True."""
         return True
@@ -40,35 +65,6 @@ class ConvexDecompositionModel(DatabaseGenerator):
 
     def save(self, params: object = None) -> None:
         """Do nothing."""
-
-    ComputeHullPlanes = staticmethod(refusing("ComputeHullPlanes", PARTS, "hull thresh"))
-    ComputePaddedConvexDecompositionFromTriMesh = refusing(
-        "ComputePaddedConvexDecompositionFromTriMesh", PARTS, "self trimesh padding"
-    )
-    ComputePaddedConvexHullFromTriMesh = refusing("ComputePaddedConvexHullFromTriMesh", PARTS, "self trimesh padding")
-    CreateOptionParser = staticmethod(refusing("CreateOptionParser", PARTS, ""))
-    GenerateTrimeshFromHulls = staticmethod(refusing("GenerateTrimeshFromHulls", PARTS, "hulls"))
-    GetGeometryInfosFromLink = refusing("GetGeometryInfosFromLink", PARTS, "self ilink preservetransform color")
-    LoadHDF5 = refusing("LoadHDF5", PARTS, "self")
-    LoadPickle = refusing("LoadPickle", PARTS, "self")
-    PadMesh = staticmethod(
-        refusing(
-            "ConvexDecompositionModel.PadMesh",
-            PARTS,
-            "vertices indices padding mergeDuplicated rtol atol setNormalsAwayFromCenter",
-        )
-    )
-    RunFromParser = staticmethod(refusing("RunFromParser", PARTS, "Model parser args **named"))
-    SaveHDF5 = refusing("SaveHDF5", PARTS, "self")
-    SavePickle = refusing("SavePickle", PARTS, "self")
-    ShowLink = refusing("ShowLink", PARTS, "self ilink progressive")
-    generate = refusing("generate", PARTS, "self padding minTriangleConvexHullThresh convexHullLinks **named")
-    getfilename = refusing("getfilename", PARTS, "self read")
-    getversion = refusing("getversion", PARTS, "self")
-    setrobot = refusing("setrobot", PARTS, "self")
-    show = refusing("show", PARTS, "self options")
-    testPointsInside = refusing("testPointsInside", PARTS, "self points")
-    transformHull = staticmethod(refusing("transformHull", PARTS, "T hull"))
 
 
 run = refusing("convexdecomposition.run", PARTS, "*arguments **named")

@@ -1,28 +1,33 @@
 """Which poses an arm reaches."""
 
-from ravemj.compat.databases.model import DatabaseGenerator, refusing
+from ravemj.compat.databases.model import DatabaseGenerator, lacking, refusing
 
 REACH = "maps of what arms reach"
 
 
+@lacking(
+    REACH,
+    {
+        "ComputeNN": "translationonly",
+        "LoadHDF5": "",
+        "LoadPickle": "",
+        "SaveHDF5": "",
+        "SavePickle": "",
+        "UniformlySampleSpace": "maxradius delta",
+        "generatepcg": "maxradius translationonly xyzdelta quatdelta usefreespace",
+        "getOrderedArmJoints": "",
+        "show": "showrobot contours opacity figureid xrange options",
+    },
+    static={
+        "QuaternionKDTree": "poses transmult",
+        "getManipulatorLinks": "manip",
+    },
+)
 class ReachabilityModel(DatabaseGenerator):
     """Which poses an arm reaches."""
 
-    capability = REACH
-
-    ComputeNN = refusing("ComputeNN", REACH, "self translationonly")
-    LoadHDF5 = refusing("LoadHDF5", REACH, "self")
-    LoadPickle = refusing("LoadPickle", REACH, "self")
-    QuaternionKDTree = staticmethod(refusing("QuaternionKDTree", REACH, "poses transmult"))
-    SaveHDF5 = refusing("SaveHDF5", REACH, "self")
-    SavePickle = refusing("SavePickle", REACH, "self")
-    UniformlySampleSpace = refusing("UniformlySampleSpace", REACH, "self maxradius delta")
-    generatepcg = refusing("generatepcg", REACH, "self maxradius translationonly xyzdelta quatdelta usefreespace")
-    getManipulatorLinks = staticmethod(refusing("getManipulatorLinks", REACH, "manip"))
-    getOrderedArmJoints = refusing("getOrderedArmJoints", REACH, "self")
     reachability3d = None
     reachabilitystats = None
-    show = refusing("show", REACH, "self showrobot contours opacity figureid xrange options")
     xyzdelta = None
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ravemj.compat.databases.model import DatabaseGenerator, refusing
+from ravemj.compat.databases.model import DatabaseGenerator, lacking, refusing
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.model.motion_bounds import motion_bounds
@@ -10,6 +10,21 @@ from ravemj.model.motion_bounds import motion_bounds
 STATISTICS = "files of statistics of links"
 
 
+@lacking(
+    STATISTICS,
+    {
+        "LoadPickle": "",
+        "SavePickle": "",
+        "generate": "**named",
+        "getfilename": "read",
+        "getversion": "",
+        "show": "options",
+    },
+    static={
+        "CreateOptionParser": "",
+        "RunFromParser": "Model parser **named",
+    },
+)
 class LinkStatisticsModel(DatabaseGenerator):
     """How far the links of a robot reach. It is computed from their boxes when it is asked for.
 
@@ -23,8 +38,6 @@ class LinkStatisticsModel(DatabaseGenerator):
         >>> model.setRobotWeights()
         >>> model.setRobotResolutions(xyzdelta=0.005)
     """
-
-    capability = STATISTICS
 
     def load(self) -> bool:
         """Return whether there is something to use: True."""
@@ -63,15 +76,7 @@ class LinkStatisticsModel(DatabaseGenerator):
         distances = motion_bounds(self.robot.simulation_state.scene)
         return np.where(distances > 0, distances, np.min(distances, initial=1.0, where=distances > 0))
 
-    CreateOptionParser = staticmethod(refusing("CreateOptionParser", STATISTICS, ""))
-    LoadPickle = refusing("LoadPickle", STATISTICS, "self")
-    RunFromParser = staticmethod(refusing("RunFromParser", STATISTICS, "Model parser **named"))
-    SavePickle = refusing("SavePickle", STATISTICS, "self")
-    generate = refusing("generate", STATISTICS, "self **named")
-    getfilename = refusing("getfilename", STATISTICS, "self read")
-    getversion = refusing("getversion", STATISTICS, "self")
     grabbedjointspheres = None
-    show = refusing("show", STATISTICS, "self options")
 
 
 run = refusing("linkstatistics.run", STATISTICS, "*arguments **named")

@@ -1,8 +1,8 @@
 """What all models of ``openravepy.databases`` have in common."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from inspect import Parameter, Signature
-from typing import NoReturn
+from typing import ClassVar, NoReturn, TypeVar
 
 from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.rave.environment import Environment
@@ -26,11 +26,56 @@ def refusing(name: str, capability: str, arguments: str) -> Callable[..., NoRetu
     kinds = {0: Parameter.POSITIONAL_OR_KEYWORD, 1: Parameter.VAR_POSITIONAL, 2: Parameter.VAR_KEYWORD}
     shown = [Parameter(word.lstrip("*"), kinds[word.count("*")]) for word in arguments.split()]
     vars(refuse).update(__signature__=Signature(shown), capability=capability)
-    refuse.__name__ = refuse.__qualname__ = name
+    refuse.__name__, refuse.__qualname__ = name.rpartition(".")[2], name
     refuse.__doc__ = f"Raise ``UnsupportedError``: ravemj has no {capability} yet."
     return refuse
 
 
+Model = TypeVar("Model", bound="DatabaseGenerator")
+
+
+def lacking(
+    capability: str, methods: Mapping[str, str], static: Mapping[str, str] | None = None
+) -> Callable[[type[Model]], type[Model]]:
+    """Give a class the methods of OpenRAVE's model that need what ravemj lacks; each raises ``UnsupportedError``.
+
+    Args:
+        capability: What ravemj lacks.
+        methods: The names of their arguments behind ``self``, by the methods' names; see ``refusing``.
+        static: The same of static methods.
+    """
+
+    def complete(model: type[Model]) -> type[Model]:
+        model.capability = capability
+        for name, arguments in methods.items():
+            setattr(model, name, refusing(f"{model.__name__}.{name}", capability, f"self {arguments}"))
+        for name, arguments in (static or {}).items():
+            setattr(model, name, staticmethod(refusing(f"{model.__name__}.{name}", capability, arguments)))
+        return model
+
+    return complete
+
+
+_PARSER = "parser env args robotatts defaultviewer allowkinbody"
+
+
+@lacking(
+    _BUILDING,
+    {
+        "autogenerateparams": "options",
+        "generate": "*arguments **named",
+        "generatepcg": "",
+        "getfilename": "read",
+        "getversion": "",
+        "preprocess": "",
+        "show": "options",
+    },
+    static={
+        "CreateOptionParser": "useManipulator",
+        "InitializeFromParser": f"Model {_PARSER}",
+        "RunFromParser": f"Model {_PARSER} **named",
+    },
+)
 class DatabaseGenerator:
     """A model that is computed once for a robot.
 
@@ -40,7 +85,7 @@ class DatabaseGenerator:
         named: The same, by name.
     """
 
-    capability = _BUILDING
+    capability: ClassVar[str]
     """What ravemj lacks to compute it."""
 
     def __init__(self, robot: Robot, *arguments: object, **named: object) -> None:
@@ -83,18 +128,6 @@ class DatabaseGenerator:
         if robot is None:
             raise ArgumentError(f"clone: envother has no robot '{self.robot.GetName()}'")
         return type(self)(robot)
-
-    autogenerateparams = refusing("autogenerateparams", _BUILDING, "self options")
-    generate = refusing("generate", _BUILDING, "self *arguments **named")
-    generatepcg = refusing("generatepcg", _BUILDING, "self")
-    getfilename = refusing("getfilename", _BUILDING, "self read")
-    getversion = refusing("getversion", _BUILDING, "self")
-    preprocess = refusing("preprocess", _BUILDING, "self")
-    show = refusing("show", _BUILDING, "self options")
-    CreateOptionParser = staticmethod(refusing("CreateOptionParser", _BUILDING, "useManipulator"))
-    _PARSER = "parser env args robotatts defaultviewer allowkinbody"
-    InitializeFromParser = staticmethod(refusing("InitializeFromParser", _BUILDING, f"Model {_PARSER}"))
-    RunFromParser = staticmethod(refusing("RunFromParser", _BUILDING, f"Model {_PARSER} **named"))
 
     def __getattr__(self, name: str) -> NoReturn:
         """Say what is missing, for all other methods that OpenRAVE's model has."""

@@ -85,9 +85,7 @@ class TaskManipulation(Helper):
         found = self._task.close_fingers(directions, offsets, **given(step=coarsestep))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
 
-    def CloseFingers(self, *args: object, **kwargs: object) -> Answer:
-        """Close the gripper; see ``ChuckFingers``, whose arguments it has."""
-        return self.ChuckFingers(*args, **kwargs)  # pyright: ignore[reportArgumentType] - passed on
+    CloseFingers = ChuckFingers
 
     def UnchuckFingers(
         self,
@@ -125,9 +123,7 @@ class TaskManipulation(Helper):
         found = self._task.release_fingers(directions, target, **given(step=coarsestep))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
 
-    def ReleaseFingers(self, *args: object, **kwargs: object) -> Answer:
-        """Open the gripper; see ``UnchuckFingers``, whose arguments it has."""
-        return self.UnchuckFingers(*args, **kwargs)  # pyright: ignore[reportArgumentType] - passed on
+    ReleaseFingers = UnchuckFingers
 
     def ReleaseActive(
         self,

@@ -2,34 +2,21 @@
 
 from typing import Protocol
 
-from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import Playback
 from ravemj.gui.viewers.selection_callbacks import Selecting
 from ravemj.trajectories.body_motion import BodyMotion
-from ravemj.trajectories.groups import Group
 from ravemj.trajectories.motion import Motion
 from ravemj.trajectories.waypoints import Waypoints
-
-
-class _Specification(Protocol):
-    def GetGroups(self) -> list[Group]:
-        """Return the groups of numbers."""
-        ...
 
 
 class _Trajectory(Protocol):
     """A trajectory of the API, which stands above viewers."""
 
-    def GetConfigurationSpecification(self) -> _Specification:
-        """Return what the numbers of a waypoint are."""
-        ...
-
-    def GetAllWaypoints2D(self) -> Floats:
-        """Return the waypoints, one in each row."""
-        ...
+    @property
+    def waypoints(self) -> Waypoints: ...
 
 
 class _Body(Protocol):
@@ -77,8 +64,8 @@ class Playing(Selecting):
                 body = self._first_robot() if robot is None else robot.simulation_state
                 followed = BodyMotion.of_motion(body, motion)
             else:
-                groups = motion.GetConfigurationSpecification().GetGroups()
-                followed = BodyMotion.of_waypoints(self._simulation, Waypoints(groups, motion.GetAllWaypoints2D()))
+                known = motion.waypoints
+                followed = BodyMotion.of_waypoints(self._simulation, Waypoints(known.groups, known.data.copy()))
             before, playback.speed = playback.speed, speed
             try:
                 playback.load(followed)
