@@ -12,7 +12,7 @@ from ravemj.gui.interaction.cube import Cube, Grip
 from ravemj.gui.interaction.events import Press
 from ravemj.gui.interaction.joint_handle import SIZES, JointHandle, driving_dof, joint_and_axis
 from ravemj.gui.interaction.labels import body_line, joint_line, point_line
-from ravemj.gui.interaction.picking import Hit, pick
+from ravemj.gui.interaction.picking import Hit, pick, visible_box
 from ravemj.gui.interaction.viewpoint import Ray, View
 from ravemj.model.drawing import NOTHING, Primitives
 
@@ -45,12 +45,13 @@ class Selector:
     """Selects bodies and joints, and shows the cube or the cylinder that moves them.
 
     Attributes:
+        simulation: The bodies.
         selection: What is selected, or None.
         changes: How often this may have changed.
     """
 
     def __init__(self, simulation: Simulation, on_select: OnSelect | None) -> None:
-        self._simulation = simulation
+        self.simulation = simulation
         self._on_select = on_select
         self._notice = ""
         self.selection: Selection | None = None
@@ -58,7 +59,7 @@ class Selector:
 
     def forget_what_is_gone(self) -> bool:
         """Select nothing if the body is no more in the world; return whether that was so."""
-        is_gone = self.selection is not None and not self._simulation.holds(self.selection.body)
+        is_gone = self.selection is not None and not self.simulation.holds(self.selection.body)
         if is_gone:
             self.selection = None
             self.changes += 1
@@ -69,7 +70,7 @@ class Selector:
         self._notice = ""
         self.changes += 1
         ray = view.ray(press.x, press.y)
-        hit = pick(self._simulation, ray)
+        hit = pick(self.simulation, ray)
         if press.ctrl:
             if self._handle_at(ray, hit) is not None:
                 self._resize()
@@ -122,7 +123,7 @@ class Selector:
         if selection is None:
             return None
         ray = view.ray(press.x, press.y)
-        hit = pick(self._simulation, ray)
+        hit = pick(self.simulation, ray)
         grip = self._grip_at(view, press, hit)
         cube = self._cube()
         if grip is not None and cube is not None:
@@ -160,6 +161,15 @@ class Selector:
         if hit is None or self.selection is None or hit.body is self.selection.body:
             return False
         return hit.distance < float(np.linalg.norm(point - ray.start))
+
+    def sphere(self) -> tuple[Floats, float] | None:
+        """Return centre, shape (3,), and radius [m] of a sphere around what is selected; None where nothing is."""
+        selection = self.selection
+        if selection is None:
+            return None
+        links = None if selection.dof is None else [selection.link]
+        box = visible_box(selection.body, links, np.eye(4))
+        return None if box is None else (box.center, float(np.linalg.norm(box.half)))
 
     def primitives(self) -> Primitives:
         """Return the figures of the cube or the cylinder."""

@@ -58,7 +58,7 @@ class WindowRenderer:
         self._overlay = interaction.overlay()
         stage = self._prepared_scene(compiled.model, (simulation.version, ratio), ratio)
         primitives = merge([simulation.drawings.primitives(), self._overlay.primitives])
-        stage.fill(compiled.data, interaction.view.camera, *pixels, primitives)
+        stage.fill(compiled.data, interaction.drawn_view.camera, *pixels, primitives)
         return True
 
     def _prepared_scene(self, model: mujoco.MjModel, key: object, ratio: float) -> GlScene:

@@ -162,7 +162,9 @@ class Client:
         width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
         shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, 1.0)
         form = Format(max(int(width * shrink), 1), max(int(height * shrink), 1))
-        return self._renderer.render(self.interaction.view.camera, style.background, form, gizmos=overlay.primitives)
+        return self._renderer.render(
+            self.interaction.drawn_view.camera, style.background, form, gizmos=overlay.primitives
+        )
 
     def send_file(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""
@@ -180,7 +182,8 @@ class Client:
         mode = self.interaction.mode.value
         controls = [asdict(control) for control in overlay.controls]
         text = {"lines": overlay.lines, "mode": mode, "title": style.title, "crisp": self._is_crisp}
-        connection.send(json.dumps({**text, "controls": controls}))
+        over = {"controls": controls, "help": overlay.help, "labels": overlay.labels_on(self.interaction.drawn_view)}
+        connection.send(json.dumps({**text, **over}))
         if self._is_crisp:
             connection.send(encoding.resting(picture, is_exact=link.is_good))
         else:

@@ -151,7 +151,7 @@ class WebViewer(Viewer):
         picture = client.attend(connection, style)
         view = client.interaction.view
         if messages and view.camera is not before.camera:
-            self.interaction.look_from(view.camera, view.distance)
+            self.interaction.look_from(view.camera, view.distance, is_home=False)
         if picture is not None:
             self._image_callbacks.call(picture)
         for request in client.interaction.controls.take_requests():
