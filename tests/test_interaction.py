@@ -501,6 +501,7 @@ def test_ctrl_and_a_click_on_the_cylinder_change_its_size(hand, robot):
     hand.in_interaction().click(hand.at([0.01, 0, -0.3]), ctrl=True)
     widths = []
     for _ in range(5):
+        hand.gui.handle(Leave())
         widths.append(np.ptp(hand.gui.overlay().primitives.triangles.corners[..., 2]))
         hand.click(hand.at(JointHandle.at(robot._state, 1).center), ctrl=True)
     np.testing.assert_allclose(np.array(widths) / widths[0], [1, 2, 4, 0.5, 1])

@@ -2,6 +2,7 @@
 
 import math
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ from test_interaction import ASLANT, FROM_FRONT, Hand
 import ravemj
 from ravemj.graphics.rendering import Camera, bounding_sphere
 from ravemj.gui.interaction import Button, Fingers, Key, Mode, Move, Operate, Press, Release, Resize, Tool, Use, Wheel
+from ravemj.gui.interaction.cube import Cube
 from ravemj.gui.interaction.joint_handle import JointHandle
 from ravemj.gui.interaction.navigation import GLIDE, SIDES
-from ravemj.gui.interaction.shortcuts import KEYS
+from ravemj.gui.interaction.shortcuts import DISPLAY, GESTURES, KEYS, OTHERS, VIEW, as_markdown, key_text
 
 ROLLED = ASLANT @ ravemj.matrixFromAxisAngle([0, 0, 1], 0.4)
 
@@ -307,9 +309,85 @@ def test_right_clicks_and_panels_wait(held):
     assert gui.steer([Press(400, 300, Button.RIGHT)]) == []
 
 
-def test_every_key_does_something_that_the_help_names(hand):
-    assert set(KEYS) >= {"home", "f", "u", "k", "h", "f1", "?"}
-    for key, name in KEYS.items():
-        before = hand.gui.version
-        hand.press_key(key)
-        assert hand.gui.version > before, (key, name)
+# --- help
+
+
+def test_every_key_is_a_control_and_in_the_help(hand):
+    hand.press_key("h")
+    rows = [row for _, rows in hand.gui.overlay().help for row in rows]
+    for shortcut in (*VIEW, *DISPLAY, *OTHERS):
+        assert (shortcut.label, key_text(shortcut.keys)) in rows
+    for title in GESTURES:
+        assert title in [title for title, _ in hand.gui.overlay().help]
+    keys = [key for shortcut in (*VIEW, *DISPLAY, *OTHERS) for key in shortcut.keys]
+    assert len(keys) == len(set(keys)) == len(KEYS), "two have one key"
+    assert not {"s", "escape"} & KEYS.keys(), "these are the tutorial's"
+    hand.press_key("f1")
+    assert hand.gui.overlay().help == ()
+
+
+@pytest.mark.parametrize("shortcut", DISPLAY, ids=lambda shortcut: shortcut.name)
+def test_what_is_shown_is_switched_by_its_key_and_its_button(hand, shortcut):
+    hand.press_key(shortcut.keys[0])
+    assert shortcut.name in hand.gui.controls.display.shown
+    (entry,) = [control for control in unfolded(hand, "display") if control.name == shortcut.name]
+    assert entry.is_on
+    hand.gui.another_view().handle(Operate(shortcut.name))
+    assert shortcut.name not in hand.gui.controls.display.shown
+
+
+def test_menus_unfold_one_at_a_time(hand):
+    assert {"front", "home"} <= {control.name for control in unfolded(hand, "view")}
+    assert "floor" in {control.name for control in unfolded(hand, "display")}
+    assert "front" not in {control.name for control in hand.gui.overlay().controls}
+    assert "floor" not in {control.name for control in unfolded(hand, "display")}
+
+
+def test_the_manual_has_the_same_table():
+    page = Path(__file__).parents[1] / "docs" / "viewer.md"
+    assert as_markdown() in page.read_text(encoding="utf-8"), f"the table should be:\n{as_markdown()}"
+
+
+# --- what a click or a drag would take
+
+
+def test_in_interaction_mode_the_link_under_the_pointer_is_lit(hand, env):
+    hand.gui.look_from(Camera(FROM_FRONT))
+    at = hand.at([0.01, 0, -0.3])
+    hand.lines(at)
+    assert hand.gui.overlay().style.lit == -1, "in camera mode nothing is taken"
+    assert hand.gui.overlay().cursor == "grab"
+    hand.in_interaction()
+    hand.lines(at)
+    over = hand.gui.overlay()
+    link = hand.gui.hover.body.scene.links[hand.gui.hover.link].name
+    assert env.model.body(over.style.lit).name.endswith(link)
+    assert over.cursor == "pointer"
+    hand.lines((3, 300))
+    assert hand.gui.overlay().style.lit == -1
+    assert hand.gui.overlay().cursor == "default"
+
+
+def test_faces_edges_and_cylinders_are_marked_under_the_pointer(hand):
+    hand.gui.look_from(Camera(FROM_FRONT))
+    hand.in_interaction().click(hand.at([0.01, 0, -0.3]))
+    cube = Cube.around(hand.selection.body)
+    plain = len(hand.gui.overlay().primitives.triangles.sizes)
+    center, (x, y, _) = cube.T_world_cube[:3, 3], np.abs(cube.T_world_cube[:3, :3]) @ cube.half
+    hand.lines(hand.at(center + np.array([x, 0, 0])))
+    over = hand.gui.overlay()
+    marked = over.primitives.triangles.corners[plain:].reshape(-1, 3)
+    np.testing.assert_allclose(marked[:, 0], center[0] + x, atol=1e-9)
+    assert over.cursor == "move"
+    assert over.style.lit == -1
+    edge_x, edge_y = hand.at(center + np.array([x, y, 0]))
+    hand.lines((edge_x + 11, edge_y))  # edges catch within 12 points
+    ends = hand.gui.overlay().primitives.lines.corners[-1]
+    np.testing.assert_allclose(ends[:, :2], np.tile([center[0] + x, center[1] + y], (2, 1)), atol=1e-9)
+    hand.lines((edge_x + 14, edge_y))
+    assert hand.gui.overlay().cursor != "move"
+    hand.click(hand.at([0.01, 0, -0.3]), ctrl=True)
+    plain = len(hand.gui.overlay().primitives)
+    hand.lines(hand.at(JointHandle.at(hand.selection.body, hand.selection.dof).center))
+    assert len(hand.gui.overlay().primitives) > plain
+    assert hand.gui.overlay().cursor == "move"

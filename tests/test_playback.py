@@ -29,6 +29,7 @@ from ravemj.gui.interaction import (
     Wheel,
     tools,
 )
+from ravemj.gui.interaction.control_layout import shortened
 from ravemj.gui.viewers.player import camera_line
 
 SWING = ravemj.Motion([1.0, 2.0, 5.0], [[0.0, 0.0], [1.0, 0.5], [2.5, -1.0]])
@@ -572,4 +573,19 @@ def test_many_joints_scroll():
         bottom = mark.y + mark.height
     assert tops[0] == pytest.approx(104)
     assert bottom == pytest.approx(104 + 22 * len(seen))  # the mark shows which part is seen
-    assert all(len(text) <= 17 for *_, text in panel.layout.panels())
+    assert all(len(text) <= 26 for *_, text in panel.layout.panels())
+
+
+def test_long_names_are_cut_so_that_they_differ():
+    sides = [
+        f"{side}_{part}_joint"
+        for side in ("bl_caster_l", "bl_caster_r", "br_caster_l")
+        for part in ("wheel_of_the_base", "wheel_of_the_bass", "rotation_about_z")
+    ]
+    cut = shortened(["short", *sides])
+    assert cut["short"] == "short"
+    assert len(set(cut.values())) == len(sides) + 1
+    assert max(map(len, cut.values())) <= 26
+    assert shortened([]) == {}
+    same = shortened(["x" * 50 + "a" + "x" * 50, "x" * 50 + "b" + "x" * 50])
+    assert max(map(len, same.values())) <= 26, "there is no such place"

@@ -140,7 +140,20 @@ def test_everything_can_be_reached_and_done_by_keys(desk):
             before = playback.time
             desk.page.keyboard.press("ArrowRight")
             await_that(lambda before=before: playback.time > before, "the slider does not move")
-    wanted = ["back", "play", "forward", "range", "speed", "picture", "video", "camera", "view", "display", "help", "joints"]
+    wanted = [
+        "back",
+        "play",
+        "forward",
+        "range",
+        "speed",
+        "picture",
+        "video",
+        "camera",
+        "view",
+        "display",
+        "help",
+        "joints",
+    ]
     assert [name for name in names if name in wanted] == wanted
 
 

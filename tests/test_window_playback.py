@@ -62,7 +62,8 @@ class Desk:
     def rect(self, name):
         text = self.ask("[(c.name, c.lower, c.upper, c.group) for c in viewer.interaction.overlay().controls]")
         controls = tuple(
-            Control(found, found, lower=lower, upper=upper, group=group) for found, lower, upper, group in ast.literal_eval(text)
+            Control(found, found, lower=lower, upper=upper, group=group)
+            for found, lower, upper, group in ast.literal_eval(text)
         )
         places = ControlLayout.of(controls, SIZE).places
         return next(rect for control, rect in places.items() if control.name == name)

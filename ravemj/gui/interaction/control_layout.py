@@ -21,8 +21,8 @@ _WHEEL = 150.0
 _BAR, _ICON = 26.0, 28.0
 _CLOCK, _SPEED = 110.0, 44.0
 _SHORTEST_TRACK = 80.0
-_JOINT_ROW, _NAME, _TRACK, _VALUE = 22.0, 150.0, 120.0, 92.0
-_LONGEST_NAME = 17
+_JOINT_ROW, _NAME, _TRACK, _VALUE = 22.0, 180.0, 104.0, 84.0
+_LONGEST_NAME = 26
 _TABLE = _NAME + _TRACK + _VALUE
 _KNOB = 8.0
 _LOWEST_VIEW = 420.0
@@ -107,9 +107,10 @@ class ControlLayout(NamedTuple):
         drawn = [Panel(back, _BACK) for back in self.backs]
         if self.last_joint:
             drawn.append(self._scroll_bar(self.backs[-1]))
+        names = shortened([control.label for control in self.places if control.group == "joints"])
         for control, rect in self.places.items():
             if control.is_slider:
-                drawn += _slider(control, rect)
+                drawn += _slider(control, rect, names.get(control.label, ""))
             elif control.group == "playing":
                 drawn += _icon(control, rect)
             else:
@@ -167,7 +168,17 @@ def _menu(menu: list[Control], right: float) -> dict[Control, Rect]:
     }
 
 
-def _slider(control: Control, rect: Rect) -> list[Panel]:
+def shortened(labels: list[str]) -> dict[str, str]:
+    """Return for each label a text that has room; where there is a place to cut at, all of them stay different."""
+    for tail in range(_LONGEST_NAME // 2, _LONGEST_NAME - 2):
+        head = _LONGEST_NAME - 2 - tail
+        cut = {label: label if len(label) <= _LONGEST_NAME else f"{label[:head]}..{label[-tail:]}" for label in labels}
+        if len(set(cut.values())) == len(cut):
+            break
+    return cut
+
+
+def _slider(control: Control, rect: Rect, name: str) -> list[Panel]:
     """Return groove, knob and text of a slider; those of joints have their name before them."""
     x, y, width, height = rect
     part = (min(max(control.value, control.lower), control.upper) - control.lower) / (control.upper - control.lower)
@@ -179,7 +190,6 @@ def _slider(control: Control, rect: Rect) -> list[Panel]:
         drawn.insert(1, done)
         clock = Panel(Rect(x + width, y, _CLOCK, height), _CLEAR, control.text)
         return [*drawn, clock] if control.text else drawn
-    name = control.label if len(control.label) <= _LONGEST_NAME else f"{control.label[:8]}..{control.label[-7:]}"
     before = Panel(Rect(x - _NAME, y, _NAME, height), _CLEAR, name)
     return [before, *drawn, Panel(Rect(x + width, y, _VALUE, height), _CLEAR, control.text)]
 

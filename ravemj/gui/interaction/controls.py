@@ -46,7 +46,7 @@ MENUS = {
 }
 """What can be unfolded, besides the sliders of the joints."""
 
-_WITHOUT_BUTTON = {shortcut.name for menu in MENUS.values() for shortcut in menu.shortcuts} | set(MENUS)
+_WITHOUT_BUTTON = {shortcut.name for menu in MENUS.values() for shortcut in menu.shortcuts} | {*MENUS, "reload"}
 """What keys do whether or not it is unfolded."""
 
 
@@ -205,8 +205,16 @@ class Controls:
             self.navigation.fit(self._selector.sphere())
         elif name in MENUS:
             self.unfolded = "" if self.unfolded == name else name
+        elif name == "reload":
+            self._ask_for_reload()
         else:
             self.display.toggle(name)
+
+    def _ask_for_reload(self) -> None:
+        if self.display.wants_reload is None:
+            self.notices.say("Only ravemj view reads a model again")
+        else:
+            self.display.wants_reload = True
 
     def _operate(self, name: str, value: float) -> None:
         playback = self.playback

@@ -10,11 +10,12 @@ from dataclasses import replace
 import numpy as np
 
 from ravemj.engine.simulation import Simulation
-from ravemj.graphics.rendering import Camera, bounding_sphere
+from ravemj.graphics.rendering import Camera, Style, bounding_sphere
 from ravemj.gui.interaction import floor, mode_buttons
 from ravemj.gui.interaction.controls import Controls
 from ravemj.gui.interaction.display import Display
 from ravemj.gui.interaction.events import Event, Move, Press, Release
+from ravemj.gui.interaction.figures import figures, names
 from ravemj.gui.interaction.hand import Hand, Mode
 from ravemj.gui.interaction.mode_buttons import Tool
 from ravemj.gui.interaction.navigation import Navigation, Sphere
@@ -25,7 +26,7 @@ from ravemj.gui.interaction.playback import Playback
 from ravemj.gui.interaction.selection import OnSelect, Selection, Selector, point_line
 from ravemj.gui.interaction.shortcuts import sections
 from ravemj.gui.interaction.viewpoint import View
-from ravemj.model.drawing import merge
+from ravemj.model.drawing import NOTHING, Primitives, merge
 
 
 class Interaction:
@@ -49,9 +50,9 @@ class Interaction:
         self._simulation = simulation
         self._sphere = np.zeros(3), 1.0
         self._navigation = Navigation(View(camera, 0.0, size), self._scene_sphere)
-        self._selector = Selector(simulation, on_select)
-        shared = Playback(simulation), Notices(), Display()
-        self.controls = Controls(self._selector, self._navigation, *shared)
+        notices = Notices()
+        self._selector = Selector(simulation, notices, on_select)
+        self.controls = Controls(self._selector, self._navigation, Playback(simulation), notices, Display())
         self._hand = Hand(self._selector, self._navigation, self.controls)
         self._changes = 0
         self._hovered = False
@@ -127,6 +128,12 @@ class Interaction:
             self._forget_what_is_gone()
             return self._selector.selection
 
+    def select(self, selection: Selection | None) -> None:
+        """Select something, or nothing, without asking anybody."""
+        with self._simulation.lock:
+            self._selector.selection = selection
+            self._changes += 1
+
     @property
     def hover(self) -> Hit | None:
         """What is under the pointer now; None while a button is held."""
@@ -145,24 +152,48 @@ class Interaction:
         """Return what is to be drawn over the bodies as they are now. The simulation is locked meanwhile."""
         with self._simulation.lock:
             self._forget_what_is_gone()
-            hand = self._hand
+            hand, shown = self._hand, self.controls.display.shown
             hand.look()
-            lines = *self._pointed_at(), *self._selector.lines(), *self.controls.notices.lines
+            hit = hand.hit()
+            lines = *self._pointed_at(hit), *self._selector.lines(), *self.controls.notices.lines
             chosen = Tool.CAMERA if self.mode is Mode.CAMERA else Tool.INTERACT
             tools = mode_buttons.panels(self.view.size, chosen) if hand.has_tools else ()
-            panels = *tools, *hand.layout.panels()
-            figures = self._selector.primitives()
+            mark = self._mark(hit)
+            takes_link = mark is None and hit is not None and self.mode is Mode.INTERACTION
+            parts = [self._selector.primitives(), mark or NOTHING]
             labels: tuple[Label, ...] = ()
-            help_ = sections() if self.controls.unfolded == "help" else ()
-            if "floor" in self.controls.display.shown:
+            if shown:
                 sphere = self._scene_sphere()
-                figures = merge([floor.grid(*sphere), figures])
-                labels = floor.marks(*sphere)
-            return Overlay(figures, lines, panels, self.controls.all(), labels, help_)
+                parts += figures(self._simulation, shown, sphere[1])
+                labels = names(self._simulation) if "names" in shown else ()
+                if "floor" in shown:
+                    parts.append(floor.grid(*sphere))
+                    labels += floor.marks(*sphere)
+            return Overlay(
+                primitives=merge(parts) if any(map(len, parts)) else NOTHING,
+                lines=lines,
+                panels=(*tools, *hand.layout.panels()),
+                controls=self.controls.all(),
+                labels=labels,
+                help=sections() if self.controls.unfolded == "help" else (),
+                style=Style(
+                    *(name in shown for name in ("collision", "hulls", "transparent", "wireframe")),
+                    lit=self._body_id(hit) if takes_link and hit is not None else -1,
+                ),
+                cursor="move" if mark is not None else "pointer" if takes_link else hand.cursor(),
+            )
 
-    def _pointed_at(self) -> list[str]:
+    def _mark(self, hit: Hit | None) -> Primitives | None:
+        """Return a figure on the face, the edge or the cylinder that a drag would take; None where there is none."""
+        at = self._hand.free_pointer()
+        return None if at is None or self.mode is Mode.CAMERA else self._selector.mark(self.view, at, hit)
+
+    def _body_id(self, hit: Hit) -> int:
+        return int(self._simulation.compiled().part(hit.body).body_ids[hit.link])
+
+    def _pointed_at(self, hit: Hit | None) -> list[str]:
         """Return the text about what is under the pointer, else about the point that was clicked on."""
-        hit, control = self._hand.hit(), self._hand.layout.at(self._hand.pointer)
+        control = self._hand.layout.at(self._hand.pointer)
         text = self._selector.point_line()
         if hit is not None:
             text = point_line(hit.body, hit.link, hit.position, hit.normal)

@@ -9,11 +9,13 @@ class Display:
     Attributes:
         shown: Names of what is shown, of ``shortcuts``.
         changes: How often that has changed.
+        wants_reload: Whether people have asked to read the model again; None where nobody would do it.
     """
 
     def __init__(self, shown: Iterable[str] = ()) -> None:
         self.shown = frozenset(shown)
         self.changes = 0
+        self.wants_reload: bool | None = None
 
     def show(self, name: str, shown: bool = True) -> None:
         """Switch something on, or off."""

@@ -105,14 +105,25 @@ class Hand:
         """End what is being dragged."""
         self._press = self._follow = None
 
-    def hit(self) -> Hit | None:
-        """Return what is under the pointer; None while a button is held."""
+    def free_pointer(self) -> tuple[float, float] | None:
+        """Return where the pointer is on the view; None while a button is held, and over controls."""
         at = self.pointer
         if at is None or self.buttons or self.layout.covers(at):
             return None
-        if not all(0 <= place < length for place, length in zip(at, self.view.size, strict=True)):
-            return None
-        return pick(self._simulation, self.view.ray(*at))
+        is_inside = all(0 <= place < length for place, length in zip(at, self.view.size, strict=True))
+        return at if is_inside else None
+
+    def hit(self) -> Hit | None:
+        """Return what is under the pointer; None while a button is held."""
+        at = self.free_pointer()
+        return None if at is None else pick(self._simulation, self.view.ray(*at))
+
+    def cursor(self) -> str:
+        """Return how the pointer looks where there is nothing to take."""
+        is_tool = self.pointer is not None and self._tool_at(Press(*self.pointer)) is not None
+        if is_tool or self.layout.at(self.pointer) is not None:
+            return "pointer"
+        return "grab" if self.mode is Mode.CAMERA else "default"
 
     def steer(self, event: Event) -> bool:
         """Do what an event asks for if that needs no bodies; return whether it was done."""

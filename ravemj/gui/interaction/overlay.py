@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from ravemj.core.transforms import Floats
+from ravemj.graphics.rendering.style import AS_IT_IS, Style
 from ravemj.gui.interaction.controls import Control
 from ravemj.gui.interaction.mode_buttons import Panel
 from ravemj.gui.interaction.shortcuts import Section
@@ -32,6 +33,9 @@ class Overlay(NamedTuple):
         controls: What the buttons and sliders beside the tutorial's are, as plain data.
         labels: Texts in the world.
         help: What can be done, while that is unfolded.
+        style: How the bodies are drawn.
+        cursor: How the pointer looks: ``default``, ``grab`` for a view that can be turned, ``pointer`` for a button or
+            something to click on, ``move`` for something to drag.
     """
 
     primitives: Primitives
@@ -40,6 +44,8 @@ class Overlay(NamedTuple):
     controls: tuple[Control, ...] = ()
     labels: tuple[Label, ...] = ()
     help: tuple[Section, ...] = ()
+    style: Style = AS_IT_IS
+    cursor: str = "default"
 
     def labels_on(self, view: View) -> list[tuple[float, float, str]]:
         """Return column and row [points] and text of the labels that are before the eye and on a view."""

@@ -12,6 +12,7 @@ from ravemj.gui.interaction.cube import Cube, Grip
 from ravemj.gui.interaction.events import Press
 from ravemj.gui.interaction.joint_handle import SIZES, JointHandle, driving_dof, joint_and_axis
 from ravemj.gui.interaction.labels import body_line, joint_line, point_line
+from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.picking import Hit, pick, visible_box
 from ravemj.gui.interaction.viewpoint import Ray, View
 from ravemj.model.drawing import NOTHING, Primitives
@@ -50,10 +51,10 @@ class Selector:
         changes: How often this may have changed.
     """
 
-    def __init__(self, simulation: Simulation, on_select: OnSelect | None) -> None:
+    def __init__(self, simulation: Simulation, notices: Notices, on_select: OnSelect | None) -> None:
         self.simulation = simulation
         self._on_select = on_select
-        self._notice = ""
+        self._notices = notices
         self.selection: Selection | None = None
         self.changes = 0
 
@@ -67,7 +68,6 @@ class Selector:
 
     def click(self, view: View, press: Press) -> None:
         """Select what is under the pointer, or nothing; Ctrl selects the joint above it."""
-        self._notice = ""
         self.changes += 1
         ray = view.ray(press.x, press.y)
         hit = pick(self.simulation, ray)
@@ -90,7 +90,8 @@ class Selector:
     def _select_joint(self, hit: Hit, ray: Ray) -> None:
         dof = driving_dof(hit.body.scene, hit.link)
         if dof is None:
-            self.selection, self._notice = None, f"No joint moves {hit.body.scene.links[hit.link].name}"
+            self.selection = None
+            self._notices.say(f"No joint moves {hit.body.scene.links[hit.link].name}")
         elif not self._may_select(hit, ray):
             self.selection = None
         else:
@@ -134,6 +135,23 @@ class Selector:
         if handle is None or point is None or selection.dof is None:
             return None
         return dragging.move_joint(selection.body, selection.dof, handle, point, ray)
+
+    def mark(self, view: View, at: tuple[float, float], hit: Hit | None) -> Primitives | None:
+        """Return a figure on what a drag would take at a point of the screen; None where there is nothing to take.
+
+        Args:
+            view: The view.
+            at: The point [points].
+            hit: The body there.
+        """
+        press = Press(*at)
+        grip, cube = self._grip_at(view, press, hit), self._cube()
+        if grip is not None and cube is not None:
+            return cube.mark(grip)
+        handle = self._handle()
+        if handle is None or self._handle_at(view.ray(*at), hit) is None:
+            return None
+        return handle.mark()
 
     def _cube(self) -> Cube | None:
         selection = self.selection
@@ -190,6 +208,6 @@ class Selector:
         """Return the text about the body and the joint that are selected."""
         selection = self.selection
         if selection is None:
-            return [self._notice] if self._notice else []
+            return []
         joint = [] if selection.dof is None else [joint_line(selection.body, selection.dof)]
         return [body_line(selection.body), *joint]

@@ -33,11 +33,23 @@ VIEW = (
 )
 """Ways to look."""
 
-DISPLAY = (Shortcut("floor", ("g",), "Floor", "show a grid on the floor, in metres, and the axes of the world"),)
+DISPLAY = (
+    Shortcut("floor", ("g",), "Floor", "show a grid on the floor, in metres, and the axes of the world"),
+    Shortcut("collision", ("v",), "Collision shapes", "show what collides, or what is seen"),
+    Shortcut("hulls", ("x",), "Convex hulls", "show meshes as their convex hulls"),
+    Shortcut("frames", ("l",), "Link frames", "show the frames of the links: x red, y green, z blue"),
+    Shortcut("axes", ("j",), "Joint axes", "show the axes of the joints, and the range between their limits"),
+    Shortcut("masses", ("i", "m"), "Masses", "show centres of mass, and inertia as ellipsoids of even density"),
+    Shortcut("contacts", ("c",), "Contacts", "show points where shapes touch"),
+    Shortcut("transparent", ("t",), "Transparent", "look through the bodies"),
+    Shortcut("wireframe", ("w",), "Wireframe", "show edges only"),
+    Shortcut("names", ("n",), "Names", "show the names of the links"),
+)
 """What can be shown besides the bodies."""
 
 OTHERS = (
     Shortcut("help", ("f1", "h", "?"), "?", "show this help, or hide it"),
+    Shortcut("reload", ("r",), "", "read the model again (in ravemj view)"),
     Shortcut("play", (" ",), "", "play a motion, or pause it"),
     Shortcut("back", ("arrowleft",), "", "one frame of a motion back"),
     Shortcut("forward", ("arrowright",), "", "one frame of a motion forward"),

@@ -82,6 +82,7 @@ function write(over) {
   const lines = over.lines.join("\n");
   if (text.innerText !== lines) text.innerText = lines;
   text.hidden = lines === "";
+  view.style.cursor = pressed && over.cursor === "grab" ? "" : over.cursor;
   showControls(over.controls);
   showHelp(over.help);
   label(over.labels);
