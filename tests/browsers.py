@@ -141,12 +141,12 @@ class Desk:
 
     def await_picture(self, page=None) -> None:
         """Wait until the page shows what the core's camera would see of the environment, pixel by pixel."""
-        await_equal(lambda: self.picture(page)[CLEAR], lambda: self._expected()[CLEAR])
+        await_equal(lambda: self.picture(page)[CLEAR], lambda: self._expected(page or self.page)[CLEAR])
 
-    def _expected(self) -> np.ndarray:
-        gizmos = self.viewer.interaction.overlay().primitives
-        form = Format(*SIZE)
-        return self.viewer._renderer.render(self.core.view.camera, self.viewer.background, form, gizmos=gizmos)
+    def _expected(self, page) -> np.ndarray:
+        over = self.viewer._views[page.evaluate("tab")].overlay()
+        look = {"gizmos": over.primitives, "style": over.style}
+        return self.viewer._renderer.render(self.core.view.camera, self.viewer.background, Format(*SIZE), **look)
 
     def await_camera(self) -> None:
         """Wait until the page's camera is the core's, in numbers and in pixels."""

@@ -29,6 +29,7 @@ from ravemj.gui.interaction import (
     Wheel,
     tools,
 )
+from ravemj.gui.interaction.control_layout import shortened
 from ravemj.gui.viewers.player import camera_line
 
 SWING = ravemj.Motion([1.0, 2.0, 5.0], [[0.0, 0.0], [1.0, 0.5], [2.5, -1.0]])
@@ -56,7 +57,8 @@ class Panel(Hand):
 
     @property
     def layout(self) -> ControlLayout:
-        return self.gui._panel.layout(self.view.size)
+        self.gui._hand.look()
+        return self.gui._hand.layout
 
     def control(self, name) -> Control:
         return next(control for control in self.gui.overlay().controls if control.name == name)
@@ -269,7 +271,7 @@ def test_scripts_and_the_viewer_share_the_playback(viewer):
 
 
 def test_the_motions_controls_are_there_while_there_is_a_motion(panel, viewer, env, robot):
-    always = ["picture", "video", "camera", "joints"]
+    always = ["picture", "video", "camera", "view", "display", "help", "joints"]
     assert panel.names == always
     viewer.play(SWING)
     assert panel.names == ["back", "play", "forward", "seek", "speed", *always]
@@ -278,7 +280,7 @@ def test_the_motions_controls_are_there_while_there_is_a_motion(panel, viewer, e
     viewer.play(ravemj.Motion([0.0], [[1.0, 0.0]]))  # a single pose has nothing to go through
     assert panel.names == always
     env.Remove(robot)
-    assert panel.names == always[:3]
+    assert panel.names == always[:-1]
 
 
 def test_the_mouse_plays_pauses_steps_and_changes_the_speed(panel, viewer):
@@ -522,10 +524,11 @@ def test_the_copied_line_sets_the_same_camera(env, viewer):
 @pytest.mark.parametrize("size", [(400, 300), (480, 430), (640, 480), (960, 720), (1920, 1080)])
 @pytest.mark.parametrize("joints", [0, 2, 100])
 def test_controls_are_on_the_view_apart_from_each_other_and_from_the_wheels(size, joints):
-    sliders = [Control(f"dof {i}", f"Joint{i}", "0 rad", 0, -1, 1) for i in range(joints)]
-    playing = [Control(name, name) for name in ("back", "play", "forward")]
-    playing += [Control("seek", "Time", "0", 0.0, 0.0, 1.0), Control("speed", "Speed", "1x")]
-    others = [Control(name, name, name) for name in ("picture", "video", "camera", "joints")]
+    sliders = [Control(f"dof {i}", f"Joint{i}", "0 rad", 0, -1, 1, group="joints") for i in range(joints)]
+    playing = [Control(name, name, group="playing") for name in ("back", "play", "forward")]
+    playing += [Control("seek", "Time", "0", 0.0, 0.0, 1.0, group="playing")]
+    playing += [Control("speed", "Speed", "1x", group="playing")]
+    others = [Control(name, name, name) for name in ("picture", "video", "camera", "view", "display", "help", "joints")]
     layout = ControlLayout.of((*playing, *others, *sliders), size)
     rects = [*layout.places.values(), *tools(size).values()]
     for rect in rects:
@@ -570,4 +573,19 @@ def test_many_joints_scroll():
         bottom = mark.y + mark.height
     assert tops[0] == pytest.approx(104)
     assert bottom == pytest.approx(104 + 22 * len(seen))  # the mark shows which part is seen
-    assert all(len(text) <= 17 for *_, text in panel.layout.panels())
+    assert all(len(text) <= 26 for *_, text in panel.layout.panels())
+
+
+def test_long_names_are_cut_so_that_they_differ():
+    sides = [
+        f"{side}_{part}_joint"
+        for side in ("bl_caster_l", "bl_caster_r", "br_caster_l")
+        for part in ("wheel_of_the_base", "wheel_of_the_bass", "rotation_about_z")
+    ]
+    cut = shortened(["short", *sides])
+    assert cut["short"] == "short"
+    assert len(set(cut.values())) == len(sides) + 1
+    assert max(map(len, cut.values())) <= 26
+    assert shortened([]) == {}
+    same = shortened(["x" * 50 + "a" + "x" * 50, "x" * 50 + "b" + "x" * 50])
+    assert max(map(len, same.values())) <= 26, "there is no such place"

@@ -618,3 +618,34 @@ def test_a_script_a_hand_and_an_onlooker_share_one_environment(env, viewer, pict
         for looker in lookers:
             looker.join(PATIENCE)
             assert not looker.is_alive()
+
+
+# --- the secret in the address
+
+
+def test_a_page_finds_a_viewer_again_that_was_started_anew(env):
+    viewer = env.serve_viewer(token="robots-2026")
+    port = viewer.server.port
+    assert viewer.url == f"http://127.0.0.1:{port}/robots-2026/"
+    with Page(viewer) as page:
+        page.settled()
+    again = env.serve_viewer(port=port, token="robots-2026")
+    assert again.url == viewer.url
+    with Page(again) as page:
+        page.settled()
+
+
+@pytest.mark.parametrize("token", ["", "short", "with space", "a/b/c/d/e", "x" * 65, "äöüäöüäö"])
+def test_a_token_that_is_no_part_of_an_address_is_refused(env, viewer, token):
+    with pytest.raises(ravemj.errors.ArgumentError, match="token"):
+        env.serve_viewer(token=token)
+    assert env.GetViewer() is viewer
+
+
+def test_strangers_that_say_nothing_do_not_keep_others_out(env, viewer):
+    with contextlib.ExitStack() as strangers:
+        for _ in range(80):
+            strangers.enter_context(socket.create_connection(("127.0.0.1", viewer.server.port)))
+        with Page(viewer) as page, Page(viewer) as other:
+            page.settled()
+            other.settled()

@@ -128,7 +128,7 @@ def test_everything_can_be_reached_and_done_by_keys(desk):
     desk.page.keyboard.press("Space")
     await_that(lambda: not playback.playing, "the space bar does not pause")
     names = []
-    for _ in range(14):
+    for _ in range(17):
         desk.page.keyboard.press("Tab")
         names.append(desk.page.evaluate("document.activeElement.dataset.name || document.activeElement.type"))
         if names[-1] == "play":
@@ -140,7 +140,20 @@ def test_everything_can_be_reached_and_done_by_keys(desk):
             before = playback.time
             desk.page.keyboard.press("ArrowRight")
             await_that(lambda before=before: playback.time > before, "the slider does not move")
-    wanted = ["back", "play", "forward", "range", "speed", "picture", "video", "camera", "joints"]
+    wanted = [
+        "back",
+        "play",
+        "forward",
+        "range",
+        "speed",
+        "picture",
+        "video",
+        "camera",
+        "view",
+        "display",
+        "help",
+        "joints",
+    ]
     assert [name for name in names if name in wanted] == wanted
 
 

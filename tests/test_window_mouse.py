@@ -13,6 +13,7 @@ from waiting import await_that
 from ravemj.gui.interaction import Button, Resize, Tool, tools
 from ravemj.gui.interaction.cube import Cube
 from ravemj.gui.interaction.joint_handle import SIZES, JointHandle
+from ravemj.gui.interaction.shortcuts import KEYS
 
 pytestmark = NEEDS_A_SCREEN
 ARMS = (1, "red"), (2, "blue")
@@ -420,8 +421,22 @@ def contrast(pixels) -> float:
 
 def test_other_keys_and_buttons_do_nothing(desk):
     camera, picture = desk.camera, desk.settled_picture()
-    keys = [*"abcdefghijklmnopqrtuvwxyz0123456789", "F1", "F5", "F11", "Tab", "Return", "Delete", "BackSpace", "Home"]
-    keys += ["space", "Up", "Down", "Left", "Right", "Prior", "Next", "plus", "minus", "ctrl+z", "ctrl+s", "ctrl+q"]
+    keys = [*sorted({*"abcdefghijklmnopqrtuvwxyz0123456789"} - KEYS.keys()), "F5", "F11", "Tab", "Return", "Delete"]
+    keys += [
+        "BackSpace",
+        "space",
+        "Up",
+        "Down",
+        "Left",
+        "Right",
+        "Prior",
+        "Next",
+        "plus",
+        "minus",
+        "ctrl+z",
+        "ctrl+s",
+        "ctrl+q",
+    ]
     for _ in range(2):
         desk.move(320, 100)
         desk.display.tool("key", "--delay", "2", *keys)

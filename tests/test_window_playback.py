@@ -60,9 +60,10 @@ class Desk:
         return ast.literal_eval(self.ask(expression))
 
     def rect(self, name):
-        text = self.ask("[(c.name, c.lower, c.upper) for c in viewer.interaction.overlay().controls]")
+        text = self.ask("[(c.name, c.lower, c.upper, c.group) for c in viewer.interaction.overlay().controls]")
         controls = tuple(
-            Control(found, found, lower=lower, upper=upper) for found, lower, upper in ast.literal_eval(text)
+            Control(found, found, lower=lower, upper=upper, group=group)
+            for found, lower, upper, group in ast.literal_eval(text)
         )
         places = ControlLayout.of(controls, SIZE).places
         return next(rect for control, rect in places.items() if control.name == name)
@@ -135,11 +136,11 @@ def test_sliders_unfold_and_turn_joints(desk):
     desk.ask("[viewer.EnvironmentSync(), viewer.EnvironmentSync()]")
     plain = desk.picture()
     desk.click("joints")
-    desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 6, "no sliders")
+    desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 9, "no sliders")
     desk.drag("dof 1", 0.5, 0.6, 0.75)
     desk.await_value("robot.GetDOFValues().tolist()", lambda q: q[0] == 0 and 1.2 < q[1] < 2.1, "the joint stays")
     desk.click("joints")
-    desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 4, "the sliders stay")
+    desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 7, "the sliders stay")
     desk.ask("robot.SetDOFValues([0, 0])")
     desk.display.tool("mousemove", "--window", str(desk.window), "320", "5")
     await_that(lambda: np.array_equal(desk.picture(), plain), "something of them stays")

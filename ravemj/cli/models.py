@@ -20,15 +20,24 @@ def load_model(options: argparse.Namespace) -> Environment:
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)  # they are printed below, all at once
-        try:
-            env = load(model_file(options.model))
-        except SourceError as error:
-            raise error if error.cause is None else failure_of([error.cause]) from None
+        env = loaded(model_file(options.model))
     fatal = [finding for finding in env.diagnostics if options.strict or finding.code in FATAL_CODES]
     if fatal:
         raise failure_of(fatal)
     print_findings(env.diagnostics)
     return env
+
+
+def loaded(file: str) -> Environment:
+    """Load a file.
+
+    Raises:
+        SourceError: it is missing or broken; the message is about what explains that.
+    """
+    try:
+        return load(file)
+    except SourceError as error:
+        raise error if error.cause is None else failure_of([error.cause]) from None
 
 
 def model_file(name: str) -> str:

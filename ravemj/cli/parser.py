@@ -45,8 +45,14 @@ def _add_view(commands: Commands) -> None:
         "ravemj view pendulum",
         "ravemj view --web workshop            # prints the address of the page; Ctrl-C ends it",
         "ravemj view --web --port 8080 robot.xml",
+        "ravemj view --watch robot.xml         # shows it anew whenever a file of it is saved",
     )
     add_model(parser)
+    parser.add_argument(
+        "--watch",
+        action="store_true",
+        help="read the model again when one of its files is saved; camera, joint values and selection stay",
+    )
     parser.add_argument("--web", action="store_true", help="a page, also where there is a display for a window")
     parser.add_argument(
         "--host",
@@ -55,6 +61,11 @@ def _add_view(commands: Commands) -> None:
         help="interface that serves the page (127.0.0.1, which only browsers of this machine reach)",
     )
     parser.add_argument("--port", type=port, default=0, metavar="P", help="port of the page; default: one that is free")
+    parser.add_argument(
+        "--token",
+        metavar="T",
+        help="secret in the address of the page, 8 letters or more; with --port, the page outlives a restart",
+    )
     parser.set_defaults(run=late("view", "view"))
 
 

@@ -2,48 +2,85 @@
 
 import argparse
 import contextlib
+import os
 import sys
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ravemj.cli.models import load_model
+from ravemj.cli.reloading import Reloader
 from ravemj.core.signals import signals_raised
-from ravemj.gui.viewers import has_display
+from ravemj.gui.viewers import Viewer, has_display
 from ravemj.gui.viewers.window import WindowViewer
 from ravemj.rave import Environment
+
+if TYPE_CHECKING:
+    from ravemj.gui.viewers.web import WebViewer
+
+_LOOK = 0.1
+"""How often it is looked whether the model is to be read again, and whether the viewer is closed [s]."""
+
+_ASPECT = 4 / 3
+"""Width of a view divided by its height."""
 
 
 def view(options: argparse.Namespace) -> int:
     """Show a model until its window is closed, or its page is ended by Ctrl-C."""
     env = load_model(options)
     try:
-        window = None if options.web or not has_display() else _open_window(env)
+        window = None if options.web or not has_display() else _open_window(env, options.model)
         if window is None:
-            _serve(env, options.host, options.port)
+            _serve(env, options)
         else:
-            with signals_raised():  # so that what is being saved gets complete
-                window.main()
+            _attend(window, Reloader(env, window, options.model, watches=options.watch))
     finally:
         env.Destroy()
     return 0
 
 
-def _open_window(env: Environment) -> WindowViewer | None:
+def _open_window(env: Environment, model: str) -> WindowViewer | None:
     """Open a window; None where there is no OpenGL for it."""
     env.SetViewer("window")
     viewer = env.GetViewer()
-    return viewer if isinstance(viewer, WindowViewer) else None
+    if not isinstance(viewer, WindowViewer):
+        return None
+    _arrange(env, viewer, model)
+    return viewer
 
 
-def _serve(env: Environment, host: str, port: int) -> None:
+def _arrange(env: Environment, viewer: Viewer, model: str) -> None:
+    """Show the name of the model, the floor, and everything from a corner where the file has no camera."""
+    viewer.SetTitle(f"{os.path.basename(model)} - ravemj")
+    if env.renderer.file_camera() is None:
+        camera = env.renderer.camera_for_stills(_ASPECT)
+        center, _ = env.renderer.bounding_sphere()
+        viewer.SetCamera(camera.T_world_camera, float(np.linalg.norm(center - camera.position)))
+    viewer.interaction.controls.display.show("floor")
+
+
+def _serve(env: Environment, options: argparse.Namespace) -> None:
     """Serve the page, print its address, and wait for Ctrl-C, which is how it ends."""
     from ravemj.gui.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
 
-    viewer = env.serve_viewer(host, port)
-    if not is_local(host):
+    viewer = env.serve_viewer(options.host, options.port, options.token)
+    _arrange(env, viewer, options.model)
+    if not is_local(options.host):
         print(
             "ravemj: warning: browsers of other machines can come here; whoever knows the address sees and moves "
             "everything, and nothing is encrypted on the way",
             file=sys.stderr,
         )
-    with contextlib.suppress(KeyboardInterrupt), signals_raised():  # so that pages learn that it has ended
-        print(viewer.url, flush=True)
-        viewer.main()
+    with contextlib.suppress(KeyboardInterrupt):
+        with signals_raised():
+            print(viewer.url, flush=True)
+        _attend(viewer, Reloader(env, viewer, options.model, watches=options.watch))
+
+
+def _attend(viewer: "WindowViewer | WebViewer", reloader: Reloader) -> None:
+    """Wait until a viewer is closed; meanwhile read the model again when that is asked for."""
+    while viewer.is_open:
+        with signals_raised():  # so that what is being saved gets complete, and pages learn that it has ended
+            time.sleep(_LOOK)
+        reloader.look()

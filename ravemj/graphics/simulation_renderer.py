@@ -12,12 +12,14 @@ from ravemj.errors import ArgumentError
 from ravemj.graphics.rendering import (
     Camera,
     Renderer,
+    Style,
     bounding_sphere,
     open_renderer,
     three_quarter_view,
     view_from_above,
 )
 from ravemj.graphics.rendering.contexts import RAY
+from ravemj.graphics.rendering.style import AS_IT_IS
 from ravemj.model.drawing import NOTHING, Primitives, merge
 
 Frame = NDArray[np.uint8]
@@ -30,11 +32,13 @@ class Format(NamedTuple):
         width: Columns [pixels].
         height: Rows [pixels].
         shadows: Whether lights cast shadows; too slow for videos without a graphics card.
+        samples: Samples per pixel against jagged edges: 4, or 0 for speed.
     """
 
     width: int = 640
     height: int = 480
     shadows: bool = False
+    samples: int = 4
 
 
 class SimulationRenderer:
@@ -48,7 +52,13 @@ class SimulationRenderer:
         self._kept = threading.local()
 
     def render(
-        self, camera: Camera, background: ArrayLike, form: Format, drawings: bool = True, gizmos: Primitives = NOTHING
+        self,
+        camera: Camera,
+        background: ArrayLike,
+        form: Format,
+        drawings: bool = True,
+        gizmos: Primitives = NOTHING,
+        style: Style = AS_IT_IS,
     ) -> Frame:
         """Draw the bodies and the drawings as they are now.
 
@@ -58,6 +68,7 @@ class SimulationRenderer:
             form: Size and quality.
             drawings: False: without the drawings of scripts.
             gizmos: What else is drawn.
+            style: How the bodies are drawn.
 
         Returns:
             Shape (height, width, 3), top row first.
@@ -73,7 +84,24 @@ class SimulationRenderer:
             if renderer.backend == RAY:  # it hides geoms of the model while it draws
                 return renderer.render(compiled.data, camera, background, shown)
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
-        return renderer.render(self._kept.data, camera, background, shown)
+            self._kept.shown = shown, style
+        return renderer.render(self._kept.data, camera, background, shown, style)
+
+    def render_again(self, camera: Camera, background: ArrayLike, form: Format) -> Frame | None:
+        """Draw what this thread drew last from elsewhere, without the simulation, which others may have locked.
+
+        Args:
+            camera: Where the picture is taken from.
+            background: Colour where nothing is: red, green, blue from 0 to 1.
+            form: Size and quality; with or without shadows as before.
+
+        Returns:
+            Shape (height, width, 3), top row first; None where nothing was drawn, or rays draw, which change the model.
+        """
+        if getattr(self._kept, "key", None) is None or self._kept.renderer.backend == RAY:
+            return None
+        self._kept.renderer.resize(form.width, form.height, form.samples)
+        return self._kept.renderer.render(self._kept.data, camera, background, *self._kept.shown)
 
     def backend(self, form: Format) -> str:
         """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""
@@ -81,13 +109,15 @@ class SimulationRenderer:
             return self._current(form).backend
 
     def _current(self, form: Format) -> Renderer:
-        key = (self._simulation.version, form)
+        key = (self._simulation.version, form.shadows)
         if getattr(self._kept, "key", None) != key:
             self.close()
             model = self._simulation.compiled().model
             self._kept.data = mujoco.MjData(model)
-            self._kept.renderer = open_renderer(model, form.width, form.height, shadows=form.shadows)
-            self._kept.key = (self._simulation.version, form)
+            size = form.width, form.height
+            self._kept.renderer = open_renderer(model, *size, shadows=form.shadows, samples=form.samples)
+            self._kept.key = (self._simulation.version, form.shadows)
+        self._kept.renderer.resize(form.width, form.height, form.samples)
         return self._kept.renderer
 
     def close(self) -> None:

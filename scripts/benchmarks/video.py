@@ -127,7 +127,7 @@ class _Play:
     def drawn_bare(self, context: OffscreenContext, stage: GlScene) -> Iterator[Frame]:
         """Draw the frames with one call after the other into MuJoCo."""
         model, data, form = self.env.model, self.env.data, self.shot.form
-        stage.fill(data, self.shot.camera, form.width, form.height)  # leaves the camera in the scene
+        stage.fill(data, self.shot.camera, (form.width, form.height))  # leaves the camera in the scene
         option, user, every = mujoco.MjvOption(), mujoco.MjvCamera(), mujoco.mjtCatBit.mjCAT_ALL.value
         user.type = mujoco.mjtCamera.mjCAMERA_USER
         viewport = mujoco.MjrRect(0, 0, form.width, form.height)

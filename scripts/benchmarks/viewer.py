@@ -115,7 +115,7 @@ def _bare_drawing(env: ravemj.Environment, backend: str) -> Generator[Callable[[
     def draw() -> None:
         with context.current():
             turned = camera.T_world_camera @ ravemj.matrixFromAxisAngle([0, 0.01 * next(numbers), 0])
-            stage.fill(env.data, Camera(turned), *_SIZE)
+            stage.fill(env.data, Camera(turned), _SIZE)
             mujoco.mjr_render(viewport, stage.scene, stage.context)
             mujoco.mjr_readPixels(picture, None, viewport, stage.context)
 

@@ -26,6 +26,7 @@ from ravemj.graphics.rendering.camera import (
     view_from_above,
 )
 from ravemj.graphics.rendering.checks import WHITE
+from ravemj.graphics.rendering.style import AS_IT_IS, Style
 from ravemj.graphics.rendering.visibility import drawn_geoms
 from ravemj.model.drawing import NOTHING, Primitives
 
@@ -34,6 +35,7 @@ __all__ = [
     "CameraIntrinsics",
     "Pinhole",
     "Renderer",
+    "Style",
     "bounding_sphere",
     "drawn_geoms",
     "geom_corners",
@@ -55,7 +57,12 @@ class Renderer(Protocol):
     backend: str
 
     def render(
-        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, primitives: Primitives = NOTHING
+        self,
+        data: mujoco.MjData,
+        camera: Camera,
+        background: ArrayLike = WHITE,
+        primitives: Primitives = NOTHING,
+        style: Style = AS_IT_IS,
     ) -> NDArray[np.uint8]:
         """Draw a picture.
 
@@ -65,6 +72,7 @@ class Renderer(Protocol):
             camera: Where the picture is taken from.
             background: Colour where nothing is: red, green, blue in 0..1.
             primitives: What is drawn beside the model's geoms.
+            style: How the geoms are drawn.
 
         Returns:
             A new array (height, width, 3), top row first.
@@ -88,6 +96,16 @@ class Renderer(Protocol):
         Raises:
             ArgumentError: the data are of another model.
             RenderingError: the renderer is closed.
+        """
+        ...
+
+    def resize(self, width: int, height: int, samples: int) -> None:
+        """Draw pictures of another size from now on, or with other samples per pixel; that takes a millisecond.
+
+        Args:
+            width: Columns of the pictures.
+            height: Rows of the pictures.
+            samples: Samples per pixel against jagged edges, 0 or 4.
         """
         ...
 

@@ -11,6 +11,7 @@ from ravemj.graphics.rendering.camera import Camera
 from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
 from ravemj.graphics.rendering.contexts import OffscreenContext, close_at_exit
 from ravemj.graphics.rendering.gl_scene import GlScene, Quality
+from ravemj.graphics.rendering.style import AS_IT_IS, Style
 from ravemj.model.drawing import NOTHING, Primitives
 
 
@@ -35,11 +36,16 @@ class GlRenderer:
         close_at_exit(self)
 
     def render(
-        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, primitives: Primitives = NOTHING
+        self,
+        data: mujoco.MjData,
+        camera: Camera,
+        background: ArrayLike = WHITE,
+        primitives: Primitives = NOTHING,
+        style: Style = AS_IT_IS,
     ) -> NDArray[np.uint8]:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
         color = color_bytes(background)
-        stage = self._filled_stage(data, camera, primitives)
+        stage = self._filled_stage(data, camera, primitives, style)
         with self._context.current():
             stage.draw(self._viewport, color)
             picture = self._read(stage)
@@ -49,8 +55,18 @@ class GlRenderer:
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
-        stage = self._filled_stage(data, camera, NOTHING)
+        stage = self._filled_stage(data, camera, NOTHING, AS_IT_IS)
         return stage.geom_ids(self._codes(stage))
+
+    def resize(self, width: int, height: int, samples: int) -> None:
+        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        stage = self._gl_scene
+        if stage is None:
+            return
+        self._size, self._viewport = (width, height), mujoco.MjrRect(0, 0, width, height)
+        with self._context.current():
+            stage.set_buffer(width, height, samples)
+            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, stage.context)
 
     def close(self) -> None:
         """Free the context and what is in it; a second call does nothing."""
@@ -77,11 +93,11 @@ class GlRenderer:
             stage.draw_ids(self._viewport)
             return self._read(stage)
 
-    def _filled_stage(self, data: mujoco.MjData, camera: Camera, primitives: Primitives) -> GlScene:
+    def _filled_stage(self, data: mujoco.MjData, camera: Camera, primitives: Primitives, style: Style) -> GlScene:
         if self._gl_scene is None:
             raise RenderingError("this renderer is closed")
         check_data(self._model, data)
-        self._gl_scene.fill(data, camera, *self._size, primitives)
+        self._gl_scene.fill(data, camera, self._size, primitives, style)
         return self._gl_scene
 
     def _read(self, stage: GlScene) -> NDArray[np.uint8]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.camera import Camera, bounding_sphere
 from ravemj.graphics.rendering.drawing_geoms import add_drawing_geoms
+from ravemj.graphics.rendering.style import AS_IT_IS, Style
 from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms
 from ravemj.model.drawing import NOTHING, Primitives
 
@@ -89,32 +90,59 @@ class GlScene:
         self._room = room
 
     def fill(
-        self, data: mujoco.MjData, camera: Camera, width: int, height: int, primitives: Primitives = NOTHING
+        self,
+        data: mujoco.MjData,
+        camera: Camera,
+        size: tuple[int, int],
+        primitives: Primitives = NOTHING,
+        style: Style = AS_IT_IS,
     ) -> None:
         """Take over the poses of the geoms, the drawings and the point of view.
 
         Args:
             data: State of the model with the poses computed.
             camera: Where the picture is taken from.
-            width: Columns of the viewport.
-            height: Rows of the viewport.
+            size: Columns and rows of the viewport.
             primitives: What is drawn beside the geoms. With points or lines there are no shadows: MuJoCo would draw
                 these once more for each light that casts some, and add the colours up.
+            style: How the geoms are drawn.
         """
         self._make_room(len(primitives))
         has_lines = bool(primitives.points.sizes.size or primitives.lines.sizes.size)
         self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._shadows and not has_lines
-        depths = near_and_far(self._model, data, camera, primitives)
-        aim(self.scene, camera, (width, height), depths)
+        self._contents = Contents.of(self._model, data, primitives)
+        depths = self.aim(camera, size)
         if self._model.nlight:
             mujoco.mj_camlight(self._model, data)
         user_camera = mujoco.MjvCamera()
         user_camera.type = mujoco.mjtCamera.mjCAMERA_USER
         everything = mujoco.mjtCatBit.mjCAT_ALL.value
+        style.apply(self._option)
         mujoco.mjv_updateScene(self._model, data, self._option, None, user_camera, everything, self.scene)
         if self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW]:
             self._cover_with_shadows(data, near=depths[0])
-        add_drawing_geoms(self.scene, primitives, camera, width, height)
+        style.finish(self._model, self.scene)
+        add_drawing_geoms(self.scene, primitives, camera, *size)
+
+    def aim(self, camera: Camera, size: tuple[int, int]) -> tuple[float, float]:
+        """Look at what was filled in from elsewhere; arguments as for ``fill``.
+
+        Returns:
+            Nearest and farthest depth that is drawn [m].
+        """
+        depths = self._contents.depths(camera)
+        aim(self.scene, camera, size, depths)
+        return depths
+
+    def set_buffer(self, width: int, height: int, samples: int) -> None:
+        """Give the offscreen buffer another size or other samples per pixel, 0 or 4."""
+        context = self.context
+        if (context.offWidth, context.offHeight, context.offSamples) == (width, height, samples):
+            return
+        if context.offSamples != samples:
+            context.offSamples = samples
+            mujoco.mjr_resizeOffscreen(1, 1, context)  # nothing happens where the size stays
+        mujoco.mjr_resizeOffscreen(width, height, context)
 
     def _make_room(self, figures: int) -> None:
         if figures > _MAX_FIGURES and not self._has_warned:
@@ -214,25 +242,44 @@ def aim(scene: mujoco.MjvScene, camera: Camera, size: tuple[int, int], depths: t
         eye.orthographic = 0
 
 
-def near_and_far(
-    model: mujoco.MjModel, data: mujoco.MjData, camera: Camera, primitives: Primitives = NOTHING
-) -> tuple[float, float]:
-    """Return depths [m] between which everything lies that the camera can see, wherever it stands.
+@dataclass(frozen=True, eq=False)
+class Contents:
+    """How far what is drawn reaches.
 
-    MuJoCo paints the background on the walls of a cube that fits into the farthest depth, so that has to be
-    well behind the scene. Its depth buffer holds floats, 1 for near, so wide ranges cost no precision.
+    Attributes:
+        spheres: Centres and radii of spheres around geoms, and around drawings if there are some [m].
+        floor: For models with planes, how far these are drawn [m]; else 0.
     """
-    center, radius = bounding_sphere(model, data)
-    near, far = _depths_of_sphere(center, radius, camera)
-    if len(primitives):
-        center_of_drawings, radius_of_drawings = primitives.bounding_sphere()
-        nearer, farther = _depths_of_sphere(center_of_drawings, max(radius_of_drawings, _SMALLEST), camera)
-        far = max(far, farther)
-        near = max(min(near, nearer), _WIDEST * far)
-    if (drawn_geoms(model) & (model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)).any():
-        near = min(near, 1e-2 * radius)
-        far = max(far, 5 * model.vis.map.zfar * model.stat.extent)
-    return near, far
+
+    spheres: tuple[tuple[Floats, float], ...]
+    floor: float
+
+    @classmethod
+    def of(cls, model: mujoco.MjModel, data: mujoco.MjData, primitives: Primitives = NOTHING) -> "Contents":
+        """Return how far a model and drawings reach."""
+        spheres = [bounding_sphere(model, data)]
+        if len(primitives):
+            center, radius = primitives.bounding_sphere()
+            spheres.append((center, max(radius, _SMALLEST)))
+        has_planes = (drawn_geoms(model) & (model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)).any()
+        return cls(tuple(spheres), 5 * model.vis.map.zfar * model.stat.extent if has_planes else 0.0)
+
+    def depths(self, camera: Camera) -> tuple[float, float]:
+        """Return depths [m] between which everything lies that a camera can see, wherever it stands.
+
+        MuJoCo paints the background on the walls of a cube that fits into the farthest depth, so that has to be
+        well behind the scene. Its depth buffer holds floats, 1 for near, so wide ranges cost no precision.
+        """
+        (center, radius), *drawings = self.spheres
+        near, far = _depths_of_sphere(center, radius, camera)
+        for sphere in drawings:
+            nearer, farther = _depths_of_sphere(*sphere, camera)
+            far = max(far, farther)
+            near = max(min(near, nearer), _WIDEST * far)
+        if self.floor:
+            near = min(near, 1e-2 * radius)
+            far = max(far, self.floor)
+        return near, far
 
 
 def _depths_of_sphere(center: Floats, radius: float, camera: Camera) -> tuple[float, float]:

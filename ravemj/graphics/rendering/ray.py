@@ -18,8 +18,9 @@ from ravemj.errors import RenderingError
 from ravemj.graphics.rendering.camera import Camera
 from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
 from ravemj.graphics.rendering.fragments import Fragments, Raster
-from ravemj.graphics.rendering.gl_scene import near_and_far
+from ravemj.graphics.rendering.gl_scene import Contents
 from ravemj.graphics.rendering.lights import Lights
+from ravemj.graphics.rendering.style import AS_IT_IS, Style
 from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms, geom_rgba
 from ravemj.model.drawing import NOTHING, Primitives
 
@@ -64,9 +65,15 @@ class RayRenderer:
         self._closed = False
 
     def render(
-        self, data: mujoco.MjData, camera: Camera, background: ArrayLike = WHITE, primitives: Primitives = NOTHING
+        self,
+        data: mujoco.MjData,
+        camera: Camera,
+        background: ArrayLike = WHITE,
+        primitives: Primitives = NOTHING,
+        style: Style = AS_IT_IS,
     ) -> NDArray[np.uint8]:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
+        del style  # needs OpenGL
         width, height = self._size
         color = color_bytes(background)
         picture = np.empty((height, width, 3), dtype=np.uint8)
@@ -88,6 +95,10 @@ class RayRenderer:
                 geom_ids[rows] = scene.cast(rays)[0].reshape(-1, width)
         return geom_ids
 
+    def resize(self, width: int, height: int, samples: int) -> None:
+        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        self._size, self._samples = (width, height), samples
+
     def close(self) -> None:
         """Refuse further pictures; there is nothing to free."""
         self._closed = True
@@ -105,7 +116,7 @@ class RayRenderer:
             raise RenderingError("this renderer is closed")
         model = self._model
         check_data(model, data)
-        self._lights.update(data, camera, near_and_far(model, data, camera))
+        self._lights.update(data, camera, Contents.of(model, data).depths(camera))
         groups = model.geom_group.copy()
         try:
             model.geom_group[~drawn_geoms(model)] = _HIDDEN_GROUP

@@ -11,7 +11,7 @@
 
 from ravemj.gui.interaction.control_layout import ControlLayout
 from ravemj.gui.interaction.controls import Control, Controls, Request
-from ravemj.gui.interaction.core import Interaction, Mode, Overlay
+from ravemj.gui.interaction.core import Interaction
 from ravemj.gui.interaction.events import (
     Button,
     Event,
@@ -26,8 +26,10 @@ from ravemj.gui.interaction.events import (
     Use,
     Wheel,
 )
+from ravemj.gui.interaction.hand import Mode
 from ravemj.gui.interaction.mode_buttons import Panel, Rect, Tool, tools
 from ravemj.gui.interaction.notices import Notices
+from ravemj.gui.interaction.overlay import Label, Overlay
 from ravemj.gui.interaction.picking import Hit, pick
 from ravemj.gui.interaction.playback import Playback
 from ravemj.gui.interaction.selection import Selection
@@ -43,6 +45,7 @@ __all__ = [
     "Hit",
     "Interaction",
     "Key",
+    "Label",
     "Leave",
     "Mode",
     "Move",

@@ -15,15 +15,18 @@ _LEFT, _RIGHT = 212.0, 62.0
 """What the wheels and their labels take of the bottom row."""
 
 _COLUMN_TOP, _COLUMN_WIDTH, _COLUMN_HEIGHT = 104.0, 44.0, 22.0
+_WHEEL = 150.0
+"""What the wheel and the row below it take at the right."""
+
 _BAR, _ICON = 26.0, 28.0
 _CLOCK, _SPEED = 110.0, 44.0
 _SHORTEST_TRACK = 80.0
-_JOINT_ROW, _NAME, _TRACK, _VALUE = 22.0, 150.0, 120.0, 92.0
-_LONGEST_NAME = 17
+_JOINT_ROW, _NAME, _TRACK, _VALUE = 22.0, 180.0, 104.0, 84.0
+_LONGEST_NAME = 26
 _TABLE = _NAME + _TRACK + _VALUE
 _KNOB = 8.0
 _LOWEST_VIEW = 420.0
-"""Height of a view from which on the column ends above the wheel."""
+"""Height of a view from which on there is room for the column."""
 
 _Rgba = tuple[float, float, float, float]
 _BACK: _Rgba = (0.15, 0.15, 0.17, 0.8)
@@ -33,7 +36,7 @@ _GROOVE: _Rgba = (0.45, 0.45, 0.48, 1.0)
 _WHITE: _Rgba = (1.0, 1.0, 1.0, 1.0)
 _CLEAR: _Rgba = (0.0, 0.0, 0.0, 0.0)
 _Point = tuple[float, float]
-_PLAYING = ("back", "play", "forward", "seek", "speed")
+_ENTRY_WIDTH, _ENTRY_HEIGHT = 110.0, 24.0
 
 
 class ControlLayout(NamedTuple):
@@ -60,18 +63,21 @@ class ControlLayout(NamedTuple):
             size: Width and height of the view [points].
             first_joint: Which of the joints' sliders should be the first one.
         """
-        playing = [control for control in controls if control.name in _PLAYING]
-        joints = [control for control in controls if control.name.startswith("dof ")]
-        others = [control for control in controls if control not in playing and control not in joints]
+        playing, others, menu, joints = (
+            [control for control in controls if control.group == group]
+            for group in ("playing", "tools", "menu", "joints")
+        )
         places = _bar(playing, size)
         backs = [_around(places)] if places else []
         if size[1] < _LOWEST_VIEW:
             return cls(places, tuple(backs), 0, 0)
-        places |= _column(others, size)
+        column = _column(others, size)
+        left = min((rect.x for rect in column.values()), default=float(size[0])) - _MARGIN
+        places |= column | _menu(menu, left)
         fitting = int((size[1] - _COLUMN_TOP - 2 * _MARGIN - _BAR) / _JOINT_ROW)
         last = max(len(joints) - fitting, 0)
         first = min(max(first_joint, 0), last)
-        table = Rect(size[0] - 2 * _MARGIN - _COLUMN_WIDTH - _TABLE, _COLUMN_TOP, _TABLE, _JOINT_ROW)
+        table = Rect(left - _TABLE, _COLUMN_TOP, _TABLE, _JOINT_ROW)
         shown = joints[first : first + fitting]
         for row, joint in enumerate(shown):
             places[joint] = Rect(table.x + _NAME, table.y + row * _JOINT_ROW, _TRACK, _JOINT_ROW)
@@ -101,10 +107,11 @@ class ControlLayout(NamedTuple):
         drawn = [Panel(back, _BACK) for back in self.backs]
         if self.last_joint:
             drawn.append(self._scroll_bar(self.backs[-1]))
+        names = shortened([control.label for control in self.places if control.group == "joints"])
         for control, rect in self.places.items():
             if control.is_slider:
-                drawn += _slider(control, rect)
-            elif control.name in _PLAYING:
+                drawn += _slider(control, rect, names.get(control.label, ""))
+            elif control.group == "playing":
                 drawn += _icon(control, rect)
             else:
                 colour = _BACK if not control.is_on else _RECORDING if control.name == "video" else _ON
@@ -113,7 +120,7 @@ class ControlLayout(NamedTuple):
 
     def _scroll_bar(self, table: Rect) -> Panel:
         """Return a mark that shows which part of the joints is seen."""
-        shown = sum(control.name.startswith("dof ") for control in self.places)
+        shown = sum(control.group == "joints" for control in self.places)
         part = table.height / (shown + self.last_joint)
         return Panel(Rect(table.x, table.y + self.first_joint * part, 4, shown * part), _GROOVE)
 
@@ -141,12 +148,37 @@ def _around(places: dict[Control, Rect]) -> Rect:
 
 
 def _column(others: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
-    x = size[0] - _MARGIN - _COLUMN_WIDTH
-    tops = (_COLUMN_TOP + i * (_COLUMN_HEIGHT + _GAP) for i in range(len(others)))
-    return {control: Rect(x, top, _COLUMN_WIDTH, _COLUMN_HEIGHT) for control, top in zip(others, tops, strict=True)}
+    """Return the places of the buttons: a second column beside the first where this would come to the wheel."""
+    step = _COLUMN_HEIGHT + _GAP
+    rows = int((size[1] - _COLUMN_TOP - _WHEEL) / step)
+    first_x = size[0] - _MARGIN - _COLUMN_WIDTH
+    places: dict[Control, Rect] = {}
+    for number, control in enumerate(others):
+        column, row = divmod(number, rows)
+        x = first_x - column * (_COLUMN_WIDTH + _GAP)
+        places[control] = Rect(x, _COLUMN_TOP + row * step, _COLUMN_WIDTH, _COLUMN_HEIGHT)
+    return places
 
 
-def _slider(control: Control, rect: Rect) -> list[Panel]:
+def _menu(menu: list[Control], right: float) -> dict[Control, Rect]:
+    """Return the places of what is unfolded, at the left of something."""
+    return {
+        control: Rect(right - _ENTRY_WIDTH, _COLUMN_TOP + row * _ENTRY_HEIGHT, _ENTRY_WIDTH, _ENTRY_HEIGHT - 1)
+        for row, control in enumerate(menu)
+    }
+
+
+def shortened(labels: list[str]) -> dict[str, str]:
+    """Return for each label a text that has room; where there is a place to cut at, all of them stay different."""
+    for tail in range(_LONGEST_NAME // 2, _LONGEST_NAME - 2):
+        head = _LONGEST_NAME - 2 - tail
+        cut = {label: label if len(label) <= _LONGEST_NAME else f"{label[:head]}..{label[-tail:]}" for label in labels}
+        if len(set(cut.values())) == len(cut):
+            break
+    return cut
+
+
+def _slider(control: Control, rect: Rect, name: str) -> list[Panel]:
     """Return groove, knob and text of a slider; those of joints have their name before them."""
     x, y, width, height = rect
     part = (min(max(control.value, control.lower), control.upper) - control.lower) / (control.upper - control.lower)
@@ -158,7 +190,6 @@ def _slider(control: Control, rect: Rect) -> list[Panel]:
         drawn.insert(1, done)
         clock = Panel(Rect(x + width, y, _CLOCK, height), _CLEAR, control.text)
         return [*drawn, clock] if control.text else drawn
-    name = control.label if len(control.label) <= _LONGEST_NAME else f"{control.label[:8]}..{control.label[-7:]}"
     before = Panel(Rect(x - _NAME, y, _NAME, height), _CLEAR, name)
     return [before, *drawn, Panel(Rect(x + width, y, _VALUE, height), _CLEAR, control.text)]
 

@@ -5,8 +5,7 @@ from collections.abc import Callable
 from ravemj.gui.interaction.control_layout import ControlLayout
 from ravemj.gui.interaction.controls import Controls
 from ravemj.gui.interaction.events import Button, Press
-
-_KEYS = {" ": "play", "arrowleft": "back", "arrowright": "forward"}
+from ravemj.gui.interaction.shortcuts import KEYS
 
 
 class ControlPanel:
@@ -52,6 +51,6 @@ class ControlPanel:
         self._first_joint = min(max(self._first_joint - steps, 0.0), layout.last_joint)
 
     def key(self, name: str) -> None:
-        """Do what a key is for while there is a motion."""
-        if name in _KEYS:
-            self.controls.operate(_KEYS[name])
+        """Do what a key is for."""
+        if name in KEYS:
+            self.controls.operate(KEYS[name])

@@ -6,19 +6,48 @@ They are plain data, which a window draws (``layout``) and a page makes its own 
 import math
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
-from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.engine.simulation import BodyState
+from ravemj.gui.interaction.display import Display
 from ravemj.gui.interaction.dragging import set_dof
 from ravemj.gui.interaction.joint_handle import joint_and_axis
+from ravemj.gui.interaction.navigation import Navigation
 from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.playback import SPEEDS, Playback
 from ravemj.gui.interaction.selection import Selector
+from ravemj.gui.interaction.shortcuts import DISPLAY, VIEW, Shortcut, key_text
 
 _WIDEST = {True: (1.0, "m"), False: (math.pi, "rad")}
 """How far a control goes to each side where the limits of the axis are much wider, and its unit; True: it slides."""
 
 _MUCH = 4.0
 """How many times wider than that limits are that no slider can cover."""
+
+
+class Menu(NamedTuple):
+    """A button that unfolds others.
+
+    Attributes:
+        text: What stands on it.
+        label: What it does, for people.
+        shortcuts: The others.
+    """
+
+    text: str
+    label: str
+    shortcuts: tuple[Shortcut, ...]
+
+
+MENUS = {
+    "view": Menu("View", "Ways to look at it", VIEW),
+    "display": Menu("Show", "What is shown besides the bodies", DISPLAY),
+    "help": Menu("?", "Help: gestures and keys (H)", ()),
+}
+"""What can be unfolded, besides the sliders of the joints."""
+
+_WITHOUT_BUTTON = {shortcut.name for menu in MENUS.values() for shortcut in menu.shortcuts} | {*MENUS, "reload"}
+"""What keys do whether or not it is unfolded."""
 
 
 class Request(Enum):
@@ -41,6 +70,8 @@ class Control:
         lower: Where its range begins.
         upper: Where its range ends.
         is_on: For a button that stays down, whether it is.
+        group: Where it is: among the ``tools``, in the row that is ``playing``, or unfolded in the ``joints`` or a
+            ``menu``.
     """
 
     name: str
@@ -50,6 +81,7 @@ class Control:
     lower: float = 0.0
     upper: float = 0.0
     is_on: bool | None = None
+    group: str = "tools"
 
     @property
     def is_slider(self) -> bool:
@@ -57,32 +89,40 @@ class Control:
         return self.lower < self.upper
 
 
+_REQUESTS = {request.value for request in Request}
+
+
 class Controls:
     """What there is to press and to slide in one view, and what that does.
 
     Attributes:
+        navigation: The view.
         playback: The motion, which all views share.
         notices: What the viewer tells; all views share it.
-        shows_joints: Whether the sliders of the joints are unfolded.
+        display: What is shown besides the bodies; all views share it.
+        unfolded: Name of the button whose menu is unfolded, or empty.
         requests: What was asked of the one who draws, and is not done yet.
     """
 
-    def __init__(self, simulation: Simulation, selector: Selector, playback: Playback, notices: Notices) -> None:
-        self._simulation = simulation
+    def __init__(
+        self, selector: Selector, navigation: Navigation, playback: Playback, notices: Notices, display: Display
+    ) -> None:
         self._selector = selector
+        self.navigation = navigation
         self.playback = playback
         self.notices = notices
-        self.shows_joints = False
+        self.display = display
+        self.unfolded = ""
         self.requests: list[Request] = []
 
-    def another(self) -> "Controls":
+    def another(self, navigation: Navigation) -> "Controls":
         """Return the controls of another view."""
-        return Controls(self._simulation, self._selector, self.playback, self.notices)
+        return Controls(self._selector, navigation, self.playback, self.notices, self.display)
 
     @property
     def changes(self) -> int:
-        """A number that grows with what the views share."""
-        return self.playback.changes + self.notices.changes
+        """A number that grows with the view, and with what the views share."""
+        return self.navigation.changes + self.playback.changes + self.notices.changes + self.display.changes
 
     def pass_time(self, now: float) -> None:
         """Let a motion that plays go on, and old notices go away.
@@ -90,6 +130,7 @@ class Controls:
         Args:
             now: What ``time.monotonic`` says.
         """
+        self.navigation.pass_time(now)
         self.playback.advance(now)
         self.notices.pass_time(now)
 
@@ -103,14 +144,25 @@ class Controls:
             Control(Request.PICTURE.value, "Save a picture (PNG)", "PNG"),
             Control(Request.VIDEO.value, video, "Stop" if recording else "MP4", is_on=recording),
             Control(Request.CAMERA.value, "Copy the camera as a line of Python", "Copy"),
+            *(Control(name, label, text, is_on=self.unfolded == name) for name, (text, label, _) in MENUS.items()),
         ]
         if body is not None:
             label = f"DOFs of {body.scene.name}: a slider for each"
-            controls.append(Control("joints", label, "DOFs", is_on=self.shows_joints))
-            if self.shows_joints:
+            controls.append(Control("joints", label, "DOFs", is_on=self.unfolded == "joints"))
+            if self.unfolded == "joints":
                 sliders = (_joint(body, dof, value) for dof, value in enumerate(body.kinematics.values().tolist()))
                 controls += [slider for slider in sliders if slider.is_slider]
+        if self.unfolded in MENUS:
+            controls += [self._entry(shortcut) for shortcut in MENUS[self.unfolded].shortcuts]
         return tuple(controls)
+
+    def _entry(self, shortcut: Shortcut) -> Control:
+        """Return an entry of a menu."""
+        is_on = shortcut.name in self.display.shown if shortcut in DISPLAY else None
+        if shortcut.name == "turntable":
+            is_on = self.navigation.view.is_upright
+        label = f"{shortcut.label} ({key_text(shortcut.keys)})"
+        return Control(shortcut.name, label, shortcut.text, is_on=is_on, group="menu")
 
     def _playing(self) -> list[Control]:
         playback = self.playback
@@ -118,11 +170,11 @@ class Controls:
             return []
         clock = f"{playback.time:.2f} / {playback.duration:.2f} s"
         return [
-            Control("back", "One frame back"),
-            Control("play", "Pause" if playback.playing else "Play", is_on=playback.playing),
-            Control("forward", "One frame forward"),
-            Control("seek", "Time", clock, playback.time, 0.0, playback.duration),
-            Control("speed", "Speed", f"{playback.speed:g}x"),
+            Control("back", "One frame back", group="playing"),
+            Control("play", "Pause" if playback.playing else "Play", group="playing", is_on=playback.playing),
+            Control("forward", "One frame forward", group="playing"),
+            Control("seek", "Time", clock, playback.time, 0.0, playback.duration, group="playing"),
+            Control("speed", "Speed", f"{playback.speed:g}x", group="playing"),
         ]
 
     def _body(self) -> BodyState | None:
@@ -130,15 +182,43 @@ class Controls:
         selection, motion = self._selector.selection, self.playback.motion
         bodies = [] if selection is None else [selection.body]
         bodies += [] if motion is None else motion.bodies
-        bodies += sorted(self._simulation.bodies, key=lambda body: not body.scene.is_robot)
+        bodies += sorted(self._selector.simulation.bodies, key=lambda body: not body.scene.is_robot)
         return next((body for body in bodies if body.scene.dof_axes), None)
 
     def operate(self, name: str, value: float = 0.0) -> None:
         """Press a button, or move a slider to a value; nothing happens where there is no such control."""
-        if name not in {control.name for control in self.all()}:
-            return
+        if name in _WITHOUT_BUTTON:
+            if not self.steer(name):
+                self._switch(name)
+        elif name in {control.name for control in self.all()}:
+            self._operate(name, value)
+
+    def steer(self, name: str) -> bool:
+        """Change the view, if that needs no look at the bodies, as to fit what is selected does; return whether."""
+        if name == "fit" and self._selector.selection is None:
+            self.navigation.fit()
+            return True
+        return self.navigation.go(name)
+
+    def _switch(self, name: str) -> None:
+        if name == "fit":
+            self.navigation.fit(self._selector.sphere())
+        elif name in MENUS:
+            self.unfolded = "" if self.unfolded == name else name
+        elif name == "reload":
+            self._ask_for_reload()
+        else:
+            self.display.toggle(name)
+
+    def _ask_for_reload(self) -> None:
+        if self.display.wants_reload is None:
+            self.notices.say("Only ravemj view reads a model again")
+        else:
+            self.display.wants_reload = True
+
+    def _operate(self, name: str, value: float) -> None:
         playback = self.playback
-        if name in {request.value for request in Request}:
+        if name in _REQUESTS:
             self.requests.append(Request(name))
         elif name == "play":
             (playback.pause if playback.playing else playback.play)()
@@ -150,7 +230,7 @@ class Controls:
         elif name == "speed":
             playback.speed = next((speed for speed in SPEEDS if speed > playback.speed), SPEEDS[0])
         elif name == "joints":
-            self.shows_joints = not self.shows_joints
+            self.unfolded = "" if self.unfolded == name else name
         else:
             self._move(int(name.removeprefix("dof ")), value)
 
@@ -183,4 +263,5 @@ def _joint(body: BodyState, dof: int, value: float) -> Control:
         middle = min(max(0.0, lower + reach), upper - reach)
         lower, upper = middle - reach, middle + reach
     name = f"{joint.name}, axis {axis}" if len(joint.axes) > 1 else joint.name
-    return Control(f"dof {dof}", name, f"{round(value, 3) + 0.0:.3f} {unit}", shown, lower, upper)
+    text = f"{round(value, 3) + 0.0:.3f} {unit}"
+    return Control(f"dof {dof}", name, text, shown, lower, upper, group="joints")

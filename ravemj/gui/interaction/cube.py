@@ -17,12 +17,14 @@ from ravemj.model.drawing import Primitives
 _MARGIN = 0.1
 """How far the cube stands off, as a part of half its longest side."""
 
-_REACH = 8.0
+_REACH = 12.0
 """How near an edge the pointer has to be [points]."""
 
 _FACES = np.array([0.1, 0.6, 0.2, 0.15])
 _EDGES = np.array([[0.1, 0.6, 0.2, 1.0]])
 _EDGE_WIDTH = 3.0
+_MARKED_FACE = np.array([0.2, 0.9, 0.3, 0.35])
+_MARKED_EDGE = np.array([[1.0, 0.75, 0.0, 1.0]])
 
 
 class Grip(NamedTuple):
@@ -114,6 +116,17 @@ class Cube:
         ends = np.concatenate([edge.ends for edge in self._edges()])
         lines = drawing.line_list(ends, _EDGE_WIDTH, np.repeat(_EDGES, len(ends), axis=0))
         return drawing.merge([drawing.box(np.zeros(3), self.half, _FACES), lines]).placed(self.T_world_cube)
+
+    def mark(self, grip: Grip) -> Primitives:
+        """Return a figure on the face or the edge that a drag would take, in the world."""
+        held = (grip.point - self.T_world_cube[:3, 3]) @ self.T_world_cube[:3, :3]
+        corner = np.copysign(self.half, held)
+        along = np.eye(3)[grip.axis] * self.half
+        if grip.is_edge:
+            ends = np.array([corner * (along == 0) - along, corner * (along == 0) + along])
+            return drawing.line_list(ends, 2 * _EDGE_WIDTH, _MARKED_EDGE.repeat(2, axis=0)).placed(self.T_world_cube)
+        face = drawing.box(corner * (along != 0), self.half * (along == 0), _MARKED_FACE)
+        return face.placed(self.T_world_cube)
 
 
 def _distance_on_screen(view: View, at: tuple[float, float], ends: Floats) -> float:

@@ -31,6 +31,8 @@ _STRIPES = 6
 _SURFACE = np.array([0.9, 0.5, 0.0, 0.6])
 _LINES = np.array([0.35, 0.15, 0.0, 1.0])
 _LINE_WIDTH = 2.0
+_MARKED = np.array([1.0, 0.85, 0.2, 0.5])
+_MARK_MARGIN = 1.03
 _CIRCLE = np.linspace(0, 2 * np.pi, 49)
 
 
@@ -72,8 +74,7 @@ class JointHandle:
     @classmethod
     def at(cls, body: BodyState, dof: int, scale: float = 1.0) -> "JointHandle":
         """Return the handle of a DOF where it is now, larger than usual by a factor."""
-        joint, axis = joint_and_axis(body, dof)
-        T_world_handle = _frame(body, joint, axis, body.kinematics.values()[dof - axis :].tolist())
+        joint, T_world_handle = joint_frame(body, dof)
         child, whole = (visible_box(body, links, T_world_handle) for links in ([joint.child], None))
         length = 1.0 if whole is None else 2 * float(np.linalg.norm(whole.half))
         radius, half_height = _SMALLEST * length, 0.0
@@ -101,6 +102,11 @@ class JointHandle:
         distance = mujoco.mju_rayGeom(self.center, turned, size, ray.start, ray.direction, kind, np.zeros(3))
         return None if distance < 0 else ray.start + distance * ray.direction
 
+    def mark(self) -> Primitives:
+        """Return a figure on it that shows that a drag would take it, in the world."""
+        size = _MARK_MARGIN * self.radius, _MARK_MARGIN * self.height
+        return drawing.cylinder(*size, _MARKED).placed(self.T_world_handle)
+
     def primitives(self) -> Primitives:
         """Return its figures, in the world: stripes show how it turns."""
         ring = self.radius * np.column_stack([np.cos(_CIRCLE), np.sin(_CIRCLE), 0 * _CIRCLE])
@@ -114,8 +120,13 @@ def _strip(points: Floats) -> Primitives:
     return drawing.line_strip(points, _LINE_WIDTH, np.tile(_LINES, (len(points), 1)))
 
 
+def joint_frame(body: BodyState, dof: int) -> tuple[Joint, Floats]:
+    """Return the joint of a DOF and the frame of its axis in the world, 4x4: z along it, x fixed to the child."""
+    joint, axis = joint_and_axis(body, dof)
+    return joint, _frame(body, joint, axis, body.kinematics.values()[dof - axis :].tolist())
+
+
 def _frame(body: BodyState, joint: Joint, axis: int, values: Sequence[float]) -> Floats:
-    """Return the frame of an axis in the world: z along it, x fixed to the joint's child."""
     T_world_parent, T_world_child = (body.link_transform(link) for link in (joint.parent, joint.child))
     directions = directions_at(joint, values)
     direction = np.array(directions[axis])

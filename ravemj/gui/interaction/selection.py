@@ -12,7 +12,8 @@ from ravemj.gui.interaction.cube import Cube, Grip
 from ravemj.gui.interaction.events import Press
 from ravemj.gui.interaction.joint_handle import SIZES, JointHandle, driving_dof, joint_and_axis
 from ravemj.gui.interaction.labels import body_line, joint_line, point_line
-from ravemj.gui.interaction.picking import Hit, pick
+from ravemj.gui.interaction.notices import Notices
+from ravemj.gui.interaction.picking import Hit, pick, visible_box
 from ravemj.gui.interaction.viewpoint import Ray, View
 from ravemj.model.drawing import NOTHING, Primitives
 
@@ -45,20 +46,21 @@ class Selector:
     """Selects bodies and joints, and shows the cube or the cylinder that moves them.
 
     Attributes:
+        simulation: The bodies.
         selection: What is selected, or None.
         changes: How often this may have changed.
     """
 
-    def __init__(self, simulation: Simulation, on_select: OnSelect | None) -> None:
-        self._simulation = simulation
+    def __init__(self, simulation: Simulation, notices: Notices, on_select: OnSelect | None) -> None:
+        self.simulation = simulation
         self._on_select = on_select
-        self._notice = ""
+        self._notices = notices
         self.selection: Selection | None = None
         self.changes = 0
 
     def forget_what_is_gone(self) -> bool:
         """Select nothing if the body is no more in the world; return whether that was so."""
-        is_gone = self.selection is not None and not self._simulation.holds(self.selection.body)
+        is_gone = self.selection is not None and not self.simulation.holds(self.selection.body)
         if is_gone:
             self.selection = None
             self.changes += 1
@@ -66,10 +68,9 @@ class Selector:
 
     def click(self, view: View, press: Press) -> None:
         """Select what is under the pointer, or nothing; Ctrl selects the joint above it."""
-        self._notice = ""
         self.changes += 1
         ray = view.ray(press.x, press.y)
-        hit = pick(self._simulation, ray)
+        hit = pick(self.simulation, ray)
         if press.ctrl:
             if self._handle_at(ray, hit) is not None:
                 self._resize()
@@ -89,7 +90,8 @@ class Selector:
     def _select_joint(self, hit: Hit, ray: Ray) -> None:
         dof = driving_dof(hit.body.scene, hit.link)
         if dof is None:
-            self.selection, self._notice = None, f"No joint moves {hit.body.scene.links[hit.link].name}"
+            self.selection = None
+            self._notices.say(f"No joint moves {hit.body.scene.links[hit.link].name}")
         elif not self._may_select(hit, ray):
             self.selection = None
         else:
@@ -122,7 +124,7 @@ class Selector:
         if selection is None:
             return None
         ray = view.ray(press.x, press.y)
-        hit = pick(self._simulation, ray)
+        hit = pick(self.simulation, ray)
         grip = self._grip_at(view, press, hit)
         cube = self._cube()
         if grip is not None and cube is not None:
@@ -133,6 +135,23 @@ class Selector:
         if handle is None or point is None or selection.dof is None:
             return None
         return dragging.move_joint(selection.body, selection.dof, handle, point, ray)
+
+    def mark(self, view: View, at: tuple[float, float], hit: Hit | None) -> Primitives | None:
+        """Return a figure on what a drag would take at a point of the screen; None where there is nothing to take.
+
+        Args:
+            view: The view.
+            at: The point [points].
+            hit: The body there.
+        """
+        press = Press(*at)
+        grip, cube = self._grip_at(view, press, hit), self._cube()
+        if grip is not None and cube is not None:
+            return cube.mark(grip)
+        handle = self._handle()
+        if handle is None or self._handle_at(view.ray(*at), hit) is None:
+            return None
+        return handle.mark()
 
     def _cube(self) -> Cube | None:
         selection = self.selection
@@ -161,6 +180,15 @@ class Selector:
             return False
         return hit.distance < float(np.linalg.norm(point - ray.start))
 
+    def sphere(self) -> tuple[Floats, float] | None:
+        """Return centre, shape (3,), and radius [m] of a sphere around what is selected; None where nothing is."""
+        selection = self.selection
+        if selection is None:
+            return None
+        links = None if selection.dof is None else [selection.link]
+        box = visible_box(selection.body, links, np.eye(4))
+        return None if box is None else (box.center, float(np.linalg.norm(box.half)))
+
     def primitives(self) -> Primitives:
         """Return the figures of the cube or the cylinder."""
         shown = self._cube() or self._handle()
@@ -180,6 +208,6 @@ class Selector:
         """Return the text about the body and the joint that are selected."""
         selection = self.selection
         if selection is None:
-            return [self._notice] if self._notice else []
+            return []
         joint = [] if selection.dof is None else [joint_line(selection.body, selection.dof)]
         return [body_line(selection.body), *joint]

@@ -12,6 +12,10 @@ _dispatching = threading.Lock()
 """Held while GLFW hands out events: all windows share one queue, and each has a thread of its own."""
 
 
+_FRAME = 40
+"""What the frame of a window takes of the screen's height."""
+
+
 class GlfwWindow:
     """A window with an OpenGL context; all of its methods belong to one thread.
 
@@ -33,13 +37,15 @@ class GlfwWindow:
         self.events: list[Event] = []
         self.is_lost = True
         self._pointer = 0.0, 0.0
+        self._cursor = ""
+        self._cursors: dict[str, Any] = {}
         self._x = _x_connection(glfw)
         if self.is_broken:
             raise RenderingError("no window can be opened: the connection to the display broke; a new process may do")
-        glfw.window_hint(glfw.SAMPLES, 4)
         glfw.window_hint(glfw.SCALE_TO_MONITOR, True)  # more of its pixels where they are small
         with _dispatching:
-            self._window: Any = glfw.create_window(width, height, title, None, None)
+            size = _fitting(glfw, width, height)
+            self._window: Any = glfw.create_window(*size, title, None, None)
         if not self._window:
             raise RenderingError("no window can be opened: the display offers no OpenGL")
         glfw.make_context_current(self._window)
@@ -60,6 +66,7 @@ class GlfwWindow:
         glfw.set_mouse_button_callback(window, self._on_button)
         glfw.set_scroll_callback(window, self._on_scroll)
         glfw.set_key_callback(window, self._on_key)
+        glfw.set_char_callback(window, self._on_letter)
         glfw.set_window_focus_callback(window, self._on_focus)
         self._buttons = {
             glfw.MOUSE_BUTTON_LEFT: Button.LEFT,
@@ -71,6 +78,8 @@ class GlfwWindow:
             glfw.KEY_SPACE: " ",
             glfw.KEY_LEFT: "arrowleft",
             glfw.KEY_RIGHT: "arrowright",
+            glfw.KEY_HOME: "home",
+            glfw.KEY_F1: "f1",
         }
 
     # --- what people do
@@ -123,13 +132,20 @@ class GlfwWindow:
         self.events.append(Wheel(steps))
 
     def _on_key(self, window: object, key: int, scancode: int, action: int, mods: int) -> None:
-        del window, mods
+        del window
         glfw = self._glfw
+        if mods & (glfw.MOD_CONTROL | glfw.MOD_ALT | glfw.MOD_SUPER) and action == glfw.PRESS:
+            return
         name = self._keys.get(key) or glfw.get_key_name(key, scancode)
         if name and not name.isascii() and key < 128:  # Greek, say: what the key is on an English keyboard
             name = chr(key)
         if name and action != glfw.REPEAT:
             self.events.append(Key(name, action == glfw.PRESS))
+
+    def _on_letter(self, window: object, letter: int) -> None:
+        del window
+        if chr(letter) == "?":  # it is with other keys on other keyboards
+            self.events += [Key("?"), Key("?", False)]
 
     def _on_focus(self, window: object, focused: int) -> None:
         del window
@@ -175,6 +191,17 @@ class GlfwWindow:
         """Show the window, or hide it."""
         (self._glfw.show_window if shown else self._glfw.hide_window)(self._window)
 
+    def set_cursor(self, name: str) -> None:
+        """Have the pointer look as ``Overlay.cursor`` says."""
+        if name == self._cursor:
+            return
+        self._cursor = name
+        glfw = self._glfw
+        shapes = {"pointer": glfw.HAND_CURSOR, "move": glfw.CROSSHAIR_CURSOR}
+        if name in shapes and name not in self._cursors:
+            self._cursors[name] = glfw.create_standard_cursor(shapes[name])
+        glfw.set_cursor(self._window, self._cursors.get(name))
+
     def copy_text(self, text: str) -> None:
         """Put a text on the clipboard."""
         with _dispatching:  # while it lasts, others ask for it, too
@@ -217,6 +244,15 @@ def _x_connection(glfw: Any) -> XConnection | None:  # noqa: ANN401 - glfw has n
     if not hasattr(glfw, "get_platform") or glfw.get_platform() != glfw.PLATFORM_X11:
         return None
     return XConnection(glfw.get_x11_display())
+
+
+def _fitting(glfw: Any, width: int, height: int) -> tuple[int, int]:  # noqa: ANN401 - glfw has no types
+    """Return a size that fits on the screen, with the frame of the window."""
+    monitor = glfw.get_primary_monitor()
+    if not monitor:
+        return width, height
+    _, _, most_columns, most_rows = glfw.get_monitor_workarea(monitor)
+    return max(min(width, most_columns), 1), max(min(height, most_rows - _FRAME), 1)
 
 
 def _import_glfw() -> Any:  # noqa: ANN401 - glfw has no types

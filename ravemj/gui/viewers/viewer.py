@@ -28,6 +28,12 @@ _FIGURES = "SetFiguresInCamera"
 
 TEXTS = "texts in viewers"
 
+LOCKED = "Locked by the script"
+"""What a window or a page says while a script has had the environment for long."""
+
+PATIENCE = 1.0
+"""How long that is [s]."""
+
 
 class Viewer(Playing):
     """A point of view on an environment; ``env.SetViewer`` makes it and ``env.GetViewer()`` returns it.

@@ -19,8 +19,8 @@ from ravemj.gui.interaction import Request, Resize
 from ravemj.gui.viewers.glfw_window import GlfwWindow
 from ravemj.gui.viewers.player import camera_line
 from ravemj.gui.viewers.recorder import FrameSource
-from ravemj.gui.viewers.viewer import Viewer
-from ravemj.gui.viewers.window_renderer import WindowRenderer
+from ravemj.gui.viewers.viewer import LOCKED, PATIENCE, Viewer
+from ravemj.gui.viewers.window_renderer import Surface, WindowRenderer
 
 _LOG = logging.getLogger("ravemj")
 _WIDTH, _HEIGHT = 960, 720
@@ -50,6 +50,7 @@ class WindowViewer(Viewer):
         self._requests: SimpleQueue[_Request] = SimpleQueue()
         self._awaited: SimpleQueue[threading.Event] = SimpleQueue()
         self._complaint = ""
+        self._free_at = time.monotonic()
         self._closing = threading.Event()
         self._opened = threading.Event()
         self._failure = ""
@@ -170,21 +171,39 @@ class WindowViewer(Viewer):
         waiting = [self._awaited.get() for _ in range(self._awaited.qsize())]
         self._size = window.size
         self._thread_callbacks.call()
+        now = time.monotonic()
         if self._simulation.lock.acquire(timeout=_PERIOD):  # who holds it may wait for this thread to end
+            self._free_at = now
             try:
                 is_changed = self._take_in(window, painter)
             finally:
                 self._simulation.lock.release()
-            if is_changed:
-                self._draw(window, painter)
-            for request in self.interaction.controls.take_requests():
-                self._grant(request, window)
-            for drawn in waiting:
-                drawn.set()
         else:
+            is_changed = self._take_in_view(window, painter, now)
             for drawn in waiting:
                 self._awaited.put(drawn)
+            waiting = []
+        if is_changed or painter.is_due(now):
+            self._draw(window, painter, now)
+        for request in self.interaction.controls.take_requests():
+            self._grant(request, window)
+        for drawn in waiting:
+            drawn.set()
         return True
+
+    def _take_in_view(self, window: GlfwWindow, painter: WindowRenderer, now: float) -> bool:
+        """Do what changes only the view, while others have the simulation; return whether to draw the window."""
+        size = [Resize(*window.points)] if self.interaction.view.size != window.points else []
+        window.events = self.interaction.steer([*size, *window.events])
+        self.interaction.pass_time_without_bodies(now)
+        line = LOCKED if now - self._free_at > PATIENCE else ""
+        surface = self._surface(window)
+        return (surface is not None and painter.look_again(self.interaction, surface, line)) or window.is_lost
+
+    def _surface(self, window: GlfwWindow) -> Surface | None:
+        """Return what is drawn on; None while it is minimised."""
+        width, height = window.pixels
+        return Surface(self._background, (width, height), window.pixel_ratio) if width and height else None
 
     def _take_in(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
         """Do what people did, and return whether the window has to be drawn."""
@@ -195,23 +214,25 @@ class WindowViewer(Viewer):
             events, window.events = window.events, []
             for event in events:
                 self.interaction.handle(event)
-            width, height = window.pixels
-            if not (width and height):
+            surface = self._surface(window)
+            if surface is None:
                 return False
-            view = self._background, (width, height), window.pixel_ratio
-            return painter.look(self._simulation, self.interaction, *view) or window.is_lost
+            return painter.look(self._simulation, self.interaction, surface) or window.is_lost
         except RavemjError as error:
             if error.message != self._complaint:
                 _LOG.error("the window cannot show the environment: %s", error)
                 self._complaint = error.message
             return False
 
-    def _draw(self, window: GlfwWindow, painter: WindowRenderer) -> None:
-        pixels, ratio = window.pixels, window.pixel_ratio
-        painter.draw(self._background, pixels)
+    def _draw(self, window: GlfwWindow, painter: WindowRenderer, now: float) -> None:
+        surface = self._surface(window)
+        if surface is None:
+            return
+        painter.draw(surface, now)
         if self._image_callbacks:
-            self._image_callbacks.call(painter.read(pixels))
-        painter.draw_overlay(pixels, ratio)
+            self._image_callbacks.call(painter.read(surface.pixels))
+        painter.draw_overlay(surface)
+        window.set_cursor(painter.cursor)
         window.swap()
 
     def _grant(self, request: Request, window: GlfwWindow) -> None:

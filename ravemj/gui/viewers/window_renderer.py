@@ -1,16 +1,35 @@
 """Draws a simulation, and the text and the buttons over it, into the current OpenGL window."""
 
+import time
+from typing import NamedTuple
+
 import mujoco
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ravemj.engine.simulation import Simulation
 from ravemj.graphics.rendering.gl_scene import GlScene, Quality
-from ravemj.gui.interaction import Interaction, Overlay, Panel
-from ravemj.model.drawing import merge
+from ravemj.gui.interaction import Interaction, Overlay, View
+from ravemj.gui.viewers.sharpness import CRISP, Level, Sharpness
+from ravemj.gui.viewers.window_overlay import OverlayPainter
+from ravemj.model.drawing import Primitives, merge
 
-_FONT = mujoco.mjtFont.mjFONT_NORMAL.value
-_TOP_LEFT = mujoco.mjtGridPos.mjGRID_TOPLEFT.value
+_WINDOW = mujoco.mjtFramebuffer.mjFB_WINDOW.value
+_OFFSCREEN = mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value
+
+
+class Surface(NamedTuple):
+    """What is drawn on.
+
+    Attributes:
+        background: Colour where nothing is, in 0..1.
+        pixels: Width and height of the window.
+        ratio: How many pixels a point has.
+    """
+
+    background: tuple[float, float, float]
+    pixels: tuple[int, int]
+    ratio: float
 
 
 def appearance(simulation: Simulation) -> object:
@@ -22,57 +41,119 @@ def appearance(simulation: Simulation) -> object:
 
 
 class WindowRenderer:
-    """Draws into a window, whenever something has changed."""
+    """Draws into a window, whenever something has changed.
+
+    Bodies are drawn into a buffer, as sharp as there is time, and from there into the window. Where only texts and
+    buttons change, they are not drawn again.
+    """
 
     def __init__(self) -> None:
         self._gl_scene: GlScene | None = None
         self._scene_key: object = None
         self._seen: object = None
+        self._bodies: object = None
+        self._drawn: object = None
         self._overlay: Overlay | None = None
+        self._view: View | None = None
+        self._painter = OverlayPainter()
+        self._sharpness = Sharpness()
+        self._buffer = 1, 1
 
-    def look(
-        self,
-        simulation: Simulation,
-        interaction: Interaction,
-        background: ArrayLike,
-        pixels: tuple[int, int],
-        ratio: float,
-    ) -> bool:
+    def look(self, simulation: Simulation, interaction: Interaction, surface: Surface) -> bool:
         """Take over how everything is now; the caller has locked the simulation.
 
         Args:
             simulation: What is drawn; it is not kept.
             interaction: The view, and what is drawn over it.
-            background: Colour where nothing is, in 0..1.
-            pixels: Width and height of the window.
-            ratio: How many pixels a point has.
+            surface: What it is drawn on.
 
         Returns:
             Whether anything looks different from last time.
         """
         compiled = simulation.compiled()
-        seen = (appearance(simulation), interaction.version, background, pixels, ratio)
+        looks = appearance(simulation)
+        seen = (looks, interaction.version, surface)
         if seen == self._seen:
             return False
         self._seen = seen
-        self._overlay = interaction.overlay()
-        stage = self._prepared_scene(compiled.model, (simulation.version, ratio), ratio)
+        self._overlay, self._view = interaction.overlay(), interaction.drawn_view
         primitives = merge([simulation.drawings.primitives(), self._overlay.primitives])
-        stage.fill(compiled.data, interaction.view.camera, *pixels, primitives)
+        stage = self._prepared_scene(compiled.model, simulation.version)
+        stage.fill(compiled.data, self._view.camera, surface.pixels, primitives, self._overlay.style)
+        self._bodies = looks, _content(self._overlay.primitives), self._overlay.style
         return True
 
-    def _prepared_scene(self, model: mujoco.MjModel, key: object, ratio: float) -> GlScene:
+    def look_again(self, interaction: Interaction, surface: Surface, line: str) -> bool:
+        """Take over how the view is now, while others have the simulation: bodies stay as they were seen last.
+
+        Args:
+            interaction: The view.
+            surface: What it is drawn on.
+            line: What is said about that.
+
+        Returns:
+            Whether anything looks different from last time.
+        """
+        view = interaction.drawn_view
+        seen = view.camera, view.size, interaction.mode, surface, line
+        if self._gl_scene is None or self._overlay is None or seen == self._seen:
+            return False
+        self._seen, self._view = seen, view
+        lines = tuple(other for other in self._overlay.lines if other != line)
+        self._overlay = self._overlay._replace(lines=(line, *lines) if line else lines)
+        self._gl_scene.aim(view.camera, surface.pixels)
+        return True
+
+    def _prepared_scene(self, model: mujoco.MjModel, key: object) -> GlScene:
         if self._gl_scene is None or self._scene_key != key:
             self.close()
             self._gl_scene, self._scene_key = GlScene(model, Quality(1, 1)), key
-            mujoco.mjr_changeFont(_font_scale(ratio), self._gl_scene.context)
         return self._gl_scene
 
-    def draw(self, background: ArrayLike, pixels: tuple[int, int]) -> None:
-        """Draw what was seen last, without text and buttons; arguments as for ``look``."""
-        if self._gl_scene is not None:
-            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_WINDOW.value, self._gl_scene.context)
-            self._gl_scene.draw(mujoco.MjrRect(0, 0, *pixels), np.rint(np.multiply(background, 255)).astype(np.uint8))
+    def is_due(self, now: float) -> bool:
+        """Return whether what has come to rest is to be drawn once more, crisp.
+
+        Args:
+            now: What ``time.monotonic`` says.
+        """
+        return self._gl_scene is not None and self._sharpness.is_due(now)
+
+    def draw(self, surface: Surface, now: float) -> None:
+        """Draw what was seen last, without text and buttons.
+
+        Args:
+            surface: What it is drawn on.
+            now: What ``time.monotonic`` says.
+        """
+        stage, view = self._gl_scene, self._view
+        if stage is None or view is None:
+            return
+        content = self._bodies, view.camera.T_world_camera.tobytes(), view.camera.fovy, surface
+        if self._sharpness.is_due(now):
+            self._draw_bodies(stage, surface, CRISP)
+        elif content != self._drawn:
+            self._draw_bodies(stage, surface, self._sharpness.moving(now))
+        self._drawn = content
+        whole = mujoco.MjrRect(0, 0, *surface.pixels)
+        mujoco.mjr_setBuffer(_OFFSCREEN, stage.context)
+        mujoco.mjr_blitBuffer(mujoco.MjrRect(0, 0, *self._buffer), whole, 1, 0, stage.context)
+        mujoco.mjr_setBuffer(_WINDOW, stage.context)
+
+    def _draw_bodies(self, stage: GlScene, surface: Surface, level: Level) -> None:
+        begin = time.monotonic()
+        columns, rows = (max(round(level.scale * length), 1) for length in surface.pixels)
+        self._buffer = columns, rows
+        stage.set_buffer(*self._buffer, level.samples)
+        mujoco.mjr_setBuffer(_OFFSCREEN, stage.context)
+        background = np.rint(np.multiply(surface.background, 255)).astype(np.uint8)
+        stage.draw(mujoco.MjrRect(0, 0, *self._buffer), background)
+        mujoco.mjr_finish()
+        self._sharpness.drew(level, time.monotonic() - begin)
+
+    @property
+    def cursor(self) -> str:
+        """How the pointer looks, as ``Overlay.cursor``."""
+        return "default" if self._overlay is None else self._overlay.cursor
 
     def read(self, pixels: tuple[int, int]) -> NDArray[np.uint8]:
         """Return what was drawn, (height, width, 3), top row first."""
@@ -81,26 +162,10 @@ class WindowRenderer:
             mujoco.mjr_readPixels(picture, None, mujoco.MjrRect(0, 0, *pixels), self._gl_scene.context)
         return picture[::-1].copy()
 
-    def draw_overlay(self, pixels: tuple[int, int], ratio: float) -> None:
+    def draw_overlay(self, surface: Surface) -> None:
         """Draw text and buttons over the picture."""
-        if self._gl_scene is None or self._overlay is None:
-            return
-        if self._overlay.lines:
-            text = "\n".join(self._overlay.lines)
-            for _ in range(2):  # its background is half transparent; twice, white text can be read on white
-                viewport = mujoco.MjrRect(0, 0, *pixels)
-                mujoco.mjr_overlay(_FONT, _TOP_LEFT, viewport, text, "", self._gl_scene.context)
-        for panel in self._overlay.panels:
-            self._draw_panel(panel, pixels[1], ratio, self._gl_scene.context)
-
-    def _draw_panel(self, panel: Panel, height: int, ratio: float, context: mujoco.MjrContext) -> None:
-        x, y, width, rows = panel.rect
-        left, top, right, bottom = (round(ratio * edge) for edge in (x, y, x + width, y + rows))
-        viewport = mujoco.MjrRect(left, height - bottom, right - left, bottom - top)
-        if panel.text:
-            mujoco.mjr_label(viewport, _FONT, panel.text, *panel.rgba, 1, 1, 1, context)
-        else:
-            mujoco.mjr_rectangle(viewport, *panel.rgba)
+        if self._overlay is not None and self._view is not None:
+            self._painter.paint(self._overlay, self._view, surface.pixels, surface.ratio)
 
     def close(self) -> None:
         """Free what OpenGL holds."""
@@ -109,6 +174,6 @@ class WindowRenderer:
             self._gl_scene = None
 
 
-def _font_scale(ratio: float) -> int:
-    """Return MuJoCo's scale of letters [percent], from 50 to 300."""
-    return min(max(50 * round(2 * ratio), 50), 300)
+def _content(primitives: Primitives) -> tuple[bytes, ...]:
+    """Return what is equal for figures that look the same."""
+    return tuple(array.tobytes() for batch in primitives.batches for array in batch)

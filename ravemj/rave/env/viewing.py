@@ -46,7 +46,7 @@ class Viewing(EnvironmentPart):
 
         Returns:
             False for ``''``. True for every other name, as in OpenRAVE; a name that nobody knows is logged as an error,
-            and ``GetViewer`` returns None then.
+            and the viewers before stay.
 
         Example:
             >>> env.SetViewer("qtcoin")
@@ -54,9 +54,12 @@ class Viewing(EnvironmentPart):
             >>> viewer = env.GetViewer()
             >>> viewer.SetBkgndColor([0.8, 0.85, 0.9])
         """
+        from ravemj.gui.viewers import VIEWERS  # noqa: PLC0415 - slow to import
+
         if viewername:
             self._check_alive()
-        self._close_viewers()
+        if viewername in {"", *VIEWERS}:
+            self._close_viewers()
         if viewername:
             self.open_viewer(viewername, showviewer)
         return bool(viewername)
@@ -71,19 +74,22 @@ class Viewing(EnvironmentPart):
             self._attach(viewer)
         return viewer
 
-    def serve_viewer(self, host: str = "127.0.0.1", port: int = 0) -> "WebViewer":
+    def serve_viewer(self, host: str = "127.0.0.1", port: int = 0, token: str | None = None) -> "WebViewer":
         """Attach a viewer for browsers, as ``SetViewer('web')`` does, at a port of your choice.
 
         Args:
             host: Name or address of the interface that browsers come to. Others than the default let those of other
                 machines in: whoever knows the address of the page sees and moves everything, and nothing is encrypted.
             port: Number of the port; 0: any that is free.
+            token: The secret in the address, so that a page finds a viewer again that was ended and started anew at
+                the same port: 8 to 64 letters, digits, ``-`` and ``_``. None: a new one.
 
         Returns:
             The viewer; ``url`` is the address of its page.
 
         Raises:
             RenderingError: this port cannot be had; the viewers before stay.
+            ArgumentError: the token is too short, or has other letters.
 
         Example:
             >>> print(env.serve_viewer(port=8080).url)
@@ -91,7 +97,7 @@ class Viewing(EnvironmentPart):
         from ravemj.gui.viewers.web import WebViewer  # noqa: PLC0415 - websockets is slow to import
 
         self._check_alive()
-        viewer = WebViewer(self._simulation, self._renderer, "web", host, port)
+        viewer = WebViewer(self._simulation, self._renderer, "web", host, port, token=token)
         self._close_viewers()
         self._attach(viewer)
         return viewer

@@ -12,8 +12,10 @@ from typing import NamedTuple, Protocol
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
-from ravemj.gui.interaction import Interaction, Leave, Move, Overlay
+from ravemj.gui.interaction import Event, Interaction, Leave, Move, Overlay
 from ravemj.gui.viewers.recorder import free_path
+from ravemj.gui.viewers.sharpness import CRISP, REST, Level, Sharpness
+from ravemj.gui.viewers.viewer import LOCKED, PATIENCE
 from ravemj.gui.viewers.web import encoding
 from ravemj.gui.viewers.web.frame_pacing import Link
 from ravemj.gui.viewers.web.messages import Message, Ready, Shape, parse
@@ -22,8 +24,8 @@ from ravemj.gui.viewers.window_renderer import appearance
 
 _LOG = logging.getLogger("ravemj")
 _PERIOD = 1 / 60
-_REST = 0.3
-"""After so long without a change [s], the picture is sent once more, crisp."""
+_HALF = 0.5
+"""Most columns and rows of pictures for slow connections while things move, as a part of the view's."""
 
 _MOST_PIXELS = 1920 * 1440
 _MOST_AT_ONCE = 100
@@ -80,6 +82,10 @@ class Client:
         self._simulation = simulation
         self._renderer = renderer
         self._link = Link()
+        self._sharpness = Sharpness()
+        self._overlay: Overlay | None = None
+        self._free_at = time.monotonic()
+        self._sees_bodies = False
         self._ratio = 1.0
         self._waiting: deque[Message] = deque([Leave()])  # of what an earlier connection of the page has left
         self._seen: object = None
@@ -114,42 +120,76 @@ class Client:
             The picture; None if there was none to be sent.
         """
         try:
-            overlay = self._overlay_if_due(style)
-            picture = None if overlay is None else self._picture(overlay, style)
+            picture = self._picture_if_due(style)
         except RavemjError as error:
             if error.message != self._complaint:
                 _LOG.error("a page cannot show the environment: %s", error)
                 self._complaint = error.message
             self._seen = None
             return None
-        if overlay is None or picture is None:
-            return None
-        self._send(connection, overlay, picture, style)
-        self.looks += 1
+        if picture is not None:
+            self._send(connection, picture, style)
+            self.looks += self._sees_bodies
         return picture
 
-    def _overlay_if_due(self, style: PageStyle) -> Overlay | None:
-        """Do what the page said; return what is to be drawn over the bodies if a picture is due, else None."""
-        if not self._simulation.lock.acquire(timeout=_PERIOD):  # who holds it may wait for this thread to end
-            return None
+    def _picture_if_due(self, style: PageStyle) -> Frame | None:
+        """Do what the page said; return a picture if one is due."""
+        now = time.monotonic()
+        self._sees_bodies = self._simulation.lock.acquire(timeout=_PERIOD)
+        if not self._sees_bodies:  # who holds it may wait for this thread to end
+            return self._picture_of_view(style, now)
         try:
-            self.interaction.pass_time(time.monotonic())
+            self._free_at = now
+            self.interaction.pass_time(now)
             while self._waiting:
                 self._do(self._waiting.popleft())
             if not self._link.is_free:
                 return None
             seen = appearance(self._simulation), self.interaction.version, style, self._ratio
-            now = time.monotonic()
-            if seen != self._seen:
-                self._seen, self._changed_at, self._is_crisp = seen, now, False
-            elif self._is_crisp or now - self._changed_at < _REST:
+            if not self._is_due(seen, now):
                 self.looks += 1
                 return None
-            else:
-                self._is_crisp = True
-            return self.interaction.overlay()
+            self._overlay = self.interaction.overlay()
         finally:
             self._simulation.lock.release()
+        return self._picture(self._overlay, style, self._level(now))
+
+    def _picture_of_view(self, style: PageStyle, now: float) -> Frame | None:
+        """Do what changes only the view, while others have the simulation; return a picture if one is due."""
+        events: list[Event] = []
+        for message in self._waiting:
+            if isinstance(message, Shape):
+                self._ratio = message.ratio
+            if not isinstance(message, Ready):
+                events.append(message.resize if isinstance(message, Shape) else message)
+        self._waiting = deque(self.interaction.steer(events))
+        self.interaction.pass_time_without_bodies(now)
+        is_long = now - self._free_at > PATIENCE
+        view = self.interaction.drawn_view
+        seen = view.camera, view.size, self.interaction.mode, style, self._ratio, is_long
+        if self._overlay is None or not self._link.is_free or not self._is_due(seen, now):
+            return None
+        lines = tuple(line for line in self._overlay.lines if line != LOCKED)
+        self._overlay = self._overlay._replace(lines=(LOCKED, *lines) if is_long else lines)
+        level = self._level(now)
+        return self._renderer.render_again(view.camera, style.background, self._form(level))
+
+    def _is_due(self, seen: object, now: float) -> bool:
+        """Return whether a picture is to be drawn of what is seen: it has changed, or come to rest."""
+        if seen != self._seen:
+            self._seen, self._changed_at, self._is_crisp = seen, now, False
+        elif self._is_crisp or now - self._changed_at < REST:
+            return False
+        else:
+            self._is_crisp = True
+        return True
+
+    def _level(self, now: float) -> Level:
+        """Return how sharp the next picture is."""
+        if self._is_crisp:
+            return CRISP
+        level = self._sharpness.moving(now)
+        return level._replace(scale=min(level.scale, _HALF)) if self._link.is_halved else level
 
     def _do(self, message: Message) -> None:
         if isinstance(message, Shape):
@@ -158,11 +198,17 @@ class Client:
         elif not isinstance(message, Ready):
             self.interaction.handle(message)
 
-    def _picture(self, overlay: Overlay, style: PageStyle) -> Frame:
+    def _picture(self, overlay: Overlay, style: PageStyle, level: Level = CRISP) -> Frame:
+        begin = time.monotonic()
+        camera, form = self.interaction.drawn_view.camera, self._form(level)
+        picture = self._renderer.render(camera, style.background, form, gizmos=overlay.primitives, style=overlay.style)
+        self._sharpness.drew(level, time.monotonic() - begin)
+        return picture
+
+    def _form(self, level: Level) -> Format:
         width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
-        shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, 1.0)
-        form = Format(max(int(width * shrink), 1), max(int(height * shrink), 1))
-        return self._renderer.render(self.interaction.view.camera, style.background, form, gizmos=overlay.primitives)
+        shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, 1.0) * level.scale
+        return Format(max(int(width * shrink), 1), max(int(height * shrink), 1), samples=level.samples)
 
     def send_file(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""
@@ -174,14 +220,18 @@ class Client:
         """Have the browser put a text on the clipboard."""
         connection.send(json.dumps({"task": "copy", "text": text}))
 
-    def _send(self, connection: Connection, overlay: Overlay, picture: Frame, style: PageStyle) -> None:
-        link = self._link
+    def _send(self, connection: Connection, picture: Frame, style: PageStyle) -> None:
+        link, overlay = self._link, self._overlay
+        if overlay is None:
+            return
         link.sent(is_moving=not self._is_crisp)
         mode = self.interaction.mode.value
         controls = [asdict(control) for control in overlay.controls]
         text = {"lines": overlay.lines, "mode": mode, "title": style.title, "crisp": self._is_crisp}
-        connection.send(json.dumps({**text, "controls": controls}))
+        text["cursor"] = overlay.cursor
+        over = {"controls": controls, "help": overlay.help, "labels": overlay.labels_on(self.interaction.drawn_view)}
+        connection.send(json.dumps({**text, **over}))
         if self._is_crisp:
             connection.send(encoding.resting(picture, is_exact=link.is_good))
         else:
-            connection.send(encoding.moving(picture, link.quality, is_halved=link.is_halved))
+            connection.send(encoding.moving(picture, link.quality))

@@ -11,18 +11,16 @@ if TYPE_CHECKING:
 _CRISP_QUALITY = 95
 
 
-def moving(picture: Frame, quality: int, *, is_halved: bool) -> bytes:
+def moving(picture: Frame, quality: int) -> bytes:
     """Return a picture as JPEG.
 
     Args:
         picture: The picture, shape (height, width, 3).
         quality: From 1 to 95.
-        is_halved: Whether to leave out every other row and column.
     """
     from PIL import Image  # noqa: PLC0415 - slow to import
 
-    image = Image.fromarray(picture)
-    return _file(image.reduce(2) if is_halved else image, "JPEG", quality=quality)
+    return _file(Image.fromarray(picture), "JPEG", quality=quality)
 
 
 def resting(picture: Frame, *, is_exact: bool) -> bytes:

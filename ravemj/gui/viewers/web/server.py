@@ -4,6 +4,7 @@ import atexit
 import contextlib
 import http
 import logging
+import re
 import secrets
 import socket
 import threading
@@ -16,7 +17,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 from websockets.sync.server import ServerConnection, serve
 
-from ravemj.errors import RenderingError
+from ravemj.errors import ArgumentError, RenderingError
 from ravemj.gui.viewers.web.messages import LONGEST
 from ravemj.gui.viewers.web.rejections import Rejections
 
@@ -32,6 +33,7 @@ _FILES = {
     "controls.js": "text/javascript",
 }
 _SOCKET = "socket"
+_TOKEN = re.compile(r"[A-Za-z0-9_-]{8,64}")
 _MOST_CONNECTIONS = 32
 _HANDSHAKE = 5.0
 """How long a stranger may take to say what is wanted [s]."""
@@ -58,19 +60,29 @@ class PageServer:
         closed: Set once it is closed.
     """
 
-    def __init__(self, host: str, port: int, serve_page: Callable[[ServerConnection], None], *, any_name: bool) -> None:
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        serve_page: Callable[[ServerConnection], None],
+        *,
+        token: str | None = None,
+        any_name: bool,
+    ) -> None:
         """Listen.
 
         Args:
             host: Name or number of the interface.
             port: Number of the port; 0: any that is free.
             serve_page: Called with the connection of each page, in a thread of its own.
+            token: The secret that begins each path; None: a new one.
             any_name: Whether browsers may call this server what they like, as they do where something stands between.
 
         Raises:
             RenderingError: this port cannot be had.
+            ArgumentError: the token is too short, or has letters that no address has.
         """
-        self.token = secrets.token_urlsafe(16)
+        self.token = secrets.token_urlsafe(16) if token is None else checked_token(token)
         self.complain = Rejections()
         self.closed = threading.Event()
         self._may_stop = threading.Lock()  # once, by whoever comes first
@@ -78,6 +90,7 @@ class PageServer:
         self._listening = _listen(host, port)
         self.port = int(self._listening.getsockname()[1])
         self._threads: set[threading.Thread] = set()
+        self._strangers: dict[threading.Thread, socket.socket] = {}  # who has not said the secret yet, the oldest first
         silent = logging.getLogger("ravemj.web")
         silent.setLevel(logging.CRITICAL)  # what strangers send is no news
         self._server = serve(
@@ -125,22 +138,37 @@ class PageServer:
                 continue
             if len(self._threads) >= _MOST_CONNECTIONS:
                 self.complain("there are too many connections")
-                connection.close()
-                continue
+                if not self._turn_out_a_stranger():
+                    connection.close()
+                    continue
             thread = threading.Thread(target=self._serve, args=(connection, address), name="ravemj page", daemon=True)
             self._threads.add(thread)
+            self._strangers[thread] = connection
             thread.start()
+
+    def _turn_out_a_stranger(self) -> bool:
+        """End the oldest connection that has not said the secret; return whether there is one."""
+        for thread, connection in self._strangers.copy().items():
+            if self._strangers.pop(thread, None) is not None:
+                with contextlib.suppress(OSError):  # it has left by itself
+                    connection.shutdown(socket.SHUT_RDWR)
+                self._threads.discard(thread)
+                return True
+        return False
 
     def _serve(self, connection: socket.socket, address: object) -> None:
         try:
             self._server.handler(connection, address)
         finally:
             self._threads.discard(threading.current_thread())
+            self._strangers.pop(threading.current_thread(), None)
 
     def _answer(self, request: Request) -> Response | None:
         """Answer a request: with a file, with a refusal, or None where a page may open its connection."""
         token, slash, name = request.path.partition("?")[0].removeprefix("/").partition("/")
         is_known = secrets.compare_digest(token.encode(), self.token.encode()) and name in {*_FILES, _SOCKET}
+        if is_known:
+            self._strangers.pop(threading.current_thread(), None)
         if not (slash and is_known) or not self._is_our_name(request.headers.get("Host", "")):
             return _text(http.HTTPStatus.NOT_FOUND, "There is nothing here.\n")
         if name != _SOCKET:
@@ -169,6 +197,17 @@ def _close_all() -> None:
     """Wait for pages whose viewers went in their own threads: Python must not end while OpenGL draws."""
     for server in _servers.copy():
         server.close()
+
+
+def checked_token(token: str) -> str:
+    """Return a token.
+
+    Raises:
+        ArgumentError: it is too short, or has letters that no address has.
+    """
+    if not _TOKEN.fullmatch(token):
+        raise ArgumentError(f"token: is {token!r}, and should be 8 to 64 letters, digits, - and _")
+    return token
 
 
 def is_local(host: str) -> bool:

@@ -50,6 +50,7 @@ class WebViewer(Viewer):
         host: str = LOOPBACK,
         port: int = 0,
         *,
+        token: str | None = None,
         any_name: bool = False,
     ) -> None:
         """Serve the page.
@@ -60,10 +61,12 @@ class WebViewer(Viewer):
             name: Name of the viewer.
             host: Interface that browsers come to; another than the default lets those of other machines in.
             port: Number of the port; 0: any that is free.
+            token: The secret in the address; None: a new one.
             any_name: Whether browsers may know this machine by any name, as they do behind a proxy.
 
         Raises:
             RenderingError: this port cannot be had.
+            ArgumentError: the token is too short, or has letters that no address has.
         """
         super().__init__(simulation, renderer, name)
         self._clients: dict[ServerConnection, Client] = {}
@@ -71,7 +74,11 @@ class WebViewer(Viewer):
         self._lock = threading.Lock()
         reference: weakref.ref[WebViewer] = weakref.ref(self)
         self.server = PageServer(
-            host, port, lambda connection: _serve(reference, connection), any_name=any_name or not is_local(host)
+            host,
+            port,
+            lambda connection: _serve(reference, connection),
+            token=token,
+            any_name=any_name or not is_local(host),
         )
         self.url = self.server.url(host)
         self._end = weakref.finalize(self, self.server.close)
@@ -151,7 +158,7 @@ class WebViewer(Viewer):
         picture = client.attend(connection, style)
         view = client.interaction.view
         if messages and view.camera is not before.camera:
-            self.interaction.look_from(view.camera, view.distance)
+            self.interaction.look_from(view.camera, view.distance, is_home=False)
         if picture is not None:
             self._image_callbacks.call(picture)
         for request in client.interaction.controls.take_requests():

@@ -3,6 +3,7 @@
 
 const QUIET = 400;  // after so long without a touch [ms], a slider shows what the other side says
 const PLAYING = ["back", "play", "forward", "seek", "speed"];
+const HOMES = { playing: "motion", tools: "tools", menu: "menu", joints: "joints" };
 const ICONS = {
   back: "M6 5h2.4v14H6zM19 5v14L9.5 12z",
   forward: "M15.6 5H18v14h-2.4zM5 5v14l9.5-7z",
@@ -12,7 +13,7 @@ const ICONS = {
 const shown = new Map();  // the elements of the controls by their names
 
 function showControls(controls) {
-  const motion = document.getElementById("motion"), joints = document.getElementById("joints");
+  const motion = document.getElementById("motion");
   const names = new Set(controls.map((control) => control.name));
   for (const [name, control] of shown) {
     if (names.has(name)) continue;
@@ -24,16 +25,17 @@ function showControls(controls) {
     update(shown.get(control.name), control);
   }
   motion.hidden = !names.has("seek");
-  joints.hidden = !names.has("dof 0") && !controls.some((control) => control.name.startsWith("dof "));
+  for (const group of ["joints", "menu"]) {
+    document.getElementById(group).hidden = !controls.some((control) => control.group === group);
+  }
   document.body.classList.toggle("has-motion", !motion.hidden);
 }
 
-function make({ name, lower, upper }) {
-  const parent = name.startsWith("dof ") ? "joints" : PLAYING.includes(name) ? "motion" : "tools";
+function make({ name, group, lower, upper }) {
   const made = lower < upper ? makeSlider(name) : makeButton(name);
   const order = (element) => PLAYING.indexOf(element.dataset.name);
-  const home = document.getElementById(parent);
-  const next = parent === "motion" ? [...home.children].find((other) => order(other) > order(made.row)) : null;
+  const home = document.getElementById(HOMES[group]);
+  const next = group === "playing" ? [...home.children].find((other) => order(other) > order(made.row)) : null;
   home.insertBefore(made.row, next || null);
   return made;
 }
@@ -78,13 +80,36 @@ function update(made, control) {
   row.title = label;
   row.setAttribute("aria-label", label);
   row.dataset.on = control.is_on === true;
-  if (control.name === "joints") row.setAttribute("aria-expanded", control.is_on);
+  if (["joints", "view", "display", "help"].includes(control.name)) row.setAttribute("aria-expanded", control.is_on);
   if (!icon) row.textContent = control.text;
   else if (row.dataset.icon !== icon) {
     row.dataset.icon = icon;
     row.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${icon}"/></svg>`;
   }
 }
+
+// --- help: headings, and rows of what is wanted and what to do for it
+
+function showHelp(sections) {
+  const help = document.getElementById("help");
+  help.hidden = sections.length === 0;
+  if (help.hidden || help.childElementCount) return;
+  const columns = document.createElement("div");
+  help.append(columns);
+  for (const [title, rows] of sections) {
+    const heading = document.createElement("h2"), list = document.createElement("dl");
+    heading.textContent = title;
+    for (const [to, how] of rows) {
+      const term = document.createElement("dt"), gesture = document.createElement("dd");
+      [term.textContent, gesture.textContent] = [to, how];
+      list.append(term, gesture);
+    }
+    const section = document.createElement("section");
+    section.append(heading, list);
+    columns.append(section);
+  }
+}
+document.getElementById("help").addEventListener("click", () => send({ type: "operate", name: "help", value: 0 }));
 
 // --- keys of the view, while there is a motion
 

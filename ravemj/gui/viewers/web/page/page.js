@@ -82,11 +82,28 @@ function write(over) {
   const lines = over.lines.join("\n");
   if (text.innerText !== lines) text.innerText = lines;
   text.hidden = lines === "";
+  view.style.cursor = pressed && over.cursor === "grab" ? "" : over.cursor;
   showControls(over.controls);
+  showHelp(over.help);
+  label(over.labels);
   document.title = over.title;
   Object.assign(document.body.dataset, { mode: over.mode, crisp: over.crisp });
   for (const button of document.querySelectorAll("#modes button")) {
     button.setAttribute("aria-pressed", button.dataset.mode === over.mode);
+  }
+}
+
+function label(labels) {  // texts in the world: [column, row, text]
+  const ratio = view.width / Math.max(1, view.clientWidth);
+  paint.font = `${12 * ratio}px system-ui, sans-serif`;
+  paint.lineWidth = 3 * ratio;
+  paint.lineJoin = "round";
+  paint.textAlign = "center";
+  paint.strokeStyle = "rgba(255, 255, 255, 0.8)";
+  paint.fillStyle = "#20242c";
+  for (const [x, y, words] of labels) {
+    paint.strokeText(words, x * ratio, y * ratio);
+    paint.fillText(words, x * ratio, y * ratio);
   }
 }
 
@@ -146,9 +163,12 @@ view.addEventListener("wheel", (event) => {
   event.preventDefault();
 }, { passive: false });
 
-const known = /^(Escape|s)$/i;
+const known = /^(Escape|[a-z0-9?]|Home|F1)$/i;  // Space and arrows are for what has the focus
 window.addEventListener("keydown", (event) => {
-  if (known.test(event.key) && !event.repeat) send({ type: "key", name: event.key, pressed: true });
+  const isTyping = event.target.matches("input:not([type=range])") && event.key !== "Escape";
+  if (!known.test(event.key) || isTyping || event.ctrlKey || event.altKey || event.metaKey) return;
+  if (event.key === "F1" || event.key === "Home") event.preventDefault();
+  if (!event.repeat) send({ type: "key", name: event.key, pressed: true });
 });
 window.addEventListener("keyup", (event) => {
   if (known.test(event.key)) send({ type: "key", name: event.key, pressed: false });

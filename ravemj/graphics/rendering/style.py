@@ -1,0 +1,63 @@
+"""How the geoms of a model are drawn, besides their colours."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.graphics.rendering.visibility import DRAWN_GROUPS
+
+COLLISION_GROUPS = np.array([1, 0, 0, 1, 0, 0], dtype=np.uint8)
+"""Geom groups of what collides: 2 is only seen, 3 only collides."""
+
+_EMISSION = 0.35
+"""What a body that is brighter shines by itself."""
+
+_OPACITY = 0.35
+
+
+@dataclass(frozen=True)
+class Style:
+    """A way to draw geoms. Rays draw them as they are; OpenGL is needed for others.
+
+    Attributes:
+        collision: Whether what collides is drawn, in place of what is seen.
+        hulls: Whether meshes are drawn as their convex hulls.
+        transparent: Whether bodies are half transparent.
+        wireframe: Whether only edges are drawn.
+        lit: The body of the model that is brighter than the others; -1: none.
+    """
+
+    collision: bool = False
+    hulls: bool = False
+    transparent: bool = False
+    wireframe: bool = False
+    lit: int = -1
+
+    @property
+    def groups(self) -> NDArray[np.uint8]:
+        """For each geom group, 1 if it is drawn."""
+        return COLLISION_GROUPS if self.collision else DRAWN_GROUPS
+
+    def apply(self, option: mujoco.MjvOption) -> None:
+        """Set what is taken over into a scene."""
+        option.geomgroup[:] = self.groups
+        option.flags[mujoco.mjtVisFlag.mjVIS_CONVEXHULL] = self.hulls
+
+    def finish(self, model: mujoco.MjModel, scene: mujoco.MjvScene) -> None:
+        """Change a scene that was filled: edges only, bodies that are brighter, or transparent."""
+        scene.flags[mujoco.mjtRndFlag.mjRND_WIREFRAME] = self.wireframe
+        if self.lit < 0 and not self.transparent:
+            return
+        for geom in scene.geoms[: scene.ngeom]:
+            if geom.objtype != mujoco.mjtObj.mjOBJ_GEOM:
+                continue
+            if self.transparent:  # MuJoCo's own way leaves out what no joint moves
+                geom.rgba[3] *= _OPACITY
+                geom.transparent = 1
+            if model.geom_bodyid[geom.objid] == self.lit:
+                geom.emission = min(geom.emission + _EMISSION, 1.0)
+
+
+AS_IT_IS = Style()

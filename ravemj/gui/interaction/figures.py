@@ -1,0 +1,153 @@
+"""What can be shown of a model that pictures do not show: frames, axes, masses, contacts, names."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, Ints, rows_from_wxyz
+from ravemj.engine.collision.world import cross
+from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.gui.interaction.joint_handle import joint_frame
+from ravemj.gui.interaction.overlay import Label
+from ravemj.model import drawing
+from ravemj.model.drawing import Primitives
+from ravemj.model.inertia import principal_frame, principal_moments
+from ravemj.model.scene import Inertial
+
+_FRAME, _AXIS, _CONTACT = 0.08, 0.12, 0.012
+"""Lengths of the axes of frames and joints and the radius of contacts, in radii of the scene."""
+
+_SMALLEST_MASS = 1e-9
+"""Mass below which a link has no inertia to be shown [kg]."""
+
+_RGB = np.array([[0.85, 0.15, 0.15, 1.0], [0.1, 0.6, 0.15, 1.0], [0.15, 0.3, 0.9, 1.0]])
+_JOINT = np.array([0.95, 0.55, 0.0, 1.0])
+_RANGE = np.array([0.95, 0.55, 0.0, 0.25])
+_NOW = np.array([0.2, 0.1, 0.0, 1.0])
+_MASS = np.array([0.75, 0.1, 0.75, 1.0])
+_INERTIA = np.array([0.75, 0.1, 0.75, 0.3])
+_CONTACTS = np.array([0.95, 0.1, 0.1, 1.0])
+_WIDTH = 2.5
+_ARC_STEP = np.radians(6)
+
+_Part = Callable[[Simulation, float], list[Primitives]]
+
+
+def figures(simulation: Simulation, shown: frozenset[str], radius: float) -> list[Primitives]:
+    """Return the figures of what is shown.
+
+    Args:
+        simulation: The bodies; it is locked by the caller.
+        shown: Names of what is shown, of ``shortcuts.DISPLAY``.
+        radius: Radius of the scene [m]; figures have sizes that fit it.
+    """
+    return [figure for name, part in _PARTS.items() if name in shown for figure in part(simulation, radius)]
+
+
+def names(simulation: Simulation) -> tuple[Label, ...]:
+    """Return the names of all links, at their centres of mass."""
+    return tuple(
+        Label(place, link.name)
+        for body in simulation.bodies
+        for link, place in zip(body.scene.links, _centers(body), strict=True)
+    )
+
+
+def _frames(simulation: Simulation, radius: float) -> list[Primitives]:
+    cross = np.concatenate([[np.zeros(3), axis] for axis in _FRAME * radius * np.eye(3)])
+    figure = drawing.line_list(cross, _WIDTH, np.repeat(_RGB, 2, axis=0))
+    return [figure.placed(T) for body in simulation.bodies for T in body.link_transforms()]
+
+
+def _joints(simulation: Simulation, radius: float) -> list[Primitives]:
+    return [
+        _joint(body, dof, _AXIS * radius)
+        for body in simulation.bodies
+        if body.index
+        for dof in range(len(body.scene.dof_axes))
+    ]
+
+
+def _joint(body: BodyState, dof: int, length: float) -> Primitives:
+    """Return the axis of a joint, and for hinges the sector between its limits, with a line where it is now."""
+    joint, T_world_axis = joint_frame(body, dof)
+    axis, value = body.scene.dof_axes[dof], float(body.kinematics.values()[dof])
+    ends = np.array([[0.0, 0.0, -length], [0.0, 0.0, length]])
+    parts = [drawing.line_list(ends, _WIDTH, np.tile(_JOINT, (2, 1)))]
+    if joint.kind == "slider":
+        ends = np.array([[0.0, 0.0, axis.lower - value], [0.0, 0.0, axis.upper - value]])
+        if np.isfinite(ends).all() and np.ptp(ends) < 100 * length:
+            parts = [drawing.line_list(ends, _WIDTH, np.tile(_JOINT, (2, 1)))]
+    elif not axis.circular and axis.upper - axis.lower < 2 * np.pi:
+        angles = np.linspace(axis.lower - value, axis.upper - value, int((axis.upper - axis.lower) / _ARC_STEP) + 2)
+        rim = 0.6 * length * np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+        triangles = np.array([[0, number, number + 1] for number in range(1, len(rim))])
+        sector = np.concatenate([np.zeros((1, 3)), rim])
+        parts.append(drawing.mesh(sector, triangles, np.tile(_RANGE, (len(sector), 1))))
+        now = np.array([[0.0, 0.0, 0.0], [0.6 * length, 0.0, 0.0]])
+        parts.append(drawing.line_list(now, _WIDTH, np.tile(_NOW, (2, 1))))
+    return drawing.merge(parts).placed(T_world_axis)
+
+
+def _masses(simulation: Simulation, radius: float) -> list[Primitives]:
+    found: list[Primitives] = []
+    for body in simulation.bodies:
+        massive = [link.inertial.mass > _SMALLEST_MASS for link in body.scene.links]
+        centers = _centers(body)[massive]
+        found.append(drawing.spheres(centers, 0.5 * _CONTACT * radius, np.tile(_MASS, (len(centers), 1))))
+        for link, T_world_link in zip(body.scene.links, body.link_transforms(), strict=True):
+            if link.inertial.mass > _SMALLEST_MASS:
+                found.append(_ellipsoid(link.inertial).placed(T_world_link))
+    return found
+
+
+def _ellipsoid(inertial: Inertial) -> Primitives:
+    """Return the solid ellipsoid of even density that has a mass and moments of inertia, in the link.
+
+    With half axes a, b, c the moment about the first is m (b^2 + c^2) / 5.
+    """
+    moments = principal_moments(inertial)
+    squares = 2.5 / inertial.mass * (moments.sum() - 2 * moments)
+    half = np.sqrt(np.maximum(squares, 0.0))
+    frame = principal_frame(inertial)
+    T_link_mass = np.eye(4)
+    T_link_mass[:3, :3] = rows_from_wxyz(frame.wxyz)
+    T_link_mass[:3, 3] = frame.position
+    return drawing.mesh(_SPHERE * half, _FACETS, np.tile(_INERTIA, (len(_SPHERE), 1))).placed(T_link_mass)
+
+
+def _sphere() -> tuple[Floats, Ints]:
+    """Return points and triangles of a unit sphere."""
+    columns, rows = 16, 9
+    turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, columns + 1), np.linspace(-np.pi / 2, np.pi / 2, rows))
+    points = np.stack([np.cos(height) * np.cos(turn), np.cos(height) * np.sin(turn), np.sin(height)], axis=-1)
+    corner = np.arange((rows - 1) * (columns + 1)).reshape(rows - 1, -1)[:, :-1].reshape(-1)
+    above = corner + columns + 1
+    lower, upper = np.stack([corner, corner + 1, above], axis=1), np.stack([corner + 1, above + 1, above], axis=1)
+    return points.reshape(-1, 3), np.concatenate([lower, upper])
+
+
+_SPHERE, _FACETS = _sphere()
+
+
+def _contacts(simulation: Simulation, radius: float) -> list[Primitives]:
+    """Return a sphere where shapes of different bodies are deepest in each other."""
+    world = simulation.collisions()
+    points: list[Floats] = []
+    for number, body in enumerate(simulation.bodies):
+        earlier = [world.geoms_of_body(other) for other in simulation.bodies[:number]]
+        if earlier:
+            pairs = world.make_pairs(*cross(world.geoms_of_body(body), np.concatenate(earlier)))
+            points += [world.shapes.contact(*geoms).position for geoms in world.hits(pairs)]
+    if not points:
+        return []
+    return [drawing.spheres(np.array(points), _CONTACT * radius, np.tile(_CONTACTS, (len(points), 1)))]
+
+
+def _centers(body: BodyState) -> Floats:
+    """Return the centres of mass of all links, in the world [m], shape (links, 3)."""
+    T_world_links = body.link_transforms()
+    return np.einsum("nij,nj->ni", T_world_links[:, :3, :3], body.inertias.coms) + T_world_links[:, :3, 3]
+
+
+_PARTS: dict[str, _Part] = {"frames": _frames, "axes": _joints, "masses": _masses, "contacts": _contacts}

@@ -1,0 +1,126 @@
+"""What can be done with the mouse and the keys: one table, for the keys, the menus, the help and the manual."""
+
+from typing import NamedTuple
+
+
+class Shortcut(NamedTuple):
+    """Something to do that has a key.
+
+    Attributes:
+        name: Name of the control that does it.
+        keys: Names of the keys that do it, as ``Key`` has them.
+        text: What it is called in a menu.
+        label: What it does.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    text: str
+    label: str
+
+
+VIEW = (
+    Shortcut("home", ("home",), "Home", "go back to the first view, or to that of the last SetCamera"),
+    Shortcut("fit", ("f",), "Fit", "show what is selected as large as it fits, or everything"),
+    Shortcut("upright", ("u",), "Upright", "level the view: z points up"),
+    Shortcut("turntable", ("k",), "Keep upright", "keep the view level while it turns, or let it roll again"),
+    Shortcut("front", ("1",), "Front", "look from the front, along -x"),
+    Shortcut("behind", ("2",), "Behind", "look from behind, along +x"),
+    Shortcut("left", ("3",), "Left", "look from the left, along -y"),
+    Shortcut("right", ("4",), "Right", "look from the right, along +y"),
+    Shortcut("above", ("5",), "Above", "look from above, with y up"),
+    Shortcut("below", ("6",), "Below", "look from below, with y up"),
+)
+"""Ways to look."""
+
+DISPLAY = (
+    Shortcut("floor", ("g",), "Floor", "show a grid on the floor, in metres, and the axes of the world"),
+    Shortcut("collision", ("v",), "Collision shapes", "show what collides, or what is seen"),
+    Shortcut("hulls", ("x",), "Convex hulls", "show meshes as their convex hulls"),
+    Shortcut("frames", ("l",), "Link frames", "show the frames of the links: x red, y green, z blue"),
+    Shortcut("axes", ("j",), "Joint axes", "show the axes of the joints, and the range between their limits"),
+    Shortcut("masses", ("i", "m"), "Masses", "show centres of mass, and inertia as ellipsoids of even density"),
+    Shortcut("contacts", ("c",), "Contacts", "show points where shapes touch"),
+    Shortcut("transparent", ("t",), "Transparent", "look through the bodies"),
+    Shortcut("wireframe", ("w",), "Wireframe", "show edges only"),
+    Shortcut("names", ("n",), "Names", "show the names of the links"),
+)
+"""What can be shown besides the bodies."""
+
+OTHERS = (
+    Shortcut("help", ("f1", "h", "?"), "?", "show this help, or hide it"),
+    Shortcut("reload", ("r",), "", "read the model again (in ravemj view)"),
+    Shortcut("play", (" ",), "", "play a motion, or pause it"),
+    Shortcut("back", ("arrowleft",), "", "one frame of a motion back"),
+    Shortcut("forward", ("arrowright",), "", "one frame of a motion forward"),
+)
+"""What has a key, and is in no menu."""
+
+KEYS = {key: shortcut.name for shortcut in (*VIEW, *DISPLAY, *OTHERS) for key in shortcut.keys}
+"""The control that each key operates."""
+
+
+class Gesture(NamedTuple):
+    """What a gesture of the mouse does.
+
+    Attributes:
+        to: What it does.
+        do: The gesture.
+    """
+
+    to: str
+    do: str
+
+
+GESTURES = {
+    "Both modes": (
+        Gesture(
+            "switch between camera mode and interaction mode",
+            "Esc, or the two buttons on the right: red arrow for interaction, camera",
+        ),
+        Gesture("centre on a surface point; later turns are about it", "S + left click"),
+    ),
+    "Camera mode": (
+        Gesture("turn", "left drag, or the wheels RotX and RotY"),
+        Gesture("translate", "Shift + left drag, or middle drag"),
+        Gesture("zoom", "mouse wheel: up is nearer; or left + middle drag, or the wheel Dolly: down is nearer"),
+    ),
+    "Interaction mode": (
+        Gesture("select an object", "left click; a second click on it, or a click on nothing, ends it"),
+        Gesture("translate it", "drag a face of its cube: along the two directions of the face"),
+        Gesture("rotate it", "drag an edge of its cube: about the axis along the edge, through the middle of the cube"),
+        Gesture(
+            "select the joint above a link",
+            "Ctrl + left click on the link; again for the next axis of a joint with several",
+        ),
+        Gesture("turn the joint, or slide it", "drag its cylinder"),
+        Gesture("change the size of the cylinder", "Ctrl + left click on it"),
+    ),
+}
+"""The gestures of the tutorial."""
+
+_KEY_NAMES = {"home": "Home", " ": "Space", "arrowleft": "Left", "arrowright": "Right", "f1": "F1"}
+
+
+def key_text(keys: tuple[str, ...]) -> str:
+    """Return keys as people read them."""
+    return ", ".join(_KEY_NAMES.get(key, key.upper()) for key in keys)
+
+
+Section = tuple[str, tuple[tuple[str, str], ...]]
+"""A heading, and rows of what is wanted and what to do for it."""
+
+
+def sections() -> tuple[Section, ...]:
+    """Return the help."""
+    gestures = ((title, tuple((row.to, row.do) for row in rows)) for title, rows in GESTURES.items())
+    keys = (("View", VIEW), ("Display", DISPLAY), ("More keys", OTHERS))
+    return *gestures, *((title, tuple((row.label, key_text(row.keys)) for row in rows)) for title, rows in keys)
+
+
+def as_markdown() -> str:
+    """Return the help as the tables of the manual."""
+    lines: list[str] = ["| to | do |", "|---|---|"]
+    for title, rows in sections():
+        lines += [f"| **{title}** | |", *(f"| {to} | {do} |" for to, do in rows)]
+    return "\n".join(lines) + "\n"

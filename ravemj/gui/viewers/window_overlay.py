@@ -1,0 +1,208 @@
+"""Text and buttons over a window, with the letters of a real font."""
+
+import ctypes
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.gui.interaction import Overlay, Panel, Rect, View
+
+_SIZE = 13.0
+"""Height of letters [points]."""
+
+_MARGIN, _LINE, _PADDING = 8.0, 18.0, 6.0
+_GLASS = (0.09, 0.1, 0.12, 0.82)
+_WHITE, _DARK = (255, 255, 255), (32, 36, 44)
+_HEADING, _FAINT = (143, 188, 255), (195, 202, 211)
+_HALO = (255, 255, 255)
+_HELP_WIDTH, _HELP_COLUMN, _KEY_WIDTH = 900.0, 430.0, 70.0
+_SHORT = 8
+"""Most letters of keys that stand in front of what they do."""
+
+_Rgb = tuple[int, int, int]
+
+
+@functools.lru_cache(maxsize=512)
+def text_image(text: str, size: int, rgb: _Rgb, halo: bool = False) -> NDArray[np.uint8]:
+    """Return a text as an image, (height, width, 4), top row first; all texts of a size have one height.
+
+    Args:
+        text: The text, on one line.
+        size: Height of its letters [pixels].
+        rgb: Their colour, in 0..255.
+        halo: Whether they have a light edge.
+    """
+    from PIL import Image, ImageDraw  # noqa: PLC0415 - slow to import
+
+    font = _font(size)
+    edge = max(round(size / 6), 1) if halo else 0
+    width = int(font.getlength(text)) + 2 + 2 * edge
+    image = Image.new("RGBA", (width, round(1.4 * size) + 2 * edge), (*(_HALO if halo else rgb), 0))
+    draw = ImageDraw.Draw(image)
+    draw.text((1 + edge, edge), text, font=font, fill=(*rgb, 255), stroke_width=edge, stroke_fill=(*_HALO, 210))
+    return np.array(image)
+
+
+@functools.cache
+def _font(size: int) -> Any:  # noqa: ANN401 - of Pillow, which is slow to import
+    from PIL import ImageFont  # noqa: PLC0415 - slow to import
+
+    return ImageFont.load_default(size)
+
+
+class OverlayPainter:
+    """Paints into the current window; rows are counted from the top."""
+
+    def __init__(self) -> None:
+        self._pixels, self._ratio = (1, 1), 1.0
+
+    def paint(self, overlay: Overlay, view: View, pixels: tuple[int, int], ratio: float) -> None:
+        """Paint everything.
+
+        Args:
+            overlay: What.
+            view: The view, for what is somewhere in the world.
+            pixels: Width and height of the window.
+            ratio: How many pixels a point has.
+        """
+        self._pixels, self._ratio = pixels, ratio
+        for x, y, text in overlay.labels_on(view):
+            self._text(text, x, y, _DARK, halo=True)
+        self._paint_lines(overlay.lines)
+        for panel in overlay.panels:
+            self._paint_panel(panel)
+        if overlay.help:
+            self._paint_help(overlay)
+
+    def _paint_lines(self, lines: tuple[str, ...]) -> None:
+        if lines:
+            width = max(self._width(line) for line in lines) + 2 * _PADDING
+            self._rectangle(Rect(_MARGIN, _MARGIN, width, len(lines) * _LINE + _PADDING), _GLASS)
+        for row, line in enumerate(lines):
+            self._line(line, _MARGIN + _PADDING, _MARGIN + 0.5 * _PADDING + row * _LINE, _WHITE)
+
+    def _paint_panel(self, panel: Panel) -> None:
+        if panel.rgba[3]:
+            self._rectangle(panel.rect, panel.rgba)
+        if panel.text:
+            x, y, width, height = panel.rect
+            self._text(panel.text, x + width / 2, y + height / 2, _WHITE)
+
+    def _paint_help(self, overlay: Overlay) -> None:
+        """Paint the help in two columns."""
+        rows = self._help_rows(overlay)
+        half = (len(rows) + 1) // 2
+        points = self._pixels[0] / self._ratio, self._pixels[1] / self._ratio
+        width, height = min(_HELP_WIDTH, points[0] - 2 * _MARGIN), half * _LINE + 3 * _PADDING
+        left, top = (points[0] - width) / 2, max((points[1] - height) / 2, _MARGIN)
+        self._rectangle(Rect(left, top, width, height), (*_GLASS[:3], 0.95))
+        for number, row in enumerate(rows):
+            x = left + 2 * _PADDING + number // half * width / 2
+            for indent, text, rgb in row:
+                self._line(text, x + indent, top + _PADDING + number % half * _LINE, rgb)
+
+    def _help_rows(self, overlay: Overlay) -> "list[list[tuple[float, str, _Rgb]]]":
+        """Return for each row its texts, with where they begin and their colour."""
+        rows: list[list[tuple[float, str, _Rgb]]] = []
+        for title, entries in overlay.help:
+            rows.append([(0.0, title, _HEADING)])
+            for to, how in entries:
+                if len(how) <= _SHORT:
+                    rows.append([(_PADDING, how, _FAINT), (_KEY_WIDTH, to, _WHITE)])
+                else:
+                    rows.append([(_PADDING, to, _WHITE)])
+                    rows += [[(4 * _PADDING, part, _FAINT)] for part in self._wrapped(how)]
+        return rows
+
+    def _wrapped(self, text: str) -> list[str]:
+        lines = [""]
+        for word in text.split():
+            longer = f"{lines[-1]} {word}".strip()
+            if self._width(longer) > _HELP_COLUMN - 6 * _PADDING:
+                lines.append(word)
+            else:
+                lines[-1] = longer
+        return lines
+
+    # --- in pixels
+
+    @property
+    def _letters(self) -> int:
+        return max(round(_SIZE * self._ratio), 6)
+
+    def _width(self, text: str) -> float:
+        return float(_font(self._letters).getlength(text)) / self._ratio
+
+    def _text(self, text: str, x: float, y: float, rgb: _Rgb, *, halo: bool = False) -> None:
+        """Write a text about a point."""
+        image = text_image(text, self._letters, rgb, halo)
+        rows, columns = image.shape[:2]
+        self._image(image, round(x * self._ratio - columns / 2), round(y * self._ratio - rows / 2))
+
+    def _line(self, text: str, x: float, y: float, rgb: _Rgb) -> None:
+        """Write a text that begins at a point."""
+        self._image(text_image(text, self._letters, rgb), round(x * self._ratio), round(y * self._ratio))
+
+    def _rectangle(self, rect: Rect, rgba: tuple[float, float, float, float]) -> None:
+        x, y, width, height = rect
+        left, top, right, bottom = (round(self._ratio * edge) for edge in (x, y, x + width, y + height))
+        mujoco.mjr_rectangle(mujoco.MjrRect(left, self._pixels[1] - bottom, right - left, bottom - top), *rgba)
+
+    def _image(self, image: NDArray[np.uint8], left: int, top: int) -> None:
+        """Blend an image over what is there; what is beside the window is left out."""
+        width, height = self._pixels
+        part = image[max(-top, 0) : height - top, max(-left, 0) : width - left]
+        if part.size:
+            blend(part[::-1], max(left, 0), height - max(top, 0) - len(part))
+
+
+_RGBA, _UNSIGNED_BYTE = 0x1908, 0x1401
+_BLEND, _DEPTH_TEST, _LIGHTING, _TEXTURE_2D, _TEXTURE_CUBE = 0x0BE2, 0x0B71, 0x0B50, 0x0DE1, 0x8513
+_SRC_ALPHA, _ONE_MINUS_SRC_ALPHA, _ALL_ATTRIB_BITS, _UNPACK_ALIGNMENT = 0x0302, 0x0303, 0x000FFFFF, 0x0CF5
+
+
+def blend(image: NDArray[np.uint8], x: int, y: int) -> None:
+    """Blend an image (height, width, 4), bottom row first, over the current window, from its lower left corner."""
+    contiguous = np.ascontiguousarray(image)
+    call = _gl()
+    call("glPushAttrib", _ALL_ATTRIB_BITS)
+    for state in (_DEPTH_TEST, _LIGHTING, _TEXTURE_2D, _TEXTURE_CUBE):
+        call("glDisable", state)
+    call("glEnable", _BLEND)
+    call("glBlendFunc", _SRC_ALPHA, _ONE_MINUS_SRC_ALPHA)
+    call("glPixelStorei", _UNPACK_ALIGNMENT, 4)
+    call("glWindowPos2i", x, y)
+    rows, columns = image.shape[:2]
+    call("glDrawPixels", columns, rows, _RGBA, _UNSIGNED_BYTE, contiguous.ctypes.data_as(ctypes.c_void_p))
+    call("glPopAttrib")
+
+
+@functools.cache
+def _gl() -> Callable[..., None]:
+    """Return what calls OpenGL's functions by their names, in the current context of GLFW."""
+    import glfw  # noqa: PLC0415 - loads the libraries of the display
+
+    glfw_module: Any = glfw
+    prototype = ctypes.WINFUNCTYPE if hasattr(ctypes, "WINFUNCTYPE") else ctypes.CFUNCTYPE
+    argument_types: dict[str, tuple[Any, ...]] = {
+        "glPushAttrib": (ctypes.c_uint,),
+        "glPopAttrib": (),
+        "glDisable": (ctypes.c_uint,),
+        "glEnable": (ctypes.c_uint,),
+        "glBlendFunc": (ctypes.c_uint, ctypes.c_uint),
+        "glPixelStorei": (ctypes.c_uint, ctypes.c_int),
+        "glWindowPos2i": (ctypes.c_int, ctypes.c_int),
+        "glDrawPixels": (ctypes.c_int, ctypes.c_int, ctypes.c_uint, ctypes.c_uint, ctypes.c_void_p),
+    }
+    functions: dict[str, Any] = {
+        name: prototype(None, *types)(glfw_module.get_proc_address(name)) for name, types in argument_types.items()
+    }
+
+    def call(name: str, *arguments: object) -> None:
+        functions[name](*arguments)
+
+    return call
