@@ -251,7 +251,7 @@ def InterpolateQuatSlerp(quat0: ArrayLike, quat1: ArrayLike, t: float, forceshor
         forceshortarc: Whether to take the shorter way; else the way between the quaternions as they are.
 
     Returns:
-        Unit quaternion, shape (4,).
+        Unit quaternion, shape (4,). Of quaternions of other lengths, which mean nothing here, it has another one.
     """
     start, end = np.array(arguments.wxyz(quat0, "quat0")), np.array(arguments.wxyz(quat1, "quat1"))
     cosine = float(start @ end)
@@ -264,8 +264,7 @@ def InterpolateQuatSlerp(quat0: ArrayLike, quat1: ArrayLike, t: float, forceshor
         middle = start + math.copysign(1.0, cosine) * end
         return middle / np.linalg.norm(middle)
     half = math.acos(cosine)
-    between = (start * math.sin((1 - t) * half) + end * math.sin(t * half)) / sine
-    return between / np.linalg.norm(between)
+    return (start * math.sin((1 - t) * half) + end * math.sin(t * half)) / sine
 
 
 quatSlerp = InterpolateQuatSlerp

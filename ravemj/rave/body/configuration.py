@@ -52,7 +52,7 @@ class Configuration(BodyPart):
     def SetDOFValues(
         self,
         values: ArrayLike,
-        dofindices: "ArrayLike | None" = None,
+        dofindices: "ArrayLike | EllipsisType | None" = ...,
         checklimits: int = CheckLimitsAction.CheckLimits,
     ) -> None:
         """Set joint values and place all links by them: forward kinematics.
@@ -61,8 +61,8 @@ class Configuration(BodyPart):
 
         Args:
             values: Joint values [rad, for sliders m], as many as there are DOFs, or as there are indices. NaN leaves
-                a joint as it is.
-            dofindices: Which DOFs to set, in which order; None: all.
+                a joint as it is, and [] with indices all of them.
+            dofindices: Which DOFs to set, in which order; left out: all. With None further values do not count.
             checklimits: What to do with values outside the limits, a ``CheckLimitsAction``: by default they are
                 moved to the limit with a warning. Circular joints have no limits.
 
@@ -81,7 +81,7 @@ class Configuration(BodyPart):
             state = self._state
             kinematics = state.kinematics
             if (
-                dofindices is None
+                (dofindices is ... or dofindices is None)
                 and type(values) is np.ndarray
                 and values.dtype is FLOAT
                 and values.shape == (kinematics.dof,)
@@ -96,13 +96,17 @@ class Configuration(BodyPart):
         finally:
             lock.release()
 
-    def _full_values(self, kinematics: BodyKinematics, values: ArrayLike, dofindices: "ArrayLike | None") -> Floats:
+    def _full_values(
+        self, kinematics: BodyKinematics, values: ArrayLike, dofindices: "ArrayLike | EllipsisType | None"
+    ) -> Floats:
         """Return one value for each DOF, in DOF order."""
         given = checked_numbers(values, "SetDOFValues")
         dof = kinematics.dof
-        if dofindices is None:
+        if dofindices is None or dofindices is ...:
             if given.shape == (dof,):
                 return given
+            if dofindices is None and given.ndim == 1 and len(given) > dof:
+                return given[:dof]  # random-api-238
             if dof:
                 raise ArgumentError(
                     f"SetDOFValues: values has shape {given.shape}, and '{self.GetName()}' has {dof} DOFs: give {dof} "
@@ -110,6 +114,8 @@ class Configuration(BodyPart):
                 )
             return np.zeros(0)
         indices = checked_indices(dofindices, dof)
+        if not given.size:
+            return kinematics.values()  # random-api-145
         if given.ndim != 1 or len(given) < len(indices):
             raise ArgumentError(f"SetDOFValues: values has shape {given.shape} for {len(indices)} dofindices")
         full = kinematics.values()
