@@ -18,6 +18,9 @@ from ravemj.core.transforms import (
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import arguments
 
+FEW_DIGITS = 0.1
+"""Below this sine of the angle between two quaternions its cosine keeps too few digits for those between them."""
+
 
 def quatFromAxisAngle(
     axisangle: ArrayLike | None = None, angle: float | None = None, *, axis: ArrayLike | None = None
@@ -264,7 +267,8 @@ def InterpolateQuatSlerp(quat0: ArrayLike, quat1: ArrayLike, t: float, forceshor
         middle = start + math.copysign(1.0, cosine) * end
         return middle / np.linalg.norm(middle)
     half = math.acos(cosine)
-    return (start * math.sin((1 - t) * half) + end * math.sin(t * half)) / sine
+    between = (start * math.sin((1 - t) * half) + end * math.sin(t * half)) / sine
+    return between / np.linalg.norm(between) if sine < FEW_DIGITS else between
 
 
 quatSlerp = InterpolateQuatSlerp
