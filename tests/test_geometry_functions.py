@@ -224,25 +224,47 @@ def test_crossing_lines():
     [
         (lambda: rave.matrixFromQuat([2, 0, 0, 0]), "length 2"),
         (lambda: rave.matrixFromQuat([math.nan, 0, 0, 0]), "length nan"),
-        (lambda: rave.quatMultiply([1, 0, 0], [1, 0, 0, 0]), r"quat0: has shape \(3,\)"),
-        (lambda: rave.matrixFromPose([[1, 0, 0, 0, 0, 0, 0]]), r"should have shape \(7,\)"),
         (lambda: rave.matrixFromAxisAngle("abc"), "should be numbers"),
         (rave.quatFromAxisAngle, "is missing"),
-        (lambda: rave.poseFromMatrix(np.eye(3)), r"should have shape \(4, 4\)"),
         (lambda: rave.ExtractAxisFromQuat([1, 0, 0, 0], 3), "iaxis"),
         (lambda: rave.transformPoints(np.ones((2, 4)), []), "T: has shape"),
-        (lambda: rave.poseTransformPoints([1, 0, 0, 0, 0, 0, 0], [1, 2, 3]), "points: has shape"),
         (lambda: rave.fitCircle([[0, 0], [1, 1]]), "from 3 up"),
         (lambda: rave.OrientedBox([0, 0, 0, 0, 1, 2, 3]), "zero"),
         (lambda: rave.RaveGetAffineDOF(24), "more than one kind"),
         (lambda: rave.RaveGetAffineDOFFromIndex(3, 2), "has 2 values"),
         (lambda: rave.RaveGetIndexFromAffineDOF(3, 4), "not among"),
-        (lambda: rave.RaveGetTransformFromAffineDOFValues([1], 3), r"values: has shape \(1,\)"),
     ],
 )
 def test_wrong_arguments(call, message):
     with pytest.raises(rave.ArgumentError, match=message):
         call()
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: rave.quatMultiply([1, 0, 0], [1, 0, 0, 0]), r"quat0: has shape \(3,\)"),
+        (lambda: rave.matrixFromQuat([-0.95, 0.19, 1.93]), r"quat: has shape \(3,\)"),
+        (lambda: rave.matrixFromPose([[1, 0, 0, 0, 0, 0, 0]]), r"should have shape \(7,\)"),
+        (lambda: rave.poseFromMatrix(np.eye(3)), r"should have shape \(4, 4\)"),
+        (lambda: rave.poseTransformPoints([1, 0, 0, 0, 0, 0, 0], [1, 2, 3]), "points: has shape"),
+        (lambda: rave.RaveGetTransformFromAffineDOFValues([1], 3), r"values: has shape \(1,\)"),
+    ],
+)
+def test_wrong_shapes_raise_pythons_own_error(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+def test_quaternions_of_other_lengths():  # as OpenRAVE answers: random-api-129, random-api-76
+    one, other = [1.93, 0.97, 1.76, 1.43, -1.6, -1.65, 0.77], [1.59, -1.3, -0.35, -1.1, 0.57, 0.04, -0.64]
+    product = [0.8834747841789625, -0.3255684609745355, 0.18037593235825877, 0.2845030860368598]
+    np.testing.assert_allclose(rave.poseMult(one, other), [*product, -13.100058, 2.418414, 3.359334], atol=1e-12)
+    between = rave.quatSlerp([-0.84, -1.81, 1.33, 0.99], [-1.53, 0.55, 1.6, -1.59], 0.3)
+    expected = [-1.0867524539955749, -1.12932134983956, 1.4614683401334139, 0.21139370138780755]
+    np.testing.assert_allclose(between, expected, atol=1e-12)
+    with pytest.raises(rave.ArgumentError, match="zero"):
+        rave.poseMult(np.zeros(7), other)
 
 
 # ---------------------------------------------------------------------------------------------------- boxes

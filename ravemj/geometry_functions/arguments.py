@@ -1,6 +1,7 @@
 """Checks of the arguments of the geometry functions.
 
-As in OpenRAVE, what is too short is refused, and of what is too long the beginning is taken.
+As in OpenRAVE, what is too short is refused, and of what is too long the beginning is taken. A wrong shape is a
+``ValueError``, as there, whose bindings let Python's own error through (gap-03, random-api-6).
 """
 
 import numpy as np
@@ -15,11 +16,11 @@ def numbers(values: ArrayLike, length: int, name: str) -> Floats:
     """Return a copy of the first numbers of a vector.
 
     Raises:
-        ArgumentError: there are fewer.
+        ValueError: there are fewer.
     """
     vector = checked_numbers(values, name)
     if vector.ndim != 1 or len(vector) < length:
-        raise ArgumentError(f"{name}: has shape {vector.shape}, and should have shape ({length},)")
+        raise ValueError(f"{name}: has shape {vector.shape}, and should have shape ({length},)")
     return vector[:length]
 
 
@@ -66,7 +67,7 @@ def table(values: ArrayLike, columns: int, name: str) -> Floats:
     if rows.size == 0:
         return np.empty((0, columns))
     if rows.ndim != 2 or rows.shape[1] < columns:
-        raise ArgumentError(f"{name}: has shape {rows.shape}, and should have shape (n, {columns})")
+        raise ValueError(f"{name}: has shape {rows.shape}, and should have shape (n, {columns})")
     return rows[:, :columns]
 
 
@@ -91,5 +92,5 @@ def pose(values: ArrayLike, name: str) -> Pose:
 def _matrix(values: ArrayLike, name: str, columns: int) -> Floats:
     matrix = checked_numbers(values, name)
     if matrix.ndim != 2 or matrix.shape[0] < 3 or matrix.shape[1] < columns:
-        raise ArgumentError(f"{name}: has shape {matrix.shape}, and should have shape (4, 4)")
+        raise ValueError(f"{name}: has shape {matrix.shape}, and should have shape (4, 4)")
     return matrix

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arrays import checked_numbers
-from ravemj.core.transforms import Floats, Pose, Vec3, wxyz_from_rows
+from ravemj.core.transforms import Floats, Pose, Vec3, normalize, wxyz_from_rows
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import arguments
 
@@ -19,11 +19,9 @@ def matrixFromPose(pose: ArrayLike) -> Floats:
         Shape (4, 4).
 
     Raises:
-        ValueError: there are fewer than seven numbers, as in OpenRAVE, whose bindings let Python's own error through.
+        ValueError: there are fewer than seven numbers.
         ArgumentError: the quaternion is far from unit length.
     """
-    if np.size(pose) < 7:
-        raise ValueError(f"pose: has {np.size(pose)} numbers, and should have 7")
     return Pose(_position(pose), arguments.unit_wxyz(pose, "pose")).matrix()
 
 
@@ -71,11 +69,15 @@ invertPoses = InvertPoses
 def MultiplyPose(pose1: ArrayLike, pose2: ArrayLike) -> Floats:
     """Return the pose that applies ``pose2``, then ``pose1``, shape (7,).
 
+    The quaternion has unit length, whatever those of the poses have.
+
     Raises:
-        ArgumentError: the product's quaternion is far from unit length.
+        ArgumentError: a quaternion is zero.
     """
     product = _pose(pose1) @ _pose(pose2)
-    return Pose(product.position, arguments.unit_wxyz(product.wxyz, "pose1 * pose2")).numbers()
+    if not any(product.wxyz):
+        raise ArgumentError("pose1 * pose2: the quaternion is zero, which is no rotation")
+    return Pose(product.position, normalize(product.wxyz)).numbers()  # random-api-129
 
 
 poseMult = MultiplyPose

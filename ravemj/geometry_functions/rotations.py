@@ -18,6 +18,9 @@ from ravemj.core.transforms import (
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import arguments
 
+FEW_DIGITS = 0.1
+"""Below this sine of the angle between two quaternions its cosine keeps too few digits for those between them."""
+
 
 def quatFromAxisAngle(
     axisangle: ArrayLike | None = None, angle: float | None = None, *, axis: ArrayLike | None = None
@@ -251,7 +254,7 @@ def InterpolateQuatSlerp(quat0: ArrayLike, quat1: ArrayLike, t: float, forceshor
         forceshortarc: Whether to take the shorter way; else the way between the quaternions as they are.
 
     Returns:
-        Unit quaternion, shape (4,).
+        Unit quaternion, shape (4,). Of quaternions of other lengths, which mean nothing here, it has another one.
     """
     start, end = np.array(arguments.wxyz(quat0, "quat0")), np.array(arguments.wxyz(quat1, "quat1"))
     cosine = float(start @ end)
@@ -265,7 +268,7 @@ def InterpolateQuatSlerp(quat0: ArrayLike, quat1: ArrayLike, t: float, forceshor
         return middle / np.linalg.norm(middle)
     half = math.acos(cosine)
     between = (start * math.sin((1 - t) * half) + end * math.sin(t * half)) / sine
-    return between / np.linalg.norm(between)
+    return between / np.linalg.norm(between) if sine < FEW_DIGITS else between
 
 
 quatSlerp = InterpolateQuatSlerp

@@ -24,7 +24,7 @@ CONFIGURATIONS = 5
 _FARTHEST = 10.0  # [rad or m], of random values of joints without limits
 _AXIS_FIELDS = (
     "lower", "upper", "circular", "value", "weight", "resolution", "max_velocity", "max_acceleration",
-    "max_torque", "armature",
+    "max_torque", "armature", "coulomb_friction", "viscous_friction",
 )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, inverse, pose_of
-from ravemj.errors import ArgumentError, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions.ik_parameterization import goal_of_tool, moved_goal
 from ravemj.geometry_functions.ik_types import GOAL_TYPES, IkParameterizationType, goal_size
 from ravemj.model import hashes
@@ -79,16 +79,17 @@ class ArmIk(ArmPart):
 
     SetIKSolver = SetIkSolver
 
-    def _solver(self, caller: str) -> IkSolver:
+    def _solver(self, caller: str, code: ErrorCode = ErrorCode.Failed) -> IkSolver:
         solver = self.GetIkSolver()
         if solver is None:
             message = f"{caller}: manipulator '{self._scene.name}' has no solver of inverse kinematics"
-            raise RavemjError(f"{message}; databases.inversekinematics.InverseKinematicsModel(...).load() makes it")
+            hint = "databases.inversekinematics.InverseKinematicsModel(...).load() makes it"
+            raise RavemjError(f"{message}; {hint}", code)
         return solver
 
     def GetNumFreeParameters(self) -> int:
         """Return how many joints of the arm are sampled, since it has more than the goals need."""
-        return self._solver("GetNumFreeParameters").GetNumFreeParameters()
+        return self._solver("GetNumFreeParameters", ErrorCode.Assert).GetNumFreeParameters()  # random-api-51
 
     def GetFreeParameters(self) -> Floats:
         """Return where the free joints are in their ranges now, from 0 to 1, shape (k,)."""

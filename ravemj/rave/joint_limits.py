@@ -36,11 +36,6 @@ class JointLimits(Member):
         Raises:
             ArgumentError: there are too few or too many. Nothing has changed then.
         """
-        if not np.size(lower) == np.size(upper) == len(self._scene.axes):
-            message = (
-                f"SetLimits: there are {np.size(lower)} and {np.size(upper)} limits for {len(self._scene.axes)} axes"
-            )
-            raise RavemjError(message, ErrorCode.Failed)
         self._set_axes("SetLimits", lower=lower, upper=upper)
 
     def GetVelocityLimits(self) -> tuple[Floats, Floats]:
@@ -152,14 +147,6 @@ class JointLimits(Member):
         """
         return self._scene.axes[axis].max_jerk
 
-    def GetMaxInertia(self, axis: int = 0) -> float:
-        """Return the limit of the inertia that the joint moves [kg m^2 or kg].
-
-        Args:
-            axis: Which axis of the joint.
-        """
-        return self._scene.axes[axis].max_inertia
-
     def GetHardMaxVel(self, axis: int = 0) -> float:
         """Return the velocity that planners never exceed [rad/s or m/s]; 0 where nobody says.
 
@@ -246,7 +233,8 @@ class JointLimits(Member):
             numbers = checked_numbers(values, f"{caller}: values")
             if numbers.shape != (len(axes),) or np.isnan(numbers).any():
                 wanted = f"{len(axes)} numbers, one for each axis"
-                raise ArgumentError(f"{caller}: values are {numbers.tolist()}, and should be {wanted}")
+                message = f"{caller}: values are {numbers.tolist()}, and should be {wanted}"
+                raise ArgumentError(message, ErrorCode.Failed)
             for index, number in enumerate(numbers.tolist()):
                 changes: dict[str, Any] = {field: number}
                 axes[index] = replace(axes[index], **changes)

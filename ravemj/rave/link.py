@@ -199,37 +199,30 @@ class Link(LinkGeometries):
         with self._state.simulation.lock:
             self._state.set_inertial(self._index, inertial)
 
-    def SetForce(self, force: ArrayLike, pos: ArrayLike, add: bool) -> bool:
-        """Let a force act on the link during the next step of simulation time, and not longer.
+    def SetForce(self, force: ArrayLike, pos: ArrayLike, add: bool) -> None:
+        """Let a force act on the link during the next step of simulation time; without physics it does nothing.
 
         Args:
             force: In the world [N], shape (3,).
             pos: Where it acts, in the world [m], shape (3,).
             add: Whether forces that were set for that step stay.
 
-        Returns:
-            Whether the environment has a physics engine that moves bodies.
-
         Example:
             >>> env.SetPhysicsEngine("mujoco")
             True
             >>> link.SetForce([0, 0, 20], link.GetTransform()[0:3, 3], False)
-            True
             >>> env.StepSimulation(0.01)
         """
-        return self._parent.GetEnv().GetPhysicsEngine().SetBodyForce(self, force, pos, add)
+        self._parent.GetEnv().GetPhysicsEngine().SetBodyForce(self, force, pos, add)
 
-    def SetTorque(self, torque: ArrayLike, add: bool) -> bool:
-        """Let a torque act on the link during the next step of simulation time, and not longer.
+    def SetTorque(self, torque: ArrayLike, add: bool) -> None:
+        """Let a torque act on the link during the next step of simulation time; without physics it does nothing.
 
         Args:
             torque: In world axes [N m], shape (3,).
             add: Whether torques that were set for that step stay.
-
-        Returns:
-            Whether the environment has a physics engine that moves bodies.
         """
-        return self._parent.GetEnv().GetPhysicsEngine().SetBodyTorque(self, torque, add)
+        self._parent.GetEnv().GetPhysicsEngine().SetBodyTorque(self, torque, add)
 
     def _set_parameters(self, parameters: Parameters) -> None:
         self._state.edit_link(self._index, parameters=parameters)

@@ -135,17 +135,26 @@ class Batch:
             state = self._state(now, second=True)
             coupling = state.coupling
             velocities = coupling.forward(speed)
+            speeding = coupling.forward(change) + coupling.bias(speed)
             twists = state.twists(velocities)
-            changes = state.accelerations(twists, velocities, coupling.forward(change) + coupling.bias(speed))
+            changes = state.accelerations(twists, velocities, speeding)
             wrenches = state.needed_forces(inertias, state.of_links(twists), state.of_links(changes), gravity)
-            out[part] = coupling.backward(state.forces(wrenches)).T
+            forces = state.forces(wrenches)
+            if self._dynamics.motors is not None:
+                forces = forces + self._dynamics.motors.torques(velocities, speeding)
+            out[part] = coupling.backward(forces).T
 
     def _inverse_dynamics_by_mujoco(
         self, values: Floats, rates: Floats, accelerations: Floats, gravity: Floats, out: Floats
     ) -> bool:
-        """Do the same one configuration after the other; return False where joints couple or links were displaced."""
-        kinematics, coupling = self._kinematics, self._dynamics.couplings.constant
-        if coupling is None or not self._dynamics.couplings.is_one_to_one or kinematics.displaced:
+        """Do the same one configuration after the other.
+
+        Returns:
+            False, and nothing is done, where joints couple or have motors, or links were displaced.
+        """
+        kinematics, dynamics = self._kinematics, self._dynamics
+        coupling = dynamics.couplings.constant
+        if coupling is None or not dynamics.couplings.is_one_to_one or dynamics.motors or kinematics.displaced:
             return False
         model, data = kinematics.model, self._data
         model.opt.gravity[:] = gravity

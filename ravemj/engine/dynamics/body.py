@@ -13,6 +13,7 @@ import numpy as np
 from ravemj.core.transforms import ZERO, Floats, Ints, Vec3
 from ravemj.engine.dynamics.coupling import Coupling, CouplingMap
 from ravemj.engine.dynamics.joint_velocities import JointVelocities, cross
+from ravemj.engine.dynamics.motors import Motors
 from ravemj.engine.dynamics.rows import Rows
 from ravemj.engine.dynamics.tree import Tree
 from ravemj.engine.kinematics import BodyKinematics
@@ -27,6 +28,7 @@ class BodyDynamics:
     Attributes:
         tree: Which joint carries which.
         couplings: How the velocity coordinates follow the DOFs.
+        motors: What motors need for themselves; None where no joint has one.
     """
 
     def __init__(self, kinematics: BodyKinematics) -> None:
@@ -34,6 +36,7 @@ class BodyDynamics:
         self._model, self._data = model, _ = kinematics.model, kinematics.data
         self.tree = Tree(kinematics)
         self.couplings = CouplingMap(kinematics, self.tree)
+        self.motors = Motors.of(kinematics, self.tree)
         self._body_ids: list[int] = kinematics.body_ids.tolist()
         self._inner = np.arange(model.nv)[kinematics.inner_qvel]
         self._joint_velocities = JointVelocities(kinematics)
@@ -308,10 +311,17 @@ class BodyDynamics:
         self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)
-        mujoco.mj_rne(self._model, self._data, 1, self._forces.matrix)
+        self._needed(self._forces.matrix)
         if external:
             self._add_external(self._forces.matrix, external)
         return self._of_dofs(self._forces)
+
+    def _needed(self, forces: Floats) -> None:
+        """Write the forces that the motion in MuJoCo's data needs, shape (nv,)."""
+        mujoco.mj_rne(self._model, self._data, 1, forces)
+        if self.motors is not None:
+            inner = self._inner
+            forces[inner] += self.motors.torques(self._qvel[inner], self._qacc[inner])
 
     def inverse_components(
         self,
@@ -329,9 +339,9 @@ class BodyDynamics:
             self._set_velocities(velocities, with_joints=with_joints)
             if with_joints:
                 self._set_accelerations(accelerations)
-                mujoco.mj_rne(self._model, self._data, 1, by_acceleration)
+                self._needed(by_acceleration)
             self._set_accelerations(None)
-            mujoco.mj_rne(self._model, self._data, 1, by_velocity if with_joints else rest)
+            self._needed(by_velocity if with_joints else rest)
         by_acceleration -= by_velocity
         by_velocity -= rest
         if external:

@@ -135,9 +135,10 @@ class SystemWriter:
             with _extra(out, "attach_sensor", sensor.name):
                 self._write_sensor(number, sensor)
         for index, joint in enumerate(body.all_joints):
-            if joint.axes[0].max_torque or joint.axes[0].armature:
+            axis = joint.axes[0]
+            if axis.max_torque or axis.armature or axis.coulomb_friction or axis.viscous_friction:
                 with _extra(out, "attach_actuator", f"joint{index}"):
-                    self._write_actuator(index, joint.axes[0])
+                    self._write_actuator(index, axis)
         with _extra(out, "collision"):
             for first, second in body.adjacent:
                 out.element("ignore_link_pair", link0=self._link_path(first), link1=self._link_path(second))
@@ -190,6 +191,8 @@ class SystemWriter:
             library.element("gear_ratio", 1)
             library.element("max_instantaneous_torque", axis.max_torque)
             library.element("rotor_inertia", axis.armature)
+            library.element("coloumb_friction", axis.coulomb_friction)
+            library.element("viscous_friction", axis.viscous_friction)
 
     def _write_supplement(self) -> None:
         """Write what only ``supplement`` reads.

@@ -1,7 +1,7 @@
-"""``<actuator>``: the motor of a joint, which gives the torque limit and the armature."""
+"""``<actuator>``: the motor of a joint, which gives the torque limit, the armature and friction."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from ravemj.errors import SourceError
@@ -9,6 +9,7 @@ from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tags import Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import number
+from ravemj.model.scene import Axis
 
 
 @dataclass(slots=True)
@@ -26,7 +27,9 @@ ACTUATOR_TAGS: dict[str, Tag[_Data]] = {
     "gear_ratio": Tag(_Data.read, "motor turns for each of the joint"),
     "nominal_torque": Tag(_Data.read, "limit of the torque [N m], where there is no other"),
     "max_instantaneous_torque": Tag(_Data.read, "limit of the torque [N m]"),
-    "rotor_inertia": Tag(_Data.read, "[kg m²]; armature of actuators in MJCF"),
+    "rotor_inertia": Tag(_Data.read, "[kg m²]; in inverse dynamics, and armature of actuators in MJCF"),
+    "coloumb_friction": Tag(_Data.read, "[N m] at the joint, in inverse dynamics"),
+    "viscous_friction": Tag(_Data.read, "[N m s/rad] at the joint, in inverse dynamics"),
 }
 ACTUATOR_IGNORED = reasons(
     "no getter or simulation of ravemj uses it",
@@ -41,8 +44,6 @@ ACTUATOR_IGNORED = reasons(
     "speed_constant",
     "terminal_resistance",
     "starting_current",
-    "coloumb_friction",
-    "viscous_friction",
     "max_velocity",
     "max_acceleration",
 )
@@ -54,10 +55,24 @@ class Motor(NamedTuple):
     Attributes:
         torque: Torque limit [N m], or None where the data say nothing.
         inertia: Inertia of the rotor [kg m^2].
+        coulomb_friction: Friction at any speed of the joint [N m]; OpenRAVE does not look at the gear there.
+        viscous_friction: Friction per speed of the joint [N m s/rad].
     """
 
     torque: float | None
     inertia: float
+    coulomb_friction: float
+    viscous_friction: float
+
+    def driven(self, axis: Axis) -> Axis:
+        """Return an axis with the data of this motor, which win over ``<maxtorque>``."""
+        return replace(
+            axis,
+            max_torque=axis.max_torque if self.torque is None else self.torque,
+            armature=self.inertia,
+            coulomb_friction=self.coulomb_friction,
+            viscous_friction=self.viscous_friction,
+        )
 
 
 def read_motor(element: Element, context: Context) -> Motor:
@@ -78,7 +93,6 @@ def motor_of(numbers: Mapping[str, float]) -> Motor:
     """Return the motor behind its gear; what the numbers leave out is 0."""
     gear_ratio = numbers.get("gear_ratio", 0.0)
     inertia = numbers.get("rotor_inertia", 0.0) * gear_ratio**2
-    for name in ("max_instantaneous_torque", "nominal_torque"):
-        if numbers.get(name, 0.0) > 0:
-            return Motor(numbers[name] * gear_ratio, inertia)
-    return Motor(None, inertia)
+    limits = (numbers.get(name, 0.0) for name in ("max_instantaneous_torque", "nominal_torque"))
+    torque = next((limit * gear_ratio for limit in limits if limit > 0), None)
+    return Motor(torque, inertia, numbers.get("coloumb_friction", 0.0), numbers.get("viscous_friction", 0.0))

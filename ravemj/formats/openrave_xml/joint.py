@@ -1,7 +1,7 @@
 """``<Joint>``: two links, a frame, and the numbers of its axes."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from ravemj.core.transforms import ZERO, Pose, Vec3, rotate, scale
 from ravemj.errors import SourceError
@@ -223,7 +223,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
         for index, numbers in enumerate(reader.axes)
     )
     if reader.motor is not None:
-        axes = tuple(_driven(axis, reader.motor) for axis in axes)
+        axes = tuple(reader.motor.driven(axis) for axis in axes)
     body.joints.append(
         JointBuilder(
             name=element.attributes.get("name", ""),
@@ -248,12 +248,6 @@ def _direction(reader: _JointReader, index: int, frame: Pose, *, exchanged: bool
     if reader.kind == "slider":
         return ZERO
     return _UNIT[index] if reader.kind == "hinge2" else _UNIT[2]
-
-
-def _driven(axis: Axis, motor: Motor) -> Axis:
-    """Return an axis with the data of its motor, which win over ``<maxtorque>``."""
-    torque = axis.max_torque if motor.torque is None else motor.torque
-    return replace(axis, max_torque=torque, armature=motor.inertia)
 
 
 def frame_of_link(body: BodyBuilder, element: Element, context: Context) -> Pose:

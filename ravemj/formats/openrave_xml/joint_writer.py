@@ -129,10 +129,12 @@ class JointWriter:
         self._out.element("maxaccel", [axis.max_acceleration for axis in axes])
         if any(axis.max_torque for axis in axes):
             self._out.element("maxtorque", [axis.max_torque for axis in axes])
-        if axes[0].armature:
+        if first.armature or first.coulomb_friction or first.viscous_friction:
             with self._out.inside("actuator", type="electric_motor"):
                 self._out.element("gear_ratio", 1.0)
-                self._out.element("rotor_inertia", axes[0].armature)
+                self._out.element("rotor_inertia", first.armature)
+                self._out.element("coloumb_friction", first.coulomb_friction)
+                self._out.element("viscous_friction", first.viscous_friction)
 
 
 def _equations(mimic: Mimic | None) -> dict[str, str]:

@@ -111,6 +111,8 @@ class Axis(Record):
         hard_max_acceleration: Acceleration that they never exceed.
         hard_max_jerk: Jerk that they never exceed.
         armature: Inertia of a motor behind its gear [kg m^2].
+        coulomb_friction: Friction of a motor at any speed [N m].
+        viscous_friction: Friction of a motor per speed [N m s/rad].
         wrap_offset: The value about which scripts chose the turn that the value is in [rad].
     """
 
@@ -131,6 +133,8 @@ class Axis(Record):
     hard_max_acceleration: float = 0.0
     hard_max_jerk: float = 0.0
     armature: float = 0.0
+    coulomb_friction: float = 0.0
+    viscous_friction: float = 0.0
     wrap_offset: float = 0.0
 
 

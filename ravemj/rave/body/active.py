@@ -192,19 +192,13 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         """Return the velocity limits of the active values [rad/s or m/s], shape (n,)."""
         return self._with_affine(self.GetDOFVelocityLimits(self._active_dofs()), "max_velocity")
 
-    GetActiveDOFVelocityLimits = GetActiveDOFMaxVel
-
     def GetActiveDOFMaxAccel(self) -> Floats:
         """Return the acceleration limits of the active values, shape (n,); for the base its velocity limits."""
         return self._with_affine(self.GetDOFAccelerationLimits(self._active_dofs()), "max_velocity")
 
-    GetActiveDOFAccelerationLimits = GetActiveDOFMaxAccel
-
     def GetActiveDOFMaxJerk(self) -> Floats:
         """Return the jerk limits of the active values, shape (n,); for the base its velocity limits."""
         return self._with_affine(self.GetDOFJerkLimits(self._active_dofs()), "max_velocity")
-
-    GetActiveDOFJerkLimits = GetActiveDOFMaxJerk
 
     def GetActiveDOFHardMaxVel(self) -> Floats:
         """Return the velocities that planners never exceed, shape (n,); for the base its velocity limits."""

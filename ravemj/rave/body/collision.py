@@ -152,7 +152,12 @@ class BodyCollision(Structure, Interface):
 
         Args:
             adjacentoptions: Which of them, ``AdjacentOptions`` combined with ``|``; 0: all.
+
+        Raises:
+            ArgumentError: ``ActiveDOFs`` are asked of a body that is no robot.
         """
+        if adjacentoptions & AdjacentOptions.ActiveDOFs and not self._state.scene.is_robot:  # random-api-90
+            raise ArgumentError(f"GetNonAdjacentLinks: '{self.GetName()}' is no robot, and so has no active DOFs")
         with self._simulation.lock:
             pairs = tested_pairs(self._simulation.collisions(), self._state)
         if adjacentoptions & AdjacentOptions.Enabled:

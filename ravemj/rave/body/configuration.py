@@ -60,7 +60,7 @@ class Configuration(Limits):
     def SetDOFValues(
         self,
         values: ArrayLike,
-        dofindices: "ArrayLike | None" = None,
+        dofindices: "ArrayLike | EllipsisType | None" = ...,
         checklimits: int = CheckLimitsAction.CheckLimits,
     ) -> None:
         """Set joint values and place all links by them: forward kinematics.
@@ -69,8 +69,8 @@ class Configuration(Limits):
 
         Args:
             values: Joint values [rad, for sliders m], as many as there are DOFs, or as there are indices. NaN leaves
-                a joint as it is.
-            dofindices: Which DOFs to set, in which order; None: all.
+                a joint as it is, and [] with indices all of them.
+            dofindices: Which DOFs to set, in which order; left out: all. With None further values do not count.
             checklimits: What to do with values outside the limits, a ``CheckLimitsAction``: by default they are
                 moved to the limit with a warning. Circular joints have no limits.
 
@@ -89,7 +89,7 @@ class Configuration(Limits):
             state = self._state
             kinematics = state.kinematics
             if (
-                dofindices is None
+                (dofindices is ... or dofindices is None)
                 and type(values) is np.ndarray
                 and values.dtype is FLOAT
                 and values.shape == (kinematics.dof,)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_first, checked_point, checked_vector
 from ravemj.core.transforms import Floats, wxyz_jacobian
-from ravemj.errors import ArgumentError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
 
 
@@ -55,7 +55,7 @@ class Dynamics(BodyPart):
             >>> tip = robot.GetLink("Arm1").GetTransform()[0:3, 3]
             >>> robot.ComputeJacobianTranslation(2, tip) @ robot.GetDOFVelocities()  # the tip's velocity
         """
-        link, point = self._checked_link(linkindex), checked_point(position, "position")
+        point, link = checked_point(position, "position"), self._checked_link(linkindex)
         with self._simulation.lock:
             jacobian = self._state.dynamics.translation_jacobian(link, point)
         return jacobian if indices is None else _columns(jacobian, indices)
@@ -194,7 +194,8 @@ class Dynamics(BodyPart):
     ) -> Floats | tuple[Floats, Floats, Floats]:
         """Return the joint torques that accelerate the body as wanted.
 
-        At the present values and velocities, that of the base included, and against the environment's gravity. OpenRAVE
+        At the present values and velocities, that of the base included, and against the environment's gravity; the
+        inertia of rotors and the friction of motors count. OpenRAVE
         divides the forces of sliders by 2 pi, leaves out part of what joints carry that others follow, and refuses
         spherical joints; this is right about all of them.
 
@@ -211,12 +212,20 @@ class Dynamics(BodyPart):
             of the accelerations (``M qdd``), of the joint velocities (Coriolis and centrifugal forces), and of gravity,
             external forces and the velocity of the base.
 
+        Raises:
+            openrave_exception: a joint without DOFs moves by itself, since it follows no other (``Assert``): no torques
+                of DOFs determine how.
+
         Example:
             >>> robot.ComputeInverseDynamics([0, 0])  # torques that hold the robot against gravity
             >>> inertia, coriolis, gravity = robot.ComputeInverseDynamics([1, 0], None, True)
         """
         accelerations = self._checked_accelerations(dofaccelerations, "ComputeInverseDynamics")
         pushes = self._checked_pushes(externalforcetorque, "externalforcetorque") if externalforcetorque else {}
+        for joint in self._state.scene.passive_joints:
+            if joint.mimic is None and not joint.static:  # random-api-92, and random-graph-102 where it closes a loop
+                message = f"joint '{joint.name}' has no DOF and follows no other, so that nobody knows how it moves"
+                raise RavemjError(f"ComputeInverseDynamics: {message}", ErrorCode.Assert)
         with self._simulation.lock:
             state, gravity = self._state, self._simulation.gravity
             if returncomponents:

@@ -1,5 +1,7 @@
 """Joint values and velocities as users give them: some or all, within the limits or not."""
 
+from types import EllipsisType
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -18,7 +20,9 @@ _VELOCITY_ROUNDING = 1e-10
 """How far beyond its limit [rad/s or m/s] a velocity counts as within."""
 
 
-def full_values(body: KinBody, kinematics: BodyKinematics, values: ArrayLike, dofindices: "ArrayLike | None") -> Floats:
+def full_values(
+    body: KinBody, kinematics: BodyKinematics, values: ArrayLike, dofindices: "ArrayLike | EllipsisType | None"
+) -> Floats:
     """Return a value for each DOF, in DOF order.
 
     Args:
@@ -31,9 +35,11 @@ def full_values(body: KinBody, kinematics: BodyKinematics, values: ArrayLike, do
         ArgumentError: they are too few or too many.
     """
     given, dof = checked_numbers(values, "SetDOFValues"), kinematics.dof
-    if dofindices is None:
+    if dofindices is None or dofindices is ...:
         if given.shape == (dof,):
             return given
+        if dofindices is None and given.ndim == 1 and len(given) > dof:
+            return given[:dof]  # random-api-238
         if dof:
             raise ArgumentError(
                 f"SetDOFValues: values has shape {given.shape}, and '{body.name}' has {dof} DOFs: give {dof} "
@@ -41,6 +47,8 @@ def full_values(body: KinBody, kinematics: BodyKinematics, values: ArrayLike, do
             )
         return np.zeros(0)
     indices = checked_indices(dofindices, dof)
+    if not given.size:
+        return kinematics.values()  # random-api-145
     if given.ndim != 1 or len(given) < len(indices):
         raise ArgumentError(f"SetDOFValues: values has shape {given.shape} for {len(indices)} dofindices")
     full = kinematics.values()

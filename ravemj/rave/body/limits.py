@@ -62,9 +62,9 @@ class Limits(BodyPart):
 
     GetDOFMaxVel = GetDOFVelocityLimits
 
-    def SetDOFVelocityLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
-        """Set the velocity limits [rad/s or m/s], as many as there are DOFs, or as there are indices."""
-        self._set_axes("SetDOFVelocityLimits", {"max_velocity": limits}, indices)
+    def SetDOFVelocityLimits(self, limits: ArrayLike) -> None:
+        """Set the velocity limits [rad/s or m/s], shape (dof,)."""
+        self._set_axes("SetDOFVelocityLimits", {"max_velocity": limits})
 
     def GetDOFAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the acceleration limits, the same in both directions [rad/s^2 or m/s^2], shape (dof,).
@@ -76,9 +76,9 @@ class Limits(BodyPart):
 
     GetDOFMaxAccel = GetDOFAccelerationLimits
 
-    def SetDOFAccelerationLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
-        """Set the acceleration limits [rad/s^2 or m/s^2], as many as there are DOFs, or as there are indices."""
-        self._set_axes("SetDOFAccelerationLimits", {"max_acceleration": limits}, indices)
+    def SetDOFAccelerationLimits(self, limits: ArrayLike) -> None:
+        """Set the acceleration limits [rad/s^2 or m/s^2], shape (dof,)."""
+        self._set_axes("SetDOFAccelerationLimits", {"max_acceleration": limits})
 
     def GetDOFJerkLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the jerk limits, the same in both directions [rad/s^3 or m/s^3], shape (dof,).
@@ -88,9 +88,9 @@ class Limits(BodyPart):
         """
         return self._of_axes("max_jerk", indices)
 
-    def SetDOFJerkLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
-        """Set the jerk limits [rad/s^3 or m/s^3], as many as there are DOFs, or as there are indices."""
-        self._set_axes("SetDOFJerkLimits", {"max_jerk": limits}, indices)
+    def SetDOFJerkLimits(self, limits: ArrayLike) -> None:
+        """Set the jerk limits [rad/s^3 or m/s^3], shape (dof,)."""
+        self._set_axes("SetDOFJerkLimits", {"max_jerk": limits})
 
     def GetDOFHardVelocityLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the velocities that planners never exceed [rad/s or m/s], shape (dof,); 0 where nobody says.
@@ -100,14 +100,13 @@ class Limits(BodyPart):
         """
         return self._of_axes("hard_max_velocity", indices)
 
-    def SetDOFHardVelocityLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+    def SetDOFHardVelocityLimits(self, limits: ArrayLike) -> None:
         """Set the velocities that planners never exceed.
 
         Args:
-            limits: Limits [rad/s or m/s], shape (dof,), or one for each index; 0: none.
-            indices: Which DOFs, in which order; None: all.
+            limits: Limits [rad/s or m/s], shape (dof,); 0: none.
         """
-        self._set_axes("SetDOFHardVelocityLimits", {"hard_max_velocity": limits}, indices)
+        self._set_axes("SetDOFHardVelocityLimits", {"hard_max_velocity": limits})
 
     def GetDOFHardAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the accelerations that planners never exceed [rad/s^2 or m/s^2], shape (dof,); 0 where nobody says.
@@ -117,14 +116,13 @@ class Limits(BodyPart):
         """
         return self._of_axes("hard_max_acceleration", indices)
 
-    def SetDOFHardAccelerationLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+    def SetDOFHardAccelerationLimits(self, limits: ArrayLike) -> None:
         """Set the accelerations that planners never exceed.
 
         Args:
-            limits: Limits [rad/s^2 or m/s^2], shape (dof,), or one for each index; 0: none.
-            indices: Which DOFs, in which order; None: all.
+            limits: Limits [rad/s^2 or m/s^2], shape (dof,); 0: none.
         """
-        self._set_axes("SetDOFHardAccelerationLimits", {"hard_max_acceleration": limits}, indices)
+        self._set_axes("SetDOFHardAccelerationLimits", {"hard_max_acceleration": limits})
 
     def GetDOFHardJerkLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the jerks that planners never exceed [rad/s^3 or m/s^3], shape (dof,); 0 where nobody says.
@@ -134,14 +132,13 @@ class Limits(BodyPart):
         """
         return self._of_axes("hard_max_jerk", indices)
 
-    def SetDOFHardJerkLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
+    def SetDOFHardJerkLimits(self, limits: ArrayLike) -> None:
         """Set the jerks that planners never exceed.
 
         Args:
-            limits: Limits [rad/s^3 or m/s^3], shape (dof,), or one for each index; 0: none.
-            indices: Which DOFs, in which order; None: all.
+            limits: Limits [rad/s^3 or m/s^3], shape (dof,); 0: none.
         """
-        self._set_axes("SetDOFHardJerkLimits", {"hard_max_jerk": limits}, indices)
+        self._set_axes("SetDOFHardJerkLimits", {"hard_max_jerk": limits})
 
     def GetDOFDynamicAccelerationJerkLimits(
         self, dofPositions: ArrayLike, dofVelocities: ArrayLike
@@ -169,9 +166,9 @@ class Limits(BodyPart):
 
     GetDOFMaxTorque = GetDOFTorqueLimits
 
-    def SetDOFTorqueLimits(self, limits: ArrayLike, indices: "ArrayLike | None" = None) -> None:
-        """Set the torque limits [N m, for sliders N], as many as there are DOFs, or as there are indices."""
-        self._set_axes("SetDOFTorqueLimits", {"max_torque": limits}, indices)
+    def SetDOFTorqueLimits(self, limits: ArrayLike) -> None:
+        """Set the torque limits [N m, for sliders N], shape (dof,)."""
+        self._set_axes("SetDOFTorqueLimits", {"max_torque": limits})
 
     def GetDOFWeights(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the weights in distances between configurations, shape (dof,).
@@ -181,18 +178,17 @@ class Limits(BodyPart):
         """
         return self._of_axes("weight", indices)
 
-    def SetDOFWeights(self, weights: ArrayLike, indices: "ArrayLike | None" = None) -> None:
-        """Set the weights in distances between configurations; all should be positive.
+    def SetDOFWeights(self, weights: ArrayLike) -> None:
+        """Set the weights in distances between configurations.
 
         Args:
-            weights: Weights, shape (dof,), or one for each index.
-            indices: The DOFs that they are of; left out: all.
+            weights: Weights, all positive, shape (dof,).
 
         Raises:
-            openrave_exception: there are too few or too many weights, or one is not positive.
+            openrave_exception: there are too few or too many weights (``Failed``), or one is not positive
+                (``InvalidArguments``). Nothing has changed then.
         """
-        self._check_positive(weights, "SetDOFWeights: weights")
-        self._set_axes("SetDOFWeights", {"weight": weights}, indices)
+        self._set_axes("SetDOFWeights", {"weight": weights}, positive=True)
 
     def GetDOFResolutions(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the steps of planners [rad or m], shape (dof,).
@@ -202,20 +198,13 @@ class Limits(BodyPart):
         """
         return self._of_axes("resolution", indices)
 
-    def SetDOFResolutions(self, resolutions: ArrayLike, indices: "ArrayLike | None" = None) -> None:
-        """Set the steps of planners [rad or m], as many as there are DOFs, or as there are indices; all positive.
+    def SetDOFResolutions(self, resolutions: ArrayLike) -> None:
+        """Set the steps of planners.
 
         Args:
-            resolutions: Steps [rad or m], shape (dof,).
-            indices: The DOFs that they are of; left out: all.
+            resolutions: Steps [rad or m], all positive, shape (dof,).
         """
-        self._check_positive(resolutions, "SetDOFResolutions: resolutions")
-        self._set_axes("SetDOFResolutions", {"resolution": resolutions}, indices)
-
-    def _check_positive(self, values: ArrayLike, name: str) -> None:
-        numbers = checked_numbers(values, name)
-        if not np.all(numbers > 0):
-            raise ArgumentError(f"{name}: are {numbers.tolist()}, and should be positive")
+        self._set_axes("SetDOFResolutions", {"resolution": resolutions}, positive=True)
 
     def _of_axes(self, field: str, indices: "ArrayLike | EllipsisType | None") -> Floats:
         scene = self._state.scene
@@ -227,7 +216,9 @@ class Limits(BodyPart):
             fields[field] = values = np.array([getattr(axis, field) for axis in scene.dof_axes], dtype=np.float64)
         return values.copy() if indices is ... else values[checked_indices(indices, len(values))]
 
-    def _set_axes(self, caller: str, fields: dict[str, ArrayLike], indices: "ArrayLike | None") -> None:
+    def _set_axes(
+        self, caller: str, fields: dict[str, ArrayLike], indices: "ArrayLike | None" = None, *, positive: bool = False
+    ) -> None:
         """Set one or more fields of axes, all or nothing."""
         dof = self.GetDOF()
         chosen = checked_indices(... if indices is None else indices, dof)
@@ -240,6 +231,8 @@ class Limits(BodyPart):
                 raise ArgumentError(message, ErrorCode.Failed if indices is None else ErrorCode.Assert)
             if np.isnan(numbers).any():
                 raise ArgumentError(f"{caller}: values are {numbers.tolist()}, and should be numbers")
+            if positive and not (numbers > 0).all():
+                raise ArgumentError(f"{caller}: values are {numbers.tolist()}, and should be positive")
             given[name] = numbers.tolist()
         with self._simulation.lock:
             self._state.edit_axes(with_fields(self._state.scene.dof_axes, chosen.tolist(), given))

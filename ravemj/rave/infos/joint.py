@@ -247,11 +247,8 @@ class JointInfo(ParameterFields):
             fields["circular"] = bool(fields["circular"])
             if fields["circular"]:
                 fields.update(lower=-scene.UNLIMITED, upper=scene.UNLIMITED)
-            if motor is not None:
-                fields["armature"] = motor.inertia
-                if motor.torque is not None:
-                    fields["max_torque"] = motor.torque
-            axes.append(scene.Axis(**fields))
+            axis = scene.Axis(**fields)
+            axes.append(axis if motor is None else motor.driven(axis))
         return tuple(axes)
 
     def _equations(self) -> Equations | None:

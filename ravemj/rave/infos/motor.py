@@ -36,6 +36,8 @@ class ElectricMotorActuatorInfo(Info):
         max_instantaneous_torque: Torque of the motor for a moment [N m].
         nominal_torque: Torque of the motor for long [N m]; taken where the other is 0.
         rotor_inertia: Inertia of the rotor [kg m^2].
+        coloumb_friction: Friction at any speed of the joint [N m].
+        viscous_friction: Friction per speed of the joint [N m s/rad].
     """
 
     _called = "ElectricMotorActuatorInfo"
@@ -64,11 +66,10 @@ class ElectricMotorActuatorInfo(Info):
         return _MOTOR_JSON
 
     def motor(self) -> "Motor":
-        """Return torque and inertia at the joint."""
-        names = ("gear_ratio", "max_instantaneous_torque", "nominal_torque", "rotor_inertia")
-        from ravemj.formats.openrave_xml.actuator import motor_of  # noqa: PLC0415 - rarely wanted
+        """Return torque, inertia and friction at the joint."""
+        from ravemj.formats.openrave_xml.actuator import ACTUATOR_TAGS, motor_of  # noqa: PLC0415 - rarely wanted
 
-        return motor_of({name: float(getattr(self, name)) for name in names})
+        return motor_of({name: float(getattr(self, name)) for name in ACTUATOR_TAGS})
 
 
 _MOTOR_JSON = tuple(Entry(_camel(one.name), one.name, PLAIN) for one in fields(ElectricMotorActuatorInfo))
