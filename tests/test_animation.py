@@ -380,4 +380,4 @@ def test_the_command_writes_pages(folder):
     assert Page((folder / "Swing.HTML").read_text()).document["frames"] == 61
     failed = run(folder, *command, "nowhere/swing.html")
     assert failed.returncode == 1
-    assert "there is no folder nowhere" in failed.stderr
+    assert "nowhere/swing.html: there is no folder" in failed.stderr

@@ -9,7 +9,7 @@ from ik_arms import PANDA, PUMA, arm, pose
 from ravemj.ik import Chain, NumericSolver, Task, make_solver
 from ravemj.ik.derive import random_values
 from ravemj.ik.reductions import ReducedForm
-from ravemj.ik.residuals import ToolMotion, linear
+from ravemj.ik.residuals import ToolMotion, residual_and_jacobian
 from ravemj.ik.tasks import goal_poses
 
 LOCAL = np.array([0.1, -0.2, 0.05])
@@ -179,7 +179,7 @@ def test_a_roll_may_be_locked_before_the_virtual_one():
 
 
 @pytest.mark.parametrize("task", list(Task))
-def test_slopes_are_derivatives(task):
+def test_jacobians_of_tasks_are_derivatives(task):
     chain = arm(np.random.default_rng(3), "RPRRRR")
     wanted, values = random_values(chain, 2, np.random.default_rng(1)) * 0.3
     goal = goal_poses(chain, task, goal_of(chain, task, wanted))
@@ -187,10 +187,10 @@ def test_slopes_are_derivatives(task):
 
     def missing(at):
         T, jacobian = chain.forward(at), chain.forward_and_jacobian(at[None])[1][0]
-        return linear(chain, task, goal, ToolMotion(T[:3, :3], T[:3, 3], jacobian), scale)
+        return residual_and_jacobian(chain, task, goal, ToolMotion(T[:3, :3], T[:3, 3], jacobian), scale)
 
     if task in (Task.TRANSFORM, Task.ROTATION, Task.RAY, Task.LOOK_AT):
-        values = wanted + 1e-9  # slopes of rotation vectors and projections are exact where nothing is missing
+        values = wanted + 1e-9  # Jacobians of rotation vectors and projections are exact where nothing is missing
     slope, step = missing(values)[1], 1e-6
     for joint, ahead in enumerate(np.eye(chain.dof) * step):
         change = (missing(values + ahead)[0] - missing(values - ahead)[0]) / (2 * step)

@@ -9,6 +9,9 @@
 class MetaInstanceTracker(type):
     """A metaclass of old scripts; instances are not tracked."""
 
+    def __init__(cls, name: str, bases: tuple[type, ...], ns: dict[str, object]) -> None:
+        super().__init__(name, bases, ns)
+
 
 class MetaAutoReloader(MetaInstanceTracker):
     """A metaclass of old scripts; classes are not reloaded."""

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 
 from ravemj.core.transforms import inverse
-from ravemj.engine.collision.questions import touching_links
+from ravemj.engine.collision.queries import touching_links
 from ravemj.engine.simulation.body import BodyState, GrabbedBody
 
 

@@ -98,7 +98,7 @@ class ArmSolver:
             self._of = now
         return self._solver
 
-    def twin(self) -> "ArmSolver":
+    def copy(self) -> "ArmSolver":
         """Return another one for arms like this, which another thread may ask at the same time."""
         other = ArmSolver(self.task, self.free)
         if self._solver is not None:

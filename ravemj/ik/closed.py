@@ -55,7 +55,7 @@ class Solutions:
 
 
 class ClosedForm:
-    """A solver by a family; locked joints have values that come with each question.
+    """A solver by a family; locked joints have values that come with each goal.
 
     Attributes:
         chain: The true arm.

@@ -16,7 +16,7 @@ import numpy as np
 from ravemj.ik.chain import Chain
 from ravemj.ik.compiled import CompiledKinematics
 from ravemj.ik.limits import nearest_turns
-from ravemj.ik.residuals import ToolMotion, linear, rotation_between
+from ravemj.ik.residuals import ToolMotion, residual_and_jacobian, rotation_between
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats
 
@@ -81,30 +81,30 @@ class NumericSolver:
         values = np.minimum(np.maximum(start, self._lowest), self._highest)
         best, at, stalled, step = np.inf, values, 0, 0
         for step in range(_STEPS):  # noqa: B007 - it is in the answer
-            error, slope = self._linear(pose, values, self._scale)
+            error, jacobian = self._residual(pose, values, self._scale)
             square = float(error @ error)
             stalled = 0 if square < best * 0.98 else stalled + 1
             if square < best:
                 best, at = square, values
             if square < 1e-24 or stalled > 6:
                 break
-            values = self._step(values, error, slope, 0.05 * square + 1e-12)
+            values = self._step(values, error, jacobian, 0.05 * square + 1e-12)
         return Nearest(at, float(np.sqrt(best)), step + 1)
 
-    def _linear(self, pose: Floats, values: Floats, scale: Floats) -> tuple[Floats, Floats]:
+    def _residual(self, pose: Floats, values: Floats, scale: Floats) -> tuple[Floats, Floats]:
         """Return the scaled error of a configuration and how it changes with the joint values."""
         rotation, place, jacobian = self._kinematics(values)
         if self.task is not Task.TRANSFORM:
-            return linear(self.chain, self.task, pose, ToolMotion(rotation, place, jacobian), scale)
+            return residual_and_jacobian(self.chain, self.task, pose, ToolMotion(rotation, place, jacobian), scale)
         missing = np.empty(6)
         missing[:3] = pose[:3, 3] - place
         missing[3:] = rotation_between(rotation, pose)
         return missing * scale, jacobian * scale[:, None]
 
-    def _step(self, values: Floats, error: Floats, slope: Floats, damping: float) -> Floats:
+    def _step(self, values: Floats, error: Floats, jacobian: Floats, damping: float) -> Floats:
         """Return the values after a damped step, the best one within the limits."""
-        pull = slope.T @ error
-        matrix = slope.T @ slope + damping * self._identity
+        pull = jacobian.T @ error
+        matrix = jacobian.T @ jacobian + damping * self._identity
         ahead = values + np.linalg.solve(matrix, pull)
         if ((ahead < self._lowest) | (ahead > self._highest)).any():
             moved, factor = np.zeros(len(values)), np.empty((len(values), len(values) + 7))
@@ -160,15 +160,15 @@ class NumericSolver:
         """
         scale = self._scale if weights is None else self._scale * weights
         values = np.minimum(np.maximum(seed, self._lowest), self._highest)
-        error, slope = self._linear(pose, values, scale)
+        error, jacobian = self._residual(pose, values, scale)
         square, damping, step = float(error @ error), 1e-3, 0
         for step in range(_NEAREST_STEPS):  # noqa: B007 - it is in the answer
-            ahead = self._step(values, error, slope, damping * (1e-9 + square) + 1e-12)
-            error_ahead, slope_ahead = self._linear(pose, ahead, scale)
+            ahead = self._step(values, error, jacobian, damping * (1e-9 + square) + 1e-12)
+            error_ahead, jacobian_ahead = self._residual(pose, ahead, scale)
             square_ahead = float(error_ahead @ error_ahead)
             if square_ahead < square:
                 gained, damping = square - square_ahead, max(damping / 4, 1e-9)
-                values, error, slope, square = ahead, error_ahead, slope_ahead, square_ahead
+                values, error, jacobian, square = ahead, error_ahead, jacobian_ahead, square_ahead
                 if square < 1e-24 or gained < 1e-10 * square:
                     break
             else:

@@ -8,7 +8,7 @@ import numpy as np
 from ravemj.ik.chain import Chain
 from ravemj.ik.families.blocks import common_point
 from ravemj.ik.families.snapping import TOLERANCE, nominal
-from ravemj.ik.residuals import ToolMotion, linear
+from ravemj.ik.residuals import ToolMotion, residual_and_jacobian
 from ravemj.ik.tasks import Task
 from ravemj.ik.vectors import Floats, Screw, constant
 
@@ -21,16 +21,15 @@ _CONFIGURATIONS = 4
 
 
 def rank(chain: Chain, task: Task) -> int:
-    """Return how many independent changes of what counts the joints can make."""
+    """Return the rank of the task's Jacobian, the greatest in a few random configurations."""
     values = np.random.default_rng(7).uniform(-3, 3, (_CONFIGURATIONS, chain.dof)) * np.where(chain.prismatic, 0.1, 1.0)
-    return max(int(np.linalg.matrix_rank(slope, tol=1e-4)) for slope in slopes(chain, task, values))
+    return max(int(np.linalg.matrix_rank(jacobian, tol=1e-4)) for jacobian in task_jacobians(chain, task, values))
 
 
-def slopes(chain: Chain, task: Task, values: Floats, goal: Floats | None = None) -> list[Floats]:
-    """Return how what counts changes with the joint values in configurations (M, n): each of shape (k, n).
+def task_jacobians(chain: Chain, task: Task, values: Floats, goal: Floats | None = None) -> list[Floats]:
+    """Return the Jacobians of a task in configurations (M, n), each of shape (k, n).
 
-    Lengths are in units of the reach. Without a goal, a pose (4, 4), it is one that the configuration
-    reaches.
+    Lengths are in units of the reach. Without a goal, a pose (4, 4), it is one that the configuration reaches.
     """
     tools, jacobians = chain.forward(values), chain.forward_and_jacobian(values)[1]
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
@@ -41,7 +40,8 @@ def slopes(chain: Chain, task: Task, values: Floats, goal: Floats | None = None)
             wanted[:3, 3] += tool[:3, :3] @ chain.direction * chain.reach
         elif goal is None and task is Task.LOCAL_PLACE:
             wanted[3, :3] = 0.3, 0.2, 0.1
-        found.append(linear(chain, task, wanted, ToolMotion(tool[:3, :3], tool[:3, 3], jacobian), scale)[1])
+        motion = ToolMotion(tool[:3, :3], tool[:3, 3], jacobian)
+        found.append(residual_and_jacobian(chain, task, wanted, motion, scale)[1])
     return found
 
 

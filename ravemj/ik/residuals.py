@@ -1,4 +1,4 @@
-"""What a configuration lacks of a goal, and how that changes with the joint values, for every type of goal.
+"""Residuals of goals and Jacobians of tasks, for every type of goal: what least squares and null spaces need.
 
 Places count in units of the reach, rotations and directions in radians.
 """
@@ -27,8 +27,10 @@ class ToolMotion(NamedTuple):
     jacobian: Floats
 
 
-def linear(chain: Chain, task: Task, goal: Floats, tool: ToolMotion, scale: Floats) -> tuple[Floats, Floats]:
-    """Return what is missing, shape (k,), and its slope, the change with the joint values, shape (k, n).
+def residual_and_jacobian(
+    chain: Chain, task: Task, goal: Floats, tool: ToolMotion, scale: Floats
+) -> tuple[Floats, Floats]:
+    """Return what the tool lacks of a goal, shape (k,), and the task's Jacobian, how joint values reduce it, (k, n).
 
     Args:
         chain: The arm.
@@ -37,9 +39,9 @@ def linear(chain: Chain, task: Task, goal: Floats, tool: ToolMotion, scale: Floa
         tool: The tool at the configuration, and how it moves.
         scale: What each component of velocities and angular velocities counts, shape (6,).
     """
-    missing, slope = _MISSING[task](chain, task, goal, tool)
+    residual, jacobian = _RESIDUALS[task](chain, task, goal, tool)
     counts = scale[_rows(task)]
-    return missing * counts, slope * counts[:, None]
+    return residual * counts, jacobian * counts[:, None]
 
 
 def _rows(task: Task) -> list[int]:
@@ -73,10 +75,10 @@ def _place_direction(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -
 
 
 def _ray(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
-    missing, slope = _place_direction(chain, task, goal, tool)
+    residual, jacobian = _place_direction(chain, task, goal, tool)
     wanted = goal[:3, :3] @ chain.direction
     across = np.eye(3) - np.outer(wanted, wanted)
-    return np.append(across @ missing[:3], missing[3:]), np.vstack([across @ slope[:3], slope[3:]])
+    return np.append(across @ residual[:3], residual[3:]), np.vstack([across @ jacobian[:3], jacobian[3:]])
 
 
 def _look_at(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[Floats, Floats]:
@@ -100,7 +102,7 @@ def _planar(chain: Chain, task: Task, goal: Floats, tool: ToolMotion) -> tuple[F
     return np.append((goal[:3, 3] - tool.position)[:2], turn), np.vstack([moves[:2], heading])
 
 
-_MISSING: dict[Task, Callable[[Chain, Task, Floats, ToolMotion], tuple[Floats, Floats]]] = {
+_RESIDUALS: dict[Task, Callable[[Chain, Task, Floats, ToolMotion], tuple[Floats, Floats]]] = {
     **dict.fromkeys((Task.TRANSFORM, Task.ROTATION, Task.PLACE, Task.PLACE_XY), _pose),
     **dict.fromkeys((*ALONG, *ANGLES), _place_direction),
     Task.LOCAL_PLACE: _local_place,

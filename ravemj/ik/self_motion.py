@@ -29,8 +29,8 @@ def null_space(chain: Chain, values: Floats, task: Task = Task.TRANSFORM, goal: 
         goal: A goal that the configuration reaches, if it is not for the configuration to say, as with ``LOOK_AT``.
     """
     pose = None if goal is None else goal_poses(chain, task, goal)
-    slope = redundancy.slopes(chain, task, values[None], pose)[0]
-    _, sizes, rows = np.linalg.svd(slope)
+    jacobian = redundancy.task_jacobians(chain, task, values[None], pose)[0]
+    _, sizes, rows = np.linalg.svd(jacobian)
     basis: Floats = rows[int((sizes > _SINGULAR).sum()) :].T
     return basis
 

@@ -36,7 +36,7 @@ _FIRST, _NEXT = 12, 96
 
 @dataclass(frozen=True, eq=False)
 class IKSolver:
-    """Answers for one arm and one kind of question. Made by ``make_solver``.
+    """Solves one kind of goal for one arm. Made by ``make_solver``.
 
     Attributes:
         chain: The arm.

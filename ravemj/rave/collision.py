@@ -10,10 +10,10 @@ import numpy as np
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.transforms import Ints
-from ravemj.engine.collision import questions
+from ravemj.engine.collision import queries
 from ravemj.engine.collision.findings import Collision, GeometryOf, Listed, Wanted, find
 from ravemj.engine.collision.pairs import Pairs
-from ravemj.engine.collision.questions import LinkOf, Links, MovedBy
+from ravemj.engine.collision.queries import LinkOf, Links, MovedBy
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -144,10 +144,10 @@ class CollisionChecker(CheckerExtras):
         with self._simulation.lock:
             world = self._simulation.collisions()
             if isinstance(linkbody, Link):
-                pairs = questions.link_and_own_body(world, _link(linkbody))
+                pairs = queries.link_and_own_body(world, _link(linkbody))
             else:
                 state = _state(linkbody)
-                pairs = questions.itself(
+                pairs = queries.itself(
                     world, state, MovedBy(linkbody.active_dofs()) if self._options & _ACTIVE_DOFS else None
                 )
             return self.answer(world, pairs, report)
@@ -164,7 +164,7 @@ class CollisionChecker(CheckerExtras):
                 )
             case (BodyPart() | Link() as one, BodyPart() | Link() as other):
                 first, second = self._added(one), self._added(other)
-                return questions.each_other(world, first, second, self._active_links(one))
+                return queries.each_other(world, first, second, self._active_links(one))
             case _:
                 raise _not_understood(arguments)
 
@@ -177,17 +177,17 @@ class CollisionChecker(CheckerExtras):
     ) -> Pairs:
         thing = self._ours(argument)
         links = self._active_links(argument) if self._options else None
-        return questions.body_and_others(world, thing, links, without_bodies, without_links)
+        return queries.body_and_others(world, thing, links, without_bodies, without_links)
 
     def _ours(self, argument: object) -> BodyState | LinkOf:
         thing = _thing(argument)
-        if (state := questions.body_of(thing)).simulation is not self._simulation:
+        if (state := queries.body_of(thing)).simulation is not self._simulation:
             raise ArgumentError(f"CheckCollision: '{state.scene.name}' was made for another environment")
         return thing
 
     def _added(self, argument: object) -> BodyState | LinkOf:
         thing = self._ours(argument)
-        if not self._simulation.holds(state := questions.body_of(thing)):
+        if not self._simulation.holds(state := queries.body_of(thing)):
             message = f"CheckCollision: '{state.scene.name}' is not in this environment; add it first"
             raise RavemjError(message, ErrorCode.Assert)
         return thing

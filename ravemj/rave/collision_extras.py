@@ -25,7 +25,7 @@ GROUPS = "collision checkers that look at groups of geometries"
 
 
 class CheckerExtras(Interface):
-    """Boxes and meshes against bodies; each such question takes the shape into the world and out again."""
+    """Boxes and meshes against bodies; each such query takes the shape into the world and out again."""
 
     @abstractmethod
     def CheckCollision(self, *arguments: object, report: "CollisionReport | None" = None, **named: object) -> bool:

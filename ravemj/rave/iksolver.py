@@ -54,7 +54,7 @@ class IkSolver(IkSearch):
     def copy_for(self, robot: "Robot") -> "IkSolver":
         """Return a solver for the same arm of another robot like this, with the default steps of free joints."""
         copy = IkSolver(robot.GetEnv(), self._name, self.kind, self.arm_solver.free)
-        copy.arm_solver = self.arm_solver.twin()
+        copy.arm_solver = self.arm_solver.copy()
         copy.attach(robot, self._arm_name)
         return copy
 

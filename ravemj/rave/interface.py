@@ -1,6 +1,7 @@
 """What all objects of an environment have in common."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from ravemj.core.arguments import checked_kind
@@ -11,6 +12,10 @@ from ravemj.rave.user_data import UserData
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
+
+
+Command = Callable[[str], str | None]
+"""What runs a command: takes its arguments as text, and returns the answer, or None if it failed."""
 
 
 class Interface(UserData, ReadableInterface):
@@ -98,7 +103,7 @@ class Interface(UserData, ReadableInterface):
         Args:
             cmd: The name of the command; upper and lower case are the same.
         """
-        return cmd.lower() in {"help", *map(str.lower, self._commands)}
+        return cmd.lower() in {"help", *map(str.lower, self._known_commands())}
 
     def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str | None:
         """Run a command of OpenRAVE's plugins by its text.
@@ -120,13 +125,20 @@ class Interface(UserData, ReadableInterface):
         if not name:
             raise ArgumentError("SendCommand: cmd is empty, and should be the name of a command")
         if name.lower() == "help":
-            return "\n".join(["help", *self._commands])
-        for known, command in self._commands.items():
+            return self._help()
+        commands = self._known_commands()
+        for known, run in commands.items():
             if known.lower() == name.lower():
-                return command(self, " ".join(arguments))
-        known = ", ".join(["help", *self._commands])
-        message = f"{type(self).__name__} knows no command '{name}', only {known}"
-        raise RavemjError(message, ErrorCode.CommandNotSupported)
+                return run(" ".join(arguments))
+        message = f"{self.GetXMLId() or type(self).__name__} knows no command '{name}', only "
+        raise RavemjError(message + ", ".join(["help", *commands]), ErrorCode.CommandNotSupported)
+
+    def _known_commands(self) -> Mapping[str, Command]:
+        """Return what runs the commands, by their names."""
+        return {name: partial(run, self) for name, run in self._commands.items()}
+
+    def _help(self) -> str:
+        return "\n".join(["help", *self._commands])
 
 
 def checked_environment(env: "Environment", caller: str) -> "Environment":

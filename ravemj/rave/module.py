@@ -4,17 +4,12 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
-from ravemj.rave.interface import Interface
+from ravemj.rave.interface import Command, Interface
 from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
-
-Command = Callable[[str], str | None]
-"""What runs a command: takes its arguments as text, and returns the answer, or None if it failed."""
 
 
 class Module(Interface):
@@ -25,6 +20,12 @@ class Module(Interface):
         xmlid: The name of the module.
         start: Called with the arguments with which the module is added.
         commands: What runs commands, by their names.
+
+    Example:
+        >>> module = RaveCreateModule(env, "BaseManipulation")
+        >>> env.Add(module, True, robot.GetName())
+        >>> module.SendCommand("MoveActiveJoints goal 0.1 0.2 execute 0 outputtraj")[:12]
+        '<trajectory '
     """
 
     _interface_type = InterfaceType.module
@@ -62,47 +63,8 @@ class Module(Interface):
         del timeelapsed
         return False
 
-    def SupportsCommand(self, cmd: str) -> bool:
-        """Return whether ``SendCommand`` knows a command.
-
-        Args:
-            cmd: The name of the command; upper and lower case are the same.
-        """
-        return cmd.lower() in {"help", *map(str.lower, self._by_name)}
-
-    def SendCommand(self, cmd: str, releasegil: bool = False, lockenv: bool = False) -> str | None:
-        """Run a command.
-
-        Args:
-            cmd: The name of the command, and behind it its arguments as words. ``help`` lists the commands.
-            releasegil: Not used.
-            lockenv: Not used.
-
-        Returns:
-            Its answer; None if it failed.
-
-        Raises:
-            openrave_exception: ``cmd`` is empty, or the arguments are wrong (``InvalidArguments``); the command is not
-                known (``CommandNotSupported``).
-
-        Example:
-            >>> module = RaveCreateModule(env, "BaseManipulation")
-            >>> env.Add(module, True, robot.GetName())
-            >>> module.SendCommand("MoveActiveJoints goal 0.1 0.2 execute 0 outputtraj")[:12]
-            '<trajectory '
-        """
-        del releasegil, lockenv
-        name, *arguments = checked_kind(cmd, str, "SendCommand: cmd", "a text").split(maxsplit=1) or [""]
-        if not name:
-            raise ArgumentError("SendCommand: cmd is empty, and should be the name of a command")
-        if name.lower() == "help":
-            return self._help()
-        for known, command in self._by_name.items():
-            if known.lower() == name.lower():
-                return command(" ".join(arguments))
-        known = ", ".join(["help", *self._by_name])
-        message = f"{self._xmlid} knows no command '{name}', only {known}"
-        raise RavemjError(message, ErrorCode.CommandNotSupported)
+    def _known_commands(self) -> Mapping[str, Command]:
+        return self._by_name
 
     def _help(self) -> str:
         entries = {"help": "Lists the commands.", **{name: _purpose(one) for name, one in self._by_name.items()}}

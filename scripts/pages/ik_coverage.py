@@ -26,7 +26,7 @@ from ravemj.core.transforms import Floats, pose_of  # noqa: E402 - after the pat
 from ravemj.formats.readers import read_file  # noqa: E402
 from ravemj.ik import Chain, IKSolver, NumericSolver, Task, make_solver  # noqa: E402
 from ravemj.ik.arms import chain_of  # noqa: E402
-from ravemj.ik.residuals import ToolMotion, linear  # noqa: E402
+from ravemj.ik.residuals import ToolMotion, residual_and_jacobian  # noqa: E402
 from ravemj.ik.tasks import ANGLES, HEADINGS, goal_poses  # noqa: E402
 
 PAGE = ROOT / "docs" / "ik.md"
@@ -221,7 +221,7 @@ def distance(chain: Chain, task: Task, goal: Floats, values: Floats) -> float:
     """Return what a configuration lacks of a goal, the greatest component [m or rad]."""
     pose, tool = goal_poses(chain, task, goal), chain.forward(values)
     jacobian = chain.forward_and_jacobian(values[None])[1][0]
-    missing, _ = linear(chain, task, pose, ToolMotion(tool[:3, :3], tool[:3, 3], jacobian), np.ones(6))
+    missing, _ = residual_and_jacobian(chain, task, pose, ToolMotion(tool[:3, :3], tool[:3, 3], jacobian), np.ones(6))
     return float(np.abs(missing).max())
 
 

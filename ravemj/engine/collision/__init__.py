@@ -1,1 +1,1 @@
-"""Collision checking: exact tests of the pairs of shapes that OpenRAVE's questions are about."""
+"""Collision checking: exact tests of the pairs of shapes that OpenRAVE's queries are about."""

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from ravemj.core.graphs import ordered_pair
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.pairs import Pairs
-from ravemj.engine.collision.questions import LinkOf, body_and_others, held_with, itself, moved_apart
+from ravemj.engine.collision.queries import LinkOf, body_and_others, held_with, itself, moved_apart
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.model.chains import dofs_moving, independent_links, links_beyond

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
-from ravemj.engine.collision.questions import body_and_all, body_and_others
+from ravemj.engine.collision.queries import body_and_all, body_and_others
 from ravemj.engine.simulation import BodyState
 
 

@@ -1,4 +1,4 @@
-"""What reports tell of a question: the pairs of links or geometries that collide, contact points, distances."""
+"""What reports tell of a query: the pairs of links or geometries that collide, contact points, distances."""
 
 from collections.abc import Callable
 from typing import Literal, NamedTuple

@@ -1,4 +1,4 @@
-"""The question that planners ask most: does a body collide when some of its joints have these values?"""
+"""The query that planners make most: does a body collide when some of its joints have these values?"""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
-from ravemj.engine.collision.questions import MovedBy, body_and_others, held_with, itself
+from ravemj.engine.collision.queries import MovedBy, body_and_others, held_with, itself
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody

@@ -103,7 +103,7 @@ class Detection:
 
 
 class Pairs:
-    """Pairs of geoms that a question is about.
+    """Pairs of geoms that a query is about.
 
     Attributes:
         first: The first geom of each pair, shape (n,).

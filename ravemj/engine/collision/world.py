@@ -1,4 +1,4 @@
-"""What collision checking knows of a world: which geom is whose, and which pairs of geoms each question is about."""
+"""What collision checking knows of a world: which geom is whose, and which pairs of geoms each query is about."""
 
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -15,7 +15,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
 
 MOST_PAIRS = 300_000
-"""Pairs of geoms that are kept for all questions together."""
+"""Pairs of geoms that are kept for all queries together."""
 
 
 class CollisionWorld:
@@ -92,25 +92,25 @@ class CollisionWorld:
         number = geom - int(self._model.body_geomadr[part.body_ids[link]])
         return int(np.searchsorted(np.cumsum(part.names.geoms[link]), number, side="right"))
 
-    def pairs(self, question: Hashable, find: Callable[[], tuple[Ints, Ints]]) -> Pairs:
-        """Return the pairs that a question is about.
+    def pairs(self, query: Hashable, find: Callable[[], tuple[Ints, Ints]]) -> Pairs:
+        """Return the pairs that a query is about.
 
         Args:
-            question: The question; pairs are kept under it.
+            query: The query; pairs are kept under it.
             find: Returns the first and the second geoms, where they are not known yet.
         """
-        pairs = self._pairs.get(question)
+        pairs = self._pairs.get(query)
         if pairs is None:
             first, second = find()
             self._pair_count += len(first)
             if self._pair_count > MOST_PAIRS:
                 self._pairs.clear()
                 self._pair_count = len(first)
-            pairs = self._pairs[question] = Pairs(first, second, self._detection)
+            pairs = self._pairs[query] = Pairs(first, second, self._detection)
         return pairs
 
     def make_pairs(self, first: Ints, second: Ints) -> Pairs:
-        """Return pairs of geoms for a question that is asked once."""
+        """Return pairs of geoms for a query that is made once."""
         return Pairs(first, second, self._detection, once=True)
 
     def found_by_mujoco(self, first: Ints, second: Ints) -> NDArray[np.bool_]:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.engine.collision.questions import MovedBy, body_and_others, itself
+from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules.motions import Manipulation

@@ -9,7 +9,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Vec3
 from ravemj.engine.collision.moving import moving_test
-from ravemj.engine.collision.questions import MovedBy, body_and_others, itself
+from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
 from ravemj.planning.space import Coordinates, Space

@@ -1,4 +1,4 @@
-"""What is tested against what: the pairs of geoms of each kind of question.
+"""What is tested against what: the pairs of geoms of each kind of query.
 
 A body that holds others, or is held, takes part with all of them, and is not tested against them.
 """
