@@ -141,10 +141,10 @@ class Desk:
 
     def await_picture(self, page=None) -> None:
         """Wait until the page shows what the core's camera would see of the environment, pixel by pixel."""
-        await_equal(lambda: self.picture(page)[CLEAR], lambda: self._expected(page or self.page)[CLEAR])
+        await_equal(lambda: self.picture(page)[CLEAR], lambda: self._expected(page)[CLEAR])
 
-    def _expected(self, page) -> np.ndarray:
-        over = self.viewer._views[page.evaluate("tab")].overlay()
+    def _expected(self, page=None) -> np.ndarray:
+        over = self.viewer._views[(page or self.page).evaluate("tab")].overlay()
         look = {"gizmos": over.primitives, "style": over.style}
         return self.viewer._renderer.render(self.core.view.camera, self.viewer.background, Format(*SIZE), **look)
 

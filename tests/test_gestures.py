@@ -149,11 +149,24 @@ def test_keys_are_named_on_every_keyboard(key, on_keyboard, expected):
         KEY_RIGHT=262,
         PRESS=1,
         REPEAT=2,
+        MOD_CONTROL=2,
+        MOD_ALT=4,
+        MOD_SUPER=8,
         get_key_name=lambda *_: on_keyboard,
     )
     for action in (1, 2, 2, 0):
         window._on_key(None, key, 0, action, 0)
     assert window.events == [Key(name, pressed) for pressed in (True, False) for name in expected]
+
+
+def test_letters_with_ctrl_or_alt_are_no_keys_of_the_view():
+    window = GlfwWindow.__new__(GlfwWindow)
+    window.events, window._keys = [], {}
+    names = {"MOD_CONTROL": 2, "MOD_ALT": 4, "MOD_SUPER": 8, "PRESS": 1, "REPEAT": 2}
+    window._glfw = types.SimpleNamespace(**names, get_key_name=lambda *_: "f")
+    for mods in (2, 4, 8, 1):
+        window._on_key(None, 70, 0, 1, mods)
+    assert window.events == [Key("f")]
 
 
 def test_a_camera_comes_back_as_it_was_given(env):

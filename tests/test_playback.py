@@ -589,3 +589,37 @@ def test_long_names_are_cut_so_that_they_differ():
     assert shortened([]) == {}
     same = shortened(["x" * 50 + "a" + "x" * 50, "x" * 50 + "b" + "x" * 50])
     assert max(map(len, same.values())) <= 26, "there is no such place"
+
+
+# --- all joints at once
+
+
+def test_joints_go_to_zero_to_random_values_and_are_copied(panel, robot):
+    panel.press("joints")
+    robot.SetDOFValues([0.5, -0.25])
+    line = panel.gui.controls.values_line()
+    robot.SetDOFValues([0, 0])
+    eval(line, {"env": panel.env})
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.5, -0.25])
+    panel.press("random")
+    first = robot.GetDOFValues()
+    panel.press("random")
+    assert not np.allclose(robot.GetDOFValues(), first)
+    lower, upper = robot.GetDOFLimits()
+    assert (robot.GetDOFValues() >= lower).all()
+    assert (robot.GetDOFValues() <= upper).all()
+    panel.press("zero")
+    assert not robot.GetDOFValues().any()
+    panel.press("values")
+    assert panel.gui.controls.take_requests() == [Request.VALUES]
+
+
+def test_angles_are_shown_in_degrees_if_wanted(panel, robot):
+    robot.SetDOFValues([0.5, 0])
+    panel.press("joints")
+    assert panel.control("dof 0").text == "0.500 rad"
+    panel.press("units")
+    assert panel.control("dof 0").text == "28.6 deg"
+    assert panel.control("dof 0").value == pytest.approx(0.5)
+    panel.press("units")
+    assert panel.control("dof 0").text == "0.500 rad"

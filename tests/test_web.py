@@ -301,6 +301,7 @@ def test_pages_have_cameras_of_their_own_and_share_what_is_selected(env, viewer)
         seen = other.settled()
         assert other.overlay["lines"][-1] == "Robot Pendulum"
         assert np.abs(seen.astype(int) - still).max() > 50
+        one.send(type="move", x=-1, y=-1)  # what is under the pointer is brighter
         one.settled()
         viewer.SetCamera([[0, 0, -1, 3], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
         for page in (one, other):
@@ -341,7 +342,9 @@ def test_scripts_can_wait_until_pages_were_sent_everything(env, viewer, monkeypa
                 viewer.EnvironmentSync()
             expected = viewer.render(*SIZE)
             robot.SetDOFValues([angle - 0.5, 0])  # too late for the picture that was sent
-            assert np.abs(page.picture().astype(int) - expected).mean() < 1
+            picture = page.picture()
+            shrunk = Image.fromarray(expected).resize(picture.shape[1::-1])
+            assert np.abs(picture.astype(int) - shrunk).mean() < 3
 
 
 def test_scripts_do_not_wait_for_pages_that_show_nothing(env, viewer):
@@ -629,6 +632,7 @@ def test_a_page_finds_a_viewer_again_that_was_started_anew(env):
     assert viewer.url == f"http://127.0.0.1:{port}/robots-2026/"
     with Page(viewer) as page:
         page.settled()
+    env.SetViewer("")
     again = env.serve_viewer(port=port, token="robots-2026")
     assert again.url == viewer.url
     with Page(again) as page:

@@ -10,7 +10,7 @@ from screens import NEEDS_A_SCREEN
 from test_interaction import SLIDING
 from waiting import await_that
 
-from ravemj.gui.interaction import Button, Resize, Tool, tools
+from ravemj.gui.interaction import Button, Key, Resize, Tool, tools
 from ravemj.gui.interaction.cube import Cube
 from ravemj.gui.interaction.joint_handle import SIZES, JointHandle
 from ravemj.gui.interaction.shortcuts import KEYS
@@ -518,6 +518,32 @@ def test_joints_are_turned_by_the_script_while_they_are_selected(desk):
     desk.do("robot.SetDOFValues([0.5, -1])")
     await_that(lambda: desk.lines[-1] == "Joint Joint1, DOF 1: -1.000 rad, -57.3 deg", "the text is old")
     desk.await_colour(desk.on_link(2, (0.18, 0, 0)), "blue")
+
+
+def test_the_view_moves_while_the_script_holds_the_environment_and_says_so(desk):
+    plain, camera = desk.settled_picture(), desk.camera
+    held = "exec('import time; env.LockPhysics(True); end = time.monotonic() + 60')"
+    assert desk.ask(held) == "None"
+    desk.drag((320, 400), (420, 400))
+    await_that(lambda: not np.allclose(desk.camera, camera), "the camera stays")
+    await_that(lambda: not np.array_equal(desk.picture()[100:], plain[100:]), "the picture stays")
+    await_that(lambda: desk.picture()[:40, :200].mean() < 200, "nothing is said")
+    desk.display.tool("key", "1")
+    assert desk.ask("env.LockPhysics(False)") == "None"
+    desk.core.handle(Key("1"))
+    desk.await_camera()
+    await_that(lambda: "ocked" not in desk.ask("viewer.interaction.overlay().lines"), "it is said for ever")
+
+
+def test_the_help_and_the_floor_are_seen(desk):
+    plain = desk.settled_picture()
+    desk.display.tool("key", "g")
+    await_that(lambda: not np.array_equal(desk.picture(), plain), "there is no floor")
+    desk.display.tool("key", "g")
+    desk.display.tool("key", "h")
+    await_that(lambda: desk.picture()[240:260].mean() < 120, "there is no help")
+    desk.display.tool("key", "F1")
+    await_that(lambda: np.array_equal(desk.picture(), plain), "it stays")
 
 
 def test_a_viewer_closes_while_the_script_holds_the_environment(desk):

@@ -2,6 +2,7 @@
 
 import ast
 import re
+import time
 
 import imageio.v3
 import numpy as np
@@ -134,9 +135,10 @@ def test_a_paused_motion_is_not_drawn_and_a_playing_one_is(desk):
 
 def test_sliders_unfold_and_turn_joints(desk):
     desk.ask("[viewer.EnvironmentSync(), viewer.EnvironmentSync()]")
+    time.sleep(0.5)  # until it is crisp
     plain = desk.picture()
     desk.click("joints")
-    desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 9, "no sliders")
+    desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 13, "no sliders")
     desk.drag("dof 1", 0.5, 0.6, 0.75)
     desk.await_value("robot.GetDOFValues().tolist()", lambda q: q[0] == 0 and 1.2 < q[1] < 2.1, "the joint stays")
     desk.click("joints")

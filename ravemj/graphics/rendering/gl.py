@@ -46,6 +46,8 @@ class GlRenderer:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
         color = color_bytes(background)
         stage = self._filled_stage(data, camera, primitives, style)
+        if stage.is_empty:
+            return np.broadcast_to(color, (*self._size[::-1], 3)).copy()
         with self._context.current():
             stage.draw(self._viewport, color)
             picture = self._read(stage)

@@ -85,6 +85,11 @@ class GlScene:
         """Whether the model has the skybox texture that background colours are painted with."""
         return self._skybox is not None
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing to draw; MuJoCo would leave the buffer as it is."""
+        return self.scene.ngeom == 0
+
     def _make_scene(self, room: int) -> None:
         self.scene = mujoco.MjvScene(self._model, self._model.ngeom + room)
         self._room = room

@@ -63,9 +63,9 @@ class ControlLayout(NamedTuple):
             size: Width and height of the view [points].
             first_joint: Which of the joints' sliders should be the first one.
         """
-        playing, others, menu, joints = (
+        playing, others, menu, joints, joint_tools = (
             [control for control in controls if control.group == group]
-            for group in ("playing", "tools", "menu", "joints")
+            for group in ("playing", "tools", "menu", "joints", "joint tools")
         )
         places = _bar(playing, size)
         backs = [_around(places)] if places else []
@@ -74,13 +74,17 @@ class ControlLayout(NamedTuple):
         column = _column(others, size)
         left = min((rect.x for rect in column.values()), default=float(size[0])) - _MARGIN
         places |= column | _menu(menu, left)
-        fitting = int((size[1] - _COLUMN_TOP - 2 * _MARGIN - _BAR) / _JOINT_ROW)
+        fitting = int((size[1] - _COLUMN_TOP - 2 * _MARGIN - _BAR) / _JOINT_ROW) - bool(joint_tools)
         last = max(len(joints) - fitting, 0)
         first = min(max(first_joint, 0), last)
         table = Rect(left - _TABLE, _COLUMN_TOP, _TABLE, _JOINT_ROW)
         shown = joints[first : first + fitting]
         for row, joint in enumerate(shown):
             places[joint] = Rect(table.x + _NAME, table.y + row * _JOINT_ROW, _TRACK, _JOINT_ROW)
+        for column, tool in enumerate(joint_tools):
+            width = _TABLE / len(joint_tools)
+            y = table.y + len(shown) * _JOINT_ROW
+            places[tool] = Rect(table.x + column * width + 2, y + 2, width - 4, _JOINT_ROW - 2)
         if shown:
             backs.append(table._replace(height=len(shown) * _JOINT_ROW))
         return cls(places, tuple(backs), first, last)

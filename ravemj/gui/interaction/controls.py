@@ -4,9 +4,12 @@ They are plain data, which a window draws (``layout``) and a page makes its own 
 """
 
 import math
+import random
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
+
+import numpy as np
 
 from ravemj.engine.simulation import BodyState
 from ravemj.gui.interaction.display import Display
@@ -17,12 +20,21 @@ from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.playback import SPEEDS, Playback
 from ravemj.gui.interaction.selection import Selector
 from ravemj.gui.interaction.shortcuts import DISPLAY, VIEW, Shortcut, key_text
+from ravemj.model.limits import clamp
 
 _WIDEST = {True: (1.0, "m"), False: (math.pi, "rad")}
 """How far a control goes to each side where the limits of the axis are much wider, and its unit; True: it slides."""
 
 _MUCH = 4.0
 """How many times wider than that limits are that no slider can cover."""
+
+
+_JOINT_TOOLS = (
+    ("zero", "Zero", "Bring all joints to 0, or as near as their limits go"),
+    ("random", "Random", "Bring all joints to random values within their limits"),
+    ("units", "Units", "Show angles in degrees, or in radians"),
+    ("values", "Copy", "Copy the values as a line of Python"),
+)
 
 
 class Menu(NamedTuple):
@@ -56,6 +68,7 @@ class Request(Enum):
     PICTURE = "picture"
     VIDEO = "video"
     CAMERA = "camera"
+    VALUES = "values"
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +114,7 @@ class Controls:
         notices: What the viewer tells; all views share it.
         display: What is shown besides the bodies; all views share it.
         unfolded: Name of the button whose menu is unfolded, or empty.
+        in_degrees: Whether angles are shown in degrees, not in radians.
         requests: What was asked of the one who draws, and is not done yet.
     """
 
@@ -113,6 +127,7 @@ class Controls:
         self.notices = notices
         self.display = display
         self.unfolded = ""
+        self.in_degrees = False
         self.requests: list[Request] = []
 
     def another(self, navigation: Navigation) -> "Controls":
@@ -150,7 +165,9 @@ class Controls:
             label = f"DOFs of {body.scene.name}: a slider for each"
             controls.append(Control("joints", label, "DOFs", is_on=self.unfolded == "joints"))
             if self.unfolded == "joints":
-                sliders = (_joint(body, dof, value) for dof, value in enumerate(body.kinematics.values().tolist()))
+                values = enumerate(body.kinematics.values().tolist())
+                sliders = (_joint(body, dof, value, in_degrees=self.in_degrees) for dof, value in values)
+                controls += [Control(name, label, text, group="joint tools") for name, text, label in _JOINT_TOOLS]
                 controls += [slider for slider in sliders if slider.is_slider]
         if self.unfolded in MENUS:
             controls += [self._entry(shortcut) for shortcut in MENUS[self.unfolded].shortcuts]
@@ -229,8 +246,16 @@ class Controls:
             playback.seek(value)
         elif name == "speed":
             playback.speed = next((speed for speed in SPEEDS if speed > playback.speed), SPEEDS[0])
-        elif name == "joints":
+        else:
+            self._operate_joints(name, value)
+
+    def _operate_joints(self, name: str, value: float) -> None:
+        if name == "joints":
             self.unfolded = "" if self.unfolded == name else name
+        elif name == "units":
+            self.in_degrees = not self.in_degrees
+        elif name in {"zero", "random"}:
+            self._move_all(is_random=name == "random")
         else:
             self._move(int(name.removeprefix("dof ")), value)
 
@@ -245,6 +270,26 @@ class Controls:
         if motion is not None and body in motion.bodies:
             self.playback.pause()
 
+    def _move_all(self, *, is_random: bool) -> None:
+        """Bring all joints to zero, or to random values, as far as their limits go."""
+        body = self._body()
+        if body is None:
+            return
+        self.take(body)
+        values = np.zeros(body.dof)
+        for dof, axis in enumerate(body.scene.dof_axes):
+            slider = _joint(body, dof, 0.0)
+            values[dof] = clamp(axis, random.uniform(slider.lower, slider.upper) if is_random else 0.0)
+        body.set_values(values)
+
+    def values_line(self) -> str:
+        """Return the line of a script that sets the values that the sliders show; empty where there are none."""
+        body = self._body()
+        if body is None:
+            return ""
+        values = ", ".join(str(round(value, 6) + 0.0) for value in body.kinematics.values().tolist())
+        return f"env.GetKinBody({body.scene.name!r}).SetDOFValues([{values}])"
+
     def _move(self, dof: int, value: float) -> None:
         body = self._body()
         if body is not None:
@@ -252,7 +297,7 @@ class Controls:
             set_dof(body, dof, value)
 
 
-def _joint(body: BodyState, dof: int, value: float) -> Control:
+def _joint(body: BodyState, dof: int, value: float, *, in_degrees: bool = False) -> Control:
     limits = body.scene.dof_axes[dof]
     joint, axis = joint_and_axis(body, dof)
     reach, unit = _WIDEST[joint.slides(axis)]
@@ -264,4 +309,6 @@ def _joint(body: BodyState, dof: int, value: float) -> Control:
         lower, upper = middle - reach, middle + reach
     name = f"{joint.name}, axis {axis}" if len(joint.axes) > 1 else joint.name
     text = f"{round(value, 3) + 0.0:.3f} {unit}"
+    if in_degrees and unit == "rad":
+        text = f"{round(math.degrees(value), 1) + 0.0:.1f} deg"
     return Control(f"dof {dof}", name, text, shown, lower, upper, group="joints")

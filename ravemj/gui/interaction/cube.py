@@ -17,8 +17,8 @@ from ravemj.model.drawing import Primitives
 _MARGIN = 0.1
 """How far the cube stands off, as a part of half its longest side."""
 
-_REACH = 12.0
-"""How near an edge the pointer has to be [points]."""
+_REACH, _REACH_BESIDE = 8.0, 12.0
+"""How near an edge the pointer has to be on a face, and beside the cube [points]."""
 
 _FACES = np.array([0.1, 0.6, 0.2, 0.15])
 _EDGES = np.array([[0.1, 0.6, 0.2, 1.0]])
@@ -76,7 +76,8 @@ class Cube:
         local = Ray(T_cube_world[:3, :3] @ ray.start + T_cube_world[:3, 3], T_cube_world[:3, :3] @ ray.direction)
         if (np.abs(local.start) <= self.half).all():
             return None
-        return self._edge_grip(view, (x, y), local) or self._face_grip(local)
+        face = self._face_grip(local)
+        return self._edge_grip(view, (x, y), local, _REACH_BESIDE if face is None else _REACH) or face
 
     def _face_grip(self, local: Ray) -> Grip | None:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -87,11 +88,11 @@ class Cube:
             return None
         return Grip(axis, False, self._in_world(local.start + near[axis] * local.direction))
 
-    def _edge_grip(self, view: View, at: tuple[float, float], local: Ray) -> Grip | None:
+    def _edge_grip(self, view: View, at: tuple[float, float], local: Ray, within: float) -> Grip | None:
         edges = [edge for edge in self._edges() if any(self._sees(local.start, *face) for face in edge.faces)]
         found = [(_distance_on_screen(view, at, self._in_world(edge.ends)), edge) for edge in edges]
         distance, edge = min(found, key=lambda one: one[0], default=(np.inf, None))
-        if edge is None or distance > _REACH:
+        if edge is None or distance > within:
             return None
         point = _nearest_on_segment(edge.ends, local)
         return Grip(edge.axis, True, self._in_world(point))

@@ -28,7 +28,7 @@ def move_by_face(body: BodyState, cube: Cube, grip: Grip) -> Follow:
     T_start, normal = body.link_transform(0), cube.T_world_cube[:3, grip.axis]
 
     def follow(ray: Ray) -> None:
-        point = _in_plane(ray, grip.point, normal)
+        point = in_plane(ray, grip.point, normal)
         if point is not None:
             T_world_link0 = T_start.copy()
             T_world_link0[:3, 3] += point - grip.point
@@ -99,7 +99,7 @@ class Turn:
         return nearest_on_line(self._grip, self._tangent, ray) if self._tangent.any() else None
 
     def _around(self, ray: Ray) -> float | None:
-        point = _in_plane(ray, self._grip, self._axis)
+        point = in_plane(ray, self._grip, self._axis)
         if point is None:
             return None
         arm = _across(point - self._center, self._axis)
@@ -127,7 +127,7 @@ def _across(vector: Floats, axis: Floats) -> Floats:
     return vector - float(vector @ axis) * axis
 
 
-def _in_plane(ray: Ray, point: Floats, normal: Floats) -> Floats | None:
+def in_plane(ray: Ray, point: Floats, normal: Floats) -> Floats | None:
     """Return where a ray meets a plane before the eye; None where it does not, or hardly."""
     slope = float(ray.direction @ normal)
     distance = float((point - ray.start) @ normal) / slope if abs(slope) > _FLATTEST else -1.0

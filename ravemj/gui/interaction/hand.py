@@ -291,9 +291,20 @@ class Hand:
 
     def _hold(self, press: Press) -> _Follow | None:
         """Take hold of the cube or the cylinder where the button went down; fingers turn the view elsewhere."""
+        if self.mode is Mode.INTERACTION and press.ctrl and press.shift:
+            return self._reach(press)
         follow = self._selector.hold(self.view, press) if self.mode is Mode.INTERACTION else None
         selection = self._selector.selection
         if follow is not None and selection is not None:
             self._controls.take(selection.body)
             return lambda x, y: follow(self.view.ray(x, y))
         return self._steered(press, self._navigation.focused().turned) if press.touch else None
+
+    def _reach(self, press: Press) -> _Follow | None:
+        """Take hold of a link, so that its arm comes along."""
+        held = self._selector.reach(self.view, press)
+        if held is None:
+            return None
+        body, follow = held
+        self._controls.take(body)
+        return lambda x, y: follow(self.view.ray(x, y))

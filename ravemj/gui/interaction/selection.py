@@ -136,6 +136,23 @@ class Selector:
             return None
         return dragging.move_joint(selection.body, selection.dof, handle, point, ray)
 
+    def reach(self, view: View, press: Press) -> tuple[BodyState, dragging.Follow] | None:
+        """Take hold of the link where the button went down, so that the joints above it come along; None if none do."""
+        ray = view.ray(press.x, press.y)
+        hit = pick(self.simulation, ray)
+        if hit is None or not hit.body.index:
+            return None
+        from ravemj.gui.interaction.reaching import reach  # noqa: PLC0415 - slow to import
+
+        try:
+            follow = reach(hit.body, hit.link, hit.position, view.camera.rotation[:, 2])
+        except ValueError as error:
+            self._notices.say(str(error))
+            return None
+        self.selection = self._selection(hit)
+        self.changes += 1
+        return hit.body, follow
+
     def mark(self, view: View, at: tuple[float, float], hit: Hit | None) -> Primitives | None:
         """Return a figure on what a drag would take at a point of the screen; None where there is nothing to take.
 

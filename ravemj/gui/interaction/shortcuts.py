@@ -95,9 +95,12 @@ GESTURES = {
         ),
         Gesture("turn the joint, or slide it", "drag its cylinder"),
         Gesture("change the size of the cylinder", "Ctrl + left click on it"),
+        Gesture(
+            "pull a link, with the joints above it", "Ctrl + Shift + left drag: it follows in the plane of the view"
+        ),
     ),
 }
-"""The gestures of the tutorial."""
+"""The gestures of the tutorial, and one more."""
 
 _KEY_NAMES = {"home": "Home", " ": "Space", "arrowleft": "Left", "arrowright": "Right", "f1": "F1"}
 

@@ -243,9 +243,13 @@ class WindowViewer(Viewer):
         elif request is Request.VIDEO:
             self._recorder.record(source, self.playback)
         else:
-            line = camera_line(self.camera)
+            is_camera = request is Request.CAMERA
+            with self._simulation.lock:
+                line = camera_line(self.camera) if is_camera else self.interaction.controls.values_line()
             window.copy_text(line)
-            self.interaction.controls.notices.say("Copied viewer.SetCamera([...])")
+            self.interaction.controls.notices.say(
+                f"Copied {'viewer.SetCamera' if is_camera else 'SetDOFValues'}([...])"
+            )
             _LOG.info("%s", line)
 
 

@@ -145,8 +145,11 @@ class WindowRenderer:
         self._buffer = columns, rows
         stage.set_buffer(*self._buffer, level.samples)
         mujoco.mjr_setBuffer(_OFFSCREEN, stage.context)
-        background = np.rint(np.multiply(surface.background, 255)).astype(np.uint8)
-        stage.draw(mujoco.MjrRect(0, 0, *self._buffer), background)
+        whole = mujoco.MjrRect(0, 0, *self._buffer)
+        if stage.is_empty:
+            mujoco.mjr_rectangle(whole, *surface.background, 1.0)
+        else:
+            stage.draw(whole, np.rint(np.multiply(surface.background, 255)).astype(np.uint8))
         mujoco.mjr_finish()
         self._sharpness.drew(level, time.monotonic() - begin)
 

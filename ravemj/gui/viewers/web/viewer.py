@@ -175,7 +175,10 @@ class WebViewer(Viewer):
         elif request is Request.VIDEO:
             self._recorder.record(FrameSource(client.interaction, self._renderer, self._background), self.playback)
         else:
-            line = camera_line(client.interaction.view.camera)
+            interaction = client.interaction
+            with self._simulation.lock:
+                is_camera = request is Request.CAMERA
+                line = camera_line(interaction.view.camera) if is_camera else interaction.controls.values_line()
             client.send_text(connection, line)
             _LOG.info("%s", line)
 

@@ -3,7 +3,7 @@
 
 const QUIET = 400;  // after so long without a touch [ms], a slider shows what the other side says
 const PLAYING = ["back", "play", "forward", "seek", "speed"];
-const HOMES = { playing: "motion", tools: "tools", menu: "menu", joints: "joints" };
+const HOMES = { playing: "motion", tools: "tools", menu: "menu", joints: "joints", "joint tools": "joint-tools" };
 const ICONS = {
   back: "M6 5h2.4v14H6zM19 5v14L9.5 12z",
   forward: "M15.6 5H18v14h-2.4zM5 5v14l9.5-7z",
@@ -50,7 +50,9 @@ function makeButton(name) {
 
 function makeSlider(name) {
   const row = document.createElement("label"), title = document.createElement("span");
-  const input = document.createElement("input"), output = document.createElement("output");
+  const input = document.createElement("input");
+  const output = document.createElement(name === "seek" ? "output" : "input");
+  if (name !== "seek") output.className = "number";
   row.dataset.name = name;
   input.type = "range";
   input.step = "any";
@@ -58,6 +60,11 @@ function makeSlider(name) {
   input.addEventListener("input", () => {
     made.touched = performance.now();
     send({ type: "operate", name, value: Number(input.value) });
+  });
+  output.addEventListener("change", () => {  // a number was typed, in the unit that is shown
+    const number = parseFloat(output.value), perUnit = output.dataset.unit === "deg" ? Math.PI / 180 : 1;
+    if (Number.isFinite(number)) send({ type: "operate", name, value: Math.max(-1e5, Math.min(1e5, number * perUnit)) });
+    output.blur();
   });
   row.append(title, input, output);
   return made;
@@ -71,7 +78,13 @@ function update(made, control) {
     const isHeld = input.matches(":active") || performance.now() - made.touched < QUIET;
     if (!isHeld) input.value = control.value;
     input.setAttribute("aria-valuetext", control.text);
-    output.textContent = control.text;
+    if (output.className !== "number") output.textContent = control.text;
+    else {
+      input.setAttribute("aria-label", control.label);
+      output.setAttribute("aria-label", `${control.label}, value`);
+      output.dataset.unit = control.text.split(" ").pop();
+      if (document.activeElement !== output) output.value = control.text;
+    }
     return;
   }
   const { row } = made;
@@ -141,9 +154,9 @@ function save(name, data) {
 async function copy(text) {
   try {
     await navigator.clipboard.writeText(text);
-    toast("Copied viewer.SetCamera([…])");
+    toast(`Copied ${text.replace(/\[.*\]/, "[…]")}`);
   } catch {
-    if (copyOldWay(text)) toast("Copied viewer.SetCamera([…])");
+    if (copyOldWay(text)) toast(`Copied ${text.replace(/\[.*\]/, "[…]")}`);
     else prompt("The browser lets no page copy; this is the line:", text);
   }
 }

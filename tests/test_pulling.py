@@ -1,0 +1,104 @@
+"""Ctrl + Shift + drag: a link follows the pointer, and the joints above it come along."""
+
+import numpy as np
+import pytest
+from test_interaction import FROM_FRONT, Hand
+
+import ravemj
+from ravemj.formats.shipped import model_path
+
+PULL = {"ctrl": True, "shift": True}
+
+
+def pull(hand, point, target):
+    """Drag a point of the world to where another one is seen; both are as deep in the view."""
+    hand.drag(hand.at(point), hand.at((np.array(point) + target) / 2), hand.at(target), **PULL)
+
+
+@pytest.fixture
+def arm():
+    env = ravemj.load(model_path("puma560"))
+    hand = Hand(env)
+    robot = env.GetRobots()[0]
+    robot.SetDOFValues([0.1, -0.5, -1.2, 0.3, 0.6, 0.2])
+    T_world_hand = robot.GetLinks()[-1].GetTransform()
+    place = T_world_hand[:3, 3]
+    camera = ravemj.transformLookat(lookat=place, camerapos=place + [1.5, 1.0, 0.3], cameraup=[0, 0, -1])
+    hand.gui.look_from(ravemj.graphics.rendering.Camera(camera), 1.8)
+    return hand.in_interaction()
+
+
+def surface(hand, robot):
+    """A place on the hand of the robot that is seen, and the link that it is on."""
+    hit_at = hand.at(robot.GetLinks()[-1].GetTransform()[:3, 3])
+    hand.lines(hit_at)
+    hit = hand.gui.hover
+    return hit.position, robot.GetLinks()[hit.link]
+
+
+def test_the_hand_follows_the_pointer_and_hardly_turns(arm):
+    robot = arm.env.GetRobots()[0]
+    point, link = surface(arm, robot)
+    before = link.GetTransform()
+    local = np.linalg.inv(before) @ [*point, 1]
+    right, down = arm.view.camera.rotation[:, 0], arm.view.camera.rotation[:, 1]
+    target = point + 0.06 * right - 0.04 * down
+    pull(arm, point, target)
+    after = link.GetTransform()
+    np.testing.assert_allclose((after @ local)[:3], target, atol=2e-3)
+    np.testing.assert_allclose(after[:3, :3], before[:3, :3], atol=0.25)
+
+
+def test_limits_hold_and_what_is_out_of_reach_is_come_near_to(arm):
+    robot = arm.env.GetRobots()[0]
+    point, link = surface(arm, robot)
+    local = np.linalg.inv(link.GetTransform()) @ [*point, 1]
+    for way in ([3, 0], [-3, 1], [0, -4], [1, 4]):
+        aside = way[0] * arm.view.camera.rotation[:, 0] + way[1] * arm.view.camera.rotation[:, 1]
+        held = (link.GetTransform() @ local)[:3]
+        arm.drag(arm.at(held), arm.at(held + 0.5 * aside), arm.at(held + aside), **PULL)
+        lower, upper = robot.GetDOFLimits()
+        assert (robot.GetDOFValues() >= lower - 1e-9).all()
+        assert (robot.GetDOFValues() <= upper + 1e-9).all()
+        assert np.isfinite(robot.GetDOFValues()).all()
+
+
+def test_the_pendulum_swings_to_the_pointer(env):
+    hand = Hand(env, FROM_FRONT).in_interaction()
+    robot = env.GetRobots()[0]
+    held = np.array([0.03, 0, -0.35])
+    link = robot.GetLinks()[2]
+    local = np.linalg.inv(link.GetTransform()) @ [*held, 1]
+    ((x, y),), _ = hand.view.camera.project([held], *hand.view.size)
+    hand.lines((x, y))
+    hit = hand.gui.hover
+    assert hit.link == 2
+    local = np.linalg.inv(link.GetTransform()) @ [*hit.position, 1]
+    target = hit.position + np.array([0, 0.1, 0.08])
+    pull(hand, hit.position, target)
+    np.testing.assert_allclose((link.GetTransform() @ local)[1:3], target[1:], atol=3e-3)
+
+
+def test_what_no_joint_moves_says_so(env):
+    hand = Hand(env, FROM_FRONT).in_interaction()
+    hand.lines((0, 0))
+    robot = env.GetRobots()[0]
+    base = robot.GetLinks()[0]
+    at = next(
+        (x, y)
+        for y in range(0, 600, 8)
+        for x in range(300, 500, 8)
+        if (hand.lines((x, y)), hand.gui.hover)[1] is not None and hand.gui.hover.link == base.GetIndex()
+    )
+    hand.drag(at, (at[0] + 40, at[1] + 10), **PULL)
+    assert not robot.GetDOFValues().any()
+    assert any("no joint moves" in line for line in hand.gui.overlay().lines)
+
+
+def test_beside_bodies_and_in_camera_mode_nothing_is_pulled(env):
+    hand = Hand(env, FROM_FRONT)
+    before = hand.view
+    hand.drag((400, 330), (450, 350), **PULL)
+    assert hand.view is not before, "Shift translates the view"
+    hand.in_interaction().drag((5, 5), (60, 60), **PULL)
+    assert not env.GetRobots()[0].GetDOFValues().any()
