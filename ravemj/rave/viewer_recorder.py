@@ -2,8 +2,8 @@
 
 import time
 from collections.abc import Iterator
-from queue import Queue
-from threading import Thread
+from queue import Empty, Queue
+from threading import Thread, main_thread
 from typing import TYPE_CHECKING, NamedTuple
 
 from ravemj.errors import ArgumentError, RavemjError
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 _FORMATS = ("mp4", "gif", "webp")
 _WAITING = 8
 """Frames that may wait for the encoder."""
+_PATIENCE = 0.2
+"""How often [s] the encoder looks whether the script has ended without ``Stop``, so that the process can end."""
 
 _TIMINGS = ("simtime", "realtime", "controller")
 
@@ -36,7 +38,7 @@ class ViewerRecorder(Module):
     ``Start WIDTH HEIGHT FPS codec NUMBER timing WHICH filename FILE`` begins: a frame is drawn when simulation time has
     gone on by that of a frame (``simtime``, ``controller``), or real time (``realtime``). The suffix of the file, .mp4,
     .gif or .webp, chooses the format, and not the number of the codec. ``Stop`` ends; the file is complete then.
-    ``GetCodecs`` lists the formats.
+    A script that ends without ``Stop``, by an error for instance, completes it too. ``GetCodecs`` lists the formats.
 
     Example:
         >>> recorder = ravemj.RaveCreateModule(env, "viewerrecorder")
@@ -104,13 +106,21 @@ class ViewerRecorder(Module):
 
         self._order, self._error = order, None
         self._passed, self._drawn, self._began = 0.0, 0, time.monotonic()
-        self._thread = Thread(target=write, name="ravemj recorder", daemon=True)
+        self._thread = Thread(target=write, name="ravemj recorder")
         self._thread.start()
         self.SimulationStep(0.0)
         return ""
 
     def _taken(self) -> Iterator[Frame]:
-        while (frame := self._frames.get()) is not None:
+        while True:
+            try:
+                frame = self._frames.get(timeout=_PATIENCE)
+            except Empty:
+                if main_thread().is_alive():
+                    continue
+                return
+            if frame is None:
+                return
             yield frame
 
     def _stop(self, arguments: str) -> str:
