@@ -7,7 +7,7 @@ from threading import Thread, main_thread
 from typing import TYPE_CHECKING, NamedTuple
 
 from ravemj.errors import ArgumentError, RavemjError
-from ravemj.graphics.simulation_renderer import Frame
+from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.rave.module import Module
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class _Order(NamedTuple):
 
 
 class ViewerRecorder(Module):
-    """Writes videos of what the viewer shows; without a viewer, of what ``env.render`` does.
+    """Writes videos of what the viewer shows; without a viewer, of what ``env.render`` does, but for shadows.
 
     ``Start WIDTH HEIGHT FPS codec NUMBER timing WHICH filename FILE`` begins: a frame is drawn when simulation time has
     gone on by that of a frame (``simtime``, ``controller``), or real time (``realtime``). The suffix of the file, .mp4,
@@ -76,10 +76,15 @@ class ViewerRecorder(Module):
         before = self._drawn
         frame = None
         while self._drawn <= passed * self._order.fps + 1e-9 and self._is_writing():
-            frame = self._env.render(self._order.width, self._order.height) if frame is None else frame
+            frame = self._picture(self._order.width, self._order.height) if frame is None else frame
             self._frames.put(frame)
             self._drawn += 1
         return self._drawn > before
+
+    def _picture(self, width: int, height: int) -> Frame:
+        """Return what viewers show, without the shadows of ``env.render``, which take most of its time."""
+        env = self._env
+        return env.renderer.render(env.default_camera(width / height), env.background, Format(width, height))
 
     def _is_writing(self) -> bool:
         return self._thread is not None and self._thread.is_alive()
