@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from command_line import run
 
 import ravemj
 from ravemj import InterfaceType, KinBody, Robot
@@ -346,6 +347,22 @@ def test_a_video_of_simulation_time(env, robot, tmp_path):
             recorder.SendCommand(wrong)
     assert env.Remove(recorder)
     assert env.GetModules() == []
+
+
+def test_a_script_that_ends_without_stop_completes_its_video(tmp_path):
+    (tmp_path / "fails.py").write_text(
+        """
+import ravemj
+env = ravemj.load(ravemj.model_path("pendulum"))
+recorder = ravemj.RaveCreateModule(env, "viewerrecorder")
+env.AddModule(recorder, "")
+recorder.SendCommand("Start 32 24 10 codec 0 timing simtime filename video.gif")
+env.StepSimulation(0.5)
+raise SystemExit(3)
+"""
+    )
+    assert run(tmp_path, "fails.py").returncode == 3
+    assert (tmp_path / "video.gif").read_bytes().startswith(b"GIF89a")
 
 
 def test_values_of_scripts_under_ids(robot):

@@ -26,7 +26,7 @@ import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -268,21 +268,32 @@ def _overlap(
     frames: Iterable[Frame], encode: Callable[[Iterator[Frame]], None], on_frame: Callable[[int], None] | None
 ) -> None:
     """Encode in a second thread what this thread draws; an exception of either ends both."""
-    handover = _Handover()
-    with ThreadPoolExecutor(1, "ravemj-encoder") as threads:
+    handover, encoding = _Handover(), Future[None]()
+
+    def work() -> None:
         try:
-            encoding = threads.submit(encode, iter(handover))
-            encoding.add_done_callback(lambda _: handover.stop())
-            for number, frame in enumerate(frames, 1):
-                if not handover.put(frame):
-                    break  # the encoder has failed, and result() tells why
-                if on_frame is not None:
-                    on_frame(number)
-            handover.complete()
-            encoding.result()
-        except BaseException:
-            handover.stop()
-            raise
+            encoding.set_result(encode(iter(handover)))
+        except BaseException as error:
+            encoding.set_exception(error)
+        handover.stop()
+
+    # No executor: a process waits for the threads of these before its main thread counts as ended, which tells those
+    # who hand in frames that there will be no more.
+    thread = threading.Thread(target=work, name="ravemj-encoder")
+    thread.start()
+    try:
+        for number, frame in enumerate(frames, 1):
+            if not handover.put(frame):
+                break  # the encoder has failed, and result() tells why
+            if on_frame is not None:
+                on_frame(number)
+        handover.complete()
+        encoding.result()
+    except BaseException:
+        handover.stop()
+        raise
+    finally:
+        thread.join()
 
 
 def _encode(encoder: _Encoder, frames: Iterator[Frame], temporary: Path, rate: Fraction, path: AnyPath) -> None:

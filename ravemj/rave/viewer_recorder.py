@@ -2,12 +2,12 @@
 
 import time
 from collections.abc import Iterator
-from queue import Queue
-from threading import Thread
+from queue import Empty, Queue
+from threading import Thread, main_thread
 from typing import TYPE_CHECKING, NamedTuple
 
 from ravemj.errors import ArgumentError, RavemjError
-from ravemj.graphics.simulation_renderer import Frame
+from ravemj.graphics.simulation_renderer import Format, Frame
 from ravemj.rave.module import Module
 
 if TYPE_CHECKING:
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 _FORMATS = ("mp4", "gif", "webp")
 _WAITING = 8
 """Frames that may wait for the encoder."""
+_PATIENCE = 0.2
+"""How often [s] the encoder looks whether the script has ended without ``Stop``, so that the process can end."""
 
 _TIMINGS = ("simtime", "realtime", "controller")
 
@@ -31,12 +33,12 @@ class _Order(NamedTuple):
 
 
 class ViewerRecorder(Module):
-    """Writes videos of what the viewer shows; without a viewer, of what ``env.render`` does.
+    """Writes videos of what the viewer shows; without a viewer, of what ``env.render`` does, but for shadows.
 
     ``Start WIDTH HEIGHT FPS codec NUMBER timing WHICH filename FILE`` begins: a frame is drawn when simulation time has
     gone on by that of a frame (``simtime``, ``controller``), or real time (``realtime``). The suffix of the file, .mp4,
     .gif or .webp, chooses the format, and not the number of the codec. ``Stop`` ends; the file is complete then.
-    ``GetCodecs`` lists the formats.
+    A script that ends without ``Stop``, by an error for instance, completes it too. ``GetCodecs`` lists the formats.
 
     Example:
         >>> recorder = ravemj.RaveCreateModule(env, "viewerrecorder")
@@ -74,10 +76,15 @@ class ViewerRecorder(Module):
         before = self._drawn
         frame = None
         while self._drawn <= passed * self._order.fps + 1e-9 and self._is_writing():
-            frame = self._env.render(self._order.width, self._order.height) if frame is None else frame
+            frame = self._picture(self._order.width, self._order.height) if frame is None else frame
             self._frames.put(frame)
             self._drawn += 1
         return self._drawn > before
+
+    def _picture(self, width: int, height: int) -> Frame:
+        """Return what viewers show, without the shadows of ``env.render``, which take most of its time."""
+        env = self._env
+        return env.renderer.render(env.default_camera(width / height), env.background, Format(width, height))
 
     def _is_writing(self) -> bool:
         return self._thread is not None and self._thread.is_alive()
@@ -104,13 +111,21 @@ class ViewerRecorder(Module):
 
         self._order, self._error = order, None
         self._passed, self._drawn, self._began = 0.0, 0, time.monotonic()
-        self._thread = Thread(target=write, name="ravemj recorder", daemon=True)
+        self._thread = Thread(target=write, name="ravemj recorder")
         self._thread.start()
         self.SimulationStep(0.0)
         return ""
 
     def _taken(self) -> Iterator[Frame]:
-        while (frame := self._frames.get()) is not None:
+        while True:
+            try:
+                frame = self._frames.get(timeout=_PATIENCE)
+            except Empty:
+                if main_thread().is_alive():
+                    continue
+                return
+            if frame is None:
+                return
             yield frame
 
     def _stop(self, arguments: str) -> str:

@@ -1,6 +1,6 @@
-"""The tutorial as a notebook, and its pictures: ``python scripts/pictures/tutorial.py docs``.
+"""The tutorials as notebooks, and their pictures: ``python scripts/pictures/tutorial.py docs``.
 
-Blocks of ``docs/tutorial.md`` are cells: ``python`` and ``ipython`` code, ``sh`` commands; one with a file name beside
+Blocks of the pages are cells: ``python`` and ``ipython`` code, ``sh`` commands; one with a file name beside
 its language is saved as that file. ``text`` after one of them is what it prints. All other text is Markdown.
 """
 
@@ -13,6 +13,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+PAGES = ("tutorial", "tip", "obstacle")
+"""Names of the tutorials in ``docs/``; the pictures of each begin with its name."""
+
 _BLOCK = re.compile(r"^```(python|ipython|sh|xml (?=\S)|text) *(\S*)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
 _COLOUR = re.compile(r"\x1b\[[\d;]*m|\r")
 _LINK = re.compile(r"\]\((?!https?:|#)(?=[^)]+\))")
@@ -22,14 +25,15 @@ Cell = dict[str, Any]
 
 
 def main(folder: Path) -> None:
-    """Write the notebook, run it, and keep the pictures that it saves."""
-    text = notebook((folder / "tutorial.md").read_text())
+    """Write the notebooks, run them, and keep the pictures that they save."""
     (folder / "notebooks").mkdir(exist_ok=True)
-    (folder / "notebooks" / "tutorial.ipynb").write_text(text)
-    with tempfile.TemporaryDirectory() as place:
-        outputs(text, Path(place))
-        for picture in Path(place).glob("tutorial-*.*"):
-            shutil.copy(picture, folder / ("motions" if picture.suffix == ".html" else "pictures"))
+    for name in PAGES:
+        text = notebook((folder / f"{name}.md").read_text())
+        (folder / "notebooks" / f"{name}.ipynb").write_text(text)
+        with tempfile.TemporaryDirectory() as place:
+            outputs(text, Path(place))
+            for picture in Path(place).glob(f"{name}-*.*"):
+                shutil.copy(picture, folder / ("motions" if picture.suffix == ".html" else "pictures"))
 
 
 def notebook(page: str) -> str:
