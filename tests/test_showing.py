@@ -123,6 +123,7 @@ def test_infos_compare_by_content(env):
 
 # Names that are not OpenRAVE's, and that users call all the same
 OURS = """
+    animation save_html
     background batch_collides serve_viewer batch_inverse_dynamics batch_jacobians batch_link_transforms camera close
     com_jacobian data default_camera diagnostics drawaabb drawarrow drawboxarray drawlabel drawobb drawbox drawlinelist
     drawlinestrip drawplane drawtrimesh

@@ -187,7 +187,7 @@ def _gl() -> Callable[..., None]:
     import glfw  # noqa: PLC0415 - loads the libraries of the display
 
     glfw_module: Any = glfw
-    prototype = ctypes.WINFUNCTYPE if hasattr(ctypes, "WINFUNCTYPE") else ctypes.CFUNCTYPE
+    prototype: Any = getattr(ctypes, "WINFUNCTYPE", ctypes.CFUNCTYPE)  # the former on Windows alone
     argument_types: dict[str, tuple[Any, ...]] = {
         "glPushAttrib": (ctypes.c_uint,),
         "glPopAttrib": (),
