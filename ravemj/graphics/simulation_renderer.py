@@ -24,6 +24,13 @@ from ravemj.model.drawing import NOTHING, Primitives, merge
 
 Frame = NDArray[np.uint8]
 
+_FINER = 2
+"""Pictures with shadows are drawn with so many times the rows and columns, and averaged: the edges of shadows, which
+have no samples of their own, become smooth."""
+
+_MOST_PIXELS = 8_300_000
+"""Pixels of the largest picture that is drawn finer: 4K."""
+
 
 class Format(NamedTuple):
     """What a picture costs and how it looks.
@@ -81,11 +88,15 @@ class SimulationRenderer:
             primitives = self._simulation.drawings.primitives() if drawings else NOTHING
             shown = merge([primitives, gizmos]) if len(gizmos) else primitives
             renderer = self._current(form)
+            finer = self._finer(form)
             if renderer.backend == RAY:  # it hides geoms of the model while it draws
                 return renderer.render(compiled.data, camera, background, shown)
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
             self._kept.shown = shown, style
-        return renderer.render(self._kept.data, camera, background, shown, style)
+        if finer == 1:
+            return renderer.render(self._kept.data, camera, background, shown, style)
+        picture = renderer.render(self._kept.data, camera.enlarged(finer), background, shown.widened(finer), style)
+        return _averaged(picture, finer)
 
     def render_again(self, camera: Camera, background: ArrayLike, form: Format) -> Frame | None:
         """Draw what this thread drew last from elsewhere, without the simulation, which others may have locked.
@@ -117,8 +128,14 @@ class SimulationRenderer:
             size = form.width, form.height
             self._kept.renderer = open_renderer(model, *size, shadows=form.shadows, samples=form.samples)
             self._kept.key = (self._simulation.version, form.shadows)
-        self._kept.renderer.resize(form.width, form.height, form.samples)
+        finer = self._finer(form)
+        self._kept.renderer.resize(finer * form.width, finer * form.height, form.samples)
         return self._kept.renderer
+
+    def _finer(self, form: Format) -> int:
+        """Return how many times the rows and columns of a picture are drawn."""
+        is_small = _FINER**2 * form.width * form.height <= _MOST_PIXELS
+        return _FINER if form.shadows and is_small and self._kept.renderer.backend != RAY else 1
 
     def close(self) -> None:
         """Free the renderer of this thread."""
@@ -148,6 +165,13 @@ class SimulationRenderer:
         with self._simulation.lock:
             compiled = self._simulation.compiled()
             return bounding_sphere(compiled.model, compiled.data)
+
+
+def _averaged(picture: Frame, finer: int) -> Frame:
+    """Return a picture with fewer rows and columns, each pixel the mean of several."""
+    height, width = picture.shape[0] // finer, picture.shape[1] // finer
+    blocks = picture.reshape(height, finer, width, finer, 3)
+    return np.rint(blocks.mean(axis=(1, 3), dtype=np.float32)).astype(np.uint8)
 
 
 def fitting_view(center: NDArray[np.float64], radius: float, aspect: float) -> Camera:

@@ -7,7 +7,7 @@ operation on a dict, so any thread may do it at any time without a lock, garbage
 
 import itertools
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -78,6 +78,13 @@ class Primitives:
     def placed(self, transform: Floats) -> "Primitives":
         """Return the primitives moved by a 4x4 transform."""
         return Primitives(*(batch.placed(transform) for batch in self.batches))
+
+    def widened(self, factor: float) -> "Primitives":
+        """Return them with so many times the widths on the screen, for pictures with as many times the pixels."""
+        points, lines = (
+            batch._replace(sizes=factor * np.maximum(batch.sizes, 1)) for batch in (self.points, self.lines)
+        )
+        return replace(self, points=points, lines=lines)
 
     def bounding_sphere(self) -> tuple[Floats, float]:
         """Return centre (3,) and radius [m] of a sphere around all of them; there has to be one."""

@@ -7,7 +7,7 @@ renderers convert, nobody else needs to.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -117,6 +117,12 @@ class Camera:
         """Return focal lengths and principal point in an image of that many columns and rows."""
         focal = 0.5 * height / math.tan(0.5 * self.fovy)
         return self.calibration or Pinhole(focal, focal, 0.5 * width, 0.5 * height)
+
+    def enlarged(self, factor: float) -> "Camera":
+        """Return the camera for pictures with so many times the rows and columns."""
+        if self.calibration is None:
+            return self
+        return replace(self, calibration=Pinhole(*(factor * part for part in self.calibration)))
 
     def project(self, points: ArrayLike, width: int, height: int) -> tuple[Floats, Floats]:
         """Project points of the world into an image.

@@ -21,8 +21,12 @@ from ravemj.graphics.rendering.style import AS_IT_IS, Style
 from ravemj.graphics.rendering.visibility import DRAWN_GROUPS, drawn_geoms
 from ravemj.model.drawing import NOTHING, Primitives
 
-SHADOW_SIZE = 1024
-"""Texels along one side of the shadow map: a quarter of MuJoCo's default, a seventh of its cost on a CPU."""
+SHADOW_SIZE = 2048
+"""Texels along one side of the shadow map: half of MuJoCo's default, which costs a third more on a CPU."""
+
+_SHADOW_REACH = 2.0
+"""Half the side of the shadow map, in radii of the scene. MuJoCo takes more room for a larger distance between a surface
+and its own shadow: with 1 there are specks of shadow on surfaces that are far from the light."""
 
 _SLICES, _STACKS = 48, 24
 """Facets around and along round shapes; MuJoCo's 28 and 16 show corners on close views."""
@@ -188,15 +192,15 @@ class GlScene:
         self.context.free()
 
     def _cover_with_shadows(self, data: mujoco.MjData, near: float) -> None:
-        """Move directional lights back until their shadow map covers the scene, and just that.
+        """Move directional lights back until their shadow map covers the scene.
 
         Where they stand makes no difference to their light. MuJoCo looks from them with the camera's depths.
         """
         center, radius = bounding_sphere(self._model, data)
-        self.context.shadowClip = 1.05 * radius
+        self.context.shadowClip = _SHADOW_REACH * radius
         for light in self.scene.lights[: self.scene.nlight]:
             if light.type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL and light.castshadow:
-                light.pos = center - (near + 1.2 * radius) * light.dir
+                light.pos = center - (near + 1.05 * radius) * light.dir
 
     def _paint_background(self, background: NDArray[np.uint8]) -> None:
         """Upload a new skybox where the colour changed; the model keeps its own texture."""
