@@ -1,7 +1,8 @@
 """One pair of setter and getter for each type of goal of inverse kinematics."""
 
 # ruff: noqa: D102 - the docstrings of the last methods come from a table
-# pyright: reportPrivateUsage=false - functions of a table stand for methods
+# Functions of a table stand for methods.
+# pyright: reportPrivateUsage=false
 
 from collections.abc import Callable
 from functools import wraps
