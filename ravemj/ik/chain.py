@@ -18,7 +18,7 @@ Turns = Sequence[Floats] | Floats
 """For each joint cosines and sines, shape (2, …), or distances, (1, …); one array where all joints are revolute."""
 _IDENTITY = np.eye(3)
 _FEW = 128
-"""Up to so many configurations, calls of numpy cost more than its arithmetic."""
+"""Number of configurations up to which calls of numpy take longer than its arithmetic."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

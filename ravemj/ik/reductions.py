@@ -25,7 +25,7 @@ class Reduction:
     Attributes:
         chain: The arm, with virtual joints at its end.
         task: What is asked of it.
-        how: The way there, in words.
+        how: A sentence about the reduction.
         virtual: The places of the virtual joints.
     """
 

@@ -46,7 +46,7 @@ def task_jacobians(chain: Chain, task: Task, values: Floats, goal: Floats | None
 
 
 def choices(chain: Chain, task: Task) -> Iterator[tuple[int, ...]]:
-    """Return sets of joints that can be left free, so many that the others are not too many.
+    """Return sets of joints that can be left free, each as large as the redundancy of the arm.
 
     Between a spherical shoulder and a spherical wrist, the third of seven joints comes first, as in OpenRAVE. Else the
     last joint comes first and the first one second: with these locked, the geometry of the rest does not depend on
@@ -136,7 +136,7 @@ def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats 
     Args:
         chain: The arm.
         singular: The configuration, the joints and the sign, of ``singular_rows``.
-        seed: A configuration that the first of the two joints, or the second one, shall be like in one of the answers.
+        seed: A configuration; in one answer the first of the two joints has its value there, in another the second.
     """
     row, first, second, sign = singular
     angles = np.arange(-np.pi + SINGULAR_STEP, np.pi + 1e-9, SINGULAR_STEP)

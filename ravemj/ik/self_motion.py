@@ -18,15 +18,15 @@ _JUMP = 0.5
 
 
 def null_space(chain: Chain, values: Floats, task: Task = Task.TRANSFORM, goal: ArrayLike | None = None) -> Floats:
-    """Return an orthonormal basis of the joint velocities that change nothing of what counts, shape (n, k).
+    """Return an orthonormal basis of the joint velocities of self-motion, the Jacobian's null space, shape (n, k).
 
     In singular configurations it has more columns than elsewhere.
 
     Args:
         chain: The arm.
         values: The configuration, shape (n,).
-        task: What counts.
-        goal: A goal that the configuration reaches, if it is not for the configuration to say, as with ``LOOK_AT``.
+        task: What the tool has to do.
+        goal: A goal that the configuration reaches, for tasks such as ``LOOK_AT``, where many goals are reached.
     """
     pose = None if goal is None else goal_poses(chain, task, goal)
     jacobian = redundancy.task_jacobians(chain, task, values[None], pose)[0]

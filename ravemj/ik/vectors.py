@@ -56,7 +56,7 @@ def apply_matrix(matrix: Floats, vectors: Floats) -> Floats:
 
 
 def tile(values: Floats, branches: int) -> Floats:
-    """Repeat values (..., B, N) until there are so many branches; those of one branch serve all as they are."""
+    """Repeat values (..., B, N) up to a number of branches; those of one branch are broadcast as they are."""
     count = values.shape[-2]
     if count in (1, branches):
         return values

@@ -1,5 +1,11 @@
 """One pair of setter and getter for each type of goal of inverse kinematics."""
 
+# ruff: noqa: D102 - the docstrings of the last methods come from a table
+# Functions of a table stand for methods.
+# pyright: reportPrivateUsage=false
+
+from collections.abc import Callable
+from functools import wraps
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -14,6 +20,46 @@ from ravemj.geometry_functions.ik_types import IkParameterizationType
 _Type = IkParameterizationType
 
 
+_ANGLES = {
+    _Type.TranslationXAxisAngle4D: "angle between the direction and the x axis",
+    _Type.TranslationYAxisAngle4D: "angle between the direction and the y axis",
+    _Type.TranslationZAxisAngle4D: "angle between the direction and the z axis",
+    _Type.TranslationXAxisAngleZNorm4D: "heading of the direction about z, from x",
+    _Type.TranslationYAxisAngleXNorm4D: "heading of the direction about x, from y",
+    _Type.TranslationZAxisAngleYNorm4D: "heading of the direction about y, from z",
+}
+"""Types of goals that are a point and an angle."""
+
+_SET = """Set the goal to a point and the {angle}.
+
+Args:
+    translation: The point [m], shape (3,).
+    angle: The angle [rad], in the frame of the arm's base.
+"""
+
+
+def _with_angles(goals: type["GoalValues"]) -> type["GoalValues"]:
+    """Give the methods for points with angles, of which only the signatures are written, bodies and docstrings."""
+    for kind, angle in _ANGLES.items():
+        set_, get = (getattr(goals, f"{verb}{kind.name}") for verb in ("Set", "Get"))
+        set_.__doc__, get.__doc__ = _SET.format(angle=angle), "Return the point [m], shape (3,), and the angle [rad]."
+        for method, body in zip((set_, get), _point_and_angle(kind), strict=True):
+            setattr(goals, method.__name__, wraps(method)(body))
+    return goals
+
+
+def _point_and_angle(kind: IkParameterizationType) -> tuple[Callable[..., None], Callable[..., tuple[Floats, float]]]:
+    def set_(self: "GoalValues", translation: ArrayLike, angle: float) -> None:
+        self._set(kind, [translation, angle])
+
+    def get(self: "GoalValues") -> tuple[Floats, float]:
+        values = self._of(kind)
+        return values[1:], float(values[0])
+
+    return set_, get
+
+
+@_with_angles
 class GoalValues(ApiObject):
     """The type of a goal and its numbers, of which there are as many as the type has."""
 
@@ -28,10 +74,6 @@ class GoalValues(ApiObject):
         if self._type != kind:
             raise ArgumentError(f"the goal is of type {self._type.name}, and not {kind.name}")
         return self._values.copy()
-
-    def _point_and_angle(self, kind: IkParameterizationType) -> tuple[Floats, float]:
-        values = self._of(kind)
-        return values[1:], float(values[0])
 
     def SetTransform6D(self, transform: ArrayLike) -> None:
         """Set the goal to a pose.
@@ -159,80 +201,17 @@ class GoalValues(ApiObject):
         values = self._of(_Type.TranslationLocalGlobal6D)
         return values[:3], values[3:]
 
-    def SetTranslationXAxisAngle4D(self, translation: ArrayLike, angle: float) -> None:
-        """Set the goal to a point and the angle between the direction and the x axis.
+    # A point and an angle: bodies and docstrings come from ``_ANGLES``
 
-        Args:
-            translation: The point [m], shape (3,).
-            angle: The angle [rad], in the frame of the arm's base.
-        """
-        self._set(_Type.TranslationXAxisAngle4D, [translation, angle])
-
-    def GetTranslationXAxisAngle4D(self) -> tuple[Floats, float]:
-        """Return the point [m], shape (3,), and the angle [rad]."""
-        return self._point_and_angle(_Type.TranslationXAxisAngle4D)
-
-    def SetTranslationYAxisAngle4D(self, translation: ArrayLike, angle: float) -> None:
-        """Set the goal to a point and the angle between the direction and the y axis.
-
-        Args:
-            translation: The point [m], shape (3,).
-            angle: The angle [rad], in the frame of the arm's base.
-        """
-        self._set(_Type.TranslationYAxisAngle4D, [translation, angle])
-
-    def GetTranslationYAxisAngle4D(self) -> tuple[Floats, float]:
-        """Return the point [m], shape (3,), and the angle [rad]."""
-        return self._point_and_angle(_Type.TranslationYAxisAngle4D)
-
-    def SetTranslationZAxisAngle4D(self, translation: ArrayLike, angle: float) -> None:
-        """Set the goal to a point and the angle between the direction and the z axis.
-
-        Args:
-            translation: The point [m], shape (3,).
-            angle: The angle [rad], in the frame of the arm's base.
-        """
-        self._set(_Type.TranslationZAxisAngle4D, [translation, angle])
-
-    def GetTranslationZAxisAngle4D(self) -> tuple[Floats, float]:
-        """Return the point [m], shape (3,), and the angle [rad]."""
-        return self._point_and_angle(_Type.TranslationZAxisAngle4D)
-
-    def SetTranslationXAxisAngleZNorm4D(self, translation: ArrayLike, angle: float) -> None:
-        """Set the goal to a point and the heading of the direction about z, from x.
-
-        Args:
-            translation: The point [m], shape (3,).
-            angle: The angle [rad], in the frame of the arm's base.
-        """
-        self._set(_Type.TranslationXAxisAngleZNorm4D, [translation, angle])
-
-    def GetTranslationXAxisAngleZNorm4D(self) -> tuple[Floats, float]:
-        """Return the point [m], shape (3,), and the angle [rad]."""
-        return self._point_and_angle(_Type.TranslationXAxisAngleZNorm4D)
-
-    def SetTranslationYAxisAngleXNorm4D(self, translation: ArrayLike, angle: float) -> None:
-        """Set the goal to a point and the heading of the direction about x, from y.
-
-        Args:
-            translation: The point [m], shape (3,).
-            angle: The angle [rad], in the frame of the arm's base.
-        """
-        self._set(_Type.TranslationYAxisAngleXNorm4D, [translation, angle])
-
-    def GetTranslationYAxisAngleXNorm4D(self) -> tuple[Floats, float]:
-        """Return the point [m], shape (3,), and the angle [rad]."""
-        return self._point_and_angle(_Type.TranslationYAxisAngleXNorm4D)
-
-    def SetTranslationZAxisAngleYNorm4D(self, translation: ArrayLike, angle: float) -> None:
-        """Set the goal to a point and the heading of the direction about y, from z.
-
-        Args:
-            translation: The point [m], shape (3,).
-            angle: The angle [rad], in the frame of the arm's base.
-        """
-        self._set(_Type.TranslationZAxisAngleYNorm4D, [translation, angle])
-
-    def GetTranslationZAxisAngleYNorm4D(self) -> tuple[Floats, float]:
-        """Return the point [m], shape (3,), and the angle [rad]."""
-        return self._point_and_angle(_Type.TranslationZAxisAngleYNorm4D)
+    def SetTranslationXAxisAngle4D(self, translation: ArrayLike, angle: float) -> None: ...
+    def GetTranslationXAxisAngle4D(self) -> tuple[Floats, float]: ...
+    def SetTranslationYAxisAngle4D(self, translation: ArrayLike, angle: float) -> None: ...
+    def GetTranslationYAxisAngle4D(self) -> tuple[Floats, float]: ...
+    def SetTranslationZAxisAngle4D(self, translation: ArrayLike, angle: float) -> None: ...
+    def GetTranslationZAxisAngle4D(self) -> tuple[Floats, float]: ...
+    def SetTranslationXAxisAngleZNorm4D(self, translation: ArrayLike, angle: float) -> None: ...
+    def GetTranslationXAxisAngleZNorm4D(self) -> tuple[Floats, float]: ...
+    def SetTranslationYAxisAngleXNorm4D(self, translation: ArrayLike, angle: float) -> None: ...
+    def GetTranslationYAxisAngleXNorm4D(self) -> tuple[Floats, float]: ...
+    def SetTranslationZAxisAngleYNorm4D(self, translation: ArrayLike, angle: float) -> None: ...
+    def GetTranslationZAxisAngleYNorm4D(self) -> tuple[Floats, float]: ...

@@ -106,7 +106,7 @@ class IkFailureInfo(ApiObject):
         configuration: The joint values that were rejected, shape (n,); none where the goal is out of reach.
         ikparam: The goal, in the frame of the arm's base.
         report: The collision, if it was one.
-        description: Why, in words.
+        description: A sentence that says why.
     """
 
     def __init__(
@@ -138,5 +138,5 @@ class IkFailureInfo(ApiObject):
         return self._report
 
     def GetDescription(self) -> str:
-        """Return why, in words."""
+        """Return a sentence that says why."""
         return self._description

@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Hashable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -63,10 +63,7 @@ class Member(ApiObject):
         Returns:
             An array of shape (n,), a number where an index was given, None for an unknown name, or all arrays by name.
         """
-        found = {key: np.array(values) for key, values in self._scene.parameters.floats}
-        if name is None or name not in found:
-            return found if name is None else None
-        return found[name] if index < 0 else float(found[name][index])
+        return _chosen({key: np.array(values) for key, values in self._scene.parameters.floats}, name, index)
 
     def SetFloatParameters(self, key: str, parameters: ArrayLike) -> None:
         """Attach numbers under a name.
@@ -84,10 +81,8 @@ class Member(ApiObject):
             name: Which; None: all of them.
             index: Which number of them; below 0: all.
         """
-        found = {key: np.array(values, dtype=np.int_) for key, values in self._scene.parameters.integers}
-        if name is None or name not in found:
-            return found if name is None else None
-        return found[name] if index < 0 else int(found[name][index])
+        arrays = {key: np.array(values, dtype=np.int_) for key, values in self._scene.parameters.integers}
+        return _chosen(arrays, name, index)
 
     def SetIntParameters(self, key: str, parameters: ArrayLike) -> None:
         """Attach integers under a name.
@@ -129,3 +124,11 @@ class Member(ApiObject):
     def __repr__(self) -> str:
         env, body = self._parent.GetEnv(), self._parent.GetName()
         return f"{env!r}.GetKinBody({body!r}).Get{type(self).__name__}({self.GetName()!r})"
+
+
+def _chosen(arrays: dict[str, Any], name: str | None, index: int) -> Any:  # noqa: ANN401 - floats or integers
+    """Return all arrays, that of a name or None, or one number of it."""
+    if name is None:
+        return arrays
+    found = arrays.get(name)
+    return found if found is None or index < 0 else found[index].item()

@@ -71,11 +71,7 @@ class Trajectory(Interface):
 
     @property
     def waypoints(self) -> Waypoints:
-        """The waypoints, below the OpenRAVE API.
-
-        Raises:
-            openrave_exception: ``Init`` was not called.
-        """
+        """The waypoints, below the OpenRAVE API; there are none before ``Init``."""
         if self._waypoints is None:
             raise RavemjError("the trajectory has no specification yet; call Init(spec) first", ErrorCode.Assert)
         return self._waypoints
@@ -366,8 +362,6 @@ class Trajectory(Interface):
         return True
 
     def __repr__(self) -> str:
-        from ravemj.trajectories.serialization import AS_TEXT  # noqa: PLC0415 - rarely wanted
-
         made = f"RaveCreateTrajectory({self._env!r}, {self._xmlid!r})"
         return made if self._waypoints is None else f"{made}.deserialize({self.serialize(AS_TEXT).decode()!r})"
 

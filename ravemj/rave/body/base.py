@@ -3,9 +3,14 @@
 from collections.abc import Generator
 from contextlib import contextmanager
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_index
+from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState, Simulation
+from ravemj.errors import ArgumentError
 
 
 @contextmanager
@@ -51,3 +56,16 @@ class BodyPart(ApiObject):
 
     def _checked_link(self, index: int) -> int:
         return checked_index(index, len(self._state.scene.links), "linkindex")
+
+    def _checked_many(self, numbers: ArrayLike, name: str) -> Floats:
+        """Return an array of shape (N, dof), which is the given one where that has numbers of the right kind."""
+        dof = self.GetDOF()
+        try:
+            checked = np.asarray(numbers, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ArgumentError(f"{name}: should be numbers of shape (N, {dof})") from None
+        if checked.ndim != 2 or checked.shape[1] != dof:
+            raise ArgumentError(f"{name}: has shape {checked.shape}, and should have (N, {dof})")
+        if not np.isfinite(checked.sum()) and not all(np.isfinite(row).all() for row in checked):
+            raise ArgumentError(f"{name}: should be finite")
+        return checked

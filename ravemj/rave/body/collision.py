@@ -84,11 +84,7 @@ class BodyCollision(Structure, Interface):
             >>> samples = np.random.uniform(lower, upper, (1000, robot.GetDOF()))
             >>> free = samples[~robot.batch_collides(samples)]
         """
-        rows = checked_numbers(values, "batch_collides: values")
-        if rows.ndim != 2 or rows.shape[1] != self.GetDOF() or not np.isfinite(rows).all():
-            raise ArgumentError(
-                f"batch_collides: values have shape {rows.shape}, and should be finite, of shape (n, {self.GetDOF()})"
-            )
+        rows = self._checked_many(values, "batch_collides: values")
         with self._simulation.lock:
             return batch_collides(self._state, rows, itself_too=itself_too)
 
@@ -225,8 +221,7 @@ class BodyCollision(Structure, Interface):
             >>> box = robot.ComputeAABB()
             >>> height = box.pos()[2] + box.extents()[2]
         """
-        with self._simulation.lock:
-            return self._bounds(self._state.link_transforms(), enabledOnlyLinks)
+        return self._bounds(self._poses(), enabledOnlyLinks)
 
     def ComputeAABBFromTransform(self, transform: ArrayLike, enabledOnlyLinks: bool = False) -> AABB:
         """Return the box of ``ComputeAABB`` for the body standing elsewhere, with its present joint values.
@@ -236,9 +231,7 @@ class BodyCollision(Structure, Interface):
             enabledOnlyLinks: Whether disabled links are left out.
         """
         T_world_body = checked_transform(transform, "ComputeAABBFromTransform: transform")
-        with self._simulation.lock:
-            poses = self._state.link_transforms()
-        return self._bounds(T_world_body @ inverse(poses[0]) @ poses if len(poses) else poses, enabledOnlyLinks)
+        return self._bounds(self._poses(T_world_body), enabledOnlyLinks)
 
     def ComputeLocalAABB(self, enabledOnlyLinks: bool = False) -> AABB:
         """Return the box of ``ComputeAABB`` along the axes of the first link and in its frame.
@@ -256,8 +249,7 @@ class BodyCollision(Structure, Interface):
             enabledOnlyLinks: Whether disabled links are left out.
         """
         T_world_frame = checked_transform(transform, "ComputeOBBOnAxes: transform")
-        with self._simulation.lock:
-            local = self._bounds(inverse(T_world_frame) @ self._state.link_transforms(), enabledOnlyLinks)
+        local = self._bounds(inverse(T_world_frame) @ self._poses(), enabledOnlyLinks)
         return OrientedBoxFromAABB(local, T_world_frame)
 
     def SetLinkGroupGeometries(self, name: str, linkgeometries: Sequence[Sequence[GeometryInfo]]) -> None:
@@ -316,13 +308,11 @@ class BodyCollision(Structure, Interface):
             enabledOnlyLinks: Whether disabled links are left out.
         """
         T_world_body = checked_transform(transform, "ComputeAABBForGeometryGroupFromTransform: transform")
-        with self._simulation.lock:
-            poses, enabled = self._state.link_transforms(), self._state.link_enabled
-        if len(poses):
-            poses = T_world_body @ inverse(poses[0]) @ poses
         links = [
             (link.scene_with_group(geomgroupname), pose)
-            for link, pose, takes_part in zip(self.GetLinks(), poses, enabled, strict=True)
+            for link, pose, takes_part in zip(
+                self.GetLinks(), self._poses(T_world_body), self._state.link_enabled, strict=True
+            )
             if link.GetGroupNumGeometries(geomgroupname) >= 0 and (takes_part or not enabledOnlyLinks)
         ]
         return enclosing_box(links_bounds([link for link, _ in links], [pose for _, pose in links]), T_world_body)
@@ -335,6 +325,12 @@ class BodyCollision(Structure, Interface):
             enabledOnlyLinks: Whether disabled links are left out.
         """
         return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, np.eye(4), enabledOnlyLinks)
+
+    def _poses(self, T_world_body: Floats | None = None) -> Floats:
+        """Return the poses of the links, shape (links, 4, 4), or what they would be with the first link elsewhere."""
+        with self._simulation.lock:
+            poses = self._state.link_transforms()
+        return poses if T_world_body is None or not len(poses) else T_world_body @ inverse(poses[0]) @ poses
 
     def _bounds(self, poses: Floats, enabled_only: bool) -> AABB:
         enabled = self._state.link_enabled

@@ -327,19 +327,6 @@ class Dynamics(BodyPart):
             state.batch.inverse_dynamics(checked[0], checked[1], checked[2], state.inertias, gravity, result)
         return result
 
-    def _checked_many(self, numbers: ArrayLike, name: str) -> Floats:
-        """Return an array of shape (N, dof), which is the given one where that has numbers of the right kind."""
-        dof = self.GetDOF()
-        try:
-            checked = np.asarray(numbers, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise ArgumentError(f"{name}: should be numbers of shape (N, {dof})") from None
-        if checked.ndim != 2 or checked.shape[1] != dof:
-            raise ArgumentError(f"{name}: has shape {checked.shape}, and should have (N, {dof})")
-        if not np.isfinite(checked.sum()) and not all(np.isfinite(row).all() for row in checked):
-            raise ArgumentError(f"{name}: should be finite")
-        return checked
-
 
 def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
     """Return columns of a Jacobian, along the last axis; zeros for an index of no DOF."""

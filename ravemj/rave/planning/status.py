@@ -36,7 +36,7 @@ class PlannerStatus(ApiObject):
 
     Attributes:
         statusCode: How it ended, a ``PlannerStatusCode``.
-        description: What happened, in words.
+        description: A sentence that says what happened.
         errorOrigin: The planner that failed.
         jointValues: The configuration that is to blame; empty if none is.
         ikparam: The goal of inverse kinematics that is to blame, or None.
