@@ -14,7 +14,7 @@ from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.motions import Mover, Postprocessing
 from ravemj.rave.planning.bodies import Bodies
-from ravemj.rave.planning.names import PLANNERS
+from ravemj.rave.planning.names import is_planner
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.specification import IkParameterization
@@ -252,7 +252,7 @@ class BaseManipulation(Mover):
         raise PlanningError("there is no place where the joints can move to their values")
 
     def _by(self, planner: str, plan: Callable[[], Trajectory]) -> Trajectory | None:
-        old, self.planner = self.planner, planner if planner.lower() in PLANNERS else "birrt"
+        old, self.planner = self.planner, planner if is_planner(planner) else "birrt"
         try:
             return plan()
         except PlanningError:

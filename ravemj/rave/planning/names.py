@@ -49,7 +49,8 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
         name: In any letter case: ``birrt``, ``BasicRRT``, ``ExplorationRRT``, ``RAStar``; the retimers
             ``LinearTrajectoryRetimer``, ``ParabolicTrajectoryRetimer``, ``CubicTrajectoryRetimer``,
             ``QuinticTrajectoryRetimer``; the smoothers ``LinearSmoother``, ``shortcut_linear``,
-            ``ParabolicSmoother``, ``CubicSmoother``, ``QuinticSmoother``.
+            ``ParabolicSmoother``, ``CubicSmoother``, ``QuinticSmoother``; with the extra ``planning``, the planners
+            of OMPL: ``OMPL_RRTConnect``, ``OMPL_RRTstar``, ``OMPL_BITstar``, ``OMPL_PRM`` and so on.
 
     Returns:
         The planner; None for a name that OpenRAVE does not know either.
@@ -65,11 +66,24 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
     word = next(iter(name.split()), "")
     if word.lower() in MISSING:
         raise UnsupportedError(f"planner '{word}'", MISSING[word.lower()])
-    make = PLANNERS.get(word.lower())
+    make = _maker(word)
     if make is None:
         _LOG.warning("there is no planner '%s'", name)
         return None
     return make(env, word)
+
+
+def is_planner(name: str) -> bool:
+    """Return whether there is a planner of a name."""
+    return _maker(name) is not None
+
+
+def _maker(name: str) -> "Callable[[Environment, str], Planner] | None":
+    if not name.lower().startswith("ompl_"):
+        return PLANNERS.get(name.lower())
+    from ravemj.rave.planning.ompl_planners import OmplPlanner, is_ompl_planner  # noqa: PLC0415 - slow to import
+
+    return OmplPlanner if is_ompl_planner(name) else None
 
 
 def needed_planner(env: "Environment", name: str) -> Planner:

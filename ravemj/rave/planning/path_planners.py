@@ -128,8 +128,9 @@ class PathPlanner(Planner):
     ) -> Search: ...
 
     def _ended(self, search: Search) -> PlannerStatus:
-        tested = f"after {search.iterations} iterations, with {sum(tree.count for tree in search.trees)} configurations"
-        status = self._failed(f"{search.end.value} {tested}")
+        size = sum(tree.count for tree in search.trees)
+        grown = f", with {size} configurations" if search.trees else ""
+        status = self._failed(f"{search.end.value} after {search.iterations} iterations{grown}")
         if search.end is End.interrupted:
             status.statusCode = PlannerStatusCode.Interrupted
         return status
