@@ -71,7 +71,7 @@ class BaseManipulation(Mover):
             raise PlanningError("there is no goal")
         for one in [*goals, *starts]:
             if len(one) != dof or not np.isfinite(one).all():
-                raise ArgumentError(f"a goal or start is {list(one)}, and should be {dof} finite numbers")
+                raise ArgumentError(f"a goal or start is {one.tolist()}, and should be {dof} finite numbers")
         return self.plan(goals, starts=starts, postprocessing=postprocessing, more=more, **effort._asdict())
 
     def move_manipulator(self, goals: Sequence[Floats], effort: Effort) -> Trajectory:

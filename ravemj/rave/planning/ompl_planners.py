@@ -60,14 +60,7 @@ class OmplPlanner(PathPlanner):
         classes = planner_classes()
         assert classes is not None, "there would be no planner"
         planner = classes[self._xmlid.lower().removeprefix(PREFIX)]
-        if limit := values.tags.get("time_limit"):
-            budget = replace(budget, seconds=_seconds(limit))
+        if "time_limit" in values.tags:
+            budget = replace(budget, seconds=values.tag("time_limit", 0.0))
         seed = int(random.integers(2**31))
         return search_with_ompl(planner, edges, starts, goals, budget, seed, values.tags)
-
-
-def _seconds(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise OmplError(f"<time_limit>: '{text}' should be a number of seconds") from None
