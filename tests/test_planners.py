@@ -2,9 +2,16 @@
 
 import gc
 import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
+from waiting import PATIENCE
 
 import ravemj
 from ravemj import Planner, PlannerStatus, planningutils
@@ -102,6 +109,80 @@ def test_what_cannot_be_planned_says_why(robot, start, goal, words):
     assert robot.GetDOFValues() == pytest.approx(start)
 
 
+def test_parameters_that_make_no_sense_are_named(env, robot):
+    for name, tag in (("BasicRRT", "goalbias"), ("ExplorationRRT", "expectedsize")):
+        params = parameters(robot)
+        params.SetExtraParameters(f"<{tag}>some</{tag}>")
+        with pytest.raises(ravemj.openrave_exception, match=f"<{tag}>: 'some' should be a number"):
+            planned(robot, params, name)
+    params = parameters(robot)
+    params.SetRandomGeneratorSeed(-5)
+    assert planned(robot, params)[0] == PlannerStatus.HasSolution
+    robot.SetDOFVelocityLimits([2, 0])
+    assert "velocity or acceleration limit is 0" in planned(robot, parameters(robot))[0].description
+    robot.SetDOFVelocityLimits([2, 3])
+    robot.SetDOFLimits([-np.inf, -2.5], [np.inf, 2.5])
+    assert planned(robot, parameters(robot))[0].description == "joint 'one' has no limits, and should have some"
+
+
+@pytest.mark.parametrize("slow", [False, True])
+def test_a_robot_that_is_removed_while_it_is_planned_for(env, robot, slow):
+    params = parameters(robot)
+    if slow:
+        params.add_constraint(lambda values: True)
+    planner = ravemj.RaveCreatePlanner(env, "birrt")
+    planner.InitPlan(robot, params)
+    handle = planner.RegisterPlanCallback(lambda progress: env.Remove(robot) and None)
+    with pytest.raises(ravemj.openrave_exception, match="'arm' is not in an environment"):
+        planner.PlanPath(ravemj.RaveCreateTrajectory(env, ""))
+    handle.Close()
+    env.Add(robot)
+    assert robot.GetDOFValues() == pytest.approx([-1.2, 0.2])
+    assert planner.PlanPath(ravemj.RaveCreateTrajectory(env, "")) == PlannerStatus.HasSolution
+
+
+def test_another_thread_removes_a_robot_when_the_planner_is_done(env, robot):
+    params = parameters(robot)
+    planner = ravemj.RaveCreatePlanner(env, "birrt")
+    planner.InitPlan(robot, params)
+    remover = threading.Thread(target=env.Remove, args=[robot])
+    handle = planner.RegisterPlanCallback(lambda progress: None if remover.ident else remover.start())
+    assert planner.PlanPath(ravemj.RaveCreateTrajectory(env, "")) == PlannerStatus.HasSolution
+    remover.join()
+    handle.Close()
+    assert env.GetRobots() == []
+
+
+CTRL_C = """
+import signal, sys
+sys.path.insert(0, {tests!r})
+import numpy, ravemj, test_planners
+env = ravemj.Environment()
+env.LoadData(test_planners.ARM)
+robot = env.GetRobot("arm")
+robot.SetDOFValues([-1.2, 0.2])
+test_planners.box(env, "wall", [0.4, 0, 0.2, 0.2, 0.01, 0.3])
+helper = ravemj.interfaces.BaseManipulation(robot)
+print("planning", flush=True)
+try:
+    helper.MoveActiveJoints([1.2, 0.2], maxiter=10**9)
+except KeyboardInterrupt:
+    print(robot.GetDOFValues().tolist(), robot.GetController().IsDone(), env.GetRobots() == [robot])
+"""
+
+
+def test_ctrl_c_leaves_the_robot_where_it_was_and_nothing_half_executed():
+    script = CTRL_C.format(tests=str(Path(__file__).parent))
+    process = subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "planning\n"
+    time.sleep(0.1)  # any time will do
+    process.send_signal(signal.SIGINT)
+    said, complaints = process.communicate(timeout=PATIENCE)
+    assert (said, complaints) == ("[-1.2, 0.2] True True\n", "")
+
+
 def test_a_failure_for_want_of_time_or_iterations_says_so(robot):
     params = parameters(robot, iterations=20)
     params.add_constraint(lambda values: abs(values[0]) > 0.1)  # a wall
@@ -166,9 +247,9 @@ def test_held_bodies_plan_with_the_robot(env, robot):
     robot.Grab(pole, robot.GetLink("fore"))
     status, trajectory = planned(robot, params)
     assert status == PlannerStatus.HasSolution
-    for time in np.linspace(0, trajectory.GetDuration(), 300):
+    for moment in np.linspace(0, trajectory.GetDuration(), 300):
         spec = robot.GetActiveConfigurationSpecification()
-        robot.SetActiveDOFValues(trajectory.Sample(time, spec))
+        robot.SetActiveDOFValues(trajectory.Sample(moment, spec))
         assert not env.CheckCollision(robot)
     robot.SetDOFValues([-1.2, 0.2])
     assert pole.GetTransform() == pytest.approx(T)

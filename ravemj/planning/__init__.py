@@ -2,7 +2,7 @@
 
 ``space`` says what a configuration is: limits, distances, ways round. ``edges`` tests straight lines, ``trees``,
 ``rrt`` and ``randomized_astar`` find paths of them, ``shortcuts`` shortens them, ``jitter`` finds what is allowed
-nearby. ``retiming`` gives paths times, ``ramps`` and ``ramp_shortcuts`` make motions of constant accelerations
-faster, and ``verification`` looks at every moment of the result. Arrays and functions in, arrays out: what collides
-is asked of a function.
+nearby; ``ompl_search`` asks OMPL. ``retiming`` gives paths times, ``ramps`` and ``ramp_shortcuts`` make motions of
+constant accelerations faster, and ``verification`` looks at every moment of the result. Arrays and functions in, arrays
+out: what collides is asked of a function.
 """

@@ -98,17 +98,25 @@ class Rows(NamedTuple):
     orders: Sequence[Floats]
 
 
-class Profile(Protocol):
-    """A kind of retimer.
+class Interpolated(Protocol):
+    """How results move between their rows.
 
     Attributes:
         interpolation: Of the joint values.
         order: How many derivatives the result has.
-        merges: Whether equal neighbours become one waypoint, and time does not start before the first one.
     """
 
     interpolation: str
     order: int
+
+
+class Profile(Interpolated, Protocol):
+    """A kind of retimer that goes from waypoint to waypoint.
+
+    Attributes:
+        merges: Whether equal neighbours become one waypoint, and time does not start before the first one.
+    """
+
     merges: bool
 
     def shortest(self, segment: Segment, limits: Limits) -> float:

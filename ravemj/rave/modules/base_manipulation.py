@@ -14,7 +14,7 @@ from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.modules.motions import Manipulation, Postprocessing
 from ravemj.rave.planning.bodies import Bodies
-from ravemj.rave.planning.names import PLANNERS
+from ravemj.rave.planning.names import is_planner
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.specification import IkParameterization
@@ -71,7 +71,7 @@ class BaseManipulation(Manipulation):
             raise PlanningError("there is no goal")
         for one in [*goals, *starts]:
             if len(one) != dof or not np.isfinite(one).all():
-                raise ArgumentError(f"a goal or start is {list(one)}, and should be {dof} finite numbers")
+                raise ArgumentError(f"a goal or start is {one.tolist()}, and should be {dof} finite numbers")
         return self.plan(goals, starts=starts, postprocessing=postprocessing, more=more, **search._asdict())
 
     def move_manipulator(self, goals: Sequence[Floats], search: SearchOptions) -> Trajectory:
@@ -252,7 +252,7 @@ class BaseManipulation(Manipulation):
         raise PlanningError("there is no place where the joints can move to their values")
 
     def _by(self, planner: str, plan: Callable[[], Trajectory]) -> Trajectory | None:
-        old, self.planner = self.planner, planner if planner.lower() in PLANNERS else "birrt"
+        old, self.planner = self.planner, planner if is_planner(planner) else "birrt"
         try:
             return plan()
         except PlanningError:

@@ -12,7 +12,7 @@ from ravemj.planning.jitter import nearby
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import SaveParameters
 from ravemj.rave.planning.end_waypoints import EndWaypoint
-from ravemj.rave.planning.names import PLANNERS, needed_planner, retimed
+from ravemj.rave.planning.names import is_planner, needed_planner, retimed
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlannerStatus, PlanningError
 from ravemj.rave.planning.values import Values
@@ -66,7 +66,7 @@ class Manipulation:
 
     def choose_planner(self, name: str) -> None:
         """Choose the planner of paths; an unknown name chooses ``birrt``, as in OpenRAVE."""
-        self.planner = name if name.lower() in PLANNERS else "birrt"
+        self.planner = name if is_planner(name) else "birrt"
 
     def keeping_active(self) -> AbstractContextManager[object]:
         """Have the active DOFs as they were afterwards."""

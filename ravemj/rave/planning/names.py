@@ -8,11 +8,13 @@ import numpy as np
 
 from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.planning.retiming import topp_ra
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt, RaStar
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.processing import TRAJECTORY_PLANNERS
+from ravemj.rave.planning.retimers import TOPP_RA
 from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
@@ -48,8 +50,10 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
         env: The environment.
         name: In any letter case: ``birrt``, ``BasicRRT``, ``ExplorationRRT``, ``RAStar``; the retimers
             ``LinearTrajectoryRetimer``, ``ParabolicTrajectoryRetimer``, ``CubicTrajectoryRetimer``,
-            ``QuinticTrajectoryRetimer``; the smoothers ``LinearSmoother``, ``shortcut_linear``,
-            ``ParabolicSmoother``, ``CubicSmoother``, ``QuinticSmoother``.
+            ``QuinticTrajectoryRetimer``, and with the extra ``retiming`` ``ToppraTrajectoryRetimer``; the smoothers
+            ``LinearSmoother``, ``shortcut_linear``, ``ParabolicSmoother``, ``CubicSmoother``, ``QuinticSmoother``;
+            with the extra ``planning``, the planners of OMPL: ``OMPL_RRTConnect``, ``OMPL_RRTstar``, ``OMPL_BITstar``,
+            ``OMPL_PRM`` and so on.
 
     Returns:
         The planner; None for a name that OpenRAVE does not know either.
@@ -65,11 +69,27 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
     word = next(iter(name.split()), "")
     if word.lower() in MISSING:
         raise UnsupportedError(f"planner '{word}'", MISSING[word.lower()])
-    make = PLANNERS.get(word.lower())
+    make = _maker(word)
     if make is None:
         _LOG.warning("there is no planner '%s'", name)
         return None
     return make(env, word)
+
+
+def is_planner(name: str) -> bool:
+    """Return whether there is a planner of a name."""
+    return _maker(name) is not None
+
+
+def _maker(name: str) -> "Callable[[Environment, str], Planner] | None":
+    if name.lower() in TOPP_RA and not topp_ra.is_installed():
+        _LOG.warning("planner '%s' needs toppra; install it: pip install \"ravemj[retiming]\"", name)
+        return None
+    if not name.lower().startswith("ompl_"):
+        return PLANNERS.get(name.lower())
+    from ravemj.rave.planning.ompl_planners import OmplPlanner, is_ompl_planner  # noqa: PLC0415 - slow to import
+
+    return OmplPlanner if is_ompl_planner(name) else None
 
 
 def needed_planner(env: "Environment", name: str) -> Planner:

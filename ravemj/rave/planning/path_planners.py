@@ -53,6 +53,9 @@ class PathPlanner(Planner):
             starts, goals = self._starts_and_goals(values)
         except ArgumentError as error:
             return self._failed(str(error))
+        endless = np.flatnonzero(~np.isfinite(values.space().lower) | ~np.isfinite(values.space().upper))
+        if len(endless):
+            return self._failed(f"{_described(values, int(endless[0]))} has no limits, and should have some")
         with values.bodies.kept():
             for name, candidates in (("start", starts), ("goal", goals)):
                 if not len(candidates) and (name == "start" or self._needs_goal(values)):
@@ -105,7 +108,7 @@ class PathPlanner(Planner):
             edges, numbers = Edges(values.space(), values.allowed()), values.numbers
             iterations = int(numbers["_nmaxiterations"]) or _ITERATIONS
             budget = Budget(iterations, numbers["_nmaxplanningtime"] / 1000, self._proceed)
-            random = np.random.default_rng(int(numbers["_nrandomgeneratorseed"]))
+            random = values.random()
             search = self._search(edges, starts, goals, budget, random, values)
         self._search_made = search
         if search.path is None:
@@ -128,8 +131,9 @@ class PathPlanner(Planner):
     ) -> Search: ...
 
     def _ended(self, search: Search) -> PlannerStatus:
-        tested = f"after {search.iterations} iterations, with {sum(tree.count for tree in search.trees)} configurations"
-        status = self._failed(f"{search.end.value} {tested}")
+        size = sum(tree.count for tree in search.trees)
+        grown = f", with {size} configurations" if search.trees else ""
+        status = self._failed(f"{search.end.value} after {search.iterations} iterations{grown}")
         if search.end is End.interrupted:
             status.statusCode = PlannerStatusCode.Interrupted
         return status
@@ -210,7 +214,7 @@ class BasicRrt(PathPlanner):
         random: np.random.Generator,
         values: Values,
     ) -> Search:
-        return single(edges, starts, goals, budget, random, float(values.tags.get("goalbias") or 0.05))
+        return single(edges, starts, goals, budget, random, values.tag("goalbias", 0.05))
 
 
 class RaStar(PathPlanner):
@@ -248,7 +252,7 @@ class ExplorationRrt(PathPlanner):
         random: np.random.Generator,
         values: Values,
     ) -> Search:
-        tree = explore(edges, starts, int(values.tags.get("expectedsize") or 100), budget, random)
+        tree = explore(edges, starts, int(values.tag("expectedsize", 100)), budget, random)
         return Search(End.found, tree.nodes(), 0, -1, tree.count, (tree,))
 
     def _processed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:

@@ -11,7 +11,16 @@ from ravemj.planning.retiming.jerk_limited import JerkLimited
 from ravemj.planning.retiming.linear import Linear
 from ravemj.planning.retiming.parabolic import Parabolic
 from ravemj.planning.retiming.polynomials import Cubic, Quintic
-from ravemj.planning.retiming.segments import OutsideLimitsError, Profile, RetimingError, Timed, retime
+from ravemj.planning.retiming.segments import (
+    Interpolated,
+    Limits,
+    OutsideLimitsError,
+    Profile,
+    RetimingError,
+    Timed,
+    retime,
+)
+from ravemj.planning.retiming.topp_ra import ToppRa
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.status import PlannerStatus
 from ravemj.rave.planning.values import Values
@@ -24,13 +33,16 @@ def _parabolic(values: Values) -> Parabolic:
     return Parabolic(with_changes=flag(values, "outputaccelchanges", default=True))
 
 
-RETIMERS: dict[str, Callable[[Values], Profile]] = {
+TOPP_RA = ("toppra", "toppratrajectoryretimer")
+
+RETIMERS: dict[str, Callable[[Values], Profile | ToppRa]] = {
     "lineartrajectoryretimer": lambda values: Linear(),
     "parabolictrajectoryretimer": _parabolic,
     "parabolictrajectoryretimer2": _parabolic,
     "cubictrajectoryretimer": lambda values: Cubic(),
     "cubictrajectoryretimer2": lambda values: JerkLimited(),
     "quintictrajectoryretimer": lambda values: Quintic(),
+    **dict.fromkeys(TOPP_RA, lambda values: ToppRa()),
 }
 """What retimes, by the names of planners in lower case."""
 
@@ -75,16 +87,30 @@ class Retimer(Planner):
                 return self._failed("the times should be kept, and there are none")
             deltas = traj.GetAllWaypoints2D()[:, group.offset]
         velocities = _given_velocities(traj, spec) if flag(values, "hasvelocities") else None
-        step = values.numbers["_fsteplength"]
         points = traj.GetAllWaypoints2D(spec)
         try:
-            timed = retime(profile, points, values.limits(), deltas=deltas, velocities=velocities, time_step=step)
+            timed = _timed(profile, points, values.limits(), (deltas, velocities), values.numbers["_fsteplength"])
         except OutsideLimitsError as error:
             raise ArgumentError(f"{self._xmlid}: {error}", ErrorCode.InconsistentConstraints) from None
         except RetimingError as error:
             return self._failed(str(error))
         fill(traj, spec, profile, timed)
         return self._solved(f"{len(timed.deltas)} waypoints in {timed.deltas.sum():.6g} s")
+
+
+def _timed(
+    profile: Profile | ToppRa,
+    points: Floats,
+    limits: Limits,
+    given: tuple[Floats | None, Floats | None],
+    time_step: float,
+) -> Timed:
+    """Return a path with times; ``given``: times and velocities that should be kept."""
+    if not isinstance(profile, ToppRa):
+        return retime(profile, points, limits, deltas=given[0], velocities=given[1], time_step=time_step)
+    if any(one is not None for one in given):
+        raise RetimingError("TOPP-RA keeps neither times nor velocities")
+    return profile.timed(points, limits, time_step)
 
 
 def lacking_group(spec: ConfigurationSpecification, source: ConfigurationSpecification) -> str | None:
@@ -98,7 +124,7 @@ def _given_velocities(traj: Trajectory, spec: ConfigurationSpecification) -> Flo
 
 
 def fill(
-    traj: Trajectory, spec: ConfigurationSpecification, profile: Profile, timed: Timed, *, mark: bool = False
+    traj: Trajectory, spec: ConfigurationSpecification, profile: Interpolated, timed: Timed, *, mark: bool = False
 ) -> None:
     """Make a trajectory of a path with times.
 

@@ -82,7 +82,7 @@ class Smoother(Planner):
     def _smoothed(
         self, edges: Edges, values: Values, traj: Trajectory, points: Floats, profile: Profile
     ) -> PlannerStatus:
-        random = np.random.default_rng(int(values.numbers["_nrandomgeneratorseed"]))
+        random = values.random()
         tries = int(values.numbers["_nmaxiterations"]) or _TRIES
         limits, spec = values.limits(), ConfigurationSpecification.of(values.groups)
         coordinates = limits.coordinates

@@ -75,6 +75,22 @@ class Values:
         post = read.postprocessing or self.postprocessing
         return replace(self, numbers=numbers, vectors=vectors, tags=tags, groups=groups, postprocessing=post)
 
+    def tag(self, name: str, default: float) -> float:
+        """Return a further parameter that is a number.
+
+        Raises:
+            ArgumentError: it is none.
+        """
+        text = self.tags.get(name, "").strip()
+        try:
+            return float(text) if text else default
+        except ValueError:
+            raise ArgumentError(f"<{name}>: '{text}' should be a number") from None
+
+    def random(self) -> np.random.Generator:
+        """Return random numbers as the seed says."""
+        return np.random.default_rng(abs(int(self.numbers["_nrandomgeneratorseed"])))
+
     def coordinates(self) -> Coordinates:
         """Return what the numbers of a configuration are."""
         return self.bodies.coordinates() if self.bodies else Coordinates(np.zeros(count(self.groups), dtype=bool))

@@ -1,0 +1,66 @@
+"""The planners of OMPL, under the names that the plugin or_ompl gave them: ``OMPL_RRTConnect`` and so on."""
+
+import logging
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.planning.edges import Edges
+from ravemj.planning.ompl_search import OmplError, planner_classes, search_with_ompl
+from ravemj.planning.rrt import Budget, Search
+from ravemj.rave.planning.path_planners import PathPlanner
+from ravemj.rave.planning.status import PlannerStatus
+from ravemj.rave.planning.values import Values
+from ravemj.rave.trajectory import Trajectory
+
+_LOG = logging.getLogger("ravemj")
+
+PREFIX = "ompl_"
+"""Names in lower case begin with it."""
+
+
+def is_ompl_planner(name: str) -> bool:
+    """Return whether there is a planner of a name; a warning says what is missing where it is OMPL."""
+    classes = planner_classes()
+    if classes is None:
+        _LOG.warning("planner '%s' needs OMPL; install it: pip install \"ravemj[planning]\"", name)
+        return False
+    return name.lower().removeprefix(PREFIX) in classes
+
+
+class OmplPlanner(PathPlanner):
+    """A planner of OMPL.
+
+    Elements of the parameters set its own, such as ``<range>0.5</range>`` or ``<goal_bias>0.1</goal_bias>``; as with
+    or_ompl, ``<time_limit>`` is how long it may take [s]. Planners that look for the best path use up their time, or
+    their iterations.
+    """
+
+    def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
+        """Find a path, and process it."""
+        try:
+            return super().run(values, traj)
+        except OmplError as error:
+            return self._failed(str(error))
+
+    def _needs_goal(self, values: Values) -> bool:
+        return True
+
+    def _search(
+        self,
+        edges: Edges,
+        starts: Sequence[Floats],
+        goals: Sequence[Floats],
+        budget: Budget,
+        random: np.random.Generator,
+        values: Values,
+    ) -> Search:
+        classes = planner_classes()
+        assert classes is not None, "there would be no planner"
+        planner = classes[self._xmlid.lower().removeprefix(PREFIX)]
+        if "time_limit" in values.tags:
+            budget = replace(budget, seconds=values.tag("time_limit", 0.0))
+        seed = int(random.integers(2**31))
+        return search_with_ompl(planner, edges, starts, goals, budget, seed, values.tags)
