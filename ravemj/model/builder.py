@@ -317,7 +317,9 @@ def _at_values(joint: scene.Joint, values: Sequence[float]) -> scene.Joint:
     """Return the joint with other values, one for each axis."""
     if [axis.value for axis in joint.axes] == values:  # as in most files; copies are slow to make
         return joint
-    return replace(joint, axes=tuple(replace(axis, value=value) for axis, value in zip(joint.axes, values, strict=True)))
+    return replace(
+        joint, axes=tuple(replace(axis, value=value) for axis, value in zip(joint.axes, values, strict=True))
+    )
 
 
 def _limited(
