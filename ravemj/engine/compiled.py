@@ -3,6 +3,7 @@
 import re
 import warnings
 from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import mujoco
@@ -28,7 +29,6 @@ class Compiled:
         mjcf: The text that was compiled.
         spec: MuJoCo's editable form of it.
         model: The compiled model; masses and inertias that MuJoCo refuses are the nearest legal ones there.
-        data: Its state.
     """
 
     def __init__(
@@ -66,7 +66,11 @@ class Compiled:
             raise _compile_error(str(error), self.mjcf) from None
         for complaint in complaints:
             self._report(str(complaint.message), scene, diagnostics)
-        self.data = mujoco.MjData(self.model)
+
+    @cached_property
+    def data(self) -> mujoco.MjData:
+        """The state of the model; made when it is first asked for, since it takes half as long as compiling."""
+        return mujoco.MjData(self.model)
 
     @classmethod
     def mechanism(cls, body: KinBody) -> "Compiled":

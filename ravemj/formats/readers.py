@@ -66,7 +66,7 @@ def _holds_collada(path: str) -> bool:
     if is_mesh(path):
         return False
     try:
-        with open(path, "rb") as file:
+        with open(path, "rb", buffering=0) as file:
             return _COLLADA in file.read(_HEAD)
     except OSError:  # the reader will say why
         return False

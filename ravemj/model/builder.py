@@ -234,13 +234,7 @@ class BodyBuilder:
         mimic_joints.evaluate(firsts)
         for mimic in mimic_joints.joints:
             values[mimic.joint][0] = firsts[mimic.joint]
-        return [
-            replace(
-                joint,
-                axes=tuple(replace(axis, value=v) for axis, v in zip(joint.axes, joint_values, strict=True)),
-            )
-            for joint, joint_values in zip(joints, values, strict=True)
-        ]
+        return [_at_values(joint, joint_values) for joint, joint_values in zip(joints, values, strict=True)]
 
     def _asked(
         self, active: Sequence[scene.Joint], values: list[list[float]], diagnostics: Diagnostics
@@ -317,6 +311,15 @@ def _welded(joint: scene.Joint, built: JointBuilder, diagnostics: Diagnostics) -
     axes = (replace(axis, direction=rotate(turn, _Z if is_z else axis.direction)) for axis in joint.axes)
     axes = tuple(replace(axis, lower=0.0, upper=0.0, reference=0.0) for axis in axes)
     return replace(joint, T_parent_child=T_parent_child, anchor=T_parent_child.position, axes=axes)
+
+
+def _at_values(joint: scene.Joint, values: Sequence[float]) -> scene.Joint:
+    """Return the joint with other values, one for each axis."""
+    if [axis.value for axis in joint.axes] == values:  # as in most files; copies are slow to make
+        return joint
+    return replace(
+        joint, axes=tuple(replace(axis, value=value) for axis, value in zip(joint.axes, values, strict=True))
+    )
 
 
 def _limited(

@@ -202,12 +202,12 @@ class Environment(Description, Loading, Saving, Collision, Drawing, Viewing):
     @property
     def mjcf(self) -> str:
         """The environment as MJCF, the text that is compiled."""
-        return self._simulation.compiled().mjcf.text
+        return self._simulation.compile().mjcf.text
 
     @property
     def spec(self) -> "mujoco.MjSpec":
         """MuJoCo's editable form of the environment, for cameras and actuators of your own."""
-        return self._simulation.compiled().spec
+        return self._simulation.compile().spec
 
     @property
     def model(self) -> "mujoco.MjModel":
@@ -282,7 +282,7 @@ def load(path: str | os.PathLike[str]) -> Environment:
         if reading.failure is not None:
             raise reading.failure
         env._add(reading)  # pyright: ignore[reportPrivateUsage]
-        env.simulation.compiled()
+        env.simulation.compile()
     except SourceError as error:
         error.diagnostics = (*reading.diagnostics, *env.simulation.diagnostics)
         if error.cause is not None:

@@ -194,14 +194,23 @@ class Simulation:
             CompileError: MuJoCo refuses the model.
         """
         with self.lock:
-            world = self._world
-            if world is None:
-                self._world = world = self._compile()
-                self.changed.clear()
-            elif self.changed:
+            world = self.compile()
+            if self.changed or not world.stamp:
                 world.take(self.changed)
                 self.changed.clear()
             return world
+
+    def compile(self) -> "WorldModel":
+        """Return the model of the present bodies, which may be elsewhere than the bodies are.
+
+        Raises:
+            CompileError: MuJoCo refuses the model.
+        """
+        with self.lock:
+            if self._world is None:
+                self._world = self._compile()
+                self.changed = set(self.bodies)
+            return self._world
 
     def collisions(self) -> "CollisionWorld":
         """Return what collision checking knows of the present bodies as they are now. The caller holds ``lock``.
@@ -210,7 +219,7 @@ class Simulation:
             CompileError: MuJoCo refuses the model.
         """
         model, stamp, known = self._world, self.collision_stamp, self._collisions
-        if model is None:
+        if model is None or not model.stamp:
             model = self.compiled()
         elif self.changed:  # as in ``compiled``, in fewer steps, since planners ask this most
             model.take(self.changed)

@@ -1,6 +1,7 @@
 """The MuJoCo model of all bodies of an environment."""
 
 from collections.abc import Iterable
+from functools import cached_property
 
 import mujoco
 
@@ -19,7 +20,7 @@ class WorldModel(Compiled):
     Each body is at home in its own model (``BodyState.own_kinematics``). Here is a copy; ``take`` brings it up to date.
 
     Attributes:
-        stamp: Grows with every change that was taken over.
+        stamp: Grows with every change that was taken over; 0 before the first ``take``, when links are nowhere yet.
         pose_stamp: Grows where more than joint values changed.
     """
 
@@ -34,14 +35,12 @@ class WorldModel(Compiled):
         scene = Scene(tuple(body.scene for body in bodies), view)
         super().__init__(scene, diagnostics)
         self.write_true_inertias(scene)
-        self._parts = {
-            body: ModelPart(self.model, self.data, names) for body, names in zip(bodies, self.mjcf.names, strict=True)
-        }
         self._described = dict(zip(bodies, scene.bodies, strict=True))
-        for body, part in self._parts.items():
-            if body.is_compiled or not _is_at_reference(body.scene):
-                part.take(body.own_kinematics)
-        mujoco.mj_kinematics(self.model, self.data)
+
+    @cached_property
+    def _parts(self) -> dict[BodyState, ModelPart]:
+        described = zip(self._described, self.mjcf.names, strict=True)
+        return {body: ModelPart(self.model, self.data, names) for body, names in described}
 
     def part(self, body: BodyState) -> ModelPart:
         """Return where a body is in this model."""
@@ -54,7 +53,7 @@ class WorldModel(Compiled):
             if body.scene is not described:
                 self._describe(part, described.links, body.scene.links)
                 self._described[body] = body.scene
-            if body.is_compiled and part.take(body.own_kinematics):
+            if (body.is_compiled or not _is_at_reference(body.scene)) and part.take(body.own_kinematics):
                 self.pose_stamp += 1
         self.stamp += 1
         mujoco.mj_kinematics(self.model, self.data)

@@ -70,8 +70,9 @@ class EqualityWriter:
         else:
             leader = joints[moving[0]]
             coefficients = self._coefficients(joint, leader, expression)
-            shift = leader.axes[0].reference
-            coefficients = np.polynomial.Polynomial(coefficients)(np.polynomial.Polynomial([shift, 1])).coef.tolist()
+            if shift := leader.axes[0].reference:
+                moved = np.polynomial.Polynomial(coefficients)(np.polynomial.Polynomial([shift, 1]))
+                coefficients = moved.coef.tolist()
             coefficients[0] -= joint.axes[0].reference
             leader_name = names[moving[0]][0]
         if not np.isfinite(coefficients).all():

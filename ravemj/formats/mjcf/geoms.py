@@ -104,11 +104,11 @@ class GeomWriter:
 
     def _mesh_name(self, mesh: Mesh) -> str | None:
         """Return the name of a mesh, declared when it is met first; None for one that MuJoCo cannot load."""
-        if collision_form(mesh) == "none":
-            return None
         name = f"mesh-{mesh.digest[:16]}"
         file = f"{name}.obj"
         if file not in self.meshes:
+            if collision_form(mesh) == "none":
+                return None
             self.meshes[file] = mesh
             self.lines.element("mesh", name=name, file=file, inertia="shell")
         return name

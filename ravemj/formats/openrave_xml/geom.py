@@ -60,8 +60,8 @@ class _Geom:
     context: Context
     name: str = ""
     placement: Placement = field(default_factory=Placement)
-    vectors: dict[str, Vec3] = field(default_factory=lambda: dict.fromkeys(_VECTORS, ZERO))
-    numbers: dict[str, float] = field(default_factory=lambda: dict.fromkeys(("radius", "height"), 0.0))
+    vectors: dict[str, Vec3] = field(default_factory=lambda: {})
+    numbers: dict[str, float] = field(default_factory=lambda: {})
     cross_section: tuple[tuple[float, float], ...] = ()
     vertices: Sequence[float] = ()
     collision: MeshFile | None = None
@@ -77,7 +77,7 @@ class _Geom:
         self.placement.rotate(element, self.context.diagnostics)
 
     def read_half_extents(self, element: Element) -> None:
-        self.vectors["half_extents"] = vector(element, self.context.diagnostics, self.vectors["half_extents"])
+        self.vectors["half_extents"] = vector(element, self.context.diagnostics, self.vectors.get("half_extents", ZERO))
 
     def read_full_extents(self, element: Element) -> None:
         self.read_half_extents(element)
@@ -85,11 +85,11 @@ class _Geom:
 
     def read_number(self, element: Element) -> None:
         """Read a size that is called like its tag."""
-        self.numbers[element.tag] = number(element, self.context.diagnostics, self.numbers[element.tag])
+        self.numbers[element.tag] = number(element, self.context.diagnostics, self.numbers.get(element.tag, 0.0))
 
     def read_vector(self, element: Element) -> None:
         """Read a size in three directions that is called like its tag."""
-        self.vectors[element.tag] = vector(element, self.context.diagnostics, self.vectors[element.tag])
+        self.vectors[element.tag] = vector(element, self.context.diagnostics, self.vectors.get(element.tag, ZERO))
 
     def read_cross_section(self, element: Element) -> None:
         numbers, rest = leading_numbers(element.text)
@@ -162,6 +162,7 @@ SIZE_TAGS = {"half_extents": "extents", "cross_section": "crosssection"}
 
 _SHAPES = {one.xml: one.shape for one in SHAPE_TYPES}
 _VECTORS = ("half_extents", "outer_extents", "inner_extents", "bottom_cross", "bottom")
+_NO_SIZES = {**dict.fromkeys(_VECTORS, ZERO), "radius": 0.0, "height": 0.0}
 
 
 def read_geometries(element: Element, scope: GeometryScope, context: Context) -> list[Geometry]:
@@ -181,7 +182,7 @@ def read_geometries(element: Element, scope: GeometryScope, context: Context) ->
         message = f"a geometry of type '{kind}' has no shape here"
         context.diagnostics.warn("unsupported-geometry", message, element.source)
     display = _surfaces(geom, geom.render, element, scope)
-    sizes = {**geom.vectors, **geom.numbers, "cross_section": geom.cross_section}
+    sizes = {**_NO_SIZES, **geom.vectors, **geom.numbers, "cross_section": geom.cross_section}
     return [_geometry(geom, element, (shape or NoShape).of_sizes(sizes), scope, _NO_PART, display)]
 
 

@@ -117,7 +117,8 @@ class _Scope:
 
     def _join_links(self, element: Element) -> None:
         """Decide whether joined links are adjacent, by a whole number; of several KinBodies the last to end decides."""
-        found = leading_numbers(element.attributes.get("makejoinedlinksadjacent", "1")).values
+        text = element.attributes.get("makejoinedlinksadjacent")
+        found = [1.0] if text is None else leading_numbers(text).values
         self.body.joined_links_adjacent = bool(found and int(found[0]))
 
     def nest(self, element: Element) -> None:

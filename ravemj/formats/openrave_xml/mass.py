@@ -58,7 +58,8 @@ class MassReader:
     def __init__(self, context: Context, default: MassRule | None, scale: Vec3) -> None:
         self._context = context
         self._scale = scale
-        self._rule = (default or _SPHERE)._replace(by_total=False)
+        rule = default or _SPHERE
+        self._rule = rule._replace(by_total=False) if rule.by_total else rule
         self.rule: MassRule | None = None
 
     def read(self, element: Element) -> None:
@@ -70,7 +71,8 @@ class MassReader:
                 "unknown-type", f"there is no mass of type '{kind}'; OpenRAVE takes a sphere", element.source
             )
             kind = "sphere"
-        self._rule = self._rule._replace(kind=kind, by_total=False)
+        if self._rule.kind != kind or self._rule.by_total:
+            self._rule = self._rule._replace(kind=kind, by_total=False)
         self._context.walk(element, MASS_TAGS, {}, self)
         self.rule = self._rule
         if kind == "box" and any(child.tag == "extents" for child in element.children):

@@ -20,7 +20,7 @@ class Marks(NamedTuple):
     @classmethod
     def of(cls, body: BodyBuilder) -> "Marks":
         """Return the marks of the present moment."""
-        sensors = tuple(built.sensor for built in body.sensors)
+        sensors = tuple([built.sensor for built in body.sensors])
         return cls(len(body.links), len(body.joints), tuple(body.manipulators), sensors)
 
 

@@ -62,7 +62,7 @@ def parse_file(path: str, included_from: Source | None = None) -> Document:
     """
     whole_file = Source(path, 0, included_from)
     try:
-        with open(path, "rb") as file:
+        with open(path, "rb", buffering=0) as file:
             content = file.read()
     except OSError as error:
         raise SourceError(f"cannot read the file: {os_reason(error)}", whole_file) from None
