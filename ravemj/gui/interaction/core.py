@@ -65,7 +65,7 @@ class Interaction:
         """
         other = Interaction(self._simulation, self.view.camera, self.view.size)
         other._navigation = self._navigation.another(other._scene_sphere)
-        other._selector = self._selector
+        other._selector, other._sphere = self._selector, self._sphere
         other.controls = self.controls.another(other._navigation)
         other._hand = Hand(self._selector, other._navigation, other.controls, has_tools=has_tools)
         other._hand.mode = self.mode
@@ -154,6 +154,8 @@ class Interaction:
             self._forget_what_is_gone()
             hand, shown = self._hand, self.controls.display.shown
             hand.look()
+            if self.view.distance <= 0:
+                self._scene_sphere()  # it may be wanted while others have the simulation
             hit = hand.hit()
             lines = *self._pointed_at(hit), *self._selector.lines(), *self.controls.notices.lines
             chosen = Tool.CAMERA if self.mode is Mode.CAMERA else Tool.INTERACT

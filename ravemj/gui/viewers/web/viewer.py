@@ -152,12 +152,11 @@ class WebViewer(Viewer):
         The viewer's camera becomes that of the page where it was moved last.
         """
         client = self._clients[connection]
-        before = client.interaction.view
         client.take_in(messages, self.server.complain)
         style = PageStyle(self._background, self._title)
         picture = client.attend(connection, style)
         view = client.interaction.view
-        if messages and view.camera is not before.camera:
+        if client.take_moved():
             self.interaction.look_from(view.camera, view.distance, is_home=False)
         if picture is not None:
             self._image_callbacks.call(picture)
