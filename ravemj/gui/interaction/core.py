@@ -95,20 +95,22 @@ class Interaction:
         """The camera to draw from: a little behind ``view`` while this glides to where a key sends it."""
         return self._navigation.drawn
 
-    def look_from(self, camera: Camera, distance: float = 0.0, *, is_home: bool = True) -> None:
-        """Take another camera; what the mouse does with the old one ends.
+    def look_as(self, view: View) -> None:
+        """Look as another view does, where people have moved that. Needs no lock."""
+        self.view = replace(self.view, camera=view.camera, distance=view.distance)
+
+    def look_from(self, camera: Camera, distance: float = 0.0) -> None:
+        """Take another camera, which people come back to; what the mouse does with the old one ends.
 
         Args:
             camera: The camera.
             distance: How far its focus is [m]; 0: as far as before.
-            is_home: Whether it is what people come back to.
         """
         with self._simulation.lock:
             if self.mode is Mode.CAMERA:
                 self._hand.let_go()
             self.view = replace(self.view, camera=camera, distance=distance or self.view.distance)
-            if is_home:
-                self._navigation.set_home()
+            self._navigation.set_home()
             self._changes += 1
 
     def handle(self, event: Event) -> None:
