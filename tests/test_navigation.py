@@ -244,6 +244,7 @@ def test_the_floor_has_few_lines_whatever_the_size_of_the_scene(radius):
 def held(hand):
     """The view while another thread has the simulation."""
     hand.gui.overlay()
+    hand.sphere = bounding_sphere(hand.env.model, hand.env.data)
     taken, done = threading.Event(), threading.Event()
 
     def hold():
@@ -269,6 +270,13 @@ def test_the_camera_moves_while_others_have_the_bodies(held):
         if not isinstance(event, Press | Release) and getattr(event, "pressed", True):
             assert gui.view is not before, event
     np.testing.assert_allclose(gui.view.camera.T_world_camera, ROLLED, atol=1e-12)
+
+
+def test_the_view_turns_about_the_scene_also_where_no_focus_was_set(held):
+    center, _ = held.sphere
+    depth = float((center - ROLLED[:3, 3]) @ ROLLED[:3, 2])
+    held.gui.steer([Use(Tool.ROT_X, 10)])
+    assert held.view.distance == pytest.approx(depth, rel=1e-3)
 
 
 def test_modes_change_and_clicks_wait_while_others_have_the_bodies(held):

@@ -597,7 +597,8 @@ def test_long_names_are_cut_so_that_they_differ():
 def test_joints_go_to_zero_to_random_values_and_are_copied(panel, robot):
     panel.press("joints")
     robot.SetDOFValues([0.5, -0.25])
-    line = panel.gui.controls.values_line()
+    panel.press("values")
+    line = panel.gui.controls.values_line
     robot.SetDOFValues([0, 0])
     eval(line, {"env": panel.env})
     np.testing.assert_allclose(robot.GetDOFValues(), [0.5, -0.25])
@@ -610,7 +611,6 @@ def test_joints_go_to_zero_to_random_values_and_are_copied(panel, robot):
     assert (robot.GetDOFValues() <= upper).all()
     panel.press("zero")
     assert not robot.GetDOFValues().any()
-    panel.press("values")
     assert panel.gui.controls.take_requests() == [Request.VALUES]
 
 

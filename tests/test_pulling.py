@@ -23,7 +23,7 @@ def arm():
     robot.SetDOFValues([0.1, -0.5, -1.2, 0.3, 0.6, 0.2])
     T_world_hand = robot.GetLinks()[-1].GetTransform()
     place = T_world_hand[:3, 3]
-    camera = ravemj.transformLookat(lookat=place, camerapos=np.add(place, [1.5, 1.0, 0.3]), cameraup=[0, 0, -1])
+    camera = ravemj.transformLookat(lookat=place, camerapos=place + np.array([1.5, 1.0, 0.3]), cameraup=[0, 0, -1])
     hand.gui.look_from(ravemj.graphics.rendering.Camera(camera), 1.8)
     return hand.in_interaction()
 

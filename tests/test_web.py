@@ -29,6 +29,7 @@ from ravemj.errors import RenderingError
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import Button, Fingers, Key, Leave, Move, Press, Release, Resize, Tool, Use, Wheel
 from ravemj.gui.interaction.joint_handle import JointHandle
+from ravemj.gui.viewers.viewer import LOCKED
 from ravemj.gui.viewers.web import WebViewer, client, server
 from ravemj.gui.viewers.web import viewer as viewers
 from ravemj.gui.viewers.web.frame_pacing import Link
@@ -428,6 +429,20 @@ def test_a_page_may_say_much_while_the_script_holds_the_environment(env, viewer)
                 page.send(type="wheel", steps=0.01)
         await_that(lambda: viewer.GetCameraDistanceToFocus() == pytest.approx(1.2 * 0.9**10, rel=0.2))
         page.settled()
+
+
+def test_the_view_moves_while_the_script_has_the_environment_and_says_so(env, viewer):
+    with Page(viewer) as page:
+        before = page.settled()
+        with env:
+            page.send(type="use", tool="RotY", amount=90)
+            assert np.abs(page.settled().astype(int) - before).max() > 50
+            if LOCKED not in page.overlay["lines"]:
+                Clocks.rest += 5
+                page.picture()
+            assert LOCKED in page.overlay["lines"]
+        page.settled()
+        assert LOCKED not in page.overlay["lines"]
 
 
 def test_a_body_is_removed_while_it_is_selected(env, viewer):

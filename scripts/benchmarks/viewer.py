@@ -6,6 +6,7 @@ import json
 import shutil
 import statistics
 import time
+import warnings
 from collections.abc import Callable, Generator
 from itertools import count
 
@@ -14,18 +15,23 @@ import numpy as np
 from websockets.sync.client import ClientConnection, connect
 
 import ravemj
+from benchmarks.kinematics import PR2
 from benchmarks.measure import CAMERA, MODEL, Row, take_turns
+from benchmarks.reading import CORPUS
 from ravemj.graphics.rendering import Camera
 from ravemj.graphics.rendering.camera_file import read_camera
 from ravemj.graphics.rendering.contexts import RAY, OffscreenContext
 from ravemj.graphics.rendering.gl_scene import GlScene, Quality
 from ravemj.graphics.simulation_renderer import Format
+from ravemj.gui.viewers.sharpness import CRISP, Level, Sharpness
 
 _SIZE = 800, 600
 _FRAMES = 60
 _ROUNDS = 3
 _WHEELS = 40
 _IDLE = 3.0
+_LARGE = 960, 720
+_WARM, _PICTURES = 10, 15
 _FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-webgl"]
 _NOTE_FIRST_FRAME = """
 new MutationObserver(() => { window.firstFrame ??= performance.now(); })
@@ -47,12 +53,44 @@ _TIME_WHEEL = """
 def rows() -> list[Row]:
     """Measure the page at 800x600."""
     env = ravemj.load(MODEL)
+    pictures = [row for name, robot in robots() for row in _picture_rows(name, robot)]
     viewer = env.serve_viewer()
     viewer.SetCamera(read_camera(CAMERA).T_world_camera)
     try:
-        return [*_connection_rows(env, viewer.url), *_browser_rows(viewer.url)]
+        return [*pictures, *_connection_rows(env, viewer.url), *_browser_rows(viewer.url)]
     finally:
         env.Destroy()
+
+
+def robots() -> Generator[tuple[str, ravemj.Environment]]:
+    """Yield the pendulum, and the PR2 where the corpus of published models is."""
+    for name, path in (("pendulum", MODEL), ("PR2", CORPUS / PR2)):
+        if path.exists():
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                env = ravemj.load(path)
+            yield name, env
+            env.Destroy()
+
+
+def _picture_rows(name: str, env: ravemj.Environment) -> list[Row]:
+    """Measure what a picture takes of the processor: crisp, and as it is while things move."""
+    camera, sharpness = env.renderer.camera_for_stills(_LARGE[0] / _LARGE[1]), Sharpness()
+
+    def draw(level: Level) -> float:
+        begin, used = time.monotonic(), time.process_time()
+        size = (int(level.scale * length) for length in _LARGE)
+        env.renderer.render(camera, (1.0, 1.0, 1.0), Format(*size, samples=level.samples))
+        sharpness.drew(level, time.monotonic() - begin)
+        return 1e3 * (time.process_time() - used)
+
+    for _ in range(_WARM):
+        draw(sharpness.moving(0.0))
+    level = sharpness.moving(0.0)
+    moving = statistics.median(draw(level) for _ in range(_PICTURES))
+    resting = statistics.median(draw(CRISP) for _ in range(_PICTURES))
+    note = f"{_LARGE[0]}x{_LARGE[1]}; moving at {level.scale:g} of that, {level.samples} samples"
+    return [Row(f"processor for a picture of the {name} while it moves : at rest", "ms", moving, resting, note=note)]
 
 
 def _connection_rows(env: ravemj.Environment, url: str) -> list[Row]:

@@ -114,6 +114,7 @@ class Controls:
         notices: What the viewer tells; all views share it.
         display: What is shown besides the bodies; all views share it.
         unfolded: Name of the button whose menu is unfolded, or empty.
+        values_line: The line of a script that sets the values of the sliders, as they were when that was asked for.
         in_degrees: Whether angles are shown in degrees, not in radians.
         requests: What was asked of the one who draws, and is not done yet.
     """
@@ -128,6 +129,7 @@ class Controls:
         self.display = display
         self.unfolded = ""
         self.in_degrees = False
+        self.values_line = ""
         self.requests: list[Request] = []
 
     def another(self, navigation: Navigation) -> "Controls":
@@ -236,6 +238,7 @@ class Controls:
     def _operate(self, name: str, value: float) -> None:
         playback = self.playback
         if name in _REQUESTS:
+            self.values_line = self._values_line() if name == Request.VALUES.value else self.values_line
             self.requests.append(Request(name))
         elif name == "play":
             (playback.pause if playback.playing else playback.play)()
@@ -282,7 +285,7 @@ class Controls:
             values[dof] = clamp(axis, random.uniform(slider.lower, slider.upper) if is_random else 0.0)
         body.set_values(values)
 
-    def values_line(self) -> str:
+    def _values_line(self) -> str:
         """Return the line of a script that sets the values that the sliders show; empty where there are none."""
         body = self._body()
         if body is None:

@@ -65,7 +65,7 @@ class Interaction:
         """
         other = Interaction(self._simulation, self.view.camera, self.view.size)
         other._navigation = self._navigation.another(other._scene_sphere)
-        other._selector = self._selector
+        other._selector, other._sphere = self._selector, self._sphere
         other.controls = self.controls.another(other._navigation)
         other._hand = Hand(self._selector, other._navigation, other.controls, has_tools=has_tools)
         other._hand.mode = self.mode
@@ -95,20 +95,22 @@ class Interaction:
         """The camera to draw from: a little behind ``view`` while this glides to where a key sends it."""
         return self._navigation.drawn
 
-    def look_from(self, camera: Camera, distance: float = 0.0, *, is_home: bool = True) -> None:
-        """Take another camera; what the mouse does with the old one ends.
+    def look_as(self, view: View) -> None:
+        """Look as another view does, where people have moved that. Needs no lock."""
+        self.view = replace(self.view, camera=view.camera, distance=view.distance)
+
+    def look_from(self, camera: Camera, distance: float = 0.0) -> None:
+        """Take another camera, which people come back to; what the mouse does with the old one ends.
 
         Args:
             camera: The camera.
             distance: How far its focus is [m]; 0: as far as before.
-            is_home: Whether it is what people come back to.
         """
         with self._simulation.lock:
             if self.mode is Mode.CAMERA:
                 self._hand.let_go()
             self.view = replace(self.view, camera=camera, distance=distance or self.view.distance)
-            if is_home:
-                self._navigation.set_home()
+            self._navigation.set_home()
             self._changes += 1
 
     def handle(self, event: Event) -> None:
@@ -154,6 +156,8 @@ class Interaction:
             self._forget_what_is_gone()
             hand, shown = self._hand, self.controls.display.shown
             hand.look()
+            if self.view.distance <= 0:
+                self._scene_sphere()  # it may be wanted while others have the simulation
             hit = hand.hit()
             lines = *self._pointed_at(hit), *self._selector.lines(), *self.controls.notices.lines
             chosen = Tool.CAMERA if self.mode is Mode.CAMERA else Tool.INTERACT

@@ -244,8 +244,7 @@ class WindowViewer(Viewer):
             self._recorder.record(source, self.playback)
         else:
             is_camera = request is Request.CAMERA
-            with self._simulation.lock:
-                line = camera_line(self.camera) if is_camera else self.interaction.controls.values_line()
+            line = camera_line(self.camera) if is_camera else self.interaction.controls.values_line
             window.copy_text(line)
             self.interaction.controls.notices.say(
                 f"Copied {'viewer.SetCamera' if is_camera else 'SetDOFValues'}([...])"

@@ -86,6 +86,7 @@ class Client:
         self._overlay: Overlay | None = None
         self._free_at = time.monotonic()
         self._sees_bodies = False
+        self._has_moved = False
         self._ratio = 1.0
         self._waiting: deque[Message] = deque([Leave()])  # of what an earlier connection of the page has left
         self._seen: object = None
@@ -97,6 +98,11 @@ class Client:
     def is_behind(self) -> bool:
         """Whether there is enough to do before more messages are received."""
         return len(self._waiting) > _MOST_AT_ONCE
+
+    def take_moved(self) -> bool:
+        """Return whether people have moved the camera of the page since this was asked last."""
+        has_moved, self._has_moved = self._has_moved, False
+        return has_moved
 
     def take_in(self, messages: Iterable[str | bytes], complain: Rejections) -> None:
         """Read messages, which ``attend`` acts upon; nonsense is left out."""
@@ -141,8 +147,10 @@ class Client:
         try:
             self._free_at = now
             self.interaction.pass_time(now)
+            before = self.interaction.view.camera
             while self._waiting:
                 self._do(self._waiting.popleft())
+            self._has_moved |= self.interaction.view.camera is not before
             if not self._link.is_free:
                 return None
             seen = appearance(self._simulation), self.interaction.version, style, self._ratio
@@ -162,7 +170,9 @@ class Client:
                 self._ratio = message.ratio
             if not isinstance(message, Ready):
                 events.append(message.resize if isinstance(message, Shape) else message)
+        before = self.interaction.view.camera
         self._waiting = deque(self.interaction.steer(events))
+        self._has_moved |= self.interaction.view.camera is not before
         self.interaction.pass_time_without_bodies(now)
         is_long = now - self._free_at > PATIENCE
         view = self.interaction.drawn_view

@@ -152,13 +152,12 @@ class WebViewer(Viewer):
         The viewer's camera becomes that of the page where it was moved last.
         """
         client = self._clients[connection]
-        before = client.interaction.view
         client.take_in(messages, self.server.complain)
         style = PageStyle(self._background, self._title)
         picture = client.attend(connection, style)
         view = client.interaction.view
-        if messages and view.camera is not before.camera:
-            self.interaction.look_from(view.camera, view.distance, is_home=False)
+        if client.take_moved():
+            self.interaction.look_as(view)
         if picture is not None:
             self._image_callbacks.call(picture)
         for request in client.interaction.controls.take_requests():
@@ -176,9 +175,8 @@ class WebViewer(Viewer):
             self._recorder.record(FrameSource(client.interaction, self._renderer, self._background), self.playback)
         else:
             interaction = client.interaction
-            with self._simulation.lock:
-                is_camera = request is Request.CAMERA
-                line = camera_line(interaction.view.camera) if is_camera else interaction.controls.values_line()
+            is_camera = request is Request.CAMERA
+            line = camera_line(interaction.view.camera) if is_camera else interaction.controls.values_line
             client.send_text(connection, line)
             _LOG.info("%s", line)
 
