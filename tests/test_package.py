@@ -125,11 +125,11 @@ NAME_EACH_OTHER = """
     rave.body.saving rave.body.structure rave.body.velocities rave.collision rave.collision_extras
     rave.configuration_data rave.controllers rave.controllers.base rave.controllers.ideal rave.controllers.multi
     rave.controllers.velocity rave.env.base rave.env.collision rave.env.contents rave.env.described
-    rave.env.description rave.env.drawing rave.env.loading rave.env.publishing rave.env.saving rave.env.simulation
-    rave.env.viewing rave.environment rave.ik_judge rave.ik_search rave.ikreturn rave.iksolver rave.interface
-    rave.joint rave.joint_limits rave.kinbody rave.link rave.link_geometries rave.manipulator rave.member
-    rave.module rave.parameters rave.physics rave.report rave.robot rave.sensors rave.specification rave.tables
-    rave.trajectory
+    rave.env.description rave.env.drawing rave.env.json_files rave.env.loading rave.env.publishing rave.env.saving
+    rave.env.simulation rave.env.viewing rave.environment rave.ik_judge rave.ik_search rave.ikreturn rave.iksolver
+    rave.interface rave.joint rave.joint_limits rave.kinbody rave.link rave.link_geometries rave.manipulator
+    rave.member rave.module rave.parameters rave.physics rave.report rave.robot rave.sensors rave.specification
+    rave.tables rave.trajectory
 """
 """Classes of the API whose methods take and return one another, and the topics that make them up."""
 

@@ -164,13 +164,7 @@ class Grabbing(BodyPart, Interface):
         Args:
             grabbedname: Return that of one body, or None if it is not held; left out: a list of all.
         """
-        links = [link.name for link in self._state.scene.links]
-        infos = [
-            GrabbedInfo(
-                grab.body.scene.name, links[grab.link], grab.T_link_body.copy(), sorted(links[i] for i in grab.ignored)
-            )
-            for grab in self._state.grabs
-        ]
+        infos = [GrabbedInfo.of(self._state.scene, grab) for grab in self._state.grabs]
         if grabbedname is None:
             return infos
         return next((info for info in infos if info._grabbedname == grabbedname), None)

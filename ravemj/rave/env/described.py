@@ -16,7 +16,7 @@ from ravemj.rave.enums import UpdateFromInfoMode, UpdateFromInfoResult
 from ravemj.rave.env.contents import Contents
 from ravemj.rave.env.description import Description
 from ravemj.rave.env.publishing import Publishing
-from ravemj.rave.infos import EnvironmentBaseInfo, KinBodyInfo
+from ravemj.rave.infos import EnvironmentBaseInfo, GrabbedInfo, KinBodyInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 
@@ -63,6 +63,10 @@ class Described(Contents, Description, Publishing):
                 self.Remove(body)
             for one in info._vBodyInfos:
                 self._take_info(one, added, changed)
+            for one in info._vBodyInfos:
+                body = self.GetKinBody(one._name)
+                if body is not None:
+                    body.ResetGrabbed(cast("Sequence[GrabbedInfo]", one._vGrabbedInfos))
             self.GetPhysicsEngine().SetGravity(np.asarray(info._gravity))
             self._description, self._keywords = info._description, list(info._keywords)
             self._numbers = dict(info._uInt64Parameters)
