@@ -1,6 +1,7 @@
 """Models that are written and read again: the same numbers, and the same bytes when they are written once more."""
 
 import csv
+import json
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +14,8 @@ from hypothesis import given
 from strategies import Taste, examples, scene_node, scenes, xml
 
 import ravemj
-from ravemj.errors import Diagnostics, OutputError
+from ravemj.engine.snapshot import snapshot
+from ravemj.errors import Diagnostics, OutputError, SourceError
 from ravemj.formats.collada.writer import write as collada_document
 from ravemj.formats.openrave_xml.writer import write as openrave_document
 from ravemj.formats.readers import read_data, read_file
@@ -392,3 +394,125 @@ class TestTrouble:
 
 def load_body(path):
     return ravemj.load(path).simulation.bodies[0].scene
+
+
+class TestState:
+    """What scripts attach and do goes with the file: held bodies, groups of shapes, parameters, rare limits."""
+
+    @pytest.fixture
+    def world(self):
+        env = ravemj.Environment()
+        assert env.Load(str(MODELS / "workshop.env.xml"))
+        robot = env.GetRobots()[0]
+        held, other = [body for body in env.GetBodies() if not body.IsRobot()][:2]
+        robot.Grab(held, robot.GetLinks()[-1])
+        robot.Grab(other, robot.GetLinks()[1], [robot.GetLinks()[2].GetIndex()])
+        robot.SetDOFValues([0.3, -0.4, 0.5], [0, 1, 2])
+        joint, link = robot.GetJoints()[0], robot.GetLinks()[1]
+        joint.SetFloatParameters("stiffness", [1.5, 1 / 3])
+        joint.SetStringParameters("maker", " <Unimation> ")
+        link.SetIntParameters("bolts", [3, -4])
+        link.SetIgnoreSelfCollision(True)
+        shapes = [ravemj.KinBody.GeometryInfo(), ravemj.KinBody.GeometryInfo()]
+        shapes[0]._type, shapes[0]._vGeomData = ravemj.GeometryType.Box, [0.1, 0.2, 0.3]
+        shapes[1]._type, shapes[1]._vGeomData = ravemj.GeometryType.Sphere, [0.1, 0, 0]
+        shapes[1]._t = ravemj.matrixFromAxisAngle([0.1, 0.2, 0.3])
+        link.SetGroupGeometries("coarse", shapes)
+        joint.SetHardVelocityLimits([3])
+        robot.SetDOFJerkLimits(np.full(robot.GetDOF(), 77.0))
+        return env
+
+    @pytest.mark.parametrize("name", [*NAMES.values(), "model.json"])
+    def test_all_of_it_survives(self, world, tmp_path, name):
+        world.Save(tmp_path / name, atts={"format": "openrave"} if name.endswith(".xml") else None)
+        other = ravemj.load(tmp_path / name)
+        assert compare(snapshots(world), snapshots(other)) == []
+        robot = other.GetRobots()[0]
+        held = robot.GetGrabbed()[0]
+        T_held_robot = np.linalg.inv(held.GetTransform()) @ robot.GetLinks()[-1].GetTransform()
+        robot.SetDOFValues([0.9], [0])
+        moved = np.linalg.inv(held.GetTransform()) @ robot.GetLinks()[-1].GetTransform()
+        np.testing.assert_allclose(moved, T_held_robot, atol=1e-12)
+        assert robot.GetJoints()[0].GetStringParameters("maker") == " <Unimation> "
+        assert robot.GetLinks()[1].GetGroupNumGeometries("coarse") == 2
+
+    def test_what_is_not_saved_is_not_held(self, world, tmp_path):
+        robot = world.GetRobots()[0]
+        world.Save(tmp_path / "robot.dae", world.SelectionOptions.Body, robot.GetName())
+        assert ravemj.load(tmp_path / "robot.dae").GetRobots()[0].GetGrabbed() == []
+
+    @pytest.mark.parametrize("held", ["nobody", "r"])
+    def test_held_bodies_that_are_not_there(self, held):
+        env = ravemj.Environment()
+        text = f'<Robot name="r"><KinBody><Body name="a"/></KinBody><grabbed body="{held}" link="a"/></Robot>'
+        with pytest.warns(ravemj.RavemjWarning, match="no other body"):
+            assert env.LoadData(text)
+        with pytest.warns(ravemj.RavemjWarning, match="not above it"):
+            assert env.LoadData(text.replace('"a"/></Robot>', '"b"/></Robot>').replace('"r"', '"s"', 1))
+
+
+class TestJson:
+    """OpenRAVE's JSON: what infos say, as a file."""
+
+    def test_selection_and_what_is_skipped(self, env, tmp_path):
+        env.SetDescription("words")
+        env.LoadData(
+            '<KinBody name="k"><Body name="a"><Geom type="box"><extents>1 1 1</extents></Geom></Body></KinBody>'
+        )
+        env.Save(tmp_path / "k.json", env.SelectionOptions.Body, [("target", "k"), ("skipwrite", "geometry")])
+        other = ravemj.load(tmp_path / "k.json")
+        assert [body.GetName() for body in other.GetBodies()] == ["k"]
+        assert other.GetKinBody("k").GetLinks()[0].GetGeometries() == []
+        assert other.GetDescription() == "words"
+        env.Save(tmp_path / "k.txt", atts={"format": "json"})
+        content = json.loads((tmp_path / "k.txt").read_text())
+        assert [body["isRobot"] for body in content["bodies"]] == [True, False]
+
+    def test_a_body_of_that_name_becomes_what_the_file_says(self, env, robot, tmp_path):
+        robot.SetDOFValues([0.3, 0.4])
+        env.Save(tmp_path / "a.json")
+        robot.SetDOFValues([0, 0])
+        assert env.Load(str(tmp_path / "a.json"))
+        np.testing.assert_allclose(robot.GetDOFValues(), [0.3, 0.4], atol=1e-12)
+        assert env.files[-1] == str(tmp_path / "a.json")
+
+    def test_what_json_cannot_say(self, env, tmp_path):
+        env.LoadData('<KinBody name="k" makejoinedlinksadjacent="0"><Body name="a"/></KinBody>')
+        with pytest.warns(ravemj.RavemjWarning, match="not-written"):
+            env.Save(tmp_path / "k.json")
+
+    @pytest.mark.parametrize(
+        ("content", "words"),
+        [
+            (b"", "not well-formed"),
+            (b'{"bodies": [', "not well-formed"),
+            (b"[1]", "list of bodies"),
+            (b'{"bodies": 1}', "list of bodies"),
+            (b'{"bodies": [1]}', "bodies"),
+            (b'{"bodies": [{"name": "b", "links": [{"name": "a", "mass": NaN}]}]}', "NaN"),
+            (b'{"bodies": [{"name": "b", "links": [{"name": "a", "mass": "x"}]}]}', "mass"),
+            (b'{"bodies": [{"name": "b", "links": [{"name": "a", "mass": 1' + b"0" * 400 + b"}]}]}", "number"),
+            (b'{"bodies": [{"name": "b", "links": [{"transform": [1, 2]}]}]}', "transform"),
+            (b'{"bodies": [{"name": "b", "links": [], "grabbed": [{"grabbedName": "x"}]}]}', "no body 'x'"),
+            (b'{"bodies": ' + b"[" * 100_000, "nested too deep"),
+            (b"\xff\xfe", "cannot be read"),
+        ],
+    )
+    def test_broken_files(self, tmp_path, content, words):
+        (tmp_path / "a.json").write_bytes(content)
+        with pytest.raises(SourceError, match=words):
+            ravemj.load(tmp_path / "a.json")
+        env = ravemj.Environment()
+        assert not env.Load(str(tmp_path / "a.json"))
+        assert not env.Load(str(tmp_path / "gone.json"))
+
+    def test_numbers_that_are_none_leave_the_file_alone(self, env, robot, tmp_path):
+        (tmp_path / "a.json").write_text("before")
+        robot.GetJoints()[0].SetFloatParameters("x", [float("inf")])
+        with pytest.raises(OutputError, match="not finite"):
+            env.Save(tmp_path / "a.json")
+        assert contents(tmp_path) == {"a.json": b"before"}
+
+
+def snapshots(env) -> Scene:
+    return Scene(tuple(snapshot(body) for body in env.simulation.bodies))

@@ -9,7 +9,7 @@ from ravemj.core.transforms import Pose, pose_of
 from ravemj.engine.kinematics.displacement import ROUNDING
 from ravemj.engine.simulation import BodyState
 from ravemj.model.joints import relative_pose
-from ravemj.model.scene import Joint, KinBody
+from ravemj.model.scene import Grab, Joint, KinBody
 
 
 def snapshot(body: BodyState) -> KinBody:
@@ -19,8 +19,17 @@ def snapshot(body: BodyState) -> KinBody:
     """
     scene = body.scene
     links = [replace(link, enabled=enabled) for link, enabled in zip(scene.links, body.link_enabled, strict=True)]
+    grabs = tuple(
+        Grab(
+            body=one.body.scene.name,
+            link=one.link,
+            T_link_body=pose_of(one.T_link_body),
+            ignored=tuple(sorted(one.ignored)),
+        )
+        for one in body.grabs
+    )
     if not body.is_compiled:  # it is where its description has it
-        return replace(scene, links=tuple(links))
+        return replace(scene, links=tuple(links), grabs=grabs)
     poses = [pose_of(transform) for transform in body.link_transforms()]
     kinematics = body.own_kinematics
     rest = iter(kinematics.values().tolist())
@@ -33,6 +42,7 @@ def snapshot(body: BodyState) -> KinBody:
         links=tuple(replace(link, T_world_link=pose) for link, pose in zip(links, poses, strict=True)),
         joints=tuple(joints[:count]),
         passive_joints=tuple(joints[count:]),
+        grabs=grabs,
     )
 
 

@@ -6,7 +6,7 @@ from the poses of the links, and places the links by them, as OpenRAVE does.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -39,6 +39,13 @@ class LinkBuilder:
     enabled: bool = True
     groups: tuple[tuple[str, tuple[scene.Geometry, ...]], ...] = ()
     parameters: scene.Parameters = scene.NO_PARAMETERS
+    self_collision_ignored: bool = False
+
+    def add_to_group(self, name: str, geometries: Iterable[scene.Geometry]) -> None:
+        """Add shapes to a group of that name."""
+        groups = dict(self.groups)
+        groups[name] = (*groups.get(name, ()), *geometries)
+        self.groups = tuple(groups.items())
 
 
 @dataclass(slots=True, kw_only=True)
@@ -82,6 +89,15 @@ class SensorBuilder(NamedTuple):
     link_name: str | None = None
 
 
+class GrabBuilder(NamedTuple):
+    """A held body, by its name, and the link that holds it; links get their indices in the end."""
+
+    body: str
+    link: LinkBuilder
+    T_link_body: Pose
+    ignored: tuple[LinkBuilder, ...]
+
+
 @dataclass(slots=True)
 class BodyBuilder:
     """A body in the making.
@@ -100,6 +116,7 @@ class BodyBuilder:
     joined_links_adjacent: bool = True
     manipulators: list[ManipulatorBuilder] = field(default_factory=lambda: [])
     sensors: list[SensorBuilder] = field(default_factory=lambda: [])
+    grabs: list[GrabBuilder] = field(default_factory=lambda: [])
     joint_values: list[float] | None = None
     refusal: SourceError | None = None
 
@@ -198,8 +215,18 @@ class BodyBuilder:
             adjacent=tuple(self.adjacent),
             joined_links_adjacent=self.joined_links_adjacent,
             sensors=tuple(self._sensor(built) for built in self.sensors),
+            grabs=tuple(self._grabs()),
             source=self.source,
         )
+
+    def _grabs(self) -> Iterator[scene.Grab]:
+        """Yield what it holds, with those links that are there in the end."""
+        index_of = {id(link): index for index, link in enumerate(self.links)}
+        for built in self.grabs:
+            if id(built.link) in index_of:
+                ignored = tuple(index_of[id(link)] for link in built.ignored if id(link) in index_of)
+                link = index_of[id(built.link)]
+                yield scene.Grab(body=built.body, link=link, T_link_body=built.T_link_body, ignored=ignored)
 
     def _sensor(self, built: SensorBuilder) -> scene.AttachedSensor:
         sensor, name = built
@@ -355,5 +382,6 @@ def _frozen_link(link: LinkBuilder, pose: Pose) -> scene.Link:
         enabled=link.enabled,
         groups=link.groups,
         parameters=link.parameters,
+        self_collision_ignored=link.self_collision_ignored,
         source=link.source,
     )

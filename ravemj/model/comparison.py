@@ -24,7 +24,8 @@ CONFIGURATIONS = 5
 _FARTHEST = 10.0  # [rad or m], of random values of joints without limits
 _AXIS_FIELDS = (
     "lower", "upper", "circular", "value", "weight", "resolution", "max_velocity", "max_acceleration",
-    "max_torque", "armature", "coulomb_friction", "viscous_friction",
+    "max_torque", "armature", "coulomb_friction", "viscous_friction", "max_jerk", "max_inertia", "hard_max_velocity",
+    "hard_max_acceleration", "hard_max_jerk", "wrap_offset",
 )  # fmt: skip
 
 
@@ -89,6 +90,9 @@ class _Comparison:
             yield from self._joints(f"{part} joint '{one.name}'", one, other)
         for one, other in zip(first.manipulators, second.manipulators, strict=False):
             yield from self._manipulators(f"{part} manipulator '{one.name}'", one, other)
+        yield from self._same(part, "holds", *([(x.body, x.link, x.ignored) for x in y.grabs] for y in (first, second)))
+        for one, other in zip(first.grabs, second.grabs, strict=False):
+            yield from self._poses(part, "pose of what it holds", one.T_link_body, other.T_link_body)
         for one, other in zip(first.sensors, second.sensors, strict=False):
             yield from self._sensors(f"{part} sensor '{one.name}'", one, other)
         if not structure:
@@ -101,8 +105,19 @@ class _Comparison:
         yield from self._near(part, "inertia", first.inertial.inertia, second.inertial.inertia)
         yield from self._same(part, "static", first.static, second.static)
         yield from self._same(part, "enabled", first.enabled, second.enabled)
-        yield from self._same(part, "shapes", _types(first.geometries), _types(second.geometries))
-        for index, (one, other) in enumerate(zip(first.geometries, second.geometries, strict=False)):
+        yield from self._same(
+            part, "is tested against its body", *(not x.self_collision_ignored for x in (first, second))
+        )
+        yield from self._same(part, "parameters", first.parameters, second.parameters)
+        groups, others = dict(first.groups), dict(second.groups)
+        yield from self._same(part, "groups of shapes", list(groups), list(others))
+        yield from self._shapes(part, first.geometries, second.geometries)
+        for name in groups.keys() & others.keys():
+            yield from self._shapes(f"{part} group '{name}'", groups[name], others[name])
+
+    def _shapes(self, part: str, first: Sequence[Geometry], second: Sequence[Geometry]) -> Iterator[Difference]:
+        yield from self._same(part, "shapes", _types(first), _types(second))
+        for index, (one, other) in enumerate(zip(first, second, strict=False)):
             yield from self._geometries(f"{part} shape {index}", one, other)
 
     def _joints(self, part: str, first: Joint, second: Joint) -> Iterator[Difference]:
@@ -115,6 +130,7 @@ class _Comparison:
                 yield from self._near(part, "direction", one.direction, other.direction)
             for name in _AXIS_FIELDS:
                 yield from self._near(part, name.replace("_", " "), getattr(one, name), getattr(other, name))
+        yield from self._same(part, "parameters", first.parameters, second.parameters)
         mimics = [None if joint.mimic is None else joint.mimic.dofs for joint in (first, second)]
         yield from self._same(part, "follows DOFs", *mimics)
 

@@ -12,8 +12,8 @@ from ravemj.errors import ErrorCode, RavemjError, SourceError
 from ravemj.rave.body.base import both_locks
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.collision import Collision
-from ravemj.rave.env.description import Description
 from ravemj.rave.env.drawing import Drawing
+from ravemj.rave.env.json_files import is_json
 from ravemj.rave.env.loading import Loading
 from ravemj.rave.env.saving import Saving
 from ravemj.rave.env.viewing import Viewing
@@ -28,7 +28,7 @@ _numbers = itertools.count(1)
 _environments: "weakref.WeakValueDictionary[int, Environment]" = weakref.WeakValueDictionary()
 
 
-class Environment(Description, Loading, Saving, Collision, Drawing, Viewing):
+class Environment(Loading, Saving, Collision, Drawing, Viewing):
     """A world with robots and other bodies.
 
     Example:
@@ -260,7 +260,7 @@ def load(path: str | os.PathLike[str]) -> Environment:
     """Load a model file into a new environment, or raise.
 
     Args:
-        path: An OpenRAVE XML file with an environment, a robot or a kinbody.
+        path: A model file; see ``Environment.Load``.
 
     Returns:
         The environment; ``env.diagnostics`` has what was found on the way.
@@ -276,8 +276,12 @@ def load(path: str | os.PathLike[str]) -> Environment:
     """
     from ravemj.formats.readers import read_file  # noqa: PLC0415 - slow to import
 
-    reading = read_file(path)
     env = Environment()
+    if is_json(os.fspath(path)):
+        env._load_json(os.fspath(path))  # pyright: ignore[reportPrivateUsage]
+        env.simulation.compiled()
+        return env
+    reading = read_file(path)
     try:
         if reading.failure is not None:
             raise reading.failure

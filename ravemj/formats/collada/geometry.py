@@ -45,10 +45,15 @@ class GeometryReader:
         for inner in node.nodes:
             if not is_other_link(inner):
                 found += self.read(inner, T_link_node, is_other_link)
-        for instance in children(node.element, "instance_geometry"):
+        return found + self.read_instances(node.element, T_link_node(node))
+
+    def read_instances(self, element: Element, T_link_element: Floats) -> list[Geometry]:
+        """Return the shapes of the instances in an element, given its pose in the link, shape (4, 4)."""
+        found: list[Geometry] = []
+        for instance in children(element, "instance_geometry"):
             geometry = self._library.follow(instance)
             if geometry is not None:
-                found += self._shapes(instance, geometry, T_link_node(node))
+                found += self._shapes(instance, geometry, T_link_element)
         return found
 
     def _shapes(self, instance: Element, geometry: Element, T_link_node: Floats) -> Iterator[Geometry]:

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from ravemj.core.transforms import Vec3, inverse
+from ravemj.formats.collada.attached import AttachedReader
 from ravemj.formats.collada.axis import AxisInfo
 from ravemj.formats.collada.bindings import read_bindings
 from ravemj.formats.collada.geometry import GeometryReader
@@ -125,8 +126,16 @@ def _filled(scene: SceneContext, body: BodyBuilder, instance: Element, parts: _S
     values = {index: values for reader in readers for index, values in reader.values.items()}
     links = {element: index for reader in readers for element, index in reader.links.items()}
     joints = {element: index for reader in readers for element, index in reader.joints.items()}
+    attached = AttachedReader(
+        scene.library,
+        scene.references,
+        scene.geometry,
+        {element: body.links[index] for element, index in links.items()},
+        {element: body.joints[index] for element, index in joints.items()},
+    )
     for system in parts.systems:
         read_supplement(system, scene.references, body, links, joints, values)
+        attached.read(system, body)
     chosen = [value for index, joint in enumerate(body.joints) if joint.active for value in values[index]]
     body.joint_values = chosen if any(chosen) else None
     return body

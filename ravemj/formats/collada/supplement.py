@@ -9,6 +9,18 @@ from ravemj.model.builder import BodyBuilder
 
 PROFILE = "ravemj"
 
+OTHER_NUMBERS = (
+    "max_inertia",
+    "hard_max_velocity",
+    "hard_max_acceleration",
+    "max_jerk",
+    "hard_max_jerk",
+    "wrap_offset",
+)
+"""Fields of axes that COLLADA lacks; attributes of joints are called like them."""
+
+_NUMBERS = {"values": "reference", "torques": "max_torque", **{name: name for name in OTHER_NUMBERS}}
+
 
 def own_techniques(element: Element | None) -> Iterator[Element]:
     """Yield our techniques in the extras of an element."""
@@ -45,15 +57,17 @@ def read_supplement(
             _name_joints(body, order, names)
             body.joints = [body.joints[index] for index in order]
             for joint, element in zip(body.joints, children(technique, "joint"), strict=True):
-                given, torques = (map(float, (element.get(name) or "").split()) for name in ("values", "torques"))
-                joint.axes = tuple(
-                    replace(axis, reference=next(given, 0.0), max_torque=next(torques, axis.max_torque))
-                    for axis in joint.axes
-                )
+                for name, field in _NUMBERS.items():
+                    given = map(float, (element.get(name) or "").split())
+                    joint.axes = tuple(
+                        replace(axis, **{field: next(given, getattr(axis, field))}) for axis in joint.axes
+                    )
             values |= {place: given for place, given in enumerate([values[index] for index in order])}
         order, names = _listed(references, technique, "link", links)
         if sorted(order) == list(range(len(body.links))):
             _order_links(body, order, names)
+            for link, element in zip(body.links, children(technique, "link"), strict=True):
+                link.self_collision_ignored = element.get("self_collision_ignored") == "true"
 
 
 def _listed(

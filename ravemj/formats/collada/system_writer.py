@@ -7,11 +7,14 @@ from ravemj.errors import Diagnostics
 from ravemj.formats import settled
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.sections import Sections
-from ravemj.formats.collada.supplement import PROFILE
+from ravemj.formats.collada.supplement import OTHER_NUMBERS, PROFILE
 from ravemj.formats.collada.trees import Tree
+from ravemj.formats.parameters import write_parameters
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.joints import rests
 from ravemj.model.scene import AttachedSensor, Axis, Joint, KinBody, Manipulator
+
+_PLAIN = Axis((0.0, 0.0, 1.0))
 
 
 class SystemWriter:
@@ -205,7 +208,8 @@ class SystemWriter:
         if not body.joined_links_adjacent:
             out.element("joined_links_adjacent", False)
         for index, link in enumerate(body.links):
-            out.element("link", link.name, path=self._link_path(index))
+            ignored = True if link.self_collision_ignored else None
+            out.element("link", link.name, path=self._link_path(index), self_collision_ignored=ignored)
         for index, joint in enumerate(body.all_joints):
             is_kept = rests(body, joint) and joint.kind != "spherical"  # a ball counts from where it is
             values = settled.values(joint) if is_kept else []
@@ -214,7 +218,28 @@ class SystemWriter:
                 "values": values if any(values) else None,
                 "torques": torques if len(set(torques)) > 1 else None,
             }
+            for name in OTHER_NUMBERS:
+                numbers = [getattr(axis, name) for axis in joint.axes]
+                attributes[name] = numbers if numbers != [getattr(_PLAIN, name)] * len(numbers) else None
             out.element("joint", joint.name, path=self._joint_path(index), **attributes)
+        self._write_attached()
+
+    def _write_attached(self) -> None:
+        """Write parameters, the groups of shapes that scripts can swap in, and what the body holds."""
+        out, body = self._sections.systems, self._body
+        for index, link in enumerate(body.links):
+            write_parameters(out, link.parameters, self._link_path(index))
+            for number, (name, geometries) in enumerate(link.groups):
+                with out.inside("group", name=name, of=self._link_path(index)):
+                    for place, geometry in enumerate(geometries):
+                        identity = f"group{self._number}.{index}.{number}.{place}"
+                        self._sections.geometry.write(geometry, identity, out)
+        for index, joint in enumerate(body.all_joints):
+            write_parameters(out, joint.parameters, self._joint_path(index))
+        for grab in body.grabs:
+            ignored = " ".join(self._link_path(link) for link in grab.ignored) or None
+            with out.inside("grabbed", body=grab.body, link=self._link_path(grab.link), ignored=ignored):
+                write_pose(out, settled.pose(grab.T_link_body))
 
     def _link_path(self, index: int) -> str:
         return f"{self._model_of_link[index]}/link{index}"

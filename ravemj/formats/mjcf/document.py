@@ -123,7 +123,9 @@ def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None
 def _write_look(out: Lines, view: View, meshes: Lines) -> None:
     """Write lights, the classes of geoms, the background and the meshes."""
     out.open("visual")
-    out.element("headlight", active=1, ambient=(0.34, 0.34, 0.34), diffuse=(0.26, 0.26, 0.26), specular=(0.05, 0.05, 0.05))
+    out.element(
+        "headlight", active=1, ambient=(0.34, 0.34, 0.34), diffuse=(0.26, 0.26, 0.26), specular=(0.05, 0.05, 0.05)
+    )
     out.close("visual")
     out.open("default")
     out.open("default", **{"class": "visual"})

@@ -10,6 +10,8 @@ from ravemj.formats.collada import SUFFIXES as COLLADA_SUFFIXES
 from ravemj.formats.meshes import MeshPart
 from ravemj.formats.openrave_xml.tags import Tag, Target
 from ravemj.formats.openrave_xml.tree import Element, parse_file
+from ravemj.formats.parameters import with_parameter
+from ravemj.model.scene import Parameters
 
 MOST_FILES = 10_000
 """Files that include others twice, which include others twice, would keep the reader busy for years."""
@@ -165,6 +167,16 @@ class Context:
         message = f"there is no file {name}; looked at {', '.join(dict.fromkeys(looked_at))}"
         self.diagnostics.warn("missing-file", message, source, hint)
         return None
+
+    def with_parameter(self, before: Parameters, element: Element) -> Parameters:
+        """Return some parameters and that of a ``<parameter>``; a broken one is left out, with a warning."""
+        try:
+            return with_parameter(
+                before, element.attributes.get("name", ""), element.attributes.get("type", ""), element.text
+            )
+        except ValueError as error:
+            self.diagnostics.warn("bad-parameter", f"a parameter is left out: {error}", element.source)
+            return before
 
     def mesh(self, name: str, source: Source, *folders: str, scale: Vec3 = UNSCALED) -> tuple[MeshPart, ...]:
         """Return the triangles of a mesh file; none, with a warning, where it is missing or broken.

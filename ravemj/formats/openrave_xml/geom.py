@@ -154,7 +154,7 @@ GEOM_ATTRIBUTES = {
     "name": "name of the shape",
     "render": "false: collides and is not drawn",
     "modifiable": "false: planners leave it alone",
-    "group": "geometries of other groups than `self` are left out",
+    "group": "other than `self`: no shape of the link, but one of a set that scripts can swap in",
 }
 
 SIZE_TAGS = {"half_extents": "extents", "cross_section": "crosssection"}
@@ -171,10 +171,6 @@ def read_geometries(element: Element, scope: GeometryScope, context: Context) ->
     kind = element.attributes.get("type", "").lower() or "box"
     geom = _Geom(context, name=element.attributes.get("name", ""))
     context.walk(element, GEOM_TAGS, GEOM_IGNORED, geom)
-    if element.attributes.get("group", "self") != "self":
-        message = f"the geometries of group '{element.attributes['group']}' are no part of the link; left out"
-        context.diagnostics.warn("ignored-group", message, element.source)
-        return []
     shape = _SHAPES.get(kind)
     if shape is TriMesh:
         return _trimesh(geom, element, scope)

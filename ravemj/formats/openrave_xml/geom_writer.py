@@ -34,8 +34,8 @@ class GeomWriter:
         self._names: dict[Mesh, str | None] = {}
         self.files: dict[str, bytes] = {}
 
-    def write(self, geometry: Geometry) -> None:
-        """Write a shape with its place and colours."""
+    def write(self, geometry: Geometry, group: str | None = None) -> None:
+        """Write a shape with its place and colours, in a group if it is no shape of its link."""
         shape = geometry.shape
         kind = _TYPES[type(shape)]
         if kind is None:
@@ -44,7 +44,7 @@ class GeomWriter:
             self._diagnostics.warn("not-written", message, geometry.source)
         turn = CYLINDER_TURN.inverse() if isinstance(shape, Cylinder) else UNMOVED
         attributes = {"name": geometry.name or None, "type": kind}
-        attributes |= {"render": None if geometry.visible else False}
+        attributes |= {"group": group, "render": None if geometry.visible else False}
         with self._out.inside("Geom", **attributes, modifiable=None if geometry.modifiable else False):
             write_pose(self._out, settled.pose(geometry.T_link_geometry @ turn))
             if isinstance(shape, TriMesh):

@@ -18,9 +18,10 @@ from ravemj.formats.openrave_xml.values import (
     vector,
     word,
 )
+from ravemj.formats.parameters import PARAMETER_MEANING
 from ravemj.model.builder import BodyBuilder, JointBuilder
 from ravemj.model.mimic import Equations
-from ravemj.model.scene import AXES, UNLIMITED, Axis, JointKind
+from ravemj.model.scene import AXES, NO_PARAMETERS, UNLIMITED, Axis, JointKind, Parameters
 
 _KINDS: dict[str, JointKind] = {"hinge": "hinge", "slider": "slider", "hinge2": "hinge2", "spherical": "spherical"}
 _DEFAULT_LIMIT: dict[JointKind, float] = {"hinge": math.pi, "slider": 10.0, "hinge2": math.pi, "spherical": 100.0}
@@ -45,6 +46,7 @@ class _JointReader:
     stops: bool = False
     motor: Motor | None = None
     negative: dict[str, Element] = field(default_factory=dict[str, Element])
+    parameters: Parameters = NO_PARAMETERS
 
     def read_body(self, element: Element) -> None:
         """Take the first name for the first link and every later one for the second."""
@@ -130,8 +132,19 @@ class _JointReader:
     def read_max_torque(self, element: Element) -> None:
         self._set_all(element, "max_torque", not_negative=True)
 
+    def read_inertia(self, element: Element) -> None:
+        self._set_all(element, "max_inertia", not_negative=True)
+
+    def read_other_number(self, element: Element) -> None:
+        """Read a number for each axis that is called otherwise than its tag."""
+        self._set_all(element, OTHER_NUMBERS[element.tag])
+
     def read_actuator(self, element: Element) -> None:
         self.motor = read_motor(element, self.context)
+
+    def read_parameter(self, element: Element) -> None:
+        """Read a value that scripts attach to the joint."""
+        self.parameters = self.context.with_parameter(self.parameters, element)
 
     def _degrees(self, element: Element) -> float:
         return math.pi / 180 if element.tag.endswith("deg") else 1.0
@@ -148,6 +161,15 @@ class _JointReader:
             axis[name] = value * factor
 
 
+OTHER_NUMBERS = {
+    "hardmaxvel": "hard_max_velocity",
+    "hardmaxaccel": "hard_max_acceleration",
+    "maxjerk": "max_jerk",
+    "hardmaxjerk": "hard_max_jerk",
+    "wrapoffset": "wrap_offset",
+}
+"""Tags of numbers that most files lack, all but the first our own, and the fields of an axis that they fill."""
+
 JOINT_TAGS: dict[str, Tag[_JointReader]] = {
     "body": Tag(_JointReader.read_body, "twice: the names of the Bodies that it joins"),
     "offsetfrom": Tag(_JointReader.read_frame, "name of the Body that anchor and axis are relative to"),
@@ -161,6 +183,7 @@ JOINT_TAGS: dict[str, Tag[_JointReader]] = {
     "lostop": Tag(_JointReader.read_stop, "deprecated: lower limit [deg, m]; turns the axis round"),
     "histop": Tag(_JointReader.read_stop, "deprecated: upper limit [deg, m]; turns the axis round"),
     "initial": Tag(_JointReader.read_initial, "the value at the poses of the file [rad, m]"),
+    "parameter": Tag(_JointReader.read_parameter, PARAMETER_MEANING),
     "weight": Tag(_JointReader.read_weight, "in distances between configurations"),
     "resolution": Tag(_JointReader.read_resolution, "step of planners [deg, m]"),
     "maxvel": Tag(_JointReader.read_max_velocity, "[rad/s, m/s]"),
@@ -168,11 +191,16 @@ JOINT_TAGS: dict[str, Tag[_JointReader]] = {
     "maxaccel": Tag(_JointReader.read_max_acceleration, "[rad/s², m/s²]"),
     "maxacceldeg": Tag(_JointReader.read_max_acceleration, "[deg/s²]"),
     "maxtorque": Tag(_JointReader.read_max_torque, "[N m, N]"),
+    "maxinertia": Tag(_JointReader.read_inertia, "[kg m², kg]; 0: unknown"),
+    "hardmaxvel": Tag(_JointReader.read_other_number, "what planners never exceed [rad/s, m/s]; 0: nothing"),
+    **dict.fromkeys(
+        ("hardmaxaccel", "maxjerk", "hardmaxjerk", "wrapoffset"),
+        Tag(_JointReader.read_other_number, "ravemj's own, named like OpenRAVE's getter"),
+    ),
     "actuator": Tag(_JointReader.read_actuator, "see below"),
 }
 JOINT_IGNORED = {
     **reasons(IGNORED, "maxforce", "mode", "axis3"),
-    **reasons("no getter or simulation of ravemj uses it", "hardmaxvel", "maxinertia"),
 }
 JOINT_ATTRIBUTES = {
     "name": "name of the joint",
@@ -234,6 +262,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
             axes=axes,
             enabled=not is_false(element.attributes.get("enable", "true")),
             equations=_equations(element, context),
+            parameters=reader.parameters,
             source=element.source,
         )
     )

@@ -7,7 +7,9 @@ from dataclasses import replace
 from ravemj.core.transforms import UNIT_WXYZ, ZERO, Pose, conjugate, rotate
 from ravemj.errors import Diagnostics
 from ravemj.formats import settled
+from ravemj.formats.openrave_xml.joint import OTHER_NUMBERS
 from ravemj.formats.openrave_xml.part_names import PartNames
+from ravemj.formats.parameters import write_parameters
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.joints import poses_at, rests
 from ravemj.model.limits import clamp
@@ -15,6 +17,7 @@ from ravemj.model.scene import Axis, Joint, JointKind, KinBody, Mimic
 
 _NEAR = 1e-9  # of points [m] and of unit vectors
 _Z = (0.0, 0.0, 1.0)
+_PLAIN = Axis(_Z)
 _AXIS_TAGS = {"hinge": ("axis",), "slider": ("axis",), "hinge2": ("axis1", "axis2"), "spherical": ()}
 _FIRST_AXES: dict[JointKind, JointKind] = {"rp": "slider", "pr": "hinge", "pp": "slider"}
 
@@ -81,6 +84,7 @@ class JointWriter:
             if any(initial):
                 self._out.element("initial", initial)
             self._write_numbers(joint)
+            write_parameters(self._out, joint.parameters)
 
     def _write_frame(self, body: KinBody, joint: Joint) -> None:
         """Write anchor and directions, in the frame of the parent; of a slider OpenRAVE takes that frame's origin."""
@@ -129,6 +133,10 @@ class JointWriter:
         self._out.element("maxaccel", [axis.max_acceleration for axis in axes])
         if any(axis.max_torque for axis in axes):
             self._out.element("maxtorque", [axis.max_torque for axis in axes])
+        for tag, name in {"maxinertia": "max_inertia", **OTHER_NUMBERS}.items():
+            values = [getattr(axis, name) for axis in axes]
+            if any(value != getattr(_PLAIN, name) for value in values):
+                self._out.element(tag, values)
         if first.armature or first.coulomb_friction or first.viscous_friction:
             with self._out.inside("actuator", type="electric_motor"):
                 self._out.element("gear_ratio", 1.0)

@@ -22,6 +22,7 @@ from ravemj.formats.openrave_xml.robot import check_sensors, read_attached_senso
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import (
+    ROTATIONS,
     Placement,
     hadamard,
     is_true,
@@ -29,7 +30,7 @@ from ravemj.formats.openrave_xml.values import (
     number,
     scale_attribute,
 )
-from ravemj.model.builder import BodyBuilder
+from ravemj.model.builder import BodyBuilder, GrabBuilder
 from ravemj.model.scene import KinBody
 
 Part = TypeVar("Part")
@@ -151,6 +152,23 @@ class _Scope:
         """Read a ``<Joint>``."""
         read_joint(self.body, element, self.context)
 
+    def read_grabbed(self, element: Element) -> None:
+        """Read that a link holds another body."""
+        placement = Placement()
+        for child in element.children:
+            if child.tag == "translation":
+                placement.translate(child, self.context.diagnostics)
+            elif child.tag in ROTATIONS:
+                placement.rotate(child, self.context.diagnostics)
+        link, body, ignored = (element.attributes.get(name, "") for name in ("link", "body", "ignored"))
+        links = [self.body.find_link(name) for name in (link, *ignored.split())]
+        known = [self.body.links[index] for index in links if index is not None]
+        if None in links:
+            message = f"<{element.spelled}> names a link of '{link} {ignored}' that is not above it; it is left out"
+            self.context.diagnostics.warn("unknown-body", message, element.source)
+        else:
+            self.body.grabs.append(GrabBuilder(body, known[0], placement.pose, tuple(known[1:])))
+
     def read_adjacent(self, element: Element) -> None:
         """Read a pair of links that never collide."""
         names = element.text.split()[:2]
@@ -201,6 +219,7 @@ def _reordered(parts: list[Part], are_older: list[bool]) -> list[Part]:
 _SCOPE_TAGS: dict[str, Tag[_Scope]] = {
     **placement_tags(_Scope.translate, _Scope.rotate),
     "jointvalues": Tag(_Scope.read_joint_values, "values of all DOFs [rad, m]"),
+    "grabbed": Tag(_Scope.read_grabbed, "ravemj's own: a body that a link holds, its pose there, and ignored links"),
 }
 ROBOT_TAGS: dict[str, Tag[_Scope]] = {
     **_SCOPE_TAGS,

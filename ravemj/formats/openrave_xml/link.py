@@ -10,7 +10,9 @@ from ravemj.formats.openrave_xml.mass import MassReader, MassRule, link_inertial
 from ravemj.formats.openrave_xml.tags import IGNORED, Tag, placement_tags
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import Placement, hadamard, is_false, scale_attribute
+from ravemj.formats.parameters import PARAMETER_MEANING
 from ravemj.model.builder import BodyBuilder, LinkBuilder
+from ravemj.model.scene import OWN_SHAPES
 
 
 class _LinkScope:
@@ -32,6 +34,7 @@ class _LinkScope:
         """Read the attributes, the file that they name, and the children."""
         self.context.check_attributes(element, LINK_ATTRIBUTES, LINK_IGNORED_ATTRIBUTES)
         self.link.enabled = not is_false(element.attributes.get("enable", "true"))
+        self.link.self_collision_ignored = is_false(element.attributes.get("selfcollision", "true"))
         self.link.name = element.attributes.get("name", self.link.name)  # a Body in a Body renames the link
         if "file" in element.attributes:
             self._include(element)
@@ -86,8 +89,18 @@ class _LinkScope:
 
     def read_geometry(self, element: Element) -> None:
         """Read a ``<Geom>``."""
-        if not self.skip_geometry:
-            self.link.geometries.extend(read_geometries(element, self.geometry_scope, self.context))
+        if self.skip_geometry:
+            return
+        found = read_geometries(element, self.geometry_scope, self.context)
+        group = element.attributes.get("group", OWN_SHAPES)
+        if group == OWN_SHAPES:
+            self.link.geometries += found
+        else:
+            self.link.add_to_group(group, found)
+
+    def read_parameter(self, element: Element) -> None:
+        """Read a value that scripts attach to the link."""
+        self.link.parameters = self.context.with_parameter(self.link.parameters, element)
 
     def read_mass(self, element: Element) -> None:
         """Read a ``<Mass>``."""
@@ -100,6 +113,7 @@ LINK_TAGS: dict[str, Tag[_LinkScope]] = {
     "geom": Tag(_LinkScope.read_geometry, "see below"),
     "geometry": Tag(_LinkScope.read_geometry, "the same as Geom"),
     "mass": Tag(_LinkScope.read_mass, "see below"),
+    "parameter": Tag(_LinkScope.read_parameter, PARAMETER_MEANING),
     "body": Tag(
         _LinkScope.read_nested,
         "more of the same link; its transform moves all shapes so far, its Mass is discarded, as in OpenRAVE",
@@ -111,6 +125,7 @@ LINK_ATTRIBUTES = {
     "enable": "false: takes no part in collisions",
     "scalegeometry": "one factor or three, of positions and meshes",
     "file": "a file with a Body, read as if it stood in this one",
+    "selfcollision": "ravemj's own; false: is not tested against other links of its body",
 }
 LINK_IGNORED_ATTRIBUTES = {"skipgeometry": IGNORED}
 

@@ -14,8 +14,9 @@ from ravemj.formats.openrave_xml.joint_writer import JointWriter, listed_poses, 
 from ravemj.formats.openrave_xml.mass import single
 from ravemj.formats.openrave_xml.part_names import PartNames
 from ravemj.formats.openrave_xml.sensor import known_type
+from ravemj.formats.parameters import write_parameters
 from ravemj.formats.xml_text import XmlText
-from ravemj.model.scene import AttachedSensor, Inertial, KinBody, Link, Manipulator, Scene, View
+from ravemj.model.scene import OWN_SHAPES, AttachedSensor, Inertial, KinBody, Link, Manipulator, Scene, View
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ class _Writer:
                 self.diagnostics.warn("not-written", message, body.source)
             with self.out.inside("KinBody", name=body.name, makeJoinedLinksAdjacent=joined):
                 self._write_parts(body, names)
-                self._write_values(body)
+                self._write_state(body, names)
             return
         with self.out.inside("Robot", name=body.name):
             with self.out.inside("KinBody", makeJoinedLinksAdjacent=joined):
@@ -93,7 +94,7 @@ class _Writer:
                 self._write_manipulator(manipulator, names)
             for sensor in body.sensors:
                 self._write_sensor(sensor, names)
-            self._write_values(body)
+            self._write_state(body, names)
 
     def _write_parts(self, body: KinBody, names: PartNames) -> None:
         """Write links, joints and pairs of links."""
@@ -106,20 +107,37 @@ class _Writer:
         for first, second in body.adjacent:
             self.out.element("adjacent", f"{names.links[first]} {names.links[second]}")
 
-    def _write_values(self, body: KinBody) -> None:
+    def _write_state(self, body: KinBody, names: PartNames) -> None:
+        """Write joint values and what the body holds."""
         if needs_values(body):
             self.out.element("jointvalues", [axis.value for axis in body.dof_axes])
+        for grab in body.grabs:
+            ignored = " ".join(names.links[link] for link in grab.ignored) or None
+            with self.out.inside("grabbed", body=grab.body, link=names.links[grab.link], ignored=ignored):
+                write_pose(self.out, settled.pose(grab.T_link_body))
 
     def _write_link(self, link: Link, name: str, pose: Pose) -> None:
         attributes = {"name": name or None, "type": "static" if link.static else "dynamic"}
-        if link.groups or link.self_collision_ignored:
-            message = f"other sets of shapes of link '{link.name}', and what it is not tested against, are left out"
-            self.diagnostics.warn("not-written", message, link.source)
+        attributes |= {"selfcollision": False if link.self_collision_ignored else None}
         with self.out.inside("Body", **attributes, enable=None if link.enabled else False):
             write_pose(self.out, pose)
             self._write_mass(link.inertial)
             for geometry in link.geometries:
                 self.geoms.write(geometry)
+            self._write_groups(link)
+            write_parameters(self.out, link.parameters)
+
+    def _write_groups(self, link: Link) -> None:
+        """Write the sets of shapes that scripts can swap in."""
+        for group, geometries in link.groups:
+            if group == OWN_SHAPES or not geometries:
+                message = f"of link '{link.name}' the group of shapes '{group}', which others replace, is left out"
+                if group != OWN_SHAPES:
+                    message = f"of link '{link.name}' the group '{group}' without shapes is left out"
+                self.diagnostics.warn("not-written", message, link.source)
+                continue
+            for geometry in geometries:
+                self.geoms.write(geometry, group)
 
     def _write_mass(self, inertial: Inertial) -> None:
         with self.out.inside("Mass", type="custom"):

@@ -25,8 +25,11 @@ SHADOW_SIZE = 2048
 """Texels along one side of the shadow map: half of MuJoCo's default, which costs a third more on a CPU."""
 
 _SHADOW_REACH = 2.0
-"""Half the side of the shadow map, in radii of the scene. MuJoCo takes more room for a larger distance between a surface
-and its own shadow: with 1 there are specks of shadow on surfaces that are far from the light."""
+"""Half the side of the shadow map, in radii of the scene.
+
+MuJoCo's offset between a surface and its own shadow grows with it: with 1 there are specks of shadow on surfaces that are
+far from the light.
+"""
 
 _SLICES, _STACKS = 48, 24
 """Facets around and along round shapes; MuJoCo's 28 and 16 show corners on close views."""

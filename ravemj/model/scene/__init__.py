@@ -4,7 +4,7 @@ Readers make a ``Scene`` (through ``ravemj.model.builder``), writers and the run
 angles radians, masses kilograms. Links are referred to by their index in ``KinBody.links``.
 """
 
-from ravemj.model.scene.body import AttachedSensor, Intrinsics, KinBody, Manipulator
+from ravemj.model.scene.body import AttachedSensor, Grab, Intrinsics, KinBody, Manipulator
 from ravemj.model.scene.mechanism import (
     AXES,
     NO_PARAMETERS,
@@ -57,6 +57,7 @@ __all__ = [
     "CrossSection",
     "Cylinder",
     "Geometry",
+    "Grab",
     "Inertial",
     "Intrinsics",
     "Joint",

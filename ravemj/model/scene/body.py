@@ -73,6 +73,23 @@ class AttachedSensor(Record):
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
+class Grab(Record):
+    """A body that a link of another one holds.
+
+    Attributes:
+        body: Name of the held body, which stands in the same scene.
+        link: Index of the link that holds it.
+        T_link_body: Its pose in the link.
+        ignored: Indices of the holder's links that it does not collide with.
+    """
+
+    body: str
+    link: int
+    T_link_body: Pose
+    ignored: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class KinBody(Record):
     """A body: links and the joints between them.
 
@@ -87,6 +104,7 @@ class KinBody(Record):
         manipulators: Arms.
         has_active_manipulator: Whether the first one is active; of a robot that OpenRAVE refuses none is.
         sensors: Sensors on links.
+        grabs: The bodies that it holds after loading.
         source: The element that it comes from.
     """
 
@@ -100,6 +118,7 @@ class KinBody(Record):
     manipulators: tuple[Manipulator, ...] = ()
     has_active_manipulator: bool = True
     sensors: tuple[AttachedSensor, ...] = ()
+    grabs: tuple[Grab, ...] = ()
     source: Source
 
     @property

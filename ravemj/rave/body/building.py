@@ -17,7 +17,7 @@ from ravemj.model.scene import TriMesh as Triangles
 from ravemj.model.shape_bodies import body_of_geometries, box_geometries, shape_geometry, sphere_geometries
 from ravemj.rave.body.structure import Structure
 from ravemj.rave.enums import UpdateFromInfoResult
-from ravemj.rave.infos import ExtractInfoOptions, GeometryInfo, JointInfo, KinBodyInfo, LinkInfo, body_of
+from ravemj.rave.infos import ExtractInfoOptions, GeometryInfo, GrabbedInfo, JointInfo, KinBodyInfo, LinkInfo, body_of
 from ravemj.rave.infos.link import geometries_of
 from ravemj.rave.trimesh import TriMesh, checked_mesh
 
@@ -228,6 +228,7 @@ class Building(Structure):
                 "_transform": self._state.link_transform(0) if self._state.scene.links else np.eye(4),
                 "_dofValues": [] if skip else [value for joint in joints for value in joint.named_values()],
                 "_isRobot": self._state.scene.is_robot,
+                "_vGrabbedInfos": [GrabbedInfo.of(self._state.scene, grab) for grab in self._state.grabs],
             }
 
     def _become(self, geometries: Iterable[Geometry], uri: str) -> bool:

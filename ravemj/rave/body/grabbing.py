@@ -52,13 +52,7 @@ def grab_of(state: BodyState, held: BodyState) -> GrabbedBody | None:
 
 def grabbed_infos(state: BodyState) -> list[GrabbedInfo]:
     """Return how a body holds others, for ``ResetGrabbed``."""
-    links = [link.name for link in state.scene.links]
-    return [
-        GrabbedInfo(
-            grab.body.scene.name, links[grab.link], grab.T_link_body.copy(), sorted(links[i] for i in grab.ignored)
-        )
-        for grab in state.grabs
-    ]
+    return [GrabbedInfo.of(state.scene, grab) for grab in state.grabs]
 
 
 def described_grab(state: BodyState, info: GrabbedInfo) -> GrabbedBody:

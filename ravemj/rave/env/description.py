@@ -15,7 +15,7 @@ from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import UpdateFromInfoMode, UpdateFromInfoResult
 from ravemj.rave.env.simulation import Simulating
-from ravemj.rave.infos import EnvironmentBaseInfo, KinBodyInfo
+from ravemj.rave.infos import EnvironmentBaseInfo, GrabbedInfo, KinBodyInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.library import RaveGetHomeDirectory
 from ravemj.rave.robot import Robot
@@ -177,6 +177,10 @@ class Description(Simulating):
                 self.Remove(body)
             for one in info._vBodyInfos:
                 self._take_info(one, added, changed)
+            for one in info._vBodyInfos:
+                body = self.GetKinBody(one._name)
+                if body is not None:
+                    body.ResetGrabbed(cast("Sequence[GrabbedInfo]", one._vGrabbedInfos))
             self.GetPhysicsEngine().SetGravity(np.asarray(info._gravity))
             self._description, self._keywords = info._description, list(info._keywords)
             self._numbers = dict(info._uInt64Parameters)

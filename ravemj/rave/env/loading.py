@@ -3,14 +3,27 @@
 import logging
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, Source, SourceError, send_warnings
-from ravemj.model.scene import Mesh
-from ravemj.rave.env.contents import Contents
+from ravemj.engine.simulation import BodyState
+from ravemj.engine.simulation.body import GrabbedBody
+from ravemj.errors import (
+    ArgumentError,
+    Diagnostic,
+    Diagnostics,
+    ErrorCode,
+    RavemjError,
+    Source,
+    SourceError,
+    send_warnings,
+)
+from ravemj.model.scene import Grab, Mesh
+from ravemj.rave.env.json_files import JsonFiles, is_json
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.rave.trimesh import TriMesh, trimesh_of
@@ -27,7 +40,7 @@ _Argument = KinBody | Text | Attributes | None
 _LOG = logging.getLogger("ravemj")
 
 
-class Loading(Contents):
+class Loading(JsonFiles):
     """Loads models."""
 
     def Load(self, filename: Text, atts: Attributes | None = None) -> bool:
@@ -35,8 +48,8 @@ class Loading(Contents):
 
         Args:
             filename: An OpenRAVE XML file with an environment, a robot or a kinbody, a COLLADA file (``.dae``,
-                ``.zae``), or a mesh file. It is looked for in the working folder, then in the folders of the
-                environment variable ``OPENRAVE_DATA``.
+                ``.zae``), OpenRAVE's JSON (``.json``, see ``LoadJSON``), or a mesh file. It is looked for in the
+                working folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
             atts: Attributes as of a ``<Robot>``: ``name`` in place of the body's, ``prefix`` before the names of its
                 parts, ``skipgeometry`` ("1": without shapes), ``scalegeometry`` ("2" or "2 3 4"; lengths times that,
                 but sizes of boxes, spheres and cylinders of XML as they are). They act where a robot, a kinbody, a
@@ -55,6 +68,8 @@ class Loading(Contents):
             True
         """
         checked_kind(filename, (str, bytes, os.PathLike), "Load: filename", "a path")
+        if is_json(os.fsdecode(filename)):
+            return self._try_json(os.fsdecode(filename), _checked_attributes(atts, "Load"))
         reading = _read_file(filename, _checked_attributes(atts, "Load"))
         try:
             return self._take(reading)
@@ -65,6 +80,18 @@ class Loading(Contents):
             return False
 
     LoadURI = Load
+
+    def _try_json(self, path: str, given: Attributes) -> bool:
+        for name in given:
+            diagnostics = Diagnostics()
+            diagnostics.warn("unknown-attribute", f"nothing reads '{name}' for a JSON file", Source(path))
+            send_warnings(diagnostics)
+        try:
+            self._load_json(path)
+        except SourceError as error:
+            _LOG.error("%s", error)
+            return False
+        return True
 
     def LoadData(self, data: str | bytes, atts: Attributes | None = None) -> bool:
         """Add the content of a model that is given as text, as ``Load`` adds that of a file.
@@ -95,12 +122,16 @@ class Loading(Contents):
 
     def _add(self, reading: "Reading") -> None:
         self._note(reading)
+        added: dict[str, BodyState] = {}
         with self._simulation.lock:
             for body in reading.scene.bodies:
                 name = self._simulation.free_name(body.name) if reading.renames else body.name
                 state = self._simulation.add(body if name == body.name else replace(body, name=name))
+                added[body.name] = state
                 if self._body_callbacks:
                     self._tell_of_body(self.wrap(state), 1)
+            for body in reading.scene.bodies:
+                self._hold(added[body.name], body.grabs, added, reading.diagnostics)
             if reading.scene.view is not None:
                 self._simulation.view = reading.scene.view
             if reading.scene.gravity is not None:
@@ -108,6 +139,19 @@ class Loading(Contents):
         for viewer in self._viewers:
             viewer.take_over(reading.scene.view)
         send_warnings(reading.diagnostics)
+
+    def _hold(
+        self, holder: BodyState, grabs: Sequence[Grab], added: Mapping[str, BodyState], diagnostics: Diagnostics
+    ) -> None:
+        """Let a body hold those that its file says it holds."""
+        for grab in grabs:
+            held = added.get(grab.body)
+            if held is None or held is holder:
+                message = f"there is no other body '{grab.body}' in the file for '{holder.scene.name}' to hold"
+                diagnostics.warn("unknown-body", message, holder.scene.source)
+                continue
+            T_link_body = np.array(grab.T_link_body.matrix())
+            holder.grabs = [*holder.grabs, GrabbedBody(held, grab.link, T_link_body, frozenset(grab.ignored))]
 
     def _note(self, reading: "Reading") -> None:
         self._check_alive()

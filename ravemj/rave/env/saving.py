@@ -11,7 +11,7 @@ from ravemj.engine.snapshot import snapshot
 from ravemj.errors import ArgumentError, Diagnostics, UnsupportedError, send_warnings
 from ravemj.model.scene import KinBody, Scene, View
 from ravemj.rave.enums import SelectionOptions
-from ravemj.rave.env.base import EnvironmentPart
+from ravemj.rave.env.json_files import JsonFiles, is_json
 
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.geom_writer import MeshFormat
@@ -32,10 +32,10 @@ _PARTS: dict[str, Callable[[KinBody], KinBody]] = {
     "sensors": lambda body: replace(body, sensors=()),
     "manipulators": lambda body: replace(body, manipulators=()),
 }
-_VALUES = {"skipwrite": tuple(_PARTS), "format": ("collada", "openrave"), "meshes": ("stl", "obj")}
+_VALUES = {"skipwrite": tuple(_PARTS), "format": ("collada", "openrave", "json"), "meshes": ("stl", "obj")}
 
 
-class Saving(EnvironmentPart):
+class Saving(JsonFiles):
     """Saves models."""
 
     SelectionOptions = SelectionOptions
@@ -50,13 +50,14 @@ class Saving(EnvironmentPart):
 
         Args:
             filename: The file. It gets COLLADA 1.5 with OpenRAVE's extras, whatever its name; one that ends in ``.zae``
-                gets a zip archive of it. ``Load`` reads all of them.
+                gets a zip archive of it, one that ends in ``.json`` OpenRAVE's JSON. ``Load`` reads all of them.
             options: Which bodies, a ``SelectionOptions``.
             atts: The name of a body, for ``SelectionOptions.Body`` and ``AllExceptBody``, or a dict or pairs of
 
                 * ``target``: a body; several pairs name several;
                 * ``skipwrite``: words for what is left out: ``geometry``, ``sensors``, ``manipulators``;
                 * ``format``: ``openrave`` for OpenRAVE XML, with meshes in the folder ``meshes`` beside the file;
+                  ``collada`` and ``json``;
                 * ``meshes``: the kind of these, ``stl`` or ``obj``.
 
         Raises:
@@ -73,19 +74,25 @@ class Saving(EnvironmentPart):
 
         checked_kind(filename, (str, os.PathLike), "Save: filename", "a path")
         path = os.fspath(filename)
-        if path.lower().endswith((".json", ".msgpack")):
-            raise UnsupportedError("Save", "JSON files")
+        if path.lower().endswith(".msgpack"):
+            raise UnsupportedError("Save", "MessagePack files")
         given = _checked(atts)
+        named = dict(given)
+        skipped = [part for name, value in given if name == "skipwrite" for part in value.split()]
         self._check_alive()
         with self._simulation.lock:
             bodies = [snapshot(body) for body in self._simulation.bodies]
             view, gravity = self._simulation.view, self._simulation.gravity
         bodies = _chosen(bodies, options, [value for name, value in given if name == "target"])
-        for part in (part for name, value in given if name == "skipwrite" for part in value.split()):
+        names = {body.name for body in bodies}
+        if named.get("format") == "json" or ("format" not in named and is_json(path)):
+            self._save_json(path, names, skipped)
+            return
+        bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
+        for part in skipped:
             bodies = [_PARTS[part](body) for body in bodies]
         is_lone_body = len(bodies) == 1 and view == View()
         scene = Scene(tuple(bodies), None if is_lone_body else view, None if gravity == DEFAULT_GRAVITY else gravity)
-        named = dict(given)
         diagnostics = Diagnostics()
         save(
             path,

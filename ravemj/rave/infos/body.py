@@ -7,6 +7,7 @@
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
 
+import math
 from collections.abc import Sequence
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeVar
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from ravemj.model.builder import BodyBuilder
 
 T = TypeVar("T")
+
+_NEAR = 1e-12
 
 
 class ExtractInfoOptions(NamedFlag):
@@ -74,13 +77,15 @@ class KinBodyInfo(Info):
 
     def same_structure(self, other: "KinBodyInfo") -> bool:
         """Return whether two infos describe the same links and joints, wherever these stand."""
-        return self._standing() == other._standing()
+        return _alike(self._standing().SerializeJSON(), other._standing().SerializeJSON())
 
     def _standing(self) -> "KinBodyInfo":
         """Return the info without pose and joint values."""
         links = [replace(link, _t=np.eye(4)) for link in self._vLinkInfos]
         joints = [replace(joint, _vcurrentvalues=None) for joint in self._vJointInfos]
-        return replace(self, _vLinkInfos=links, _vJointInfos=joints, _transform=np.eye(4), _dofValues=[])
+        return replace(
+            self, _vLinkInfos=links, _vJointInfos=joints, _transform=np.eye(4), _dofValues=[], _vGrabbedInfos=[]
+        )
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
         del obj
@@ -139,6 +144,19 @@ _ROBOT_JSON = (
     Entry("connectedBodies", "_vConnectedBodyInfos", infos(lambda item: ConnectedBodyInfo()), optional=True),
     Entry("gripperInfos", "_vGripperInfos", infos(lambda item: GripperInfo()), optional=True),
 )
+
+
+def _alike(first: object, second: object) -> bool:
+    """Tell whether two values of JSON are the same, with numbers as near as poses are after going through files."""
+    if first == second:
+        return True
+    if isinstance(first, dict) and isinstance(second, dict):
+        return first.keys() == second.keys() and all(_alike(first[key], second[key]) for key in first)
+    if isinstance(first, list) and isinstance(second, list):
+        return len(first) == len(second) and all(map(_alike, first, second))
+    if isinstance(first, float | int) and isinstance(second, float | int):
+        return math.isclose(first, second, rel_tol=_NEAR, abs_tol=_NEAR)
+    return False
 
 
 def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:

@@ -6,12 +6,13 @@
 
 from collections.abc import Sequence
 from dataclasses import field
-from typing import Any
+from typing import Any, Self
 
 from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats
-from ravemj.model import hashes
+from ravemj.engine.simulation.body import GrabbedBody
+from ravemj.model import hashes, scene
 from ravemj.rave.infos.base import Info, identity, info_class
 from ravemj.rave.infos.joint import JointInfo
 from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Json, infos
@@ -90,6 +91,13 @@ class GrabbedInfo(Info):
     _setIgnoreRobotLinkNames: Sequence[str] = field(default_factory=list[str])
     _grabbedUserData: Any = None
     _id: str = ""
+
+    @classmethod
+    def of(cls, holder: scene.KinBody, grab: GrabbedBody) -> Self:
+        """Return how a body holds another one."""
+        links = [link.name for link in holder.links]
+        ignored = sorted(links[index] for index in grab.ignored)
+        return cls(grab.body.scene.name, links[grab.link], grab.T_link_body.copy(), ignored)
 
     def GetGrabbedInfoHash(self) -> str:
         """Return a text that is the same for infos that say the same: 32 hexadecimal digits."""

@@ -152,7 +152,8 @@ class JointInfo(ParameterFields):
             _vanchor=np.array(reported_anchor(joint)),
             _vaxes=[np.array(direction) for direction in _directions(body, joint, values)],
             _vcurrentvalues=np.array(values),
-            _bIsActive=index < len(body.joints) or mimic is not None,
+            _bIsActive=index < len(body.joints) or all(one.mimic for one in body.all_joints[index:]),
+            _infoElectricMotor=_motor_of(joint.axes[0]),
             _vmimic=[] if mimic is None else [[mimic.position, mimic.velocity, mimic.acceleration]],
             **of_axes,
         ).with_parameters(joint.parameters)
@@ -254,6 +255,11 @@ class JointInfo(ParameterFields):
     def _equations(self) -> Equations | None:
         first = self._vmimic[0] if self._vmimic else None
         return Equations(*map(str, first)) if first and any(first) else None
+
+
+def _motor_of(axis: scene.Axis) -> ElectricMotorActuatorInfo | None:
+    """Return a motor without a gear that has the inertia of an axis; None for none."""
+    return ElectricMotorActuatorInfo(gear_ratio=1.0, rotor_inertia=axis.armature) if axis.armature else None
 
 
 def type_of(kind: scene.JointKind) -> JointType:

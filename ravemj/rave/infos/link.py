@@ -21,7 +21,7 @@ from ravemj.model.inertia import inertial_about, principal_frame, principal_mome
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.infos.base import PARAMETERS_JSON, ParameterFields, filled, identity, info_class, pose
 from ravemj.rave.infos.geometry import GeometryInfo
-from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Json, infos, lengths
+from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Form, Json, infos, lengths
 
 if TYPE_CHECKING:
     from ravemj.model.builder import LinkBuilder
@@ -59,6 +59,7 @@ class LinkInfo(ParameterFields):
     _bStatic: bool = False
     _bIsEnabled: bool = True
     _bVisible: bool = True
+    _bIgnoreSelfCollision: bool = False
     _id: str | None = None
 
     @classmethod
@@ -80,6 +81,7 @@ class LinkInfo(ParameterFields):
             _bStatic=link.static,
             _bIsEnabled=enabled,
             _bVisible=any(geometry.visible for geometry in link.geometries) or not link.geometries,
+            _bIgnoreSelfCollision=link.self_collision_ignored,
         ).with_parameters(link.parameters)
 
     def link(self) -> "LinkBuilder":
@@ -105,6 +107,7 @@ class LinkInfo(ParameterFields):
             enabled=bool(self._bIsEnabled),
             groups=tuple((name, geometries_of(infos)) for name, infos in self._mapExtraGeometries.items()),
             parameters=self.parameters(),
+            self_collision_ignored=bool(self._bIgnoreSelfCollision),
         )
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
@@ -116,6 +119,11 @@ class LinkInfo(ParameterFields):
         return [names.index(name) for name in self._vForcedAdjacentLinks if name in names]
 
 
+_SHAPES = infos(lambda item: GeometryInfo())
+_GROUPS = Form(
+    lambda groups, scale: {name: _SHAPES.write(group, scale) for name, group in groups.items()},
+    lambda value, scale, present: {name: _SHAPES.read(group, scale, []) for name, group in value.items()},
+)
 _LINK_JSON = (
     Entry("id", "_id", TEXT),
     Entry("name", "_name", TEXT),
@@ -125,9 +133,11 @@ _LINK_JSON = (
     Entry("inertiaMoments", "_vinertiamoments", lengths(2)),
     *PARAMETERS_JSON,
     Entry("forcedAdjacentLinks", "_vForcedAdjacentLinks", PLAIN, optional=True),
-    Entry("geometries", "_vgeometryinfos", infos(lambda item: GeometryInfo()), optional=True),
+    Entry("geometries", "_vgeometryinfos", _SHAPES, optional=True),
+    Entry("extraGeometries", "_mapExtraGeometries", _GROUPS, optional=True),
     Entry("isStatic", "_bStatic", PLAIN),
     Entry("isEnabled", "_bIsEnabled", PLAIN),
+    Entry("isSelfCollisionIgnored", "_bIgnoreSelfCollision", PLAIN, optional=True),
 )
 
 

@@ -1,0 +1,125 @@
+"""Files in OpenRAVE's JSON: an environment as infos write and read it."""
+
+# The fields of infos have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+import json
+from collections.abc import Callable, Collection, Iterable, Sequence
+from typing import Any, cast
+
+from ravemj.core.output import new_file
+from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError, send_warnings
+from ravemj.model.scene import KinBody
+from ravemj.rave.env.description import Description
+from ravemj.rave.infos import KinBodyInfo
+
+SUFFIX = ".json"
+
+_Given = Callable[[KinBodyInfo], None]
+
+
+def is_json(path: str) -> bool:
+    """Tell whether a file holds JSON, by the end of its name."""
+    return path.lower().endswith(SUFFIX)
+
+
+class JsonFiles(Description):
+    """Saves and loads environments in OpenRAVE's JSON."""
+
+    def _save_json(self, path: str, names: Collection[str], skipped: Sequence[str]) -> None:
+        """Write bodies, with what else there is to say about the environment.
+
+        Args:
+            path: The file.
+            names: Names of the bodies.
+            skipped: What is left out, words of ``skipwrite``.
+
+        Raises:
+            OutputError: The file cannot be written, or a number is not finite; nothing is changed then.
+        """
+        info = self.ExtractInfo()
+        info._vBodyInfos = [body for body in info._vBodyInfos if body._name in names]
+        for body in info._vBodyInfos:
+            body._vGrabbedInfos = [grab for grab in body._vGrabbedInfos if cast("Any", grab)._grabbedname in names]
+            for word in skipped:
+                _SKIPS[word](body)
+        _warn_of_losses(path, [body.simulation_state.scene for body in self.GetBodies() if body.GetName() in names])
+        try:
+            text = json.dumps(info.SerializeJSON(), allow_nan=False)
+        except ValueError as error:
+            raise OutputError(f"cannot write {path}: a number is not finite, and JSON has no word for it") from error
+        with new_file(path) as file:
+            file.write_text(text + "\n", encoding="utf-8", newline="\n")
+
+    def _load_json(self, path: str) -> None:
+        """Take over the environment of a file; see ``LoadJSON``.
+
+        Raises:
+            SourceError: The file is missing or broken; what was read before is there.
+        """
+        from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
+
+        self._check_alive()
+        found = find(path)
+        if found is None:
+            raise SourceError("there is no such file", Source(path), "check the path, or set OPENRAVE_DATA")
+        content = _parsed(found)
+        self._files[found] = None
+        try:
+            self.LoadJSON(content)
+        except RavemjError as error:
+            raise SourceError(str(error), Source(found)) from error
+        except (ArithmeticError, RecursionError) as error:
+            raise SourceError("a number in the file is too large to compute with", Source(found)) from error
+
+
+def _parsed(path: str) -> dict[str, Any]:
+    """Return the object that a file holds.
+
+    Raises:
+        SourceError: There is none.
+    """
+    try:
+        with open(path, encoding="utf-8") as file:
+            content = json.load(file, parse_constant=_refuse)
+    except json.JSONDecodeError as error:
+        raise SourceError(f"not well-formed JSON: {error.msg}", Source(path, error.lineno)) from error
+    except RecursionError as error:
+        raise SourceError("the values are nested too deeply", Source(path)) from error
+    except (OSError, ValueError) as error:  # also bytes that are no UTF-8
+        raise SourceError(f"cannot be read: {error}", Source(path)) from error
+    bodies = cast("dict[str, Any]", content).get("bodies") if isinstance(content, dict) else None
+    if not isinstance(bodies, list):
+        message = "OpenRAVE's JSON is an object with a list of bodies, and here is none"
+        raise SourceError(message, Source(path))
+    return cast("dict[str, Any]", content)
+
+
+def _warn_of_losses(path: str, bodies: Iterable[KinBody]) -> None:
+    """Warn of what OpenRAVE's JSON cannot say."""
+    diagnostics = Diagnostics()
+    for body in bodies:
+        if not body.joined_links_adjacent:
+            message = f"that links of '{body.name}' can collide at their joints is left out; JSON cannot say it"
+            diagnostics.warn("not-written", message, Source(path))
+        drawn = [part for link in body.links for part in link.geometries if part.display is not None]
+        if drawn:
+            message = f"meshes that '{body.name}' draws in place of its shapes are left out; JSON cannot say them"
+            diagnostics.warn("not-written", message, Source(path))
+    send_warnings(diagnostics)
+
+
+def _refuse(word: str) -> None:
+    raise ValueError(f"{word} is no number in JSON")
+
+
+def _skip_geometry(body: KinBodyInfo) -> None:
+    for link in body._vLinkInfos:
+        link._vgeometryinfos, link._mapExtraGeometries = [], {}
+
+
+_SKIPS: dict[str, _Given] = {
+    "geometry": _skip_geometry,
+    "sensors": lambda body: setattr(body, "_vAttachedSensorInfos", []),
+    "manipulators": lambda body: setattr(body, "_vManipInfos", []),
+}
