@@ -50,7 +50,7 @@ class KinBody(Building, GeometryGroups, Grabbing, BodyCollision, Velocities, Dyn
     SaveParameters = SaveParameters
 
     _interface_type = InterfaceType.kinbody
-    _internal = ("default_saved", "restorers")
+    _internal = ("default_saved", "restorers", "set_following")
     default_saved = int(SaveParameters.LinkTransformation | SaveParameters.LinkEnable)
 
     def __init__(self, env: "Environment", state: BodyState) -> None:

@@ -312,7 +312,11 @@ class BodyState:
 
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
         """Change the description of the body where links and joints stay the same: names, limits, manipulators."""
-        self.scene = replace(self.scene, **changes)
+        scene = replace(self.scene, **changes)
+        if not changes.keys().isdisjoint(("joints", "passive_joints")) and _welds(scene) != _welds(self.scene):
+            self.remake(scene)
+            return
+        self.scene = scene
         if self.index:
             self.simulation.changed.add(self)
         if self._kinematics is not None:
@@ -320,12 +324,12 @@ class BodyState:
         if "passive_joints" in changes:
             self._dynamics = self._batch = None  # which of several values a follower has depends on its limits
 
-    def edit_mimic(self, passive_joints: tuple[Joint, ...]) -> None:
-        """Let passive joints follow by other equations; the links stay where they are until values are next set."""
+    def remake(self, scene: KinBody) -> None:
+        """Take over a description with other DOFs, welds or equations; links stay until values are next set."""
         saved = self.configuration()
         self.simulation.forget_model()
         self._forget_kinematics()
-        self.scene = replace(self.scene, passive_joints=passive_joints)
+        self.scene, self.dof = scene, len(scene.dof_axes)
         self.restore(saved)
 
     def rezero(self) -> None:
@@ -375,3 +379,7 @@ class BodyState:
         self.edit(
             joints=tuple(replace(joint, axes=tuple(next(rest) for _ in joint.axes)) for joint in self.scene.joints)
         )
+
+
+def _welds(body: KinBody) -> list[bool]:
+    return [joint.static for joint in body.all_joints]

@@ -220,14 +220,17 @@ class Configuration(BodyPart):
 
         Args:
             returndoflastvlaues: Whether to return the joint values, too, as ``SetLinkTransformations`` takes them
-                (the spelling is OpenRAVE's).
+                (the spelling is OpenRAVE's). Those of sliders are 0, since poses show them without.
 
         Returns:
             ``T_world_link`` of shape (4, 4) for each link, in the order of ``GetLinks()``; copies.
         """
         with self._simulation.lock:
             transforms = list(self._state.link_transforms())
-            return (transforms, self._state.kinematics.values()) if returndoflastvlaues else transforms
+            if not returndoflastvlaues:
+                return transforms
+            slides = [joint.kind == "slider" for joint in self._state.scene.joints for _ in joint.axes]
+            return transforms, np.where(slides, 0.0, self._state.kinematics.values())  # random-api-102
 
     def SetLinkTransformations(
         self, transforms: Sequence[ArrayLike], doflastsetvalues: ArrayLike | None = None

@@ -4,6 +4,7 @@
 # pyright: reportPrivateUsage=false
 
 from collections.abc import Iterable, Sequence
+from types import EllipsisType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,10 +31,10 @@ class Grabbing(BodyPart, Interface):
         self,
         body: "KinBody",
         grablink: Link,
-        linkstoignore: Iterable[Link | int | str] = (),
-        grabbedUserData: object = None,
+        linkstoignore: "Iterable[Link | int | str] | EllipsisType" = ...,
+        grabbedUserData: object = ...,
     ) -> bool:
-        """Hold a body by a link, in the pose that both have now.
+        """Hold a body by a link, in the pose that both have now: ``Grab(body, grablink)``, or with all four arguments.
 
         From now on it moves with the link. It does not collide with the links that it touches now. Grabbing a body
         that is held already renews link and pose.
@@ -42,21 +43,23 @@ class Grabbing(BodyPart, Interface):
             body: What to hold; it was made for the same environment, and need not be in it.
             grablink: The link of this body that holds it.
             linkstoignore: Further links of this body that it should not collide with.
-            grabbedUserData: Kept in ``GrabbedInfo._grabbedUserData`` by OpenRAVE; not used.
+            grabbedUserData: Goes with ``linkstoignore``, as in OpenRAVE, which keeps it; not used.
 
         Returns:
             True.
 
         Raises:
+            TypeError: one of ``linkstoignore`` and ``grabbedUserData`` is given without the other (gap-20).
             openrave_exception: this body is not in the environment (``NotInitialized``); the other one is None
                 (``Failed``), of another environment, this body itself, or holds this body (``InvalidArguments``).
         """
-        del grabbedUserData
+        if (linkstoignore is ...) != (grabbedUserData is ...):
+            raise TypeError("Grab: takes links to ignore as Grab(body, grablink, linkstoignore, grabbedUserData)")
         with self._simulation.lock:
             self._check_holdable(body)
             link = self._own_link(grablink, "Grab")
             held = body.simulation_state
-            ignored = [self._link_index(one) for one in linkstoignore]
+            ignored = [] if linkstoignore is ... else [self._link_index(one) for one in linkstoignore]
             self._state.grab(grab_as_it_stands(self._state, held, link, ignored))
             return True
 
