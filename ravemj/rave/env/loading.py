@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, Source, SourceError, send_warnings
+from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, Source, SourceError, UnnamedError, send_warnings
 from ravemj.model.scene import Mesh
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.kinbody import KinBody
@@ -49,6 +49,9 @@ class Loading(EnvironmentPart):
             all the same. ``ravemj.load`` raises instead. Bodies of COLLADA and of mesh files get other names where
             theirs are taken.
 
+        Raises:
+            openrave_exception: a body of the file has no name (``Failed``).
+
         Example:
             >>> env = ravemj.Environment()
             >>> env.Load("models/env.xml")
@@ -78,7 +81,7 @@ class Loading(EnvironmentPart):
 
         Raises:
             openrave_exception: a body of that name is in the environment already (``BodyNameConflict``); that of a
-                COLLADA document gets another name instead.
+                COLLADA document gets another name instead. Or a body has no name (``Failed``).
 
         Example:
             >>> env.LoadData('<KinBody name="a"><Body><Geom type="sphere"><radius>1</radius></Geom></Body></KinBody>')
@@ -89,6 +92,8 @@ class Loading(EnvironmentPart):
 
     def _take(self, reading: "Reading") -> bool:
         self._add(reading)
+        if isinstance(reading.failure, UnnamedError):
+            raise reading.failure
         if reading.failure is not None:
             _LOG.error("%s", reading.failure)
         return reading.failure is None and all(finding.severity != "error" for finding in reading.diagnostics)
