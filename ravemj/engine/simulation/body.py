@@ -191,6 +191,11 @@ class BodyState:
         self.kinematics.set_values(values, clamp_mimic=clamp_mimic)
         self.moved()
 
+    def enter_limits(self) -> None:
+        """Let joints that are outside their limits go to them."""
+        if self._kinematics is not None and not self._kinematics.limits.contain(values := self._kinematics.values()):
+            self.set_values(self._kinematics.limits.clamp(values))
+
     def set_transform(self, T_world_link0: Floats) -> None:
         """Move the body rigidly, with the joint values as they are.
 

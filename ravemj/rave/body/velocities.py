@@ -59,7 +59,8 @@ class Velocities(Limits, Interface):
             angular: Angular velocity of the first link in the world [rad/s], shape (3,); behind a number it is
                 ``indices``.
             checklimits: What to do with values outside the velocity limits, a ``CheckLimitsAction``.
-            indices: Which DOFs, in which order; the others keep their velocities. None: all.
+            indices: Which DOFs, in which order; None: all. As in OpenRAVE only the first DOFs count, as many as there
+                are indices: of them those that are not chosen keep their velocities, and all others stop. So name all.
 
         Raises:
             ArgumentError: the number of velocities is wrong or one is infinite; with ``CheckLimitsThrow``, one is
@@ -90,8 +91,10 @@ class Velocities(Limits, Interface):
         if indices is None:
             return checked_first(dofvelocities, dof, "SetDOFVelocities") if dof else np.zeros(0)
         chosen = checked_indices(indices, dof)
-        rates = self.GetDOFVelocities()
-        rates[chosen] = checked_vector(dofvelocities, len(chosen), "SetDOFVelocities")
+        given = dict(zip(chosen.tolist(), checked_vector(dofvelocities, len(chosen), "SetDOFVelocities"), strict=True))
+        first = self.GetDOFVelocities()[: len(chosen)]
+        rates = np.zeros(dof)
+        rates[: len(first)] = [given.get(place, rate) for place, rate in enumerate(first)]  # random-api-117, dof-24
         return rates
 
     def _limited_rates(self, rates: Floats, checklimits: int) -> Floats:
