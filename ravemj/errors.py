@@ -135,6 +135,10 @@ class SourceError(RavemjError):
         return next((finding for finding in explaining if here in _places(finding.source)), None)
 
 
+class UnnamedError(SourceError):
+    """A body of a file has no name; OpenRAVE's ``Load`` raises there, where other mistakes make it False (gap-18)."""
+
+
 class CompileError(SourceError):
     """MuJoCo refuses the translated model; ``source`` is the element that the refused part comes from."""
 

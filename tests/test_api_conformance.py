@@ -50,12 +50,8 @@ MISTAKES = {
     ),
     "dynamics-03-accelerations": ("symmetric", "with the forces of sliders as they are, the mass matrix is symmetric"),
     "dynamics-11-mimic": (r"b\[0\]", "OpenRAVE leaves out what accelerates the follower"),
-    "gap-03-wrong-shapes": (
-        r"manipulator$|grab$",
-        "numbers of manipulators, as in old scripts, and names of links to ignore are taken here",
-    ),
+    "gap-03-wrong-shapes": (r"manipulator$", "numbers of manipulators are taken here, as in old scripts"),
     "gap-04-arrays-that-are-too-long": (r"a\[4\]", "OpenRAVE leaves out what accelerates the follower"),
-    "gap-20-grab-arguments": (r"list|kept", "names of links to ignore are taken here"),
     "ik-10-param-distance": (r"Lookat3D\[0\]", "OpenRAVE leaves out what is along a direction that nobody can set"),
     "info-23-extract-and-init": ("limits-before-add", "OpenRAVE counts no DOFs of a body that is not added yet"),
     "mesh-03-sphere": ("counts", "how finely a sphere is divided is not part of the API"),

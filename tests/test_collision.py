@@ -420,15 +420,17 @@ def test_grab_takes_its_arguments_by_name(env, arm):
     for named, link in [
         ({"body": thing}, arm.GetActiveManipulator().GetEndEffector()),
         ({"body": thing, "grablink": upper}, upper),
-        ({"body": thing, "grablink": fore, "linkstoignore": ["base"]}, fore),
-        ({"body": thing, "linkstoignore": ["base"]}, arm.GetActiveManipulator().GetEndEffector()),
+        ({"body": thing, "grablink": fore, "linkstoignore": ["base"], "grabbedUserData": None}, fore),
     ]:
         assert arm.Grab(**named)
         assert arm.IsGrabbing(thing) == link
         (info,) = arm.GetGrabbedInfo()
         assert ("base" in info._setIgnoreRobotLinkNames) == ("linkstoignore" in named)
-    arm.Grab(thing, [0])
+    arm.Grab(thing, fore, [0], None)
     assert "base" in arm.GetGrabbedInfo()[0]._setIgnoreRobotLinkNames
+    for wrong in ([thing, fore, ["base"]], [thing, fore, [0]]):  # as in OpenRAVE: gap-20, random-api-71
+        with pytest.raises(TypeError, match="grabbedUserData"):
+            arm.Grab(*wrong)
 
 
 def test_two_held_bodies(env, arm):

@@ -80,6 +80,30 @@ class TestSetters:
         np.testing.assert_allclose(tree.link_transforms(), transforms, atol=1e-12)
 
 
+def gripper():
+    """An arm of two hinges with a finger, and a second finger that follows the first and the second hinge."""
+    env = ravemj.Environment()
+    bodies = "".join(
+        f'<Body name="{name}"><Translation>{x} {y} 0</Translation>'
+        '<Geom type="box"><extents>.1 .1 .1</extents></Geom><Mass type="mimicgeom"><density>9</density></Mass></Body>'
+        for name, x, y in [("a", 0, 0), ("b", 1, 0), ("c", 2, 0), ("d", 3, 1), ("e", 3, -1)]
+    )
+    joints = "".join(
+        f'<Joint name="{name}" type="{kind}" {more}><Body>{parent}</Body><Body>{child}</Body>'
+        f"<offsetfrom>{child}</offsetfrom><axis>0 0 1</axis><limits>-2 2</limits></Joint>"
+        for name, kind, parent, child, more in [
+            ("one", "hinge", "a", "b", ""),
+            ("two", "hinge", "b", "c", ""),
+            ("three", "slider", "c", "d", ""),
+            ("four", "slider", "c", "e", 'mimic_pos="three+two"'),
+        ]
+    )
+    arm = "<Manipulator name='m'><base>a</base><effector>c</effector><joints>three</joints>"
+    arm += "<closingdirection>1</closingdirection></Manipulator>"
+    assert env.LoadData(f'<Robot name="r"><KinBody>{bodies}{joints}</KinBody>{arm}</Robot>')
+    return env, env.GetRobot("r")
+
+
 class TestFollowing:
     def test_a_follower_gets_another_equation(self, tree):
         follower = tree.GetJoint("n")
@@ -90,12 +114,45 @@ class TestFollowing:
         tree.SetDOFVelocities([2, 0, 0])
         assert follower.GetVelocities() == pytest.approx(2)
 
-    @pytest.mark.parametrize(("joint", "equation"), [("n", "nonsense+1"), ("n", ""), ("l", "r")])
-    def test_what_is_refused_changes_nothing(self, tree, joint, equation):
+    @pytest.mark.parametrize(("joint", "axis", "equation"), [("n", 0, "nonsense+1"), ("n", 1, "l"), ("l", 0, "x*r")])
+    def test_what_is_refused_changes_nothing(self, tree, joint, axis, equation):
         before = tree.simulation_state.scene
         with pytest.raises(ravemj.openrave_exception):
-            tree.GetJoint(joint).SetMimicEquations(0, equation)
+            tree.GetJoint(joint).SetMimicEquations(axis, equation)
         assert tree.simulation_state.scene is before
+
+    def test_without_an_equation_a_joint_that_follows_none_stays_as_it_is(self, tree):  # random-api-23
+        before = tree.simulation_state.scene
+        tree.GetJoint("l").SetMimicEquations(0, "", "", "")
+        assert tree.simulation_state.scene is before
+
+    def test_a_joint_that_begins_to_follow_loses_its_dof(self):  # gap-15
+        env, robot = gripper()
+        first, second, third = robot.GetJoints()
+        (follower,) = robot.GetPassiveJoints()
+        robot.SetActiveDOFs([2])
+        robot.SetDOFValues([0.1, 0.2, 0.3])
+        stood = robot.link_transforms()
+        second.SetMimicEquations(0, "2*one", "|one 2", "|one 0")
+        assert [joint.GetName() for joint in robot.GetJoints()] == ["one", "three"]
+        assert [joint.GetName() for joint in robot.GetPassiveJoints()] == ["four", "two"]
+        assert [joint.GetName() for joint in (first, second, third, follower)] == ["one", "two", "three", "four"]
+        assert [joint.GetDOFIndex() for joint in (first, second, third)] == [0, -1, 1]
+        assert robot.GetActiveDOFIndices().tolist() == [0, 1]
+        arm = robot.GetManipulators()[0]
+        assert arm.GetArmIndices().tolist() == [0]
+        assert arm.GetGripperIndices().tolist() == [1]
+        np.testing.assert_allclose(robot.link_transforms(), stood, atol=1e-12)
+        robot.SetDOFValues([0.2, -0.1])
+        assert second.GetValue() == pytest.approx(0.4)
+        assert follower.GetValue() == pytest.approx(-0.1 + 0.4)  # it follows by names, whatever their numbers
+        np.testing.assert_allclose(robot.ComputeJacobianAxisAngle(2)[2], [3, 0], atol=1e-12)
+        assert len(robot.ComputeInverseDynamics([1, 1])) == 2
+        assert not env.CheckCollision(robot)
+        second.SetMimicEquations(0, "")
+        assert [joint.GetName() for joint in robot.GetJoints()] == ["one", "three", "two"]
+        robot.SetDOFValues([0.2, -0.1, 0.5])
+        assert [joint.GetValue() for joint in (first, second, third)] == pytest.approx([0.2, 0.5, -0.1])
 
     def test_velocities_are_the_derivatives_of_the_equation(self, tree):
         tree.SetDOFVelocities([0, 0.5, -1.5])

@@ -1,7 +1,7 @@
 """Joint kinematics: poses from joint values, joint values from poses, and differences of joint values."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,7 +21,7 @@ from ravemj.core.transforms import (
     scale,
     wxyz_from_axis_angle,
 )
-from ravemj.model.scene import Axis, Joint, KinBody
+from ravemj.model.scene import Joint, KinBody
 
 ROUNDING = 1e-12
 """A measured joint value [rad or m] below this is rounding of the poses, not a displacement."""
@@ -152,11 +152,19 @@ def rotation_vector(wxyz: Wxyz) -> Vec3:
     return (factor * x, factor * y, factor * z)
 
 
-def value_differences(axes: Sequence[Axis], values: Floats, others: Floats) -> Floats:
-    """Return ``values - others`` [rad or m], one for each axis, shape (axes,); circular axes go the shorter way."""
-    circular = np.array([axis.circular for axis in axes], dtype=bool)
+def subtracts_in_turns(body: KinBody, joint: Joint) -> bool:
+    """Return whether differences of a circular joint's values go the shorter way round.
+
+    As in OpenRAVE, they do not where a static link carries the joint (gap-13: not static, random-api-102: static).
+    """
+    return not body.links[joint.parent].static
+
+
+def value_differences(body: KinBody, dofs: Iterable[int], values: Floats, others: Floats) -> Floats:
+    """Return ``values - others`` [rad or m], one for each of some DOFs; circular joints go the shorter way round."""
+    turns = [axis.circular and subtracts_in_turns(body, joint) for joint in body.joints for axis in joint.axes]
     differences = values - others
-    return np.where(circular, wrapped_angle(differences), differences)
+    return np.where([turns[dof] for dof in dofs], wrapped_angle(differences), differences)
 
 
 def wrapped_angle(angle: ArrayLike) -> Floats:

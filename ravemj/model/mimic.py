@@ -2,15 +2,14 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ravemj.core.graphs import topological_order
 from ravemj.core.transforms import Floats
-from ravemj.errors import ArgumentError, Diagnostics, Source
-from ravemj.model.scene import Joint, KinBody, Mimic
+from ravemj.errors import Diagnostics, Source
+from ravemj.model.scene import Joint, Mimic
 
 if TYPE_CHECKING:
     from ravemj.model.expressions import Expression
@@ -68,34 +67,6 @@ def resolve(joints: Sequence[NamedJoint], diagnostics: Diagnostics) -> dict[int,
     if len(mimics) < sum(1 for joint in joints if joint.equations and joint.equations.position):
         return {}
     return {index: _mimic(index, joints, mimics, diagnostics) for index in mimics}
-
-
-def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[Joint, ...]:
-    """Return the passive joints of a body where one of them follows by other equations.
-
-    Args:
-        body: The body.
-        index: Index of the joint among the active joints followed by the passive ones.
-        equations: How it should follow.
-
-    Raises:
-        ArgumentError: these equations cannot be used.
-    """
-    named: list[NamedJoint] = []
-    dof = 0
-    for place, joint in enumerate(body.all_joints):
-        count = len(joint.axes) if place < len(body.joints) else 0
-        mimic = joint.mimic
-        own = None if mimic is None else Equations(mimic.position, mimic.velocity, mimic.acceleration)
-        chosen = equations if place == index else own
-        named.append(NamedJoint(joint.name, tuple(range(dof, dof + count)), chosen, joint.source))
-        dof += count
-    diagnostics = Diagnostics()
-    mimics = resolve(named, diagnostics)
-    for finding in diagnostics:
-        raise ArgumentError(finding.message)
-    first = len(body.joints)
-    return tuple(replace(joint, mimic=mimics.get(first + i)) for i, joint in enumerate(body.passive_joints))
 
 
 def leaders(expression: "Expression") -> tuple[int, ...]:

@@ -9,9 +9,16 @@ from ravemj.core.arrays import checked_indices, checked_vector
 from ravemj.core.transforms import Floats, Ints, Pose, conjugate, pose_of, rotate
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.geometry_functions import quatRotateDirection
-from ravemj.model.joints import directions_at, measured_values, relative_pose, reported_anchor, wrapped_angle
+from ravemj.model.joints import (
+    directions_at,
+    measured_values,
+    relative_pose,
+    reported_anchor,
+    subtracts_in_turns,
+    wrapped_angle,
+)
 from ravemj.model.manipulators import joint_dofs
-from ravemj.model.mimic import Equations, leaders, with_equations
+from ravemj.model.mimic import Equations, leaders
 from ravemj.model.scene import Parameters
 from ravemj.rave.enums import JointType
 from ravemj.rave.infos import JointInfo
@@ -24,6 +31,7 @@ class Joint(JointLimits):
     """A joint between two links; ``body.GetJoints()`` makes it."""
 
     Type = JointType
+    _internal = ("renumber",)
 
     def GetType(self) -> JointType:
         """Return the kind of joint."""
@@ -97,10 +105,12 @@ class Joint(JointLimits):
             axis: Which axis they are of.
 
         Returns:
-            ``value0 - value1``; for a circular joint the shorter way round, from -pi to pi.
+            ``value0 - value1``; for a circular joint the shorter way round, from -pi to pi, but as in OpenRAVE not
+            where a static link carries it.
         """
         difference = float(value0) - float(value1)
-        return float(wrapped_angle(difference)) if self._scene.axes[axis].circular else difference
+        in_turns = self._scene.axes[axis].circular and subtracts_in_turns(self._state.scene, self._scene)
+        return float(wrapped_angle(difference)) if in_turns else difference
 
     def SubtractValues(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
         """Return the differences of the values of all axes, as ``SubtractValue``.
@@ -201,26 +211,34 @@ class Joint(JointLimits):
         return np.array(sorted(dofs), dtype=np.int_)
 
     def SetMimicEquations(self, axis: int, poseq: str, veleq: str = "", acceleq: str = "") -> None:
-        """Change how a passive joint follows others. It stays where it is until joint values are next set.
+        """Change how the joint follows others. It stays where it is until joint values are next set.
+
+        A joint that begins to follow others loses its DOF, and the DOFs behind it are numbered anew; one that ceases
+        to follow gets the last DOF. Active DOFs are then all of them again.
 
         Args:
             axis: Which axis; only the first one can follow.
-            poseq: The equation, with the names of joints, for instance ``2*lead + 0.1``.
+            poseq: The equation, with the names of joints, for instance ``2*lead + 0.1``; '' follows none.
             veleq: The partial derivatives for velocities, kept for ``GetMimicEquation``; velocities are computed.
             acceleq: Those for accelerations, kept too.
 
         Raises:
-            openrave_exception: the equation cannot be used, or the joint has a DOF. Nothing has changed then.
+            openrave_exception: the equation cannot be used, or is for a second axis. Nothing has changed then.
 
         Example:
             >>> body.GetJoint("finger2").SetMimicEquations(0, "-finger1")
         """
-        if self.IsActive() or axis or not poseq:
-            message = f"SetMimicEquations: '{self._scene.name}' cannot follow '{poseq}': only joints without DOFs can"
+        if axis:
+            message = f"SetMimicEquations: axis is {axis}; only the first axis of '{self._scene.name}' can follow"
             raise RavemjError(message, ErrorCode.NotImplemented)
+        if self._scene.mimic is None and not poseq:
+            return
         with self._state.simulation.lock:
-            passive = with_equations(self._state.scene, self._index, Equations(poseq, veleq, acceleq))
-            self._state.edit_mimic(passive)
+            self._parent.set_following(self._index, Equations(poseq, veleq, acceleq))
+
+    def renumber(self, index: int) -> None:
+        """Take note of another index among the active joints followed by the passive ones."""
+        self._index = index
 
     def GetAnchor(self) -> Floats:
         """Return a point on the axis in the world, as the links stand now [m], shape (3,)."""

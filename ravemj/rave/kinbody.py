@@ -1,7 +1,7 @@
 """Bodies."""
 
 from collections.abc import Iterable, Sequence
-from types import TracebackType
+from types import EllipsisType, TracebackType
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -56,7 +56,7 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
     SaveParameters = SaveParameters
 
     _interface_type = InterfaceType.kinbody
-    _internal = ("default_saved", "restorers")
+    _internal = ("default_saved", "restorers", "set_following")
     default_saved = int(SaveParameters.LinkTransformation | SaveParameters.LinkEnable)
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
@@ -161,10 +161,10 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
         self,
         body: "KinBody",
         grablink: Link,
-        linkstoignore: Iterable[Link | int | str] = (),
-        grabbedUserData: object = None,
+        linkstoignore: "Iterable[Link | int | str] | EllipsisType" = ...,
+        grabbedUserData: object = ...,
     ) -> bool:
-        """Hold a body by a link, in the pose that both have now.
+        """Hold a body by a link, in the pose that both have now: ``Grab(body, grablink)``, or with all four arguments.
 
         From now on it moves with the link. It does not collide with the links that it touches now. Grabbing a body
         that is held already renews link and pose.
@@ -173,23 +173,25 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
             body: What to hold; it was made for the same environment, and need not be in it.
             grablink: The link of this body that holds it.
             linkstoignore: Further links of this body that it should not collide with.
-            grabbedUserData: Kept in ``GrabbedInfo._grabbedUserData`` by OpenRAVE; not used.
+            grabbedUserData: Goes with ``linkstoignore``, as in OpenRAVE, which keeps it; not used.
 
         Returns:
             True.
 
         Raises:
+            TypeError: one of ``linkstoignore`` and ``grabbedUserData`` is given without the other (gap-20).
             openrave_exception: this body is not in the environment (``NotInitialized``); the other one is None
                 (``Failed``), of another environment, this body itself, or holds this body (``InvalidArguments``).
         """
-        del grabbedUserData
+        if (linkstoignore is ...) != (grabbedUserData is ...):
+            raise TypeError("Grab: takes links to ignore as Grab(body, grablink, linkstoignore, grabbedUserData)")
         with self._simulation.lock:
             if body is None:  # pyright: ignore[reportUnnecessaryComparison] - OpenRAVE has an error of its own
                 raise ArgumentError("Grab: body is None, and should be a KinBody", ErrorCode.Failed)
             held = checked_kind(body, KinBody, "Grab: body").simulation_state
             check_holdable(self._state, held)
             link = self._own_link(grablink, "Grab")
-            ignored = [self._link_index(one) for one in linkstoignore]
+            ignored = [] if linkstoignore is ... else [self._link_index(one) for one in linkstoignore]
             self._state.grab(grab_as_it_stands(self._state, held, link, ignored))
             return True
 

@@ -17,6 +17,7 @@ from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import DOFAffine
 from ravemj.geometry_functions.ik_types import IkParameterizationType
+from ravemj.model.mimic import Equations
 from ravemj.rave.body.active import ActiveChoice, ActiveDofs
 from ravemj.rave.body.affine import default_kinds
 from ravemj.rave.body.manipulators import Manipulators
@@ -83,6 +84,13 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         self.ik_solvers: dict[str, IkSolver] = {}
         self.arm_solvers: dict[tuple[str, IkParameterizationType], ArmSolver] = {}
 
+    def set_following(self, index: int, equations: Equations) -> None:
+        """Let a joint follow others, or none; where DOFs get other numbers by it, no choice of active ones lasts."""
+        before = self.GetDOF()
+        super().set_following(index, equations)
+        if self.GetDOF() != before:
+            self.active_choice = ActiveChoice()  # DOFs have other numbers now
+
     def GetXMLId(self) -> str:
         """Return OpenRAVE's name of the kind of robot."""
         return "GenericRobot"
@@ -90,17 +98,17 @@ class Robot(ActiveDofs, Manipulators, KinBody):
     def Grab(  # pyright: ignore[reportIncompatibleMethodOverride] - a robot has an arm to grab with
         self,
         body: KinBody,
-        grablink: "Link | Iterable[Link | int | str] | None" = None,
-        linkstoignore: "Iterable[Link | int | str]" = (),
-        grabbedUserData: object = None,
+        grablink: Link | None = None,
+        linkstoignore: "Iterable[Link | int | str] | EllipsisType" = ...,
+        grabbedUserData: object = ...,
     ) -> bool:
-        """Hold a body: ``Grab(body)``, ``Grab(body, grablink)``, ``Grab(body, linkstoignore)`` or with both.
+        """Hold a body: ``Grab(body)``, ``Grab(body, grablink)``, or with all four arguments.
 
         Args:
             body: What to hold. See ``KinBody.Grab``.
             grablink: The link of this robot that holds it; left out: the active manipulator's end effector.
             linkstoignore: Further links of this robot that it should not collide with.
-            grabbedUserData: Not used.
+            grabbedUserData: Goes with ``linkstoignore``; not used.
 
         Returns:
             False if there is neither a link nor an active manipulator with an end effector.
@@ -110,12 +118,9 @@ class Robot(ActiveDofs, Manipulators, KinBody):
             True
             >>> robot.SetDOFValues([0.3], [0])  # the mug moves along
         """
-        del grabbedUserData
-        if grablink is not None and not isinstance(grablink, Link):
-            grablink, linkstoignore = None, grablink
         active = self.GetActiveManipulator()
         link = grablink or (active.GetEndEffector() if active else None)
-        return False if link is None else super().Grab(body, link, linkstoignore)
+        return False if link is None else super().Grab(body, link, linkstoignore, grabbedUserData)
 
     def CreateRobotStateSaver(self, options: int | None = None) -> StateSaver:
         """Return what keeps the robot's state; see ``CreateKinBodyStateSaver``.

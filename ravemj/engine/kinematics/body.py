@@ -9,6 +9,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Ints, Pose, Wxyz, inverse, rows_from_wxyz, wxyz_from_rows
 from ravemj.engine.compiled import Compiled, write_inertial
+from ravemj.engine.kinematics.axes import fix_to_parents
 from ravemj.engine.kinematics.spherical import SphericalJoint
 from ravemj.model.joints import measured_values
 from ravemj.model.limits import Limits
@@ -172,6 +173,8 @@ class BodyKinematics:
         """Bring poses, centres of mass and the axes of motion up to date, which Jacobians and dynamics need."""
         if self._coms_stamp != self.stamp:
             self.place()
+            if self.displaced:
+                fix_to_parents(self.model, self.data, *self._rest)
             mujoco.mj_comPos(self.model, self.data)
             self._coms_stamp = self.stamp
 
@@ -320,6 +323,8 @@ class BodyKinematics:
         """
         qpos, positions, quaternions, passive, displaced = configuration
         if qpos.shape != self.qpos.shape or positions.shape != self.model.body_pos.shape:
+            return False
+        if len(passive) != len(self._passive_values):
             return False
         self.qpos[:] = qpos
         self.model.body_pos[:], self.model.body_quat[:] = positions, quaternions

@@ -11,7 +11,7 @@ from ravemj.engine.kinematics import BodyKinematics, Configuration
 from ravemj.engine.kinematics.displacement import place_links
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.inertia import Inertias
-from ravemj.model.scene import Axis, Geometry, Inertial, Joint, KinBody, Link
+from ravemj.model.scene import Axis, Geometry, Inertial, KinBody, Link
 from ravemj.model.zero import rezeroed
 
 if TYPE_CHECKING:
@@ -191,6 +191,11 @@ class BodyState:
         self.kinematics.set_values(values, clamp_mimic=clamp_mimic)
         self.moved()
 
+    def enter_limits(self) -> None:
+        """Let joints that are outside their limits go to them."""
+        if self._kinematics is not None and not self._kinematics.limits.contain(values := self._kinematics.values()):
+            self.set_values(self._kinematics.limits.clamp(values))
+
     def set_transform(self, T_world_link0: Floats) -> None:
         """Move the body rigidly, with the joint values as they are.
 
@@ -312,7 +317,11 @@ class BodyState:
 
     def edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.KinBody
         """Change the description of the body where links and joints stay the same: names, limits, manipulators."""
-        self.scene = replace(self.scene, **changes)
+        scene = replace(self.scene, **changes)
+        if not changes.keys().isdisjoint(("joints", "passive_joints")) and _welds(scene) != _welds(self.scene):
+            self.remake(scene)
+            return
+        self.scene = scene
         if self.index:
             self.simulation.changed.add(self)
         if self._kinematics is not None:
@@ -320,12 +329,12 @@ class BodyState:
         if "passive_joints" in changes:
             self._dynamics = self._batch = None  # which of several values a follower has depends on its limits
 
-    def edit_mimic(self, passive_joints: tuple[Joint, ...]) -> None:
-        """Let passive joints follow by other equations; the links stay where they are until values are next set."""
+    def remake(self, scene: KinBody) -> None:
+        """Take over a description with other DOFs, welds or equations; links stay until values are next set."""
         saved = self.configuration()
         self.simulation.forget_model()
         self._forget_kinematics()
-        self.scene = replace(self.scene, passive_joints=passive_joints)
+        self.scene, self.dof = scene, len(scene.dof_axes)
         self.restore(saved)
 
     def rezero(self) -> None:
@@ -375,3 +384,7 @@ class BodyState:
         self.edit(
             joints=tuple(replace(joint, axes=tuple(next(rest) for _ in joint.axes)) for joint in self.scene.joints)
         )
+
+
+def _welds(body: KinBody) -> list[bool]:
+    return [joint.static for joint in body.all_joints]

@@ -157,6 +157,8 @@ class Simulation:
     def copy(self, other: "Simulation", *, bodies: bool = True) -> dict[BodyState, BodyState]:
         """Replace bodies, view and gravity by copies of another world's. The caller holds both locks.
 
+        Joints outside their limits go to them, as in OpenRAVE (random-api-232).
+
         Args:
             other: The other world.
             bodies: Whether its bodies are copied; else this world is empty.
@@ -172,6 +174,7 @@ class Simulation:
             copy.copy(body)
             self.insert(copy, body.index)
             copy.rest_poses = body.rest_poses
+            copy.enter_limits()
         for body, copy in copies.items():
             copy.grabs = [grab._replace(body=copies[grab.body]) for grab in body.grabs if grab.body in copies]
         return copies

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from ravemj.core.transforms import ZERO, Pose, Vec3, Wxyz, multiply, wxyz_from_axis_angle
-from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.errors import Diagnostics, Source, SourceError, UnnamedError
 from ravemj.formats.openrave_xml.context import Context, uncomputable
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, with_given
 from ravemj.formats.openrave_xml.kinbody import read_body
@@ -281,9 +281,10 @@ def check_name(name: str, element: Element) -> None:
     """Check that a body can be found by its name.
 
     Raises:
-        SourceError: the name is empty, or has spaces or control characters.
+        UnnamedError: the name is empty.
+        SourceError: it has spaces or control characters.
     """
     if not name:
-        raise SourceError(f"<{element.spelled}> has no name", element.source, 'write name="…"')
+        raise UnnamedError(f"<{element.spelled}> has no name", element.source, 'write name="…"')
     if " " in name or not name.isprintable():  # other spaces than this one are not printable
         raise SourceError(f"the name '{name}' has spaces or control characters", element.source)

@@ -27,8 +27,8 @@ SHADOW_SIZE = 2048
 _SHADOW_REACH = 2.0
 """Half the side of the shadow map, in radii of the scene.
 
-MuJoCo's offset between a surface and its own shadow grows with it: with 1 there are specks of shadow on surfaces that are
-far from the light.
+MuJoCo's offset between a surface and its own shadow grows with it: with 1 there are specks of shadow on surfaces that
+are far from the light.
 """
 
 _SLICES, _STACKS = 48, 24

@@ -36,22 +36,28 @@ def solid_mesh(kind: str, size: tuple[float, ...]) -> Mesh:
 @functools.cache
 def _cube() -> tuple[Floats, Ints]:
     corners = np.array([[x, y, z] for z in (-1.0, 1.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0)])
-    quads = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
-    return corners, quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    triangles = np.array(
+        [
+            *([0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4]),
+            *([2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]),
+        ]
+    )
+    return corners, triangles
 
 
 @functools.cache
 def _unit_cylinder() -> tuple[Floats, Ints]:
-    """Return two rings of corners, the lower one first, and the middles of the two ends."""
+    """Return the middles of the two ends, the upper one first, and the corners around them in turn, as OpenRAVE."""
     angles = 2 * np.pi * np.arange(SIDES) / SIDES
-    low, high = (np.column_stack([np.cos(angles), np.sin(angles), np.full(SIDES, z)]) for z in (-1.0, 1.0))
-    here = np.arange(SIDES)
-    after = np.roll(here, -1)
-    bottom, top = np.full(SIDES, 2 * SIDES), np.full(SIDES, 2 * SIDES + 1)
-    sides = [(here, after, after + SIDES), (here, after + SIDES, here + SIDES)]
-    ends = [(bottom, after, here), (top, here + SIDES, after + SIDES)]
-    triangles = np.concatenate([np.column_stack(three) for three in (*sides, *ends)])
-    return np.concatenate([low, high, [[0.0, 0, -1], [0, 0, 1]]]), triangles
+    ring = np.repeat(np.column_stack([np.cos(angles), np.sin(angles), np.ones(SIDES)]), 2, axis=0)
+    ring[1::2, 2] = -1.0
+    high = 2 + 2 * np.arange(SIDES)
+    low, top, bottom = high + 1, np.zeros_like(high), np.ones_like(high)
+    high_after, low_after = np.roll(high, -1), np.roll(low, -1)
+    triangles = [(top, high, high_after), (bottom, low_after, low), (high, low, high_after)]
+    triangles.append((high_after, low, low_after))
+    corners = np.concatenate([[[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], ring])
+    return corners, np.stack([np.column_stack(three) for three in triangles], axis=1).reshape(-1, 3)
 
 
 @functools.cache

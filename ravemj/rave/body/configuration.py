@@ -179,14 +179,17 @@ class Configuration(Limits):
 
         Args:
             returndoflastvlaues: Whether to return the joint values, too, as ``SetLinkTransformations`` takes them
-                (the spelling is OpenRAVE's).
+                (the spelling is OpenRAVE's). Those of sliders are 0, since poses show them without.
 
         Returns:
             ``T_world_link`` of shape (4, 4) for each link, in the order of ``GetLinks()``; copies.
         """
         with self._simulation.lock:
             transforms = list(self._state.link_transforms())
-            return (transforms, self._state.kinematics.values()) if returndoflastvlaues else transforms
+            if not returndoflastvlaues:
+                return transforms
+            slides = [joint.kind == "slider" for joint in self._state.scene.joints for _ in joint.axes]
+            return transforms, np.where(slides, 0.0, self._state.kinematics.values())  # random-api-102
 
     def SetLinkTransformations(
         self, transforms: Sequence[ArrayLike], doflastsetvalues: ArrayLike | None = None
@@ -307,7 +310,8 @@ class Configuration(Limits):
             angular: Angular velocity of the first link in the world [rad/s], shape (3,); behind a number it is
                 ``indices``.
             checklimits: What to do with values outside the velocity limits, a ``CheckLimitsAction``.
-            indices: Which DOFs, in which order; the others keep their velocities. None: all.
+            indices: Which DOFs, in which order; None: all. As in OpenRAVE only the first DOFs count, as many as there
+                are indices: of them those that are not chosen keep their velocities, and all others stop. So name all.
 
         Raises:
             ArgumentError: the number of velocities is wrong or one is infinite; with ``CheckLimitsThrow``, one is

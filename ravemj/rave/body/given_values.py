@@ -57,13 +57,19 @@ def full_values(
 
 
 def full_velocities(state: BodyState, velocities: ArrayLike, indices: "ArrayLike | None") -> Floats:
-    """Return a velocity for each DOF; those without one among ``indices`` keep theirs."""
+    """Return a velocity for each DOF.
+
+    Only the first DOFs count, as many as there are indices: of them those that are not chosen keep their velocities,
+    and all others stop.
+    """
     dof = state.dof
     if indices is None:
         return checked_first(velocities, dof, "SetDOFVelocities") if dof else np.zeros(0)
     chosen = checked_indices(indices, dof)
-    full = state.dynamics.dof_velocities(state.link_velocities())
-    full[chosen] = checked_vector(velocities, len(chosen), "SetDOFVelocities")
+    given = dict(zip(chosen.tolist(), checked_vector(velocities, len(chosen), "SetDOFVelocities"), strict=True))
+    first = state.dynamics.dof_velocities(state.link_velocities())[: len(chosen)]
+    full = np.zeros(dof)
+    full[: len(first)] = [given.get(place, rate) for place, rate in enumerate(first)]  # random-api-117, dof-24
     return full
 
 

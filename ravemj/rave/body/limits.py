@@ -248,7 +248,8 @@ class Limits(BodyPart):
             indices: Which DOFs the values are for; left out: all.
 
         Returns:
-            ``values0 - values1``; for circular joints the shorter way round, from -pi to pi.
+            ``values0 - values1``; for circular joints the shorter way round, from -pi to pi, but as in OpenRAVE not
+            for those that a static link carries.
         """
         chosen = checked_indices(indices, self.GetDOF())
         minuend, subtrahend = (checked_numbers(values, "SubtractDOFValues") for values in (values0, values1))
@@ -257,5 +258,4 @@ class Limits(BodyPart):
                 f"SubtractDOFValues: {len(minuend)} and {len(subtrahend)} values, and should be {len(chosen)} each"
             )
             raise ArgumentError(message, ErrorCode.Assert)
-        axes = self._state.scene.dof_axes
-        return value_differences([axes[dof] for dof in map(int, chosen)], minuend, subtrahend)
+        return value_differences(self._state.scene, chosen.tolist(), minuend, subtrahend)

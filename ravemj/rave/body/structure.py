@@ -9,6 +9,7 @@ from ravemj.core.arguments import checked_index
 from ravemj.core.arrays import checked_indices
 from ravemj.model import chains, hashes
 from ravemj.model.adjacency import adjacent_pairs
+from ravemj.model.mimic import Equations
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.body.base import BodyPart
 from ravemj.rave.joint import Joint
@@ -95,6 +96,22 @@ class Structure(BodyPart):
         if len(self._joints) != count:
             self._joints = tuple(Joint(self._body, self._state, index) for index in range(count))
         return self._joints
+
+    def set_following(self, index: int, equations: Equations) -> None:
+        """Let a joint follow others, or none; see ``Joint.SetMimicEquations``.
+
+        Args:
+            index: Its index among the active joints followed by the passive ones.
+            equations: How it follows.
+        """
+        from ravemj.model.following import with_equations  # noqa: PLC0415 - slow to import, and rarely wanted
+
+        scene, order = with_equations(self._state.scene, index, equations)
+        joints = self._all_joints()
+        self._state.remake(scene)
+        self._joints = tuple(joints[before] for before in order)
+        for place, joint in enumerate(self._joints):
+            joint.renumber(place)
 
     def GetPassiveJoints(self) -> list[Joint]:
         """Return the joints that have no DOF."""
@@ -215,7 +232,8 @@ class Structure(BodyPart):
         links, joints = chains.chain(self._state.scene, linkindex1, linkindex2)
         if not returnjoints:
             return self.GetLinks(links)
-        return [Joint(self._body, self._state, index) for index in joints]
+        every = self._all_joints()
+        return [every[index] for index in joints]
 
     def GetDependencyOrderedJoints(self) -> list[Joint]:
         """Return the joints that have DOFs, each behind those that move it."""
@@ -223,10 +241,9 @@ class Structure(BodyPart):
 
     def GetClosedLoops(self) -> list[list[tuple[Link, Joint]]]:
         """Return the closed loops of links: each is a list of links, each with the joint that leads to the next."""
-        links = self.GetLinks()
+        links, joints = self._all_links(), self._all_joints()
         return [
-            [(links[link], Joint(self._body, self._state, joint)) for link, joint in loop]
-            for loop in chains.closed_loops(self._state.scene)
+            [(links[link], joints[joint]) for link, joint in loop] for loop in chains.closed_loops(self._state.scene)
         ]
 
     def GetRigidlyAttachedLinks(self, linkindex: int) -> list[Link]:

@@ -20,6 +20,7 @@ from ravemj.errors import (
     RavemjError,
     Source,
     SourceError,
+    UnnamedError,
     send_warnings,
 )
 from ravemj.model.scene import Grab, Mesh
@@ -61,6 +62,9 @@ class Loading(JsonFiles):
             has a body of a name that is taken. The reason is logged, and what was read before is in the environment
             all the same. ``ravemj.load`` raises instead. Bodies of COLLADA and of mesh files get other names where
             theirs are taken.
+
+        Raises:
+            openrave_exception: a body of the file has no name (``Failed``).
 
         Example:
             >>> env = ravemj.Environment()
@@ -105,7 +109,7 @@ class Loading(JsonFiles):
 
         Raises:
             openrave_exception: a body of that name is in the environment already (``BodyNameConflict``); that of a
-                COLLADA document gets another name instead.
+                COLLADA document gets another name instead. Or a body has no name (``Failed``).
 
         Example:
             >>> env.LoadData('<KinBody name="a"><Body><Geom type="sphere"><radius>1</radius></Geom></Body></KinBody>')
@@ -116,6 +120,8 @@ class Loading(JsonFiles):
 
     def _take(self, reading: "Reading") -> bool:
         self._add(reading)
+        if isinstance(reading.failure, UnnamedError):
+            raise reading.failure
         if reading.failure is not None:
             _LOG.error("%s", reading.failure)
         return reading.failure is None and all(finding.severity != "error" for finding in reading.diagnostics)

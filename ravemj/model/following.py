@@ -1,0 +1,81 @@
+"""Joints that begin or cease to follow others."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ravemj.errors import ArgumentError, Diagnostics
+from ravemj.model.manipulators import ManipulatorBuilder, freeze_manipulator
+from ravemj.model.mimic import Equations, NamedJoint, resolve
+from ravemj.model.scene import Joint, KinBody, Manipulator
+
+
+def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[KinBody, list[int]]:
+    """Return a body where one joint follows by other equations.
+
+    As in OpenRAVE (gap-15), an active joint that follows becomes the last passive one, and one that ceases to follow
+    becomes the last active one. So DOFs are numbered anew.
+
+    Args:
+        body: The body.
+        index: Index of the joint among the active joints followed by the passive ones.
+        equations: How it should follow; without a position it follows none.
+
+    Returns:
+        The body, and for each of its joints the index that it had.
+
+    Raises:
+        ArgumentError: these equations cannot be used.
+    """
+    active, passive = list(range(len(body.joints))), list(range(len(body.joints), len(body.all_joints)))
+    if equations.position and index in active:
+        active.remove(index)
+        passive.append(index)
+    elif not equations.position and body.all_joints[index].mimic is not None:
+        passive.remove(index)
+        active.append(index)
+    order = active + passive
+    written = {place: _written(joint) for place, joint in enumerate(body.all_joints)}
+    written[index] = equations if equations.position else None
+    joints = _resolved([body.all_joints[place] for place in order], [written[place] for place in order], len(active))
+    changed = replace(body, joints=joints[: len(active)], passive_joints=joints[len(active) :])
+    manipulators = tuple(_found_again(one, body, changed) for one in body.manipulators)
+    return replace(changed, manipulators=manipulators), order
+
+
+def _written(joint: Joint) -> Equations | None:
+    mimic = joint.mimic
+    return None if mimic is None else Equations(mimic.position, mimic.velocity, mimic.acceleration)
+
+
+def _resolved(joints: Sequence[Joint], written: Sequence[Equations | None], active: int) -> tuple[Joint, ...]:
+    """Return joints with their equations, of which the first ones have DOFs."""
+    named: list[NamedJoint] = []
+    dof = 0
+    for place, (joint, equations) in enumerate(zip(joints, written, strict=True)):
+        count = len(joint.axes) if place < active else 0
+        named.append(NamedJoint(joint.name, tuple(range(dof, dof + count)), equations, joint.source))
+        dof += count
+    diagnostics = Diagnostics()
+    mimics = resolve(named, diagnostics)
+    for finding in diagnostics:
+        raise ArgumentError(finding.message)
+    return tuple(replace(joint, mimic=mimics.get(place)) for place, joint in enumerate(joints))
+
+
+def _found_again(arm: Manipulator, before: KinBody, body: KinBody) -> Manipulator:
+    """Return a manipulator with the DOFs that its joints have now; what has none is no part of it."""
+    signs = dict(zip(arm.gripper_dofs, arm.chucking_direction, strict=True))
+    dofs = {joint.name: sign for dof, sign in signs.items() for joint in [before.joint_of_dof(dof)]}
+    kept = [name for name in dofs if any(joint.name == name for joint in body.joints)]
+    built = ManipulatorBuilder(
+        name=arm.name,
+        source=arm.source,
+        base="" if arm.base is None else body.links[arm.base].name,
+        effector="" if arm.effector is None else body.links[arm.effector].name,
+        T_effector_tool=arm.T_effector_tool,
+        direction=arm.direction,
+        gripper_joints=kept,
+        closing_direction=[dofs[name] for name in kept],
+        gripper_name=arm.gripper_name,
+    )
+    return freeze_manipulator(built, body, Diagnostics())
