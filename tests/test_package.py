@@ -120,7 +120,8 @@ def circles(typing: bool) -> list[set[str]]:
 
 
 NAME_EACH_OTHER = """
-    rave.arm_collision rave.arm_goals rave.arm_gripper rave.arm_ik rave.body.active rave.body.building
+    rave.arm_collision rave.arm_goals rave.arm_gripper rave.arm_ik rave.attached_sensor rave.body.active
+    rave.body.building rave.body.sensors rave.instruments rave.sensor_description
     rave.body.collision rave.body.configuration rave.body.geometry_groups rave.body.grabbing rave.body.manipulators
     rave.body.saving rave.body.structure rave.body.velocities rave.collision rave.collision_extras
     rave.configuration_data rave.controllers rave.controllers.base rave.controllers.ideal rave.controllers.multi

@@ -1,7 +1,8 @@
 """Pictures of a simulation: who draws them, from where, on what background."""
 
 import threading
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
 
 import mujoco
 import numpy as np
@@ -21,6 +22,7 @@ from ravemj.graphics.rendering.contexts import RAY
 from ravemj.model.drawing import NOTHING, Primitives, merge
 
 Frame = NDArray[np.uint8]
+Drawn = TypeVar("Drawn")
 
 
 class Format(NamedTuple):
@@ -65,15 +67,43 @@ class SimulationRenderer:
         Raises:
             RenderingError: nothing can draw here, or ``MUJOCO_GL`` names what does not work.
         """
+        primitives = self._simulation.drawings.primitives() if drawings else NOTHING
+        shown = merge([primitives, gizmos]) if len(gizmos) else primitives
+        return self._drawn(form, lambda renderer, data: renderer.render(data, camera, background, shown))
+
+    def depth(self, camera: Camera, form: Format) -> NDArray[np.float32]:
+        """Return how far away the bodies are: along the viewing direction [m], shape (height, width); else infinite.
+
+        Args:
+            camera: Where they are seen from.
+            form: Size of the picture.
+
+        Raises:
+            RenderingError: as for ``render``.
+        """
+        return self._drawn(form, lambda renderer, data: renderer.depth(data, camera))
+
+    def segment(self, camera: Camera, form: Format) -> NDArray[np.int32]:
+        """Return which geom of the present model each pixel shows, shape (height, width); -1 for none.
+
+        Args:
+            camera: Where they are seen from.
+            form: Size of the picture.
+
+        Raises:
+            RenderingError: as for ``render``.
+        """
+        return self._drawn(form, lambda renderer, data: renderer.segment(data, camera))
+
+    def _drawn(self, form: Format, draw: Callable[[Renderer, mujoco.MjData], Drawn]) -> Drawn:
+        """Return what a function draws with the renderer of this thread, of the bodies as they are now."""
         with self._simulation.lock:
             compiled = self._simulation.compiled()
-            primitives = self._simulation.drawings.primitives() if drawings else NOTHING
-            shown = merge([primitives, gizmos]) if len(gizmos) else primitives
             renderer = self._current(form)
             if renderer.backend == RAY:  # it hides geoms of the model while it draws
-                return renderer.render(compiled.data, camera, background, shown)
+                return draw(renderer, compiled.data)
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
-        return renderer.render(self._kept.data, camera, background, shown)
+        return draw(renderer, self._kept.data)
 
     def backend(self, form: Format) -> str:
         """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""

@@ -7,6 +7,7 @@ objects is ravemj's own.
 from ravemj.core.handles import Handle as UserData
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
+from ravemj.rave.attached_sensor import AttachedSensor
 from ravemj.rave.body.grippers import ConnectedBody
 from ravemj.rave.body.saving import StateSaver
 from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
@@ -85,12 +86,14 @@ from ravemj.rave.infos.sensor import (
     ActuatorGeomData,
     CameraGeomData,
     CameraIntrinsics,
+    FlashLidarGeomData,
     Force6DGeomData,
     IMUGeomData,
     JointEncoderGeomData,
     LaserGeomData,
     OdometryGeomData,
     SensorGeometry,
+    SpinningLaserGeomData,
     TactileGeomData,
 )
 from ravemj.rave.interface import Interface
@@ -137,7 +140,6 @@ from ravemj.rave.planning import (
 from ravemj.rave.plugins import (
     RaveCreateModule,
     RaveCreateProblem,
-    RaveCreateSensor,
     RaveCreateViewer,
     RaveGetLoadedInterfaces,
 )
@@ -155,7 +157,7 @@ from ravemj.rave.report import CollisionPairInfo, CollisionReport, Contact
 from ravemj.rave.robot import Robot
 from ravemj.rave.samplers import RaveCreateSpaceSampler, SampleDataType, SpaceSampler
 from ravemj.rave.sensor_data import CameraSensorData, SensorData
-from ravemj.rave.sensors import AttachedSensor, Sensor
+from ravemj.rave.sensors import RaveCreateSensor, Sensor
 from ravemj.rave.specification import (
     ConfigurationSpecification,
     IkParameterization,
@@ -224,6 +226,7 @@ __all__ = [
     "EnvironmentCreateOptions",
     "ErrorCode",
     "ExtractInfoOptions",
+    "FlashLidarGeomData",
     "Force6DGeomData",
     "Geometry",
     "GeometryInfo",
@@ -359,6 +362,7 @@ __all__ = [
     "SideWall",
     "SideWallType",
     "SpaceSampler",
+    "SpinningLaserGeomData",
     "StateRestoreContext",
     "StateSaver",
     "TactileGeomData",

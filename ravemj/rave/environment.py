@@ -170,7 +170,7 @@ class Environment(Described, Loading, Saving, Collision, Drawing, Viewing):
                     body.take_choices(other)
 
     def Reset(self) -> None:
-        """Remove all bodies."""
+        """Remove all bodies and sensors."""
         self._remove_all()
 
     def Destroy(self) -> None:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from ravemj.formats.meshes import MESH_SUFFIXES
 from ravemj.formats.openrave_xml import actuator, environment, geom, joint, kinbody, link, mass, robot, sensor
 from ravemj.formats.openrave_xml.tags import Tag
+from ravemj.model.scene import SENSOR_KINDS
 
 Meanings = Mapping[str, str]
 
@@ -91,13 +92,16 @@ def sections() -> list[Section]:
             robot.MANIPULATOR_IGNORED,
         ),
         _section("AttachedSensor", "in Robot", robot.SENSOR_TAGS, robot.SENSOR_ATTRIBUTES, robot.SENSOR_IGNORED),
-        _section(
-            "Sensor",
-            "in AttachedSensor, or the root of an included file",
-            sensor.CAMERA_TAGS,
-            sensor.DEVICE_ATTRIBUTES,
-            {**sensor.CAMERA_IGNORED, "(what is in sensors other than cameras)": sensor.NO_DEVICE},
-            sensor.DEVICE_IGNORED_ATTRIBUTES,
+        *(
+            _section(
+                f"Sensor, {kind.name}",
+                "in AttachedSensor, or the root of an included file",
+                sensor.device_tags(kind),
+                sensor.DEVICE_ATTRIBUTES,
+                sensor.device_ignored(kind),
+                sensor.DEVICE_IGNORED_ATTRIBUTES,
+            )
+            for kind in SENSOR_KINDS.values()
         ),
     ]
 

@@ -10,8 +10,11 @@ from ravemj.errors import RenderingError
 from ravemj.graphics.rendering.camera import Camera
 from ravemj.graphics.rendering.checks import WHITE, check_data, color_bytes
 from ravemj.graphics.rendering.contexts import OffscreenContext, close_at_exit
-from ravemj.graphics.rendering.gl_scene import GlScene, Quality
+from ravemj.graphics.rendering.gl_scene import GlScene, Quality, near_and_far
 from ravemj.model.drawing import NOTHING, Primitives
+
+_DEPTH_ZERO_FAR = 1
+"""MuJoCo's ``mjDEPTH_ZEROFAR``: depths are handed out as they are drawn, which loses no digits."""
 
 
 class GlRenderer:
@@ -52,6 +55,19 @@ class GlRenderer:
         stage = self._filled_stage(data, camera, NOTHING)
         return stage.geom_ids(self._codes(stage))
 
+    def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
+        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        stage = self._filled_stage(data, camera, NOTHING)
+        width, height = self._size
+        buffer = np.empty((height, width), dtype=np.float32)
+        with self._context.current():
+            stage.draw_ids(self._viewport)
+            shown = self._read(stage, buffer).any(axis=2)
+        near, far = near_and_far(self._model, data, camera)
+        # 1 at the nearest depth that is drawn, 0 at the farthest.
+        depths = near * far / (buffer[::-1].astype(np.float64) * (far - near) + near)
+        return np.where(shown, depths, np.inf).astype(np.float32)
+
     def close(self) -> None:
         """Free the context and what is in it; a second call does nothing."""
         stage, self._gl_scene = self._gl_scene, None
@@ -84,10 +100,12 @@ class GlRenderer:
         self._gl_scene.fill(data, camera, *self._size, primitives)
         return self._gl_scene
 
-    def _read(self, stage: GlScene) -> NDArray[np.uint8]:
+    def _read(self, stage: GlScene, depth: NDArray[np.float32] | None = None) -> NDArray[np.uint8]:
+        """Return what was drawn; a buffer for depths is filled too, the last row first."""
         width, height = self._size
         pixels = np.empty((height, width, 3), dtype=np.uint8)
-        mujoco.mjr_readPixels(pixels, None, self._viewport, stage.context)
+        stage.context.readDepthMap = _DEPTH_ZERO_FAR
+        mujoco.mjr_readPixels(pixels, depth, self._viewport, stage.context)
         return pixels[::-1].copy()
 
 

@@ -4,7 +4,7 @@ Readers make a ``Scene`` (through ``ravemj.model.builder``), writers and the run
 angles radians, masses kilograms. Links are referred to by their index in ``KinBody.links``.
 """
 
-from ravemj.model.scene.body import AttachedSensor, Intrinsics, KinBody, Manipulator
+from ravemj.model.scene.body import AttachedSensor, KinBody, Manipulator
 from ravemj.model.scene.mechanism import (
     NO_PARAMETERS,
     OWN_SHAPES,
@@ -18,6 +18,21 @@ from ravemj.model.scene.mechanism import (
     Parameters,
 )
 from ravemj.model.scene.mesh import Bounds, Mesh
+from ravemj.model.scene.sensors import (
+    SENSOR_COLOR,
+    SENSOR_KINDS,
+    Device,
+    FlashLidar,
+    ForceTorque,
+    Imu,
+    Intrinsics,
+    JointEncoder,
+    Laser,
+    Odometry,
+    SensorKind,
+    Tactile,
+    sensor_kind,
+)
 from ravemj.model.scene.shapes import (
     SHAPE_TYPES,
     Box,
@@ -43,6 +58,8 @@ from ravemj.model.scene.world import Scene, View
 __all__ = [
     "NO_PARAMETERS",
     "OWN_SHAPES",
+    "SENSOR_COLOR",
+    "SENSOR_KINDS",
     "SHAPE_TYPES",
     "UNLIMITED",
     "AttachedSensor",
@@ -54,27 +71,37 @@ __all__ = [
     "Container",
     "CrossSection",
     "Cylinder",
+    "Device",
+    "FlashLidar",
+    "ForceTorque",
     "Geometry",
+    "Imu",
     "Inertial",
     "Intrinsics",
     "Joint",
+    "JointEncoder",
     "JointKind",
     "KinBody",
+    "Laser",
     "Link",
     "Manipulator",
     "Mesh",
     "MeshFile",
     "Mimic",
     "NoShape",
+    "Odometry",
     "Parameters",
     "Prism",
     "Rgb",
     "Scene",
+    "SensorKind",
     "Shape",
     "ShapeType",
     "Solid",
     "Sphere",
     "Surface",
+    "Tactile",
     "TriMesh",
     "View",
+    "sensor_kind",
 ]

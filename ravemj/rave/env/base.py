@@ -12,6 +12,7 @@ from ravemj.rave.interface import Annotations, UserData
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.module import Module
 from ravemj.rave.robot import Robot
+from ravemj.rave.sensors import Sensor
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
@@ -43,6 +44,7 @@ class EnvironmentPart(UserData):
         self._annotations = Annotations()
         self._body_callbacks: list[BodyCallback] = []
         self._modules: list[Module] = []
+        self._sensors: list[Sensor] = []  # those that no robot carries
         self._is_destroyed = False
 
     def _check_alive(self) -> None:
@@ -75,7 +77,13 @@ class EnvironmentPart(UserData):
             return found
 
     def _remove_all(self) -> None:
-        """Take all bodies out of the environment."""
+        """Take all bodies and sensors out of the environment."""
+        for body in self._kept_objects.values():
+            if isinstance(body, Robot):
+                body.forget_sensors()
+        for sensor in self._sensors:
+            sensor.hide()
+        self._sensors.clear()
         gone = [self.wrap(state) for state in self._simulation.bodies] if self._body_callbacks else []
         self._simulation.clear()
         self._kept_objects.clear()

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.model import scene
 from ravemj.model.triangles import links_triangles
 from ravemj.rave.enums import InterfaceAddMode, TriangulateOptions
@@ -55,6 +55,8 @@ class Contents(EnvironmentPart):
         """
         if isinstance(interface, Module):
             self.AddModule(interface, cmdargs)
+        elif isinstance(interface, Sensor):
+            self.AddSensor(interface, _renames(addMode))
         elif not isinstance(interface, KinBody):
             self._add_other(interface)
         else:
@@ -104,16 +106,37 @@ class Contents(EnvironmentPart):
         self._add_other(sensor)
 
     def AddSensor(self, sensor: object, anonymous: bool = False) -> None:
-        """Refuse a sensor that no robot carries.
+        """Add a sensor that no robot carries, so that it measures as time passes.
 
         Args:
-            sensor: The sensor.
-            anonymous: Without meaning.
+            sensor: What ``RaveCreateSensor`` made for this environment; it has a name.
+            anonymous: Whether it gets another name if this one is taken.
 
         Raises:
-            UnsupportedError: always; ``robot.AddAttachedSensor`` attaches cameras to links.
+            openrave_exception: another sensor has the name (``SensorNameConflict``), the name is empty, or this is no
+                sensor of this environment that no robot carries. Nothing has changed then.
+
+        Example:
+            >>> laser = ravemj.RaveCreateSensor(env, "BaseLaser2D")
+            >>> laser.SetName("door")
+            >>> env.AddSensor(laser)
         """
-        raise UnsupportedError("AddSensor", "sensors without a robot")
+        self._check_alive()
+        added = checked_kind(sensor, Sensor, "AddSensor: sensor")
+        if added.GetEnv() is not self._environment or added.attached is not None:
+            raise ArgumentError(f"AddSensor: {added!r} was made for another environment, or a robot carries it")
+        if added in self._sensors:
+            return
+        name, number = added.GetName(), 0
+        if not name:
+            raise RavemjError("AddSensor: the sensor has no name; give it one with SetName", ErrorCode.Failed)
+        while self.GetSensor(added.GetName()) is not None:
+            if not anonymous:
+                raise RavemjError(f"AddSensor: there already is a sensor '{name}'", ErrorCode.SensorNameConflict)
+            added.SetName(f"{name}{number}")
+            number += 1
+        with self._simulation.lock:
+            self._sensors.append(added)
 
     @also_named(obj="interface", body="interface", prob="interface")
     def Remove(self, interface: object) -> bool:
@@ -122,7 +145,7 @@ class Contents(EnvironmentPart):
         It stays usable as a body that is not added, and can be added again. What it held, and what held it, let go.
 
         Args:
-            interface: A body, a robot, a module or a viewer.
+            interface: A body, a robot, a module, a sensor or a viewer.
 
         Returns:
             False if it was not there.
@@ -141,6 +164,8 @@ class Contents(EnvironmentPart):
                 f"Remove: '{interface.GetName()}' was made for {interface.GetEnv()!r}, not for {self!r}"
             )
         self._kept_objects.pop(state, None)
+        if isinstance(interface, Robot):
+            interface.forget_sensors()
         was_there = self._simulation.remove(state)
         if was_there:
             self._tell_of_body(interface, 0)
@@ -167,6 +192,11 @@ class Contents(EnvironmentPart):
         if isinstance(interface, Module) and interface in self._modules:
             self._modules.remove(interface)
             interface.end()
+            return True
+        if isinstance(interface, Sensor) and interface in self._sensors:
+            with self._simulation.lock:
+                self._sensors.remove(interface)
+                interface.hide()
             return True
         for viewer in self._viewers:
             if viewer is interface:
@@ -232,12 +262,12 @@ class Contents(EnvironmentPart):
         return body if isinstance(body, Robot) else None
 
     def GetSensors(self) -> list[Sensor]:
-        """Return the sensors on all robots; see ``robot.GetAttachedSensors``."""
+        """Return the sensors on all robots, then those that no robot carries; see ``robot.GetAttachedSensors``."""
         found = (attached.GetSensor() for robot in self.GetRobots() for attached in robot.GetAttachedSensors())
-        return [sensor for sensor in found if sensor is not None]
+        return [*(sensor for sensor in found if sensor is not None), *self._sensors]
 
     def GetSensor(self, name: str) -> Sensor | None:
-        """Return the sensor of that name, ``robot:sensor``, or None."""
+        """Return the sensor of that name, ``robot:sensor`` where a robot carries it, or None."""
         return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
 
     def GetBodyFromEnvironmentBodyIndex(self, bodyIndex: int) -> KinBody | None:
