@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
+from ravemj.errors import RavemjError
 from ravemj.rave.enums import SensorType
 from ravemj.rave.infos.sensor import CameraIntrinsics
 
@@ -18,7 +19,7 @@ def _nothing() -> Floats:
 
 @dataclass(eq=False, slots=True)
 class SensorData:
-    """A measurement.
+    """A measurement of any kind; each kind of sensor has its own class.
 
     Attributes:
         stamp: Simulation time of the measurement [microseconds].
@@ -28,6 +29,9 @@ class SensorData:
     """The kind of data."""
 
     stamp: int = 0
+
+    def __init__(self, *args: object, **kwargs: object) -> None:
+        raise RavemjError("SensorData stands for all kinds of data: make a CameraSensorData, for instance")
 
 
 @dataclass(eq=False, slots=True)

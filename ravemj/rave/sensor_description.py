@@ -11,7 +11,7 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedErro
 from ravemj.model import scene
 from ravemj.rave.enums import InterfaceType, SensorType
 from ravemj.rave.infos.sensor import SensorGeometry
-from ravemj.rave.infos.sensor_devices import device_of, geometry_of
+from ravemj.rave.infos.sensor_devices import device_of, geometry_of, sensor_type
 from ravemj.rave.interface import Annotations, Interface
 from ravemj.rave.sensor_data import DATA, SensorData
 
@@ -174,10 +174,10 @@ class DescribedSensor(Interface):
             type: A ``Sensor.Type``.
         """
         device = self.description.device
-        return device is not None and type == geometry_of(device).GetType()
+        return device is not None and type == sensor_type(device)
 
     def _checked_type(self, type: SensorType | None, caller: str) -> SensorType:  # as in OpenRAVE
-        own = geometry_of(self.device).GetType()
+        own = sensor_type(self.device)
         if type not in {None, SensorType.Invalid, own}:
             raise ArgumentError(f"{caller}: '{self.GetXMLId()}' has no data of type {SensorType(type).name}")
         return own

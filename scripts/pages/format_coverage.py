@@ -92,14 +92,21 @@ def sections() -> list[Section]:
             robot.MANIPULATOR_IGNORED,
         ),
         _section("AttachedSensor", "in Robot", robot.SENSOR_TAGS, robot.SENSOR_ATTRIBUTES, robot.SENSOR_IGNORED),
+        _section(
+            "Sensor",
+            "in AttachedSensor, or the root of an included file",
+            sensor.COMMON_TAGS,
+            sensor.DEVICE_ATTRIBUTES,
+            sensor.COMMON_IGNORED,
+            sensor.DEVICE_IGNORED_ATTRIBUTES,
+        ),
         *(
             _section(
-                f"Sensor, {kind.name}",
-                "in AttachedSensor, or the root of an included file",
+                kind.name,
+                "what only such a Sensor holds",
                 sensor.device_tags(kind),
-                sensor.DEVICE_ATTRIBUTES,
+                {},
                 sensor.device_ignored(kind),
-                sensor.DEVICE_IGNORED_ATTRIBUTES,
             )
             for kind in SENSOR_KINDS.values()
         ),

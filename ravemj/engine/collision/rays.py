@@ -67,12 +67,10 @@ class Hits(NamedTuple):
     Attributes:
         distances: How far along each ray, in lengths of its direction, shape (n,); -1 where it meets nothing.
         geoms: The geoms, shape (n,); -1 where it meets nothing.
-        normals: Outward unit normals of the surfaces, shape (n, 3); zeros where it meets nothing.
     """
 
     distances: Floats
     geoms: NDArray[np.int32]
-    normals: Floats
 
 
 class RayCaster:
@@ -87,7 +85,9 @@ class RayCaster:
         self._model.geom_rgba[:, 3] = 1.0
         self._targets: Ints | None = None
 
-    def cast(self, geoms: Ints, start: Floats, directions: Floats, reach: float = _FAR) -> Hits:
+    def cast(
+        self, geoms: Ints, start: Floats, directions: Floats, reach: float = _FAR, *, normals: Floats | None = None
+    ) -> Hits:
         """Return what rays from one point meet first; inside of a solid, it is where they come out.
 
         Args:
@@ -95,18 +95,19 @@ class RayCaster:
             start: Where they begin, in the world [m], shape (3,).
             directions: Their directions, none of them zero, shape (n, 3).
             reach: Distance beyond which geoms may be left out [m].
+            normals: Filled with the outward unit normals of the surfaces, shape (n, 3).
         """
         if self._targets is None or not np.array_equal(self._targets, geoms):
             self._targets = geoms
             self._model.geom_group[:] = _LEFT_OUT
             self._model.geom_group[geoms] = _TARGET
         count = len(directions)
-        hits = Hits(np.empty(count), np.empty(count, dtype=np.int32), np.zeros((count, 3)))
-        rays, normals = np.ascontiguousarray(directions).reshape(-1), hits.normals.reshape(-1)
+        found, distances = np.empty(count, dtype=np.int32), np.empty(count)
+        rays, flat = np.ascontiguousarray(directions).reshape(-1), None if normals is None else normals.reshape(-1)
         mujoco.mj_multiRay(
-            self._model, self._data, start, rays, _GROUPS, True, -1, hits.geoms, hits.distances, normals, count, reach
+            self._model, self._data, start, rays, _GROUPS, True, -1, found, distances, flat, count, reach
         )
-        return hits
+        return Hits(distances, found)
 
     def first_hits(self, geoms: Ints, rays: Floats, *, front_facing_only: bool) -> tuple[NDArray[np.bool_], Floats]:
         """Return where rays first meet a surface, in one call for all that begin at the same point.
@@ -122,17 +123,18 @@ class RayCaster:
         """
         found, points = np.zeros(len(rays), dtype=np.bool_), np.zeros((len(rays), 6))
         long = np.flatnonzero(np.linalg.norm(rays[:, 3:], axis=1) > _SHORTEST)
-        starts, group, counts = np.unique(rays[long, :3], axis=0, return_inverse=True, return_counts=True)
-        together = np.split(long[np.argsort(group, kind="stable")], np.cumsum(counts)[:-1])
-        for start, some in zip(starts, together, strict=False):
-            hits = self.cast(geoms, start, rays[some, 3:])
-            is_hit = (hits.distances >= 0) & (hits.distances <= 1)
+        order = long[np.lexsort(rays[long, :3].T)]
+        ends = np.flatnonzero((rays[order[1:], :3] != rays[order[:-1], :3]).any(axis=1)) + 1
+        for some in np.split(order, ends) if len(order) else ():
+            start, directions, normals = rays[some[0], :3], rays[some, 3:], np.zeros((len(some), 3))
+            distances, _ = self.cast(geoms, start, directions, normals=normals)
+            is_hit = (distances >= 0) & (distances <= 1)
             if front_facing_only:
-                is_hit &= (hits.normals * rays[some, 3:]).sum(axis=1) < 0
+                is_hit &= (normals * directions).sum(axis=1) < 0
             chosen = some[is_hit]
             found[chosen] = True
-            points[chosen, :3] = start + hits.distances[is_hit, None] * rays[chosen, 3:]
-            points[chosen, 3:] = hits.normals[is_hit]
+            points[chosen, :3] = start + distances[is_hit, None] * directions[is_hit]
+            points[chosen, 3:] = normals[is_hit]
         return found, points
 
 

@@ -56,7 +56,7 @@ class _Sensor:
         self.color = vector(element, self.context.diagnostics, self.color)
 
 
-_COMMON_TAGS: dict[str, Tag[_Sensor]] = {
+COMMON_TAGS: dict[str, Tag[_Sensor]] = {
     "power": Tag(_Sensor.switch, "1: it measures from the start"),
     "color": Tag(_Sensor.paint, "of what viewers draw: red, green, blue from 0 to 1"),
 }
@@ -66,10 +66,9 @@ DEVICE_ATTRIBUTES = {
     "name": "takes no effect; the name is that of the AttachedSensor",
 }
 DEVICE_IGNORED_ATTRIBUTES = {"args": "no sensor here takes arguments"}
-_IGNORED = reasons(NO_EFFECT_HERE, "hardware_id")
+COMMON_IGNORED = reasons(NO_EFFECT_HERE, "hardware_id")
 _CAMERA_IGNORED = {
     "framerate": "pictures are taken when somebody asks for them",
-    **_IGNORED,
     **reasons(
         NO_EFFECT_HERE, "focal_length", "gain", "measurement_time", "format", "sensor_reference", "target_region",
         "distortion_model", "distortion_coeffs",
@@ -78,17 +77,14 @@ _CAMERA_IGNORED = {
 
 
 def device_tags(kind: SensorKind) -> Mapping[str, Tag[_Sensor]]:
-    """Return the table of a kind of sensor."""
+    """Return the table of what only a kind of sensor has."""
     shared = sensor_tags(kind.device).items()
-    return {
-        **{name.lower(): Tag(partial(_describe, tag=tag), tag.meaning) for name, tag in shared},
-        **_COMMON_TAGS,
-    }
+    return {name.lower(): Tag(partial(_describe, tag=tag), tag.meaning) for name, tag in shared}
 
 
 def device_ignored(kind: SensorKind) -> Mapping[str, str]:
-    """Return what is left out of a kind of sensor, and why."""
-    return _CAMERA_IGNORED if isinstance(kind.device, Intrinsics) else _IGNORED
+    """Return what only a kind of sensor has and is left out, and why."""
+    return _CAMERA_IGNORED if isinstance(kind.device, Intrinsics) else {}
 
 
 def _describe(sensor: _Sensor, element: Element, tag: SensorTag) -> None:
@@ -108,7 +104,8 @@ def read_device(element: Element, context: Context) -> SensorElement:
         context.diagnostics.error("unknown-interface", f"there is no sensor of type '{name}'", element.source)
         return SensorElement()
     sensor = _Sensor(context, kind)
-    context.walk(element, device_tags(kind), device_ignored(kind), sensor)
+    tags, ignored = {**device_tags(kind), **COMMON_TAGS}, {**device_ignored(kind), **COMMON_IGNORED}
+    context.walk(element, tags, ignored, sensor)
     problem = sensor.device.problem() if sensor.is_on else None
     if problem is not None:
         context.diagnostics.warn("bad-sensor", f"the sensor stays off: {problem}", element.source)

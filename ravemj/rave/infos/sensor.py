@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats
+from ravemj.errors import RavemjError
 from ravemj.rave.enums import SensorType
 from ravemj.rave.infos.base import Info, info_class
 from ravemj.rave.infos.json import PLAIN, TEXT, Entry, Json, info
@@ -77,17 +78,26 @@ _PINHOLE_JSON = (
 
 @info_class
 class SensorGeometry(Info):
-    """What is fixed about a sensor; each kind of sensor has its own class.
+    """What is fixed about a sensor of any kind; each kind of sensor has its own class.
 
     Attributes:
         hardware_id: What its maker calls it.
     """
 
     _called = "SensorGeometry"
+    _internal = ("sensor_type",)
     _type = SensorType.Invalid
     _keys: ClassVar[Sequence[tuple[str, str]]] = ()
 
     hardware_id: str = ""
+
+    def __init__(self, *args: object, **kwargs: object) -> None:
+        raise RavemjError("SensorGeometry stands for all kinds of geometry: make a CameraGeomData, for instance")
+
+    @classmethod
+    def sensor_type(cls) -> SensorType:
+        """Return the kind of sensor that objects of this class describe."""
+        return cls._type
 
     def GetType(self) -> SensorType:
         """Return the kind of sensor."""

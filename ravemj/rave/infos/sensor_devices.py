@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError
 from ravemj.model import scene
+from ravemj.rave.enums import SensorType
 from ravemj.rave.infos.base import vector
 from ravemj.rave.infos.sensor import (
     CameraGeomData,
@@ -34,6 +35,11 @@ from ravemj.rave.infos.sensor import (
 def geometry_of(device: scene.Device) -> SensorGeometry:
     """Return the description of a device, a copy."""
     return _CONVERSIONS[type(device)].write(device)
+
+
+def sensor_type(device: scene.Device) -> SensorType:
+    """Return OpenRAVE's type of a device."""
+    return _CONVERSIONS[type(device)].described.sensor_type()
 
 
 def device_of(geometry: SensorGeometry, before: scene.Device) -> scene.Device | None:
