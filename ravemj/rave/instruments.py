@@ -144,7 +144,7 @@ class Instrument:
         """Return the force and torque on a link."""
         from ravemj.engine.sensing import corrected, wrench  # noqa: PLC0415 - slow to import
 
-        felt = wrench(self._physics(), *place.link, place.T_world_sensor)
+        felt = wrench(self._needed_physics(), *place.link, place.T_world_sensor)
         force, torque = corrected(device, *felt)
         return Force6DSensorData(stamp, self._noisy(force), self._noisy(torque))
 
@@ -152,7 +152,7 @@ class Instrument:
         """Return where a link is touched."""
         from ravemj.engine.sensing import touches  # noqa: PLC0415 - slow to import
 
-        positions, forces = touches(self._physics(), *place.link, place.T_world_sensor)
+        positions, forces = touches(self._needed_physics(), *place.link, place.T_world_sensor)
         return TactileSensorData(stamp, positions, self._noisy(forces), np.zeros((3, 3)), device.thickness)
 
     def inertial(self, device: scene.Imu, place: Place, stamp: int) -> IMUSensorData:
@@ -160,7 +160,7 @@ class Instrument:
         from ravemj.engine.sensing import acceleration_at, motion_at  # noqa: PLC0415 - slow to import
 
         axes, origin = place.T_world_sensor[:3, :3], place.T_world_sensor[:3, 3]
-        physics = self._env.GetPhysicsEngine().dynamics
+        physics = self._physics()
         if physics is None:
             acceleration = self._acceleration - self._env.simulation.gravity
         else:
@@ -202,8 +202,15 @@ class Instrument:
         values, velocities, steps = encoder_values(state, device.resolution)
         return JointEncoderSensorData(stamp, self._noisy(values), velocities, steps)
 
-    def _physics(self) -> "Physics":
+    def _physics(self) -> "Physics | None":
+        """Return the physics of the bodies as they are now; None where there is none."""
         physics = self._env.GetPhysicsEngine().dynamics
+        if physics is not None:
+            physics.prepare()
+        return physics
+
+    def _needed_physics(self) -> "Physics":
+        physics = self._physics()
         if physics is None:
             message = "forces are measured while physics is simulated: env.SetPhysicsEngine('mujoco')"
             raise RavemjError(message, ErrorCode.InvalidState)

@@ -155,9 +155,10 @@ class Sensor(DescribedSensor):
                 its geometry makes no sense. It stays off then.
         """
         del blocking
-        switch = next((one for one in _SWITCHES if one == int(command) & _SWITCH_BITS), None)
-        if switch is None or int(command) not in {one.value for one in SensorCommand}:
-            raise ArgumentError(f"Configure: there is no command {command!r}; there are {list(SensorCommand)}")
+        if command not in {one.value for one in SensorCommand}:
+            known = ", ".join(one.name for one in SensorCommand)
+            raise ArgumentError(f"Configure: there is no command {command!r}; there are {known}")
+        switch = SensorCommand(command & _SWITCH_BITS)
         with self._env.simulation.lock:
             if command == switch:
                 self._switch_on(switch)

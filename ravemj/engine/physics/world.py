@@ -59,7 +59,7 @@ class Physics:
         Args:
             timestep: How long [s].
         """
-        self._prepare()
+        self.prepare()
         model, data = self._model, self._data
         count = math.ceil(timestep / LONGEST_STEP)
         if not count:
@@ -90,7 +90,7 @@ class Physics:
             for body in driven:
                 self.loads(body.state).drive(body, applied)
 
-    def _prepare(self) -> None:
+    def prepare(self) -> None:
         """Make the model anew if the bodies are others, and take over what users moved."""
         states = self._simulation.bodies
         made_of: list[object] = [
