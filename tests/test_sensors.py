@@ -383,6 +383,9 @@ def test_sensors_without_a_robot():
     np.testing.assert_allclose(laser.GetSensorData().ranges, [[0.5, 0, 0], [0, 1, 0]], atol=1e-12)
     env.StepSimulation(0.02)
     assert laser.GetSensorData().stamp == 20_000
+    laser.Configure(RenderGeometryOn)
+    laser.SetTransform([1, 0, 0, 0, 0, 0, 0.5])
+    np.testing.assert_allclose(env.simulation.drawings.primitives().triangles.corners[0, 0], [0, 0, 0.5])
     assert env.Remove(laser)
     assert not env.Remove(laser)
     env.Reset()

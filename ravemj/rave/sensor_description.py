@@ -61,6 +61,9 @@ class DescribedSensor(Interface):
         else:
             self.attached.edit(**changes)
 
+    def _moved(self) -> None:
+        """Take note that a sensor without a robot is elsewhere."""
+
     def _take_over(self) -> None:
         """Begin anew with another device."""
 
@@ -121,6 +124,7 @@ class DescribedSensor(Interface):
         """
         self._check_loose("SetTransform", "attached.SetRelativeTransform moves it on its link")
         self._edit(T_link_sensor=pose_of(checked_transform(transform, "SetTransform: transform")))
+        self._moved()
 
     def SetSensorGeometry(self, geometry: SensorGeometry) -> bool:
         """Give the sensor another resolution, range or calibration; it begins to measure anew.

@@ -133,6 +133,9 @@ class Sensor(DescribedSensor):
         self._until_next = 0.0
         self._trace = None
 
+    def _moved(self) -> None:
+        self._show_shape()
+
     def _take_over(self) -> None:
         self._restart()
         self._show_shape(anew=True)
@@ -158,7 +161,7 @@ class Sensor(DescribedSensor):
         if command not in {one.value for one in SensorCommand}:
             known = ", ".join(one.name for one in SensorCommand)
             raise ArgumentError(f"Configure: there is no command {command!r}; there are {known}")
-        switch = SensorCommand(command & _SWITCH_BITS)
+        switch = SensorCommand(int(command) & _SWITCH_BITS)
         with self._env.simulation.lock:
             if command == switch:
                 self._switch_on(switch)
@@ -183,8 +186,10 @@ class Sensor(DescribedSensor):
         self._switched[switch] = False
         if switch == SensorCommand.RenderGeometryOn:
             self._shape = None
-        else:
+        elif switch == SensorCommand.RenderDataOn:
             self._trace = None
+        else:
+            self._restart()
 
     def SimulationStep(self, timeelapsed: float) -> None:
         """Let time pass for this sensor alone; ``env.StepSimulation`` does it for all.
