@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from waiting import await_that
 
 import ravemj
 from ravemj import Sensor
@@ -172,6 +173,15 @@ def test_a_laser_scans_once_in_its_time_and_sees_what_moves():
     data = laser.GetSensorData()
     data.ranges[:] = 7
     assert np.linalg.norm(laser.GetSensorData().ranges[180]) == pytest.approx(1), "users have copies"
+
+
+def test_a_laser_measures_while_time_passes_by_itself():
+    env = loaded(ROOM + robot(on_link(LASER)))
+    laser = switched_on(env)
+    env.StartSimulation(0.05, realtime=False)
+    await_that(lambda: laser.GetSensorData().stamp > 300_000)
+    env.StopSimulation()
+    assert (laser.GetSensorData().intensity == 1).any()
 
 
 def test_a_laser_looks_beyond_what_is_too_near():
