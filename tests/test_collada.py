@@ -11,6 +11,7 @@ import pytest
 
 import ravemj
 from ravemj.formats.readers import read_data, read_file
+from ravemj.model import scene
 from ravemj.model.scene import Box, Cylinder, TriMesh
 
 DATA = Path(__file__).parent / "data" / "collada"
@@ -120,6 +121,27 @@ class TestArm:
         (eye,) = body.sensors
         assert (eye.name, eye.link, eye.T_link_sensor.position) == ("eye", 1, (0, 0, 0.25))
         assert (eye.camera.fx, eye.camera.fy, eye.camera.width, eye.camera.height) == (640, 480, 640, 480)
+
+    def test_sensors_have_colladas_tags_or_those_of_xml(self):
+        scanner = """type="base_laser2d"><angle_range>-90 45</angle_range><angle_increment>0.5</angle_increment>
+            <distance_range>0.1 8</distance_range><measurement_time>0.05</measurement_time><time_increment>1e-4
+            </time_increment>"""
+        camera = """type="base_pinhole_camera">
+        <intrinsic>640 0 320 0 480 240</intrinsic>
+        <image_dimensions>640 480 3</image_dimensions>"""
+        (eye,) = arm((camera, scanner)).sensors
+        laser = scene.Laser(-90 * DEGREE, 45 * DEGREE, 0.5 * DEGREE, 0.1, 8.0, 0.05, 1e-4)
+        assert (eye.type, eye.device) == ("base_laser2d", laser)
+        named = """type="base_unknown"><interface_type><technique profile="OpenRAVE"><interface>BaseForce6D</interface>
+            </technique></interface_type><polarity>-1</polarity>"""
+        assert arm((camera, named)).sensors[0].device == scene.ForceTorque(polarity=-1)
+        (blank,) = arm((camera, 'type="base_stereo_camera">')).sensors
+        assert (blank.type, blank.device) == ("base_stereo_camera", None)
+        broken = (
+            """type="base_laser2d"><power>1</power><angle_increment>0</angle_increment><max_range>nan</max_range>"""
+        )
+        assert {"bad-sensor", "number-count"} <= findings((camera, broken))
+        assert not arm((camera, broken)).sensors[0].is_on
 
     def test_gravity(self):
         assert read_data(ARM).scene.gravity == (0, 0, -2)

@@ -154,9 +154,15 @@ def test_opengl_and_rays_see_the_same_geoms(how, seed):
     camera = camera_with_roll(rng, [2.5, 1.5, 0.0, 0.3][seed % 4], math.radians([45, 80][seed % 2]))
     with open_as(how, model, 320, 240) as gl, open_as("ray", model, 320, 240) as ray:
         by_gl, by_ray = gl.segment(data, camera), ray.segment(data, camera)
+        depths = [renderer.depth(data, camera) for renderer in (gl, ray)]
     compared = ~(near_an_edge(by_gl, 2) | near_an_edge(by_ray, 2))
     assert compared.mean() > 0.6
     assert (by_gl != by_ray)[compared].sum() == 0
+    apart = np.abs(depths[0][compared & (by_ray >= 0)] - depths[1][compared & (by_ray >= 0)])
+    assert np.median(apart) < 1e-3, "OpenGL's spheres are polyhedra"
+    assert apart.max() < 0.05
+    for ids, depth in zip((by_gl, by_ray), depths, strict=True):
+        np.testing.assert_array_equal(np.isinf(depth), ids < 0)
     assert len(np.unique(by_gl)) > 1
 
 

@@ -1,10 +1,18 @@
-"""Cameras of robots."""
+"""Sensors, against geometry and mechanics worked out by hand."""
+
+import math
 
 import numpy as np
 import pytest
+from waiting import await_that
 
 import ravemj
 from ravemj import Sensor
+
+PowerOn = Sensor.ConfigureCommand.PowerOn
+RenderDataOn = Sensor.ConfigureCommand.RenderDataOn
+RenderDataOff = Sensor.ConfigureCommand.RenderDataOff
+RenderGeometryOn = Sensor.ConfigureCommand.RenderGeometryOn
 
 ROBOT = """<Environment>
   <bkgndcolor>0 0 1</bkgndcolor>
@@ -68,7 +76,500 @@ def test_a_camera_sees_with_its_own_intrinsics(env):
 def test_the_environment_knows_all_devices(env):
     assert [sensor.GetName() for sensor in env.GetSensors()] == ["eye:camera", "eye:laser"]
     assert env.GetSensor("nonsense") is None
-    laser = env.GetSensor("eye:laser")
-    laser.Configure(Sensor.ConfigureCommand.PowerOn)
-    with pytest.raises(NotImplementedError, match="cameras"):
-        laser.GetSensorData()
+    assert env.GetSensor("eye:laser") is env.GetRobot("eye").GetAttachedSensor("laser").GetSensor()
+
+
+def box(name, center, half):
+    texts = [" ".join(map(str, numbers)) for numbers in (center, half)]
+    return (
+        f'<KinBody name="{name}"><Body name="{name}" type="static"><Translation>{texts[0]}</Translation>'
+        f'<Geom type="box"><Extents>{texts[1]}</Extents></Geom></Body></KinBody>'
+    )
+
+
+ROOM = "".join(
+    box(name, center, half)
+    for name, center, half in (
+        ("east", (2.5, 0, 0), (0.5, 2, 2)),
+        ("west", (-2.5, 0, 0), (0.5, 2, 2)),
+        ("north", (0, 1.5, 0), (2, 0.5, 2)),
+        ("south", (0, -1.5, 0), (2, 0.5, 2)),
+        ("ceiling", (0, 0, 1.5), (2, 2, 0.5)),
+        ("floor", (0, 0, -1.5), (2, 2, 0.5)),
+    )
+)
+"""A room inside: x from -2 to 2, y and z from -1 to 1."""
+
+HALF = np.array([2.0, 1.0, 1.0])
+
+
+def loaded(content):
+    env = ravemj.Environment()
+    env.StopSimulation()
+    env.LoadData(f"<Environment>{content}</Environment>")
+    return env
+
+
+def on_link(sensor, name="device", more="<Translation>0 0 0.1</Translation>", link="base"):
+    return f'<AttachedSensor name="{name}"><link>{link}</link>{more}{sensor}</AttachedSensor>'
+
+
+def robot(sensors, links='<Body name="base" type="static"/>'):
+    return f'<Robot name="r"><KinBody>{links}</KinBody>{sensors}</Robot>'
+
+
+def switched_on(env, name="r:device"):
+    sensor = env.GetSensor(name)
+    assert sensor.Configure(PowerOn) == 1
+    return sensor
+
+
+def to_the_walls(origin, directions):
+    """How far it is from a point in the room to its walls."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return ((np.sign(directions) * HALF - origin) / directions).min(axis=1, initial=np.inf, where=directions != 0)
+
+
+LASER = """<Sensor type="BaseLaser2D"><min_angle>-180</min_angle><max_angle>179</max_angle><resolution>1</resolution>
+<max_range>1.5</max_range><time_scan>0.1</time_scan></Sensor>"""
+
+
+def test_a_laser_measures_a_room():
+    env = loaded(ROOM + robot(on_link(LASER)))
+    T = ravemj.matrixFromAxisAngle([0, 0, 0.3])
+    T[:3, 3] = [0.5, 0.2, 0]
+    env.GetRobot("r").SetTransform(T)
+    laser = switched_on(env)
+    data = laser.GetSensorData()
+    angles = 0.3 + np.radians(np.arange(-180, 180))
+    directions = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(360)])
+    expected = to_the_walls(np.array([0.5, 0.2, 0.1]), directions)
+    assert (expected > 1.5).any()
+    np.testing.assert_allclose(data.positions, [[0.5, 0.2, 0.1]], atol=1e-12)
+    np.testing.assert_array_equal(data.intensity, expected <= 1.5)
+    np.testing.assert_allclose(data.ranges, np.minimum(expected, 1.5)[:, None] * directions, atol=1e-9)
+    assert (data.type, data.stamp) == (Sensor.Type.Laser, 0)
+    numbers = laser.SendCommand("collidingbodies").split()
+    bodies = [env.GetBodyFromEnvironmentBodyIndex(int(number)) for number in numbers]
+    assert {body and body.GetName() for body in bodies} == {"north", "south", None}
+    assert (np.array([body is not None for body in bodies]) == (data.intensity == 1)).all()
+
+
+def test_a_laser_scans_once_in_its_time_and_sees_what_moves():
+    env = loaded(ROOM + robot(on_link(LASER)))
+    laser = switched_on(env)
+    stamps, ranges = [], []
+    for _ in range(25):
+        env.StepSimulation(0.01)
+        ranges.append(np.linalg.norm(laser.GetSensorData().ranges[180]))
+        stamps.append(laser.GetSensorData().stamp)
+        env.GetRobot("r").SetTransform([1, 0, 0, 0, env.GetSimulationTime() * 1e-6, 0, 0])
+    assert sorted(set(stamps)) == [10_000, 110_000, 210_000]
+    np.testing.assert_allclose([ranges[5], ranges[15]], [1.5, 1.5])
+    np.testing.assert_allclose(ranges[24], 1.5)
+    env.GetRobot("r").SetTransform([1, 0, 0, 0, 1, 0, 0])
+    assert np.linalg.norm(laser.GetSensorData().ranges[180]) == pytest.approx(1.5), "time has passed since the scan"
+    env.StepSimulation(0.1)
+    data = laser.GetSensorData()
+    data.ranges[:] = 7
+    assert np.linalg.norm(laser.GetSensorData().ranges[180]) == pytest.approx(1), "users have copies"
+
+
+def test_a_laser_measures_while_time_passes_by_itself():
+    env = loaded(ROOM + robot(on_link(LASER)))
+    laser = switched_on(env)
+    env.StartSimulation(0.05, realtime=False)
+    await_that(lambda: laser.GetSensorData().stamp > 300_000)
+    env.StopSimulation()
+    assert (laser.GetSensorData().intensity == 1).any()
+
+
+def test_a_laser_looks_beyond_what_is_too_near():
+    near = box("near", (0.05, 0, 0), (0.01, 1, 1))
+    look = (
+        '<Sensor type="BaseLaser2D"><min_angle>0</min_angle><max_angle>0</max_angle><min_range>{}</min_range></Sensor>'
+    )
+    for least, expected in ((0.03, 0.04), (0.05, 0.06), (0.08, 2.0)):
+        env = loaded(ROOM + near + robot(on_link(look.format(least), more="")))
+        (ranges,) = switched_on(env).GetSensorData().ranges
+        np.testing.assert_allclose(ranges, [expected, 0, 0], atol=1e-9)
+
+
+def test_a_laser_spins():
+    spin = """<Sensor type="BaseSpinningLaser2D"><min_angle>-90</min_angle><max_angle>90</max_angle>
+        <resolution>0.5</resolution><spinaxis>2 0 0</spinaxis><spinpos>0 0.5 0</spinpos>
+        <spinspeed>1.5</spinspeed></Sensor>"""
+    env = loaded(ROOM + robot(on_link(spin, more="")))
+    laser = switched_on(env)
+    for _ in range(10):
+        env.StepSimulation(0.1)
+    data = laser.GetSensorData()
+    turn = ravemj.matrixFromAxisAngle([1.5, 0, 0])[:3, :3]
+    angles = np.radians(np.arange(-90, 90.25, 0.5))
+    directions = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(361)]) @ turn.T
+    origin = np.array([0, 0.5, 0]) - turn @ [0, 0.5, 0]
+    np.testing.assert_allclose(data.positions[0], origin, atol=1e-12)
+    np.testing.assert_allclose(data.ranges, to_the_walls(origin, directions)[:, None] * directions, atol=1e-8)
+    laser.Configure(PowerOn)
+    assert laser.GetSensorData().positions[0] == pytest.approx([0, 0, 0]), "it begins anew"
+
+
+def test_a_flash_lidar_measures_through_its_pixels():
+    lidar = '<Sensor type="BaseFlashLidar3D"><KK>8 10 4 3</KK><width>9</width><height>7</height></Sensor>'
+    env = loaded(ROOM + robot(on_link(lidar, more="")))
+    data = switched_on(env).GetSensorData()
+    through = np.array([((u - 4) / 8, (v - 3) / 10, 1) for u in range(9) for v in range(7)])
+    directions = through / np.linalg.norm(through, axis=1, keepdims=True)
+    np.testing.assert_allclose(data.ranges, to_the_walls(np.zeros(3), directions)[:, None] * directions, atol=1e-9)
+
+
+CAMERA = '<Sensor type="BaseCamera"><KK>100 90 40 20</KK><width>64</width><height>48</height></Sensor>'
+
+
+def test_a_camera_measures_the_depth_of_a_plane_and_says_what_it_shows():
+    tilted = """<KinBody name="wall"><Body name="wall" type="static"><Translation>0 0 2</Translation>
+        <RotationAxis>0 1 0 30</RotationAxis><Geom type="box"><Extents>0.5 0.5 0.001</Extents></Geom></Body>
+        </KinBody>"""
+    env = loaded(tilted + robot(on_link(CAMERA, more="")))
+    camera = switched_on(env)
+    depth, labels = camera.depth_image(), camera.segmentation_image()
+    u, v = np.meshgrid((np.arange(64) + 0.5 - 40) / 100, (np.arange(48) + 0.5 - 20) / 90)
+    normal = np.array([math.sin(math.radians(30)), 0, math.cos(math.radians(30))])
+    expected = (2 * normal[2] - 0.001) / (normal[0] * u + normal[2])  # the face that looks back
+    inside = np.abs(expected * v) < 0.5
+    inside &= np.abs(((expected - 2) * normal[2] * 0 + expected * u) * normal[2] - (expected - 2) * normal[0]) < 0.495
+    outside = np.abs(expected * v) > 0.505
+    assert inside.any()
+    np.testing.assert_allclose(depth[inside], expected[inside], atol=1e-4)
+    assert np.isinf(depth[outside]).all()
+    index = env.GetKinBody("wall").GetEnvironmentBodyIndex()
+    assert (labels[inside] == [index, 0]).all()
+    assert (labels[outside] == [0, -1]).all()
+    laser = ravemj.RaveCreateSensor(env, "BaseLaser2D")
+    laser.Configure(PowerOn)
+    with pytest.raises(ravemj.openrave_exception, match="no camera"):
+        laser.depth_image()
+
+
+HAND = """<Body name="base" type="static"/><Body name="hand"><Mass type="custom"><total>2</total><com>0.1 0 0</com>
+<inertia>0.01 0 0 0 0.01 0 0 0 0.01</inertia></Mass></Body><Joint name="wrist" type="hinge"><Body>base</Body>
+<Body>hand</Body><axis>0 0 1</axis></Joint>"""
+
+
+LOAD = """<KinBody name="load"><Body name="load"><Geom type="box"><Extents>0.1 0.1 0.1</Extents></Geom>
+<Mass type="mimicgeom"><density>375</density></Mass></Body></KinBody>"""
+"""A cube of 3 kg."""
+
+
+def with_physics(env):
+    engine = ravemj.RaveCreatePhysicsEngine(env, "mujoco")
+    engine.SetGravity([0, 0, -9.81])
+    env.SetPhysicsEngine(engine)
+    return env
+
+
+def test_a_force_sensor_holds_a_known_mass():
+    turned = "<Translation>0.05 0 0.2</Translation><RotationAxis>1 0 0 90</RotationAxis>"
+    env = loaded(robot(on_link('<Sensor type="BaseForce6D"/>', more=turned, link="hand"), HAND))
+    sensor = switched_on(env)
+    env.StepSimulation(0.01)
+    with pytest.raises(ravemj.openrave_exception, match="SetPhysicsEngine"):
+        sensor.GetSensorData()
+    with_physics(env)
+    data = sensor.GetSensorData(Sensor.Type.Force6D)
+    np.testing.assert_allclose(data.force, [0, 2 * 9.81, 0], atol=1e-6)  # its y points up
+    np.testing.assert_allclose(data.torque, [0, 0, 2 * 9.81 * 0.05], atol=1e-6)
+    assert env.LoadData(f"<Environment>{LOAD}</Environment>")
+    load = env.GetKinBody("load")
+    load.SetTransform([1, 0, 0, 0, 0.05, 0, 0.2])
+    hand = env.GetRobot("r").GetLink("hand")
+    env.GetRobot("r").Grab(load, hand)
+    for _ in range(20):
+        env.StepSimulation(0.01)
+    held = sensor.GetSensorData()
+    np.testing.assert_allclose(held.force, [0, 5 * 9.81, 0], rtol=0.01, atol=0.05)  # MuJoCo's welds give a little
+    geometry = sensor.GetSensorGeometry()
+    geometry.polarity = -1
+    geometry.correction_matrix = (np.eye(6) * 2).ravel()
+    assert sensor.SetSensorGeometry(geometry)
+    np.testing.assert_allclose(sensor.GetSensorData().force, -2 * held.force)
+
+
+PENDULUM = """<Body name="base" type="static"/><Body name="rod"><Mass type="custom"><total>1.5</total>
+<com>0 0 -0.4</com><inertia>0.02 0 0 0 0.02 0 0 0 0.02</inertia></Mass></Body>
+<Joint name="hinge" type="hinge" circular="true">
+<Body>base</Body><Body>rod</Body><axis>1 0 0</axis></Joint>"""
+
+
+def test_an_imu_swings_on_a_pendulum():
+    place = "<Translation>0 0 -0.7</Translation>"
+    env = with_physics(loaded(robot(on_link('<Sensor type="BaseIMU"/>', more=place, link="rod"), PENDULUM)))
+    pendulum, imu = env.GetRobot("r"), switched_on(env)
+    pendulum.SetDOFValues([1.0])
+    fastest = 0.0
+    for _ in range(60):
+        env.StepSimulation(0.01)
+        (angle,), (speed,) = pendulum.GetDOFValues(), pendulum.GetDOFVelocities()
+        alpha = -1.5 * 9.81 * 0.4 * math.sin(angle) / (0.02 + 1.5 * 0.4**2)
+        data = imu.GetSensorData()
+        np.testing.assert_allclose(data.angular_velocity, [speed, 0, 0], atol=1e-9)
+        expected = [0, 0.7 * alpha + 9.81 * math.sin(angle), 0.7 * speed**2 + 9.81 * math.cos(angle)]
+        np.testing.assert_allclose(data.linear_acceleration, expected, atol=1e-6)
+        np.testing.assert_allclose(data.rotation, [math.cos(angle / 2), math.sin(angle / 2), 0, 0], atol=1e-9)
+        fastest = max(fastest, abs(speed))
+    assert fastest > 3
+
+
+def test_an_imu_without_physics_takes_differences_of_velocities():
+    env = loaded(robot(on_link('<Sensor type="BaseIMU"/>', more="", link="rod"), PENDULUM))
+    env.GetPhysicsEngine().SetGravity([0, 0, -10])
+    imu = switched_on(env)
+    np.testing.assert_allclose(imu.GetSensorData().linear_acceleration, [0, 0, 10])
+    for speed in (0.0, 0.1):
+        env.GetRobot("r").SetVelocity([speed, 0, 0], [0, 0, 0])
+        env.StepSimulation(0.05)
+    np.testing.assert_allclose(imu.GetSensorData().linear_acceleration, [2, 0, 10], atol=1e-12)
+
+
+def test_odometry_and_encoders():
+    sensors = on_link('<Sensor type="BaseOdometry"/>', "odometry", "<Translation>0 0 -0.5</Translation>", "rod")
+    sensors += on_link('<Sensor type="BaseJointEncoder"><resolution>0.25</resolution></Sensor>', "encoder")
+    env = loaded(box("crate", (1, 2, 3), (0.1, 0.1, 0.1)) + robot(sensors, PENDULUM))
+    pendulum = env.GetRobot("r")
+    pendulum.SetDOFValues([0.6])
+    pendulum.SetDOFVelocities([2.0])
+    odometry, encoder = switched_on(env, "r:odometry"), switched_on(env, "r:encoder")
+    data = odometry.GetSensorData()
+    np.testing.assert_allclose(data.pose[:3, 3], [0, 0.5 * math.sin(0.6), -0.5 * math.cos(0.6)], atol=1e-12)
+    np.testing.assert_allclose(data.linear_velocity, [0, math.cos(0.6), math.sin(0.6)], atol=1e-12)
+    np.testing.assert_allclose(data.angular_velocity, [2, 0, 0], atol=1e-12)
+    read = encoder.GetSensorData()
+    np.testing.assert_allclose([read.encoderValues, read.encoderVelocity, read.resolution], [[0.5], [2], [0.25]])
+    geometry = odometry.GetSensorGeometry()
+    geometry.targetid = "crate"
+    assert odometry.SetSensorGeometry(geometry)
+    np.testing.assert_array_equal(odometry.GetSensorData().pose[:3, 3], [1, 2, 3])
+    env.Remove(env.GetKinBody("crate"))
+    env.StepSimulation(0.01)
+    with pytest.raises(ravemj.openrave_exception, match="crate"):
+        odometry.GetSensorData()
+
+
+def test_a_skin_feels_what_lies_on_it():
+    plate = """<Body name="base" type="static"><Geom type="box"><Extents>1 1 0.1</Extents></Geom></Body>"""
+    skin = '<Sensor type="BaseTactile"><thickness>0.002</thickness></Sensor>'
+    env = with_physics(loaded(LOAD + robot(on_link(skin), plate)))
+    env.GetKinBody("load").SetTransform([1, 0, 0, 0, 0.3, 0, 0.2])
+    sensor = switched_on(env)
+    for _ in range(40):
+        env.StepSimulation(0.025)
+    data = sensor.GetSensorData()
+    np.testing.assert_allclose(data.forces.sum(axis=0), [0, 0, -3 * 9.81], atol=0.01)
+    corners = [(0.2, -0.1), (0.2, 0.1), (0.4, -0.1), (0.4, 0.1)]
+    np.testing.assert_allclose(sorted(map(tuple, data.positions[:, :2].round(3).tolist())), corners, atol=2e-3)
+    assert data.thickness == 0.002
+
+
+def test_sensors_without_a_robot():
+    env = loaded(ROOM)
+    laser = ravemj.RaveCreateSensor(env, "baselaser2d")
+    assert laser.GetXMLId() == "baselaser2d"
+    with pytest.raises(ravemj.openrave_exception, match="no name"):
+        env.Add(laser)
+    laser.SetName("door")
+    env.Add(laser)
+    other = ravemj.RaveCreateSensor(env, "BaseCamera")
+    other.SetName("door")
+    with pytest.raises(ravemj.openrave_exception, match="already"):
+        env.Add(other)
+    env.Add(other, True)
+    assert [sensor.GetName() for sensor in env.GetSensors()] == ["door", "door0"]
+    assert env.GetSensor("door") is laser
+    geometry = laser.GetSensorGeometry()
+    geometry.min_angle, geometry.max_angle, geometry.resolution = [0, 0], [math.pi / 2, 0], [math.pi / 2, 0]
+    assert laser.SetSensorGeometry(geometry)
+    laser.SetTransform([1, 0, 0, 0, 1.5, 0, 0])
+    laser.Configure(PowerOn)
+    np.testing.assert_allclose(laser.GetSensorData().ranges, [[0.5, 0, 0], [0, 1, 0]], atol=1e-12)
+    env.StepSimulation(0.02)
+    assert laser.GetSensorData().stamp == 20_000
+    laser.Configure(RenderGeometryOn)
+    laser.SetTransform([1, 0, 0, 0, 0, 0, 0.5])
+    np.testing.assert_allclose(env.simulation.drawings.primitives().triangles.corners[0, 0], [0, 0, 0.5])
+    assert env.Remove(laser)
+    assert not env.Remove(laser)
+    env.Reset()
+    assert env.GetSensors() == []
+
+
+def test_nothing_is_half_configured():
+    sensors = (
+        on_link('<Sensor type="BaseCamera"/>', "blank") + on_link(CAMERA, "loose", link="nowhere") + on_link(LASER)
+    )
+    with pytest.warns(ravemj.RavemjWarning, match="nowhere"):
+        env = loaded(robot(sensors))
+    for name, message in (("r:blank", "fx and fy above 0"), ("r:loose", "no link")):
+        sensor = env.GetSensor(name)
+        with pytest.raises(ravemj.openrave_exception, match=message):
+            sensor.Configure(PowerOn)
+        assert sensor.Configure(Sensor.ConfigureCommand.PowerCheck) == 0
+    laser = switched_on(env)
+    before = laser.GetSensorGeometry()
+    for name, value, message in (
+        ("resolution", [0, 0], "no rays"),
+        ("resolution", [1e-9, 0], "can have 1,000,000"),
+        ("resolution", [math.nan, 0], "finite"),
+        ("resolution", [], "hold a number"),
+        ("max_angle", [-7, 0], "no rays"),
+        ("max_range", math.nan, "range"),
+        ("min_range", -1, "range"),
+        ("time_scan", -1, "time"),
+        ("max_range", "far", "numbers"),
+    ):
+        geometry = laser.GetSensorGeometry()
+        setattr(geometry, name, value)
+        with pytest.raises(ravemj.openrave_exception, match=message):
+            laser.SetSensorGeometry(geometry)
+        assert laser.GetSensorGeometry() == before
+    assert not laser.SetSensorGeometry(ravemj.CameraGeomData())
+    robot_of_laser, info = env.GetRobot("r"), env.GetRobot("r").GetAttachedSensor("device").GetInfo()
+    info._name, info._sensorgeometry.resolution = "second", [0, 0]
+    with pytest.raises(ravemj.openrave_exception, match="cannot measure"):
+        robot_of_laser.AddAttachedSensor(info)
+    info._sensorgeometry = ravemj.CameraGeomData()
+    with pytest.raises(ravemj.openrave_exception, match="says nothing about a BaseLaser2D"):
+        robot_of_laser.AddAttachedSensor(info)
+    assert len(robot_of_laser.GetAttachedSensors()) == 3
+    camera = ravemj.CameraGeomData()
+    camera.KK, camera.width, camera.height = [[math.nan, 0, 0], [0, 1, 0], [0, 0, 1]], 10, 10
+    with pytest.raises(ravemj.openrave_exception, match="finite"):
+        env.GetSensor("r:blank").SetSensorGeometry(camera)
+    force = ravemj.RaveCreateSensor(env, "BaseForce6D")
+    with pytest.raises(ravemj.openrave_exception, match="AddAttachedSensor"):
+        force.Configure(PowerOn)
+    for wrong in (99, "on", None):
+        with pytest.raises(ravemj.openrave_exception, match="no command"):
+            laser.Configure(wrong)
+    with pytest.raises(ravemj.openrave_exception, match="finite"):
+        env.CheckCollisionRays([[0, 0, 0, math.inf, 0, 0]])
+
+
+def test_power_in_a_file():
+    on = LASER.replace("<max_range>", "<power>1</power><color>1 0 0</color><max_range>")
+    with pytest.warns(ravemj.RavemjWarning, match="stays off"):
+        env = loaded(
+            ROOM + robot(on_link(on) + on_link('<Sensor type="BaseCamera"><power>1</power></Sensor>', "blank"))
+        )
+    env.StepSimulation(0.01)
+    assert env.GetSensor("r:device").GetSensorData().stamp == 10_000
+    with pytest.raises(ravemj.openrave_exception, match="off"):
+        env.GetSensor("r:blank").GetSensorData()
+
+
+def test_noise_is_asked_for():
+    env = loaded(ROOM + robot(on_link(LASER)))
+    laser = switched_on(env)
+    exact = laser.GetSensorData().ranges
+    np.testing.assert_array_equal(laser.GetSensorData().ranges, exact)
+    laser.set_noise(0.01, seed=1)
+    errors = np.linalg.norm(laser.GetSensorData().ranges, axis=1) - np.linalg.norm(exact, axis=1)
+    is_hit = laser.GetSensorData().intensity == 1
+    assert errors[is_hit].std() == pytest.approx(0.01, rel=0.2)
+    assert not errors[~is_hit].any()
+    with pytest.raises(ravemj.openrave_exception):
+        laser.set_noise(math.nan)
+    laser.set_noise(0)
+    np.testing.assert_array_equal(laser.GetSensorData().ranges, exact)
+
+
+def test_viewers_draw_what_is_asked_for():
+    env = loaded(ROOM + robot(on_link(LASER) + on_link(CAMERA, "camera")))
+    laser, camera, drawings = switched_on(env), switched_on(env, "r:camera"), env.simulation.drawings
+    env.StepSimulation(0.1)
+    assert len(drawings.primitives()) == 0
+    assert laser.Configure(RenderDataOn) == 1
+    assert camera.Configure(RenderDataOn) == 0
+    data = laser.GetSensorData()
+    env.StepSimulation(0.1)
+    drawn = drawings.primitives()
+    met = data.intensity == 1
+    np.testing.assert_allclose(drawn.points.corners[:, 0], (data.positions + data.ranges)[met], atol=1e-9)
+    assert len(drawn.triangles.sizes) == 359
+    laser.Configure(RenderDataOff)
+    assert len(drawings.primitives()) == 0
+    assert camera.Configure(RenderGeometryOn) == 1
+    corners = drawings.primitives().lines.corners
+    corner = np.array([-40 / 100, -20 / 90, 1])
+    assert np.abs(np.cross(corners.reshape(-1, 3) - [0, 0, 0.1], corner)).sum(axis=1).min() < 1e-12
+    env.GetRobot("r").SetTransform([1, 0, 0, 0, 1, 0, 0])
+    env.StepSimulation(0.1)
+    np.testing.assert_allclose(drawings.primitives().lines.corners, corners + np.array([1, 0, 0]), atol=1e-12)
+    assert len(env.render(32, 24).reshape(-1, 3)) == 32 * 24
+    env.Remove(env.GetRobot("r"))
+    assert len(drawings.primitives()) == 0
+
+
+def test_many_rays_find_what_single_rays_find():
+    env = loaded(ROOM + box("post", (1, 0.3, 0), (0.1, 0.1, 0.5)))
+    rng = np.random.default_rng(3)
+    starts = np.repeat(rng.uniform(-0.9, 0.9, (10, 3)), 20, axis=0)
+    rays = np.hstack([starts, rng.normal(size=(200, 3)) * 2])
+    rays[7, 3:] = 0
+    found, points = env.CheckCollisionRays(rays)
+    report = ravemj.CollisionReport()
+    for ray, is_hit, point in zip(rays, found, points, strict=True):
+        assert env.CheckCollision(ravemj.Ray(ray[:3], ray[3:]), report) == is_hit
+        if is_hit:
+            np.testing.assert_allclose(point, [*report.contacts[0].pos, *report.contacts[0].norm], atol=1e-9)
+    assert 20 < found.sum() < 190
+    env.GetKinBody("post").Enable(False)
+    post = env.CheckCollisionRays([[0, 0.3, 0, 1, 0, 0]], env.GetKinBody("post"))
+    assert not post[0].any()
+
+
+def test_rays_see_what_nobody_does():
+    """Wholly transparent shapes collide, and disabled links do not."""
+    env = loaded(box("glass", (1, 0, 0), (0.1, 1, 1)) + robot(on_link(LASER, more="")))
+    glass, laser = env.GetKinBody("glass").GetLinks()[0], switched_on(env)
+    ahead = 180
+    glass.GetGeometries()[0].SetTransparency(1)
+    assert laser.GetSensorData().ranges[ahead, 0] == pytest.approx(0.9)
+    glass.Enable(False)
+    assert laser.GetSensorData().intensity[ahead] == 0
+
+
+@pytest.mark.parametrize("suffix", ["xml", "dae"])
+def test_sensors_are_saved(tmp_path, suffix):
+    kinds = {
+        "BaseCamera": "<KK>100 90 40 20</KK><width>64</width><height>48</height><power>1</power><color>1 0 0.5</color>",
+        "BaseLaser2D": "<min_angle>-13.7</min_angle><resolution>0.3</resolution><max_range>4</max_range>",
+        "BaseSpinningLaser2D": "<spinaxis>0 1 0</spinaxis><spinspeed>-2</spinspeed><time_scan>0.1</time_scan>",
+        "BaseFlashLidar3D": "<KK>8 10 4 3</KK><width>9</width><height>7</height><maxrange>5</maxrange>",
+        "BaseForce6D": f"<polarity>-1</polarity><correction_matrix>{' '.join(map(str, range(36)))}</correction_matrix>",
+        "BaseJointEncoder": "<resolution>0.1 0.2</resolution>",
+        "BaseIMU": f"<measurement_time>0.1</measurement_time><rotation_covariance>{'2 ' * 9}</rotation_covariance>",
+        "BaseOdometry": "<target>crate</target>",
+        "BaseTactile": "<thickness>0.01</thickness>",
+    }
+    env = loaded(
+        robot("".join(on_link(f'<Sensor type="{kind}">{text}</Sensor>', kind) for kind, text in kinds.items()))
+    )
+    first, second = tmp_path / f"first.{suffix}", tmp_path / f"second.{suffix}"
+    env.Save(str(first))
+    again = ravemj.load(first)
+    again.Save(str(second))
+    assert first.read_text() == second.read_text()
+    for one, other in zip(env.GetSensors(), again.GetSensors(), strict=True):
+        assert (one.description.is_on, one.description.color) == (other.description.is_on, other.description.color)
+        device, read = one.device, other.device
+        assert type(device) is type(read)
+        defaults = type(device)()
+        for field in device.__slots__:
+            value = getattr(device, field)
+            assert getattr(read, field) == (value if isinstance(value, str) else pytest.approx(value, rel=1e-11)), field
+        assert device != defaults or one.GetXMLId() == "BaseSpinningLaser2D"
+    info = env.GetSensor("r:BaseSpinningLaser2D").attached.GetInfo()
+    read = ravemj.AttachedSensorInfo()
+    read.DeserializeJSON(info.SerializeJSON())
+    assert read._sensorgeometry == info._sensorgeometry
+    assert read._sensorgeometry.spin_speed == -2

@@ -1,7 +1,8 @@
 """Pictures of a simulation: who draws them, from where, on what background."""
 
 import threading
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar
 
 import mujoco
 import numpy as np
@@ -23,6 +24,7 @@ from ravemj.graphics.rendering.style import AS_IT_IS
 from ravemj.model.drawing import NOTHING, Primitives, merge
 
 Frame = NDArray[np.uint8]
+Drawn = TypeVar("Drawn")
 
 _FINER = 2
 """Pictures with shadows are drawn with so many times the rows and columns, and averaged: the edges of shadows, which
@@ -97,6 +99,40 @@ class SimulationRenderer:
             return renderer.render(self._kept.data, camera, background, shown, style)
         picture = renderer.render(self._kept.data, camera.enlarged(finer), background, shown.widened(finer), style)
         return _averaged(picture, finer)
+
+    def depth(self, camera: Camera, form: Format) -> NDArray[np.float32]:
+        """Return how far away the bodies are: along the viewing direction [m], shape (height, width); else infinite.
+
+        Args:
+            camera: Where they are seen from.
+            form: Size of the picture.
+
+        Raises:
+            RenderingError: as for ``render``.
+        """
+        return self._measured(form, lambda renderer, data: renderer.depth(data, camera))
+
+    def segment(self, camera: Camera, form: Format) -> NDArray[np.int32]:
+        """Return which geom of the present model each pixel shows, shape (height, width); -1 for none.
+
+        Args:
+            camera: Where they are seen from.
+            form: Size of the picture.
+
+        Raises:
+            RenderingError: as for ``render``.
+        """
+        return self._measured(form, lambda renderer, data: renderer.segment(data, camera))
+
+    def _measured(self, form: Format, measure: Callable[[Renderer, mujoco.MjData], Drawn]) -> Drawn:
+        """Return what a function finds with the renderer of this thread, of the bodies as they are now."""
+        with self._simulation.lock:
+            compiled = self._simulation.compiled()
+            renderer = self._current(form)
+            if renderer.backend == RAY:  # it hides geoms of the model while it draws
+                return measure(renderer, compiled.data)
+            mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
+        return measure(renderer, self._kept.data)
 
     def render_again(self, camera: Camera, background: ArrayLike, form: Format) -> Frame | None:
         """Draw what this thread drew last from elsewhere, without the simulation, which others may have locked.

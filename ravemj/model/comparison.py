@@ -142,7 +142,14 @@ class _Comparison:
 
     def _sensors(self, part: str, first: AttachedSensor, second: AttachedSensor) -> Iterator[Difference]:
         yield from self._same(part, "link", first.link, second.link)
-        yield from self._same(part, "camera", first.camera, second.camera)
+        kinds = [None if one.device is None else type(one.device).__name__ for one in (first, second)]
+        yield from self._same(part, "kind", *kinds)
+        for name in () if first.device is None or kinds[0] != kinds[1] else first.device.__slots__:
+            values = getattr(first.device, name), getattr(second.device, name)
+            compare = self._same if isinstance(values[0], str) else self._near
+            yield from compare(part, name.replace("_", " "), *values)
+        yield from self._same(part, "is on", first.is_on, second.is_on)
+        yield from self._near(part, "color", first.color, second.color)
         yield from self._poses(part, "pose", first.T_link_sensor, second.T_link_sensor)
 
     def _geometries(self, part: str, first: Geometry, second: Geometry) -> Iterator[Difference]:

@@ -13,6 +13,7 @@ from ravemj.rave.lazy_imports import MODULE_OF
 
 if TYPE_CHECKING:  # at run time as MODULE_OF says
     from ravemj.geometry_functions.ik_types import IkParameterizationType
+    from ravemj.rave.attached_sensor import AttachedSensor
     from ravemj.rave.body.saving import KinBodyStateSaver, RobotStateSaver, StateRestoreContext, StateSaver
     from ravemj.rave.collision import CollisionChecker, CollisionOptionsStateSaver, RaveCreateCollisionChecker
     from ravemj.rave.connected_body import ConnectedBody
@@ -91,12 +92,14 @@ if TYPE_CHECKING:  # at run time as MODULE_OF says
         ActuatorGeomData,
         CameraGeomData,
         CameraIntrinsics,
+        FlashLidarGeomData,
         Force6DGeomData,
         IMUGeomData,
         JointEncoderGeomData,
         LaserGeomData,
         OdometryGeomData,
         SensorGeometry,
+        SpinningLaserGeomData,
         TactileGeomData,
     )
     from ravemj.rave.interface import Interface
@@ -143,7 +146,6 @@ if TYPE_CHECKING:  # at run time as MODULE_OF says
     from ravemj.rave.plugins import (
         RaveCreateModule,
         RaveCreateProblem,
-        RaveCreateSensor,
         RaveCreateViewer,
         RaveGetLoadedInterfaces,
     )
@@ -161,7 +163,7 @@ if TYPE_CHECKING:  # at run time as MODULE_OF says
     from ravemj.rave.robot import Robot
     from ravemj.rave.samplers import RaveCreateSpaceSampler, SampleDataType, SpaceSampler
     from ravemj.rave.sensor_data import CameraSensorData, SensorData
-    from ravemj.rave.sensors import AttachedSensor, Sensor
+    from ravemj.rave.sensors import RaveCreateSensor, Sensor
     from ravemj.rave.specification import (
         ConfigurationSpecification,
         IkParameterization,
@@ -228,6 +230,7 @@ __all__ = [
     "EnvironmentCreateOptions",
     "ErrorCode",
     "ExtractInfoOptions",
+    "FlashLidarGeomData",
     "Force6DGeomData",
     "Geometry",
     "GeometryInfo",
@@ -363,6 +366,7 @@ __all__ = [
     "SideWall",
     "SideWallType",
     "SpaceSampler",
+    "SpinningLaserGeomData",
     "StateRestoreContext",
     "StateSaver",
     "TactileGeomData",

@@ -171,7 +171,7 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
                     body.take_choices(other)
 
     def Reset(self) -> None:
-        """Remove all bodies."""
+        """Remove all bodies and sensors."""
         self._remove_all()
 
     def Destroy(self) -> None:

@@ -31,8 +31,8 @@ _NAMES = {
         ManipulatorInfo RobotBaseInfo SideWall SideWallType
     """,
     "ravemj.rave.infos.sensor": """
-        ActuatorGeomData CameraGeomData CameraIntrinsics Force6DGeomData IMUGeomData JointEncoderGeomData
-        LaserGeomData OdometryGeomData SensorGeometry TactileGeomData
+        ActuatorGeomData CameraGeomData CameraIntrinsics FlashLidarGeomData Force6DGeomData IMUGeomData
+        JointEncoderGeomData LaserGeomData OdometryGeomData SensorGeometry SpinningLaserGeomData TactileGeomData
     """,
     "ravemj.rave.interface": "Interface",
     "ravemj.rave.joint": "Joint",
@@ -52,7 +52,7 @@ _NAMES = {
     "ravemj.rave.physics": "PhysicsEngine RaveCreatePhysicsEngine",
     "ravemj.rave.planning": "Planner PlannerProgress PlannerStatus PlanningError RaveCreatePlanner",
     "ravemj.rave.plugins": """
-        RaveCreateModule RaveCreateProblem RaveCreateSensor RaveCreateViewer RaveGetLoadedInterfaces
+        RaveCreateModule RaveCreateProblem RaveCreateViewer RaveGetLoadedInterfaces
     """,
     "ravemj.rave.readables": "Readable ReadableInterface SerializableData stringreaders xmlreaders",
     "ravemj.rave.registry": """
@@ -62,7 +62,8 @@ _NAMES = {
     "ravemj.rave.robot": "Robot",
     "ravemj.rave.samplers": "RaveCreateSpaceSampler SampleDataType SpaceSampler",
     "ravemj.rave.sensor_data": "CameraSensorData SensorData",
-    "ravemj.rave.sensors": "AttachedSensor Sensor",
+    "ravemj.rave.attached_sensor": "AttachedSensor",
+    "ravemj.rave.sensors": "RaveCreateSensor Sensor",
     "ravemj.rave.specification": """
         ConfigurationSpecification IkParameterization RaveGetAffineConfigurationSpecification
     """,

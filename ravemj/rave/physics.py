@@ -14,7 +14,7 @@ from ravemj.rave.interface import Interface, checked_environment
 from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
-    from ravemj.engine.physics import Loads
+    from ravemj.engine.physics import Loads, Physics
     from ravemj.rave.environment import Environment
     from ravemj.rave.joint import Joint
     from ravemj.rave.kinbody import KinBody
@@ -29,9 +29,11 @@ class PhysicsEngine(Interface):
     """
 
     _interface_type = InterfaceType.physicsengine
-    _internal = ("attach", "detach", "is_simulated", "loads")
+    _internal = ("attach", "detach", "dynamics", "is_simulated", "loads")
     is_simulated = False
     """Whether bodies fall and collide."""
+    dynamics: "Physics | None" = None
+    """What moves the bodies, where they fall and collide."""
 
     def __init__(self, env: "Environment", xml_id: str, gravity: Vec3 = ZERO) -> None:
         self._env = env
@@ -273,7 +275,7 @@ class SimulatedEngine(PhysicsEngine):
         super().__init__(env, xml_id)
         from ravemj.engine.physics import Physics  # noqa: PLC0415 - slow to import
 
-        self._physics = Physics(env.simulation)
+        self.dynamics = self._physics = Physics(env.simulation)
 
     def SetPhysicsOptions(self, physicsoptions: int) -> bool:
         """Set which collisions count.

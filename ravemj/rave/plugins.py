@@ -13,7 +13,7 @@ from ravemj.rave.interface import checked_environment
 from ravemj.rave.modules import MODULES, Module, made_module
 from ravemj.rave.planning.names import PLANNERS
 from ravemj.rave.samplers import SAMPLERS
-from ravemj.rave.sensors import SENSING, Sensor
+from ravemj.rave.sensors import KIND_NAMES
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
@@ -30,16 +30,6 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
             "logging": "saving of scenes by a module",
             "taskcaging": "caging of handles",
             "visualfeedback": "visual feedback",
-        },
-        InterfaceType.sensor: {
-            "basecamera": SENSING,
-            "baseflashlidar3d": SENSING,
-            "baseforce6d": SENSING,
-            "baseimu": SENSING,
-            "basejointencoder": SENSING,
-            "baselaser2d": SENSING,
-            "baseodometry": SENSING,
-            "basetactile": SENSING,
         },
     }
 )
@@ -69,19 +59,6 @@ def RaveCreateModule(env: Environment, name: str) -> Module | None:
 
 
 RaveCreateProblem = RaveCreateModule
-
-
-def RaveCreateSensor(env: Environment, name: str) -> Sensor | None:
-    """Refuse to make a sensor; return None where OpenRAVE does not know the name either.
-
-    Args:
-        env: The environment.
-        name: The name.
-
-    Raises:
-        UnsupportedError: the sensor is one of OpenRAVE's own.
-    """
-    return _refuse(env, InterfaceType.sensor, name)
 
 
 def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
@@ -116,6 +93,7 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
         InterfaceType.robot: ["GenericRobot"],
         InterfaceType.trajectory: ["GenericTrajectory"],
         InterfaceType.spacesampler: list(SAMPLERS),
+        InterfaceType.sensor: list(KIND_NAMES),
         InterfaceType.viewer: list(VIEWERS),
     }
     return {kind: made.get(kind, []) for kind in InterfaceType}

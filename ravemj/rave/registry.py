@@ -16,11 +16,11 @@ from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
 from ravemj.rave.planning import RaveCreatePlanner
 from ravemj.rave.plugins import (
     RaveCreateModule,
-    RaveCreateSensor,
     RaveCreateViewer,
     RaveGetLoadedInterfaces,
 )
 from ravemj.rave.samplers import RaveCreateSpaceSampler
+from ravemj.rave.sensors import RaveCreateSensor
 from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
 
 if TYPE_CHECKING:

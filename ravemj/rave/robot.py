@@ -22,6 +22,7 @@ from ravemj.rave.body.active import ActiveChoice, ActiveDofs
 from ravemj.rave.body.affine import default_kinds
 from ravemj.rave.body.manipulators import Manipulators
 from ravemj.rave.body.saving import Restorer, StateSaver
+from ravemj.rave.body.sensors import Sensors
 from ravemj.rave.controllers import Controller, IdealController
 from ravemj.rave.enums import InterfaceType, SaveParameters
 from ravemj.rave.iksolver import IkSolver
@@ -36,7 +37,6 @@ from ravemj.rave.infos import (
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.sensors import AttachedSensor
 
 if TYPE_CHECKING:
     from ravemj.ik.arms import ArmSolver
@@ -52,7 +52,7 @@ POLL = 1e-3
 """How often [s] ``WaitForController`` looks."""
 
 
-class Robot(ActiveDofs, Manipulators, KinBody):
+class Robot(ActiveDofs, Manipulators, Sensors, KinBody):
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine
@@ -69,7 +69,6 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         "affine_kinds",
         "arm_solvers",
         "ik_solvers",
-        "powered_sensors",
         "step_controller",
         "take_choices",
     )
@@ -80,7 +79,7 @@ class Robot(ActiveDofs, Manipulators, KinBody):
         self.active_choice = ActiveChoice()
         self.affine_kinds = default_kinds()
         self._active_manipulator = None
-        self.powered_sensors: set[str] = set()
+        self._devices = {}
         self.ik_solvers: dict[str, IkSolver] = {}
         self.arm_solvers: dict[tuple[str, IkParameterizationType], ArmSolver] = {}
 
@@ -134,66 +133,6 @@ class Robot(ActiveDofs, Manipulators, KinBody):
             ...     robot.SetActiveDOFs([0])
         """
         return StateSaver(self, options)
-
-    def GetAttachedSensors(self) -> list[AttachedSensor]:
-        """Return the sensors on the robot's links, in the order of the file."""
-        return [AttachedSensor(self, self._state, index) for index in range(len(self._state.scene.sensors))]
-
-    def GetAttachedSensor(self, sensorname: str) -> AttachedSensor | None:
-        """Return an attached sensor, or None where there is none of that name.
-
-        Args:
-            sensorname: Its name.
-        """
-        return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == sensorname), None)
-
-    GetSensors = GetAttachedSensors
-    GetSensor = GetAttachedSensor
-
-    def AddAttachedSensor(
-        self, attachedsensorinfo: AttachedSensorInfo, removeduplicate: bool = False
-    ) -> AttachedSensor:
-        """Attach a sensor to a link.
-
-        Args:
-            attachedsensorinfo: Its description.
-            removeduplicate: Whether it replaces one of the same name.
-
-        Returns:
-            The new attached sensor.
-
-        Raises:
-            openrave_exception: there is one of that name, or no such link. Nothing has changed then.
-        """
-        body = self._state.scene
-        info = checked_kind(attachedsensorinfo, AttachedSensorInfo, "AddAttachedSensor: attachedsensorinfo")
-        made = info.sensor([link.name for link in body.links])
-        if made.link is None:
-            message = f"'{self.GetName()}' has no such link as {info!r} names"
-            raise ArgumentError(f"AddAttachedSensor: {message}")
-        sensors, names = list(body.sensors), [sensor.name for sensor in body.sensors]
-        index = names.index(made.name) if made.name in names else len(names)
-        if index < len(names) and not removeduplicate:
-            raise ArgumentError(f"AddAttachedSensor: '{self.GetName()}' has a sensor '{made.name}' already")
-        with self._simulation.lock:
-            self._state.edit(sensors=(*sensors[:index], made, *sensors[index + 1 :]))
-        return self.GetAttachedSensors()[index]
-
-    def RemoveAttachedSensor(self, attsensor: AttachedSensor) -> bool:
-        """Take a sensor off; those behind it move up.
-
-        Args:
-            attsensor: The attached sensor.
-
-        Returns:
-            Whether it was there.
-        """
-        if attsensor not in self.GetAttachedSensors():
-            return False
-        with self._simulation.lock:
-            name = attsensor.GetName()
-            self._state.edit(sensors=tuple(one for one in self._state.scene.sensors if one.name != name))
-        return True
 
     def CheckLinkSelfCollision(
         self, linkindex: int, linktrans: ArrayLike, report: "CollisionReport | None" = None

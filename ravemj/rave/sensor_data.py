@@ -1,9 +1,6 @@
-"""What sensors measure: a class for each kind of sensor.
+"""What sensors measure: a class for each kind of sensor."""
 
-Only cameras measure here. The others stand for what scripts name, make and compare.
-"""
-
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from enum import IntEnum
 from typing import ClassVar
 
@@ -11,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
+from ravemj.errors import RavemjError
 from ravemj.rave.enums import SensorType
 from ravemj.rave.infos.sensor import CameraIntrinsics
 
@@ -21,7 +19,7 @@ def _nothing() -> Floats:
 
 @dataclass(eq=False, slots=True)
 class SensorData:
-    """A measurement.
+    """A measurement of any kind; each kind of sensor has its own class.
 
     Attributes:
         stamp: Simulation time of the measurement [microseconds].
@@ -31,6 +29,9 @@ class SensorData:
     """The kind of data."""
 
     stamp: int = 0
+
+    def __init__(self, *args: object, **kwargs: object) -> None:
+        raise RavemjError("SensorData stands for all kinds of data: make a CameraSensorData, for instance")
 
 
 @dataclass(eq=False, slots=True)
@@ -57,12 +58,13 @@ class CameraSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class LaserSensorData(SensorData):
-    """A scan.
+    """A scan, in the world.
 
     Attributes:
-        positions: Where each ray starts [m], shape (n, 3), or one row for all.
-        ranges: From there to what it hits [m], shape (n, 3).
-        intensity: How bright each is, shape (n,).
+        positions: Where the rays begin [m], shape (1, 3): one row for all.
+        ranges: From there to what each ray meets [m], shape (n, 3), in the order of the angles, for a flash lidar
+            column after column; of a ray that meets nothing its direction times the greatest range.
+        intensity: 1 for each ray that meets something, else 0, shape (n,).
     """
 
     type: ClassVar[SensorType] = SensorType.Laser
@@ -74,12 +76,12 @@ class LaserSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class JointEncoderSensorData(SensorData):
-    """Values of joints.
+    """Values of a robot's joints.
 
     Attributes:
-        encoderValues: Values [rad or m].
-        encoderVelocity: Velocities [rad/s or m/s].
-        resolution: Steps of the encoders [rad or m].
+        encoderValues: Values of all DOFs [rad or m], rounded to the steps, shape (dof,).
+        encoderVelocity: Velocities [rad/s or m/s], shape (dof,).
+        resolution: Steps of the encoders [rad or m], shape (dof,); 0: exact.
     """
 
     type: ClassVar[SensorType] = SensorType.JointEncoder
@@ -91,11 +93,11 @@ class JointEncoderSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class Force6DSensorData(SensorData):
-    """A force and a torque.
+    """The force and torque with which its parent holds the sensor's link and all that hangs on it, in sensor's axes.
 
     Attributes:
-        force: Force [N], shape (3,).
-        torque: Torque [N m], shape (3,).
+        force: Force on the link [N], shape (3,): against gravity at rest. With a polarity of -1 the load itself.
+        torque: Torque about the sensor's origin [N m], shape (3,).
     """
 
     type: ClassVar[SensorType] = SensorType.Force6D
@@ -106,12 +108,13 @@ class Force6DSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class IMUSensorData(SensorData):
-    """A measurement of motion.
+    """A measurement of motion, velocity and acceleration in the sensor's axes.
 
     Attributes:
-        rotation: Orientation as a quaternion [w, x, y, z].
+        rotation: Orientation in the world as a quaternion [w, x, y, z], shape (4,).
         angular_velocity: Angular velocity [rad/s], shape (3,).
-        linear_acceleration: Acceleration [m/s^2], shape (3,).
+        linear_acceleration: What an accelerometer shows [m/s^2], shape (3,): the acceleration minus that of free
+            fall, so at rest the opposite of gravity.
         rotation_covariance: Covariance of the orientation, shape (3, 3).
         angular_velocity_covariance: Covariance of the angular velocity, shape (3, 3).
         linear_acceleration_covariance: Covariance of the acceleration, shape (3, 3).
@@ -129,15 +132,15 @@ class IMUSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class OdometrySensorData(SensorData):
-    """A pose and a velocity.
+    """A pose and a velocity, in the world.
 
     Attributes:
-        pose: Pose, shape (4, 4).
-        linear_velocity: Velocity [m/s], shape (3,).
+        pose: ``T_world_sensor``, or the pose of the body that is followed, shape (4, 4).
+        linear_velocity: Velocity of its origin [m/s], shape (3,).
         angular_velocity: Angular velocity [rad/s], shape (3,).
         pose_covariance: Covariance of the pose, shape (6, 6).
         velocity_covariance: Covariance of the velocities, shape (6, 6).
-        targetid: Name of the body that is followed.
+        targetid: Name of the body that is followed; empty: the sensor itself.
     """
 
     type: ClassVar[SensorType] = SensorType.Odometry
@@ -152,11 +155,11 @@ class OdometrySensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class TactileSensorData(SensorData):
-    """Forces on a skin.
+    """Forces on a skin, in the sensor's frame.
 
     Attributes:
-        positions: Where they act [m], shape (n, 3).
-        forces: Forces [N], shape (n, 3).
+        positions: Where the link is touched [m], shape (n, 3).
+        forces: Forces on it there [N], shape (n, 3).
         force_covariance: Covariance of a force, shape (3, 3).
         thickness: Thickness of the skin [m].
     """
@@ -234,3 +237,9 @@ DATA: dict[SensorType, type[SensorData]] = {
     )
 }
 """The class of each kind of data."""
+
+
+def copied(data: SensorData) -> SensorData:
+    """Return a measurement with arrays of its own."""
+    values = {one.name: getattr(data, one.name) for one in fields(data)}
+    return replace(data, **{name: value.copy() for name, value in values.items() if isinstance(value, np.ndarray)})

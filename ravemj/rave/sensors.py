@@ -1,25 +1,26 @@
-"""Sensors on the links of a robot."""
+"""Sensors: on the links of robots, or on their own."""
 
-from dataclasses import replace
+import logging
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import NDArray
 
-from ravemj.core.api_object import ApiObject
-from ravemj.core.arrays import checked_transform
-from ravemj.core.transforms import Floats, pose_of
-from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError, RavemjError, UnsupportedError
-from ravemj.graphics.rendering import Camera, Pinhole
-from ravemj.graphics.simulation_renderer import Format
-from ravemj.model import hashes, scene
-from ravemj.rave.enums import InterfaceType, SensorCommand, SensorType
-from ravemj.rave.infos import AttachedSensorInfo
-from ravemj.rave.infos.sensor import CameraGeomData, CameraIntrinsics, SensorGeometry
-from ravemj.rave.interface import Interface
-from ravemj.rave.link import Link
+from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_vector
+from ravemj.core.transforms import Ints, Pose
+from ravemj.errors import ArgumentError, RavemjError
+from ravemj.model import scene
+from ravemj.model.shape_bodies import FROM_SCRIPT
+from ravemj.rave.enums import SensorCommand, SensorType
+from ravemj.rave.graph_handle import GraphHandle
+from ravemj.rave.infos.sensor import CameraIntrinsics
+from ravemj.rave.instruments import Instrument, Place
+from ravemj.rave.interface import checked_environment
 from ravemj.rave.sensor_data import (
-    DATA,
     ActuatorSensorData,
     CameraSensorData,
     Force6DSensorData,
@@ -29,18 +30,47 @@ from ravemj.rave.sensor_data import (
     OdometrySensorData,
     SensorData,
     TactileSensorData,
+    copied,
 )
-from ravemj.rave.user_data import Annotations
+from ravemj.rave.sensor_description import DescribedSensor
 
 if TYPE_CHECKING:
-    from ravemj.rave.robot import Robot
+    from ravemj.rave.attached_sensor import AttachedSensor
+    from ravemj.rave.environment import Environment
 
-SENSING = "simulation of sensors"
-LOOSE = "sensors without a robot"
+_LOG = logging.getLogger("ravemj")
+
+KIND_NAMES = tuple(kind.name for kind in scene.SENSOR_KINDS.values())
+"""The names that ``RaveCreateSensor`` makes something for."""
+
+_SWITCHES: tuple[SensorCommand, ...] = (
+    SensorCommand.PowerOn,
+    SensorCommand.RenderDataOn,
+    SensorCommand.RenderGeometryOn,
+)
+_DRAWN: Mapping[SensorCommand, tuple[type, ...]] = MappingProxyType(
+    {
+        SensorCommand.RenderDataOn: (scene.Laser, scene.FlashLidar),
+        SensorCommand.RenderGeometryOn: (scene.Laser, scene.FlashLidar, scene.Intrinsics),
+    }
+)
+"""Of which devices viewers can draw what."""
+
+_OFF = 1
+"""What is added to the command that switches something on for the one that switches it off."""
+
+_SWITCH_BITS = 0x30
+
+_SLACK = 1e-9
+"""How much earlier [s] than its time a measurement may be taken, since steps of time add up with rounding."""
 
 
-class Sensor(Interface):
-    """A device that measures; ``attached.GetSensor()`` makes it.
+class Sensor(DescribedSensor):
+    """A device that measures; ``attached.GetSensor()`` returns that of a robot, ``RaveCreateSensor`` makes one.
+
+    It is off at first. While it is on, it measures in each step of simulation time, a laser once in its ``time_scan``;
+    ``GetSensorData`` returns the last measurement. Where no time has passed since, it measures anew, so that no
+    simulation has to run. Cameras take their picture when they are asked for it.
 
     Example:
         >>> camera = robot.GetAttachedSensor("camera").GetSensor()
@@ -82,275 +112,266 @@ class Sensor(Interface):
     OdometrySensorData = OdometrySensorData
     TactileSensorData = TactileSensorData
 
-    _interface_type = InterfaceType.sensor
+    _internal = ("advance", "hide")
 
-    def __init__(self, attached: "AttachedSensor", description: scene.AttachedSensor, kind: str) -> None:
-        self._attached = attached
-        self._scene = description
-        self._kind = kind
-        self._env = attached.GetRobot().GetEnv()
-        self._annotations = Annotations()
+    def __init__(
+        self, env: "Environment", description: scene.AttachedSensor, attached: "AttachedSensor | None" = None
+    ) -> None:
+        super().__init__(env, description, attached)
+        self._instrument = Instrument(env)
+        self._switched = dict.fromkeys(_SWITCHES, False)
+        self._shape: GraphHandle | None = None
+        self._trace: GraphHandle | None = None
+        self._restart()
+        if description.is_on and self._problem() is None:
+            self._switched[SensorCommand.PowerOn] = True
 
-    def GetName(self) -> str:
-        """Return the names of the robot and of the attached sensor, with a colon between them."""
-        return f"{self._attached.GetRobot().GetName()}:{self._attached.GetName()}"
+    def _restart(self) -> None:
+        """Forget what was measured."""
+        self._instrument.restart()
+        self._data: SensorData | None = None
+        self._until_next = 0.0
+        self._trace = None
 
-    def GetXMLId(self) -> str:
-        """Return OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``."""
-        return self._kind
+    def _moved(self) -> None:
+        self._show_shape()
 
-    def GetTransform(self) -> Floats:
-        """Return the pose in the world, shape (4, 4): that of the attached sensor."""
-        return self._attached.GetTransform()
-
-    def GetTransformPose(self) -> Floats:
-        """Return the pose in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""
-        return pose_of(self.GetTransform()).numbers()
-
-    def SetTransform(self, transform: ArrayLike) -> None:
-        """Refuse another pose than that of the attached sensor.
-
-        Args:
-            transform: ``T_world_sensor``.
-
-        Raises:
-            UnsupportedError: always; ``attached.SetRelativeTransform`` moves the sensor on its link.
-        """
-        raise UnsupportedError("Sensor.SetTransform", LOOSE)
-
-    def SetName(self, name: str) -> None:
-        """Refuse another name than that of the attached sensor.
-
-        Args:
-            name: The name.
-
-        Raises:
-            UnsupportedError: always.
-        """
-        raise UnsupportedError("Sensor.SetName", LOOSE)
-
-    def SetSensorGeometry(self, geometry: SensorGeometry) -> bool:
-        """Give a camera another image size or other intrinsics.
-
-        Args:
-            geometry: A ``CameraGeomData``.
-
-        Returns:
-            Whether the sensor is a camera, and took it over.
-        """
-        if self._scene.camera is None or not isinstance(geometry, CameraGeomData):
-            return False
-        self._scene = self._attached.edit(camera=geometry.camera())
-        return True
-
-    def CreateSensorData(self, type: SensorType | None = None) -> SensorData:  # OpenRAVE's name
-        """Return an empty measurement.
-
-        Args:
-            type: The kind of data; None: the sensor's own.
-
-        Raises:
-            openrave_exception: the sensor gives no data of this kind.
-        """
-        kind = SensorType.Camera if type is None else SensorType(type)
-        if not self.Supports(kind):
-            raise ArgumentError(f"CreateSensorData: '{self._kind}' has no data of type {kind.name}")
-        return DATA[kind]()
-
-    def Supports(self, type: SensorType) -> bool:  # OpenRAVE's name
-        """Return whether the sensor gives this kind of data: cameras do.
-
-        Args:
-            type: A ``Sensor.Type``.
-        """
-        return type == SensorType.Camera and self._scene.camera is not None
+    def _take_over(self) -> None:
+        self._restart()
+        self._show_shape(anew=True)
 
     def Configure(self, command: int, blocking: bool = False) -> int:
-        """Switch the sensor on or off, or ask whether it is on.
+        """Switch the sensor, or what viewers draw of it, on or off; or ask whether it is on.
+
+        Viewers and pictures draw what lasers measure (``RenderDataOn``), and where cameras and lasers are
+        (``RenderGeometryOn``; off until then, which OpenRAVE's are not).
 
         Args:
-            command: ``Sensor.ConfigureCommand.PowerOn``, ``PowerOff`` or ``PowerCheck``; what is said about drawing
-                of data and shapes has no effect here.
+            command: A ``Sensor.ConfigureCommand``.
             blocking: OpenRAVE's; ignored.
 
         Returns:
-            1 if it was done, or if the answer is yes; else 0.
+            1 if it was done, or if the answer is yes; else 0: viewers draw nothing of this kind of sensor.
+
+        Raises:
+            openrave_exception: there is no such command; or nothing can be measured, since the sensor is on no link or
+                its geometry makes no sense. It stays off then.
         """
         del blocking
-        powered = self._attached.GetRobot().powered_sensors
-        if command == SensorCommand.PowerCheck:
-            return int(self._scene.name in powered)
-        if command == SensorCommand.PowerOn:
-            powered.add(self._scene.name)
-        elif command == SensorCommand.PowerOff:
-            powered.discard(self._scene.name)
-        return int(command in {SensorCommand.PowerOn, SensorCommand.PowerOff})
+        if command not in {one.value for one in SensorCommand}:
+            known = ", ".join(one.name for one in SensorCommand)
+            raise ArgumentError(f"Configure: there is no command {command!r}; there are {known}")
+        switch = SensorCommand(int(command) & _SWITCH_BITS)
+        with self._env.simulation.lock:
+            if command == switch:
+                self._switch_on(switch)
+            elif command == switch + _OFF:
+                self._switch_off(switch)
+                return 1
+        return int(self._switched[switch])
+
+    def _switch_on(self, switch: SensorCommand) -> None:
+        if switch == SensorCommand.PowerOn:
+            problem = self._problem()
+            if problem is not None:
+                where = self.description.source
+                raise RavemjError(f"Configure: sensor '{self.GetName()}' ({where}) cannot be switched on: {problem}")
+            self._restart()
+        elif not isinstance(self.device, _DRAWN[switch]):
+            return
+        self._switched[switch] = True
+        self._show_shape()
+
+    def _switch_off(self, switch: SensorCommand) -> None:
+        self._switched[switch] = False
+        if switch == SensorCommand.RenderGeometryOn:
+            self._shape = None
+        elif switch == SensorCommand.RenderDataOn:
+            self._trace = None
+        else:
+            self._restart()
 
     def SimulationStep(self, timeelapsed: float) -> None:
-        """Do nothing: data is taken when it is asked for.
+        """Let time pass for this sensor alone; ``env.StepSimulation`` does it for all.
 
         Args:
             timeelapsed: How long [s].
         """
+        checked = float(checked_vector([timeelapsed], 1, "SimulationStep: timeelapsed")[0])
+        with self._env.simulation.lock:
+            self.advance(checked, self._env.clock.now)
 
-    def GetSensorData(self, type: SensorType | None = None) -> CameraSensorData:  # OpenRAVE's name
-        """Return what the sensor sees now.
+    def advance(self, timestep: float, stamp: int) -> None:
+        """Let time pass: measure if it is time to.
+
+        Args:
+            timestep: How long [s].
+            stamp: The time at the end of the step [microseconds].
+        """
+        if self._switched[SensorCommand.PowerOn]:
+            device = self.device
+            self._instrument.advance(device, self._place(), timestep)
+            self._until_next -= timestep
+            if self._until_next <= _SLACK and not isinstance(device, scene.Intrinsics):
+                self._until_next = getattr(device, "scan_time", 0.0)
+                try:
+                    self._data = self._measured(stamp)
+                except RavemjError:  # who asks for data is told
+                    self._data = None
+        self._show_shape()
+
+    def GetSensorData(self, type: SensorType | None = None) -> Any:  # noqa: ANN401 - of the sensor's class of data
+        """Return what the sensor measured last; anew where no time has passed since. A camera takes a picture now.
 
         Args:
             type: The kind of data; None: the sensor's own.
 
         Returns:
-            A picture with the camera's own intrinsics.
+            ``CameraSensorData``, ``LaserSensorData`` and so on, a copy.
 
         Raises:
-            openrave_exception: the sensor is off, or gives no data of this kind.
-            UnsupportedError: it is no camera.
+            openrave_exception: the sensor is off, or gives no data of this kind; or it feels forces, and the
+                environment has no physics.
         """
-        camera, geometry = self._scene.camera, self.GetSensorGeometry()
-        if camera is None or geometry is None:
-            raise UnsupportedError(f"sensor '{self._kind}'", "simulation of sensors that are no cameras")
-        if type not in {None, SensorType.Camera}:
-            raise ArgumentError(f"GetSensorData: a camera has no data of type {SensorType(type).name}")
-        if not self.Configure(SensorCommand.PowerCheck):
-            raise RavemjError("GetSensorData: the camera is off; Configure(Sensor.ConfigureCommand.PowerOn)")
-        env = self._attached.GetRobot().GetEnv()
-        with env.simulation.lock:
-            transform = self.GetTransform()
-            pinhole = Pinhole(camera.fx, camera.fy, camera.cx, camera.cy)
-            form = Format(camera.width, camera.height)
-            picture = env.renderer.render(Camera(transform, calibration=pinhole), env.background, form, drawings=False)
-            return CameraSensorData(env.clock.now, transform, picture, geometry.intrinsics)
+        self._checked_type(type, "GetSensorData")
+        with self._env.simulation.lock:
+            self._check_on("GetSensorData")
+            now = self._env.clock.now
+            if self._data is not None and self._data.stamp < now:
+                return copied(self._data)
+            return self._measured(now)
 
-    def GetSensorGeometry(self, type: SensorType | None = None) -> CameraGeomData | None:  # OpenRAVE's name
-        """Return what is fixed about the sensor; None unless it is a camera.
+    def _check_on(self, caller: str) -> None:
+        if not self._switched[SensorCommand.PowerOn]:
+            command = "Configure(Sensor.ConfigureCommand.PowerOn)"
+            raise RavemjError(f"{caller}: sensor '{self.GetName()}' is off; {command} switches it on")
 
-        Args:
-            type: The kind of geometry that is asked for; None: the sensor's own.
-        """
-        camera = self._scene.camera
-        if camera is None or type not in {None, SensorType.Camera}:
-            return None
-        return CameraGeomData.of(camera)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Sensor) and self._attached == other._attached
-
-    def __hash__(self) -> int:
-        return hash((Sensor, self._attached))
-
-    def __repr__(self) -> str:
-        return f"{self._attached!r}.GetSensor()"
-
-
-class AttachedSensor(ApiObject):
-    """A place on a link, with or without a device; ``robot.GetAttachedSensors()`` makes it."""
-
-    _internal = ("edit",)
-
-    def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:
-        self._robot = robot
-        self._state = state
-        self._scene = state.scene.sensors[index]
-
-    def edit(self, **changes: Any) -> scene.AttachedSensor:  # noqa: ANN401 - the fields of a scene.AttachedSensor
-        """Change the description, and return it."""
-        with self._state.simulation.lock:
-            changed = replace(self._scene, **changes)
-            sensors = (changed if one.name == changed.name else one for one in self._state.scene.sensors)
-            self._state.edit(sensors=tuple(sensors))
-        self._scene = changed
-        return changed
-
-    def GetId(self) -> str:
-        """Return the id of the sensor in OpenRAVE's JSON: empty."""
-        return ""
-
-    def GetStructureHash(self) -> str:
-        """Return a text that is the same for sensors of the same kind at the same place of a link: 32 digits."""
-        sensor = self._scene
-        return hashes.of_text(repr((sensor.link, sensor.T_link_sensor.numbers().round(8).tolist(), sensor.type)))
-
-    def GetName(self) -> str:
-        """Return the attached sensor's name."""
-        return self._scene.name
-
-    def GetRobot(self) -> "Robot":
-        """Return the robot that carries the sensor."""
-        return self._robot
-
-    def GetAttachingLink(self) -> Link | None:
-        """Return the link that carries the sensor, or None."""
-        return None if self._scene.link is None else Link(self._robot, self._state, self._scene.link)
-
-    def GetRelativeTransform(self) -> Floats:
-        """Return the pose in the link.
+    def depth_image(self) -> NDArray[np.float32]:
+        """Return how far away is what a camera sees now.
 
         Returns:
-            ``T_link_sensor``, shape (4, 4).
-        """
-        return self._scene.T_link_sensor.matrix()
-
-    def SetRelativeTransform(self, transform: ArrayLike) -> None:
-        """Move the sensor on its link.
-
-        Args:
-            transform: ``T_link_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
-        """
-        self.edit(T_link_sensor=pose_of(checked_transform(transform, "SetRelativeTransform: transform")))
-
-    def GetTransformPose(self) -> Floats:
-        """Return the pose in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""
-        return pose_of(self.GetTransform()).numbers()
-
-    def GetData(self) -> SensorData:
-        """Return what the device sees now; see ``Sensor.GetSensorData``.
+            Distances along the viewing direction [m], shape (height, width), top row first; infinite where nothing is.
 
         Raises:
-            openrave_exception: there is no device, or it is off.
+            openrave_exception: the sensor is off, or is no camera.
         """
-        sensor = self.GetSensor()
-        if sensor is None:
-            raise RavemjError(f"GetData: '{self.GetName()}' is a mere frame")
-        return sensor.GetSensorData()
+        with self._env.simulation.lock:
+            return self._instrument.depth_image(self._checked_camera("depth_image"), self._place())
 
-    def GetTransform(self) -> Floats:
-        """Return the pose in the world as the links stand now.
+    def segmentation_image(self) -> Ints:
+        """Return which link each pixel of a camera shows now.
 
         Returns:
-            ``T_world_sensor``, shape (4, 4); a camera looks along z, with y down. Without a link, the relative pose.
+            Shape (height, width, 2), top row first: the body's number, as ``body.GetEnvironmentBodyIndex()`` gives it,
+            and the index of its link; 0 and -1 where nothing is.
+
+        Raises:
+            openrave_exception: the sensor is off, or is no camera.
         """
-        link = self.GetAttachingLink()
-        return self.GetRelativeTransform() if link is None else link.GetTransform() @ self.GetRelativeTransform()
+        with self._env.simulation.lock:
+            return self._instrument.segmentation_image(self._checked_camera("segmentation_image"), self._place())
 
-    def GetSensor(self) -> Sensor | None:
-        """Return the device, or None for a mere frame."""
-        return None if self._scene.type is None else Sensor(self, self._scene, self._scene.type)
+    def _checked_camera(self, caller: str) -> scene.Intrinsics:
+        self._check_on(caller)
+        device = self.device
+        if not isinstance(device, scene.Intrinsics):
+            raise ArgumentError(f"{caller}: '{self.GetName()}' is a {self.GetXMLId()}, and no camera")
+        return device
 
-    def GetInfo(self) -> AttachedSensorInfo:
-        """Return the description of the attached sensor, a copy."""
-        return AttachedSensorInfo.of(self._state.scene, self._scene)
-
-    def UpdateAndGetInfo(self, type: SensorType | None = None) -> AttachedSensorInfo:  # OpenRAVE's name
-        """Return ``GetInfo()``.
+    def set_noise(self, deviation: float, seed: int | None = None) -> None:
+        """Add normally distributed noise to what is measured from now on; there is none from the start.
 
         Args:
-            type: Not used.
-        """
-        del type
-        return self.GetInfo()
+            deviation: Standard deviation, in the unit of each number: distances of lasers, colours of cameras in
+                steps of 255, forces and torques, angular velocities and accelerations, joint values, positions. 0: no
+                noise.
+            seed: Where the random numbers begin; None: anywhere.
 
-    def UpdateInfo(self, type: SensorType | None = None) -> None:  # OpenRAVE's name
-        """Do nothing: ``GetInfo`` always gives the present state.
+        Raises:
+            openrave_exception: the deviation is negative or not finite.
+        """
+        if not (math.isfinite(deviation) and deviation >= 0):
+            raise ArgumentError(f"set_noise: deviation is {deviation}, and should be a number from 0")
+        self._instrument.set_noise(float(deviation), seed)
+
+    def hide(self) -> None:
+        """Switch the sensor and its drawings off: it is taken away."""
+        for switch in _SWITCHES:
+            self._switch_off(switch)
+
+    def _place(self) -> Place:
+        link = self.description.link
+        carrier = None if self.attached is None or link is None else (self.attached.state, link)
+        return Place(self.GetTransform(), carrier)
+
+    def _measured(self, stamp: int) -> SensorData:
+        """Measure, and draw it where that is asked for."""
+        device = self.device
+        data = self._instrument.measured(device, self._place(), stamp)
+        scanned = self._instrument.scanned
+        if self._switched[SensorCommand.RenderDataOn] and scanned is not None:
+            from ravemj.engine.sensing import scan_figure  # noqa: PLC0415 - slow to import
+
+            assert isinstance(device, scene.Laser | scene.FlashLidar)
+            figure = scan_figure(device, scanned[0], self.description.color)
+            self._trace = GraphHandle(self._env.simulation.drawings, figure)
+        return data
+
+    def _show_shape(self, *, anew: bool = False) -> None:
+        """Draw where the sensor is, where that is asked for.
 
         Args:
-            type: Not used.
+            anew: Whether it may look another way than before.
         """
+        if not self._switched[SensorCommand.RenderGeometryOn]:
+            return
+        device = self.device
+        if self._shape is None or anew:
+            from ravemj.engine.sensing import shape_figure  # noqa: PLC0415 - slow to import
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, AttachedSensor) and self._state is other._state and self.GetName() == other.GetName()
+            self._shape = GraphHandle(self._env.simulation.drawings, shape_figure(device, self.description.color))
+        self._shape.SetTransform(self._instrument.rays_pose(device, self._place()))
 
-    def __hash__(self) -> int:
-        return hash((id(self._state), "sensor", self.GetName()))
+    def _colliding_bodies(self, arguments: str) -> str:
+        """Return the numbers of the bodies that the rays met last, one for each; 0 for those that met nothing."""
+        del arguments
+        if self._instrument.scanned is None:
+            raise RavemjError(f"collidingbodies: '{self.GetName()}' has not scanned yet")
+        found, world = self._instrument.scanned
+        return " ".join(map(str, world.labels(found.geoms)[:, 0].tolist()))
+
+    _commands = MappingProxyType({"collidingbodies": _colliding_bodies})
 
     def __repr__(self) -> str:
-        return f"{self._robot!r}.GetAttachedSensor({self.GetName()!r})"
+        if self.attached is not None:
+            return f"{self.attached!r}.GetSensor()"
+        return f"RaveCreateSensor({self._env!r}, {self.GetXMLId()!r})"
+
+
+def RaveCreateSensor(env: "Environment", name: str) -> Sensor | None:
+    """Make a sensor that no robot carries; ``SetTransform`` places it, and ``env.Add`` lets it measure as time passes.
+
+    Args:
+        env: The environment.
+        name: ``BaseCamera``, ``BaseLaser2D``, ``BaseSpinningLaser2D`` or ``BaseFlashLidar3D``; or a kind that needs a
+            robot to measure. Upper and lower case are the same.
+
+    Returns:
+        The sensor, as OpenRAVE has it where nothing is said about it; None, with a warning, for another name.
+
+    Example:
+        >>> laser = RaveCreateSensor(env, "BaseLaser2D")
+        >>> laser.SetName("door")
+        >>> laser.SetTransform([1, 0, 0, 0, 0.5, 0, 0.3])
+        >>> env.Add(laser)
+    """
+    checked_environment(env, "RaveCreateSensor")
+    words = checked_kind(name, str, "RaveCreateSensor: name", "a text").split() or [""]
+    kind = scene.SENSOR_KINDS.get(words[0].lower())
+    if kind is None:
+        _LOG.warning("there is no sensor '%s'; there are %s", name, ", ".join(KIND_NAMES))
+        return None
+    description = scene.AttachedSensor(
+        name="", link=None, T_link_sensor=Pose(), type=words[0], device=kind.device, source=FROM_SCRIPT
+    )
+    return Sensor(env, description)

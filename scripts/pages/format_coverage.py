@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from ravemj.formats.meshes import MESH_SUFFIXES
 from ravemj.formats.openrave_xml import actuator, environment, geom, joint, kinbody, link, mass, robot, sensor
 from ravemj.formats.openrave_xml.tags import Tag
+from ravemj.model.scene import SENSOR_KINDS
 
 Meanings = Mapping[str, str]
 
@@ -94,10 +95,20 @@ def sections() -> list[Section]:
         _section(
             "Sensor",
             "in AttachedSensor, or the root of an included file",
-            sensor.CAMERA_TAGS,
+            sensor.COMMON_TAGS,
             sensor.DEVICE_ATTRIBUTES,
-            {**sensor.CAMERA_IGNORED, "(what is in sensors other than cameras)": sensor.NO_DEVICE},
+            sensor.COMMON_IGNORED,
             sensor.DEVICE_IGNORED_ATTRIBUTES,
+        ),
+        *(
+            _section(
+                kind.name,
+                "what only such a Sensor holds",
+                sensor.device_tags(kind),
+                {},
+                sensor.device_ignored(kind),
+            )
+            for kind in SENSOR_KINDS.values()
         ),
     ]
 

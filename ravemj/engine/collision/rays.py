@@ -1,5 +1,6 @@
 """Rays: where they meet the surface of a geom first. Meshes are their triangles."""
 
+from copy import copy
 from typing import NamedTuple
 
 import mujoco
@@ -9,6 +10,12 @@ from numpy.typing import NDArray
 from ravemj.core.transforms import Floats, Ints
 
 _MESH = int(mujoco.mjtGeom.mjGEOM_MESH)
+_TARGET, _LEFT_OUT = 0, 5
+_GROUPS = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
+_FAR = 1e10
+
+_SHORTEST = 1e-14
+"""Length of a direction [m] that MuJoCo takes for none, and a little more."""
 
 
 class RayHit(NamedTuple):
@@ -54,28 +61,81 @@ def first_hit(
     return best
 
 
-def first_hits(
-    model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints, rays: Floats, *, front_facing_only: bool
-) -> tuple[NDArray[np.bool_], Floats]:
-    """Return where many rays first meet a surface; see ``first_hit``.
+class Hits(NamedTuple):
+    """What many rays meet first.
 
-    Args:
-        model: The model.
-        data: Its state.
-        geoms: The geoms that they can meet.
-        rays: Start and direction of each [m], shape (n, 6).
-        front_facing_only: Whether hits from behind, on the inside of a surface, are left out.
-
-    Returns:
-        Which rays meet something, shape (n,); and position and outward normal of each hit, shape (n, 6), else zeros.
+    Attributes:
+        distances: How far along each ray, in lengths of its direction, shape (n,); -1 where it meets nothing.
+        geoms: The geoms, shape (n,); -1 where it meets nothing.
     """
-    found, points = np.zeros(len(rays), dtype=np.bool_), np.zeros((len(rays), 6))
-    for number, ray in enumerate(rays):
-        hit = first_hit(model, data, geoms, ray[:3], ray[3:])
-        if hit is not None and not (front_facing_only and hit.normal @ ray[3:] >= 0):
-            found[number] = True
-            points[number] = (*hit.position, *hit.normal)
-    return found, points
+
+    distances: Floats
+    geoms: NDArray[np.int32]
+
+
+class RayCaster:
+    """Casts many rays in one call of ``mj_multiRay``, at some geoms of a model.
+
+    MuJoCo takes the geoms of certain groups that are not wholly transparent. A copy of the model has all of them
+    visible and in the group that is meant, so that threads that draw the model meanwhile notice nothing.
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        self._model, self._data = copy(model), data
+        self._model.geom_rgba[:, 3] = 1.0
+        self._targets: Ints | None = None
+
+    def cast(
+        self, geoms: Ints, start: Floats, directions: Floats, reach: float = _FAR, *, normals: Floats | None = None
+    ) -> Hits:
+        """Return what rays from one point meet first; inside of a solid, it is where they come out.
+
+        Args:
+            geoms: The geoms that they can meet.
+            start: Where they begin, in the world [m], shape (3,).
+            directions: Their directions, none of them zero, shape (n, 3).
+            reach: Distance beyond which geoms may be left out [m].
+            normals: Filled with the outward unit normals of the surfaces, shape (n, 3).
+        """
+        if self._targets is None or not np.array_equal(self._targets, geoms):
+            self._targets = geoms
+            self._model.geom_group[:] = _LEFT_OUT
+            self._model.geom_group[geoms] = _TARGET
+        count = len(directions)
+        found, distances = np.empty(count, dtype=np.int32), np.empty(count)
+        rays, flat = np.ascontiguousarray(directions).reshape(-1), None if normals is None else normals.reshape(-1)
+        mujoco.mj_multiRay(
+            self._model, self._data, start, rays, _GROUPS, True, -1, found, distances, flat, count, reach
+        )
+        return Hits(distances, found)
+
+    def first_hits(self, geoms: Ints, rays: Floats, *, front_facing_only: bool) -> tuple[NDArray[np.bool_], Floats]:
+        """Return where rays first meet a surface, in one call for all that begin at the same point.
+
+        Args:
+            geoms: The geoms that they can meet.
+            rays: Start and direction of each; the direction is as long as the ray [m], shape (n, 6).
+            front_facing_only: Whether hits from behind, on the inside of a surface, are left out.
+
+        Returns:
+            Which rays meet something, shape (n,); and position and outward normal of each hit, shape (n, 6), zeros
+            for the others.
+        """
+        found, points = np.zeros(len(rays), dtype=np.bool_), np.zeros((len(rays), 6))
+        long = np.flatnonzero(np.linalg.norm(rays[:, 3:], axis=1) > _SHORTEST)
+        order = long[np.lexsort(rays[long, :3].T)]
+        ends = np.flatnonzero((rays[order[1:], :3] != rays[order[:-1], :3]).any(axis=1)) + 1
+        for some in np.split(order, ends) if len(order) else ():
+            start, directions, normals = rays[some[0], :3], rays[some, 3:], np.zeros((len(some), 3))
+            distances, _ = self.cast(geoms, start, directions, normals=normals)
+            is_hit = (distances >= 0) & (distances <= 1)
+            if front_facing_only:
+                is_hit &= (normals * directions).sum(axis=1) < 0
+            chosen = some[is_hit]
+            found[chosen] = True
+            points[chosen, :3] = start + distances[is_hit, None] * directions[is_hit]
+            points[chosen, 3:] = normals[is_hit]
+        return found, points
 
 
 def _near(model: mujoco.MjModel, data: mujoco.MjData, geoms: Ints, start: Floats, direction: Floats) -> list[int]:

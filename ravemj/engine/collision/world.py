@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import cached_property
 
 import mujoco
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.collision.pairs import Detection, Pairs
-from ravemj.engine.collision.rays import RayHit, first_hit, first_hits
+from ravemj.engine.collision.rays import Hits, RayCaster, RayHit, first_hit
 from ravemj.engine.collision.shapes import ShapeTests
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
@@ -92,6 +93,17 @@ class CollisionWorld:
         number = geom - int(self._model.body_geomadr[part.body_ids[link]])
         return int(np.searchsorted(np.cumsum(part.names.geoms[link]), number, side="right"))
 
+    def labels(self, geoms: NDArray[np.int32]) -> Ints:
+        """Return the index of the body in the environment, and of the link, of geoms of any shape (...).
+
+        Returns:
+            Shape (..., 2); 0 and -1 where there is no geom, -1.
+        """
+        indices = np.array([*(body.index for body in self.bodies), 0])
+        bodies, links = indices[self._owner[geoms]], self._link[geoms]
+        nothing = geoms < 0
+        return np.stack([np.where(nothing, 0, bodies), np.where(nothing, -1, links)], axis=-1)
+
     def pairs(self, query: Hashable, find: Callable[[], tuple[Ints, Ints]]) -> Pairs:
         """Return the pairs that a query is about.
 
@@ -152,9 +164,16 @@ class CollisionWorld:
     def rays(
         self, rays: Floats, geoms: Ints | None = None, *, front_facing_only: bool = False
     ) -> tuple[NDArray[np.bool_], Floats]:
-        """Return where many rays first meet one of the geoms; None: any that collides. See ``rays.first_hits``."""
-        among = self._among(geoms)
-        return first_hits(self._model, self._data, among, rays, front_facing_only=front_facing_only)
+        """Return where many rays first meet one of the geoms; None: any that collides. See ``RayCaster.first_hits``."""
+        return self._ray_caster.first_hits(self._among(geoms), rays, front_facing_only=front_facing_only)
+
+    def fan(self, start: Floats, directions: Floats, reach: float) -> Hits:
+        """Return what rays from one point first meet of all that collides. See ``RayCaster.cast``."""
+        return self._ray_caster.cast(self._among(None), start, directions, reach)
+
+    @cached_property
+    def _ray_caster(self) -> RayCaster:
+        return RayCaster(self._model, self._data)
 
     def _among(self, geoms: Ints | None) -> Ints:
         return np.flatnonzero(self.collides) if geoms is None else geoms

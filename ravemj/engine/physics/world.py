@@ -59,7 +59,7 @@ class Physics:
         Args:
             timestep: How long [s].
         """
-        self._prepare()
+        self.prepare()
         model, data = self._model, self._data
         count = math.ceil(timestep / LONGEST_STEP)
         if not count:
@@ -90,7 +90,7 @@ class Physics:
             for body in driven:
                 self.loads(body.state).drive(body, applied)
 
-    def _prepare(self) -> None:
+    def prepare(self) -> None:
         """Make the model anew if the bodies are others, and take over what users moved."""
         states = self._simulation.bodies
         made_of: list[object] = [
@@ -159,6 +159,36 @@ class Physics:
         force, torque = self._wrench(body_id, total, data.xipos[body_id])
         applied = data.xfrc_applied[body_id]
         return force - applied[:3], torque - applied[3:]
+
+    def link_acceleration(self, state: BodyState, link: int) -> tuple[Floats, Floats]:
+        """Return the acceleration of a link's origin without that of free fall, and its angular acceleration.
+
+        Returns:
+            What an accelerometer there measures [m/s^2], gravity's opposite at rest, and [rad/s^2], each of shape (3,),
+            in world axes; zero if no step has seen the body.
+        """
+        body_id, acceleration = self._body_id(state, link), np.zeros(6)
+        if body_id is not None:
+            kind = mujoco.mjtObj.mjOBJ_XBODY
+            mujoco.mj_objectAcceleration(self._model, self._data, kind, body_id, acceleration, 0)
+        return acceleration[3:], acceleration[:3]
+
+    def link_contacts(self, state: BodyState, link: int) -> tuple[Floats, Floats]:
+        """Return the points where a link is touched [m] and the forces on it there [N].
+
+        Returns:
+            Each of shape (contacts, 3), in the world.
+        """
+        body_id = self._body_id(state, link)
+        points, forces, wrench = [np.zeros((0, 3))], [np.zeros((0, 3))], np.zeros(6)
+        for index, contact in enumerate(() if body_id is None else self._data.contact):
+            sides = [int(self._model.geom_bodyid[geom]) for geom in contact.geom]
+            if body_id in sides and contact.efc_address >= 0:
+                mujoco.mj_contactForce(self._model, self._data, index, wrench)
+                push = contact.frame.reshape(3, 3).T @ wrench[:3]  # on the second geom
+                points.append(contact.pos[None].copy())
+                forces.append((push if sides[1] == body_id else -push)[None])
+        return np.concatenate(points), np.concatenate(forces)
 
     def _body_id(self, state: BodyState, link: int) -> int | None:
         """Return MuJoCo's index of a link, with the forces on it computed; None if no step has seen it."""

@@ -12,9 +12,10 @@ from ravemj.formats.collada.polar import rigid_part
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.visual import transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
+from ravemj.formats.sensor_tags import described, is_text, sensor_tags
 from ravemj.model.builder import SensorBuilder
 from ravemj.model.manipulators import ManipulatorBuilder
-from ravemj.model.scene import AttachedSensor, Intrinsics
+from ravemj.model.scene import AttachedSensor, Device, sensor_kind
 
 
 def extras(element: Element | None, kind: str) -> Iterator[tuple[Element, Element]]:
@@ -118,16 +119,48 @@ class ExtraReader:
         link = None if origin is None else self.link(origin, system)
         instance = child(technique, "instance_sensor")
         sensor = None if instance is None else self._library.follow(instance, "sensor")
-        kind = None if sensor is None else sensor.get("type")
+        kind = None if sensor is None else sensor_kind(_device_type(sensor))
         built = AttachedSensor(
             name=extra.get("name", ""),
             link=link,
             T_link_sensor=Pose() if origin is None else self._pose(origin),
-            type=kind,
-            camera=_camera(sensor) if sensor is not None and "camera" in (kind or "").lower() else None,
+            type=None if sensor is None else sensor.get("type"),
+            device=None if sensor is None or kind is None else self._device(sensor, kind.device),
             source=self._library.source(extra),
         )
+        if sensor is not None:
+            built = self._looks(sensor, built)
         self._body.sensors.append(SensorBuilder(built))
+
+    def _device(self, sensor: Element, device: Device) -> Device:
+        """Return a device as a ``<sensor>`` describes it; elements that only handle pictures say nothing here."""
+        tags = {name.lower(): tag for name, tag in sensor_tags(device).items()}
+        for element in children(sensor):
+            tag = tags.get(local_name(element).lower())
+            if tag is None:
+                continue
+            values = numbers(element).tolist()
+            if is_text(device, tag):
+                device = described(device, tag, " ".join(words(element)))
+            elif all(map(math.isfinite, values)) and len(values) >= tag.numbers:
+                device = described(device, tag, values)
+            else:
+                message = f"it holds {len(values)} numbers, and should hold {tag.numbers or ''} finite ones"
+                self._library.warn("number-count", message, element)
+        return device
+
+    def _looks(self, sensor: Element, built: AttachedSensor) -> AttachedSensor:
+        """Return a sensor with the colour in which it is drawn, and on if it should be and can."""
+        color = numbers(child(sensor, "color")).tolist()
+        if len(color) >= 3 and all(map(math.isfinite, color)):
+            built = replace(built, color=(color[0], color[1], color[2]))
+        power = child(sensor, "power")
+        if power is None or built.device is None or not self._references.truth(power, False):
+            return built
+        problem = built.device.problem()
+        if problem is not None:
+            self._library.warn("bad-sensor", f"the sensor stays off: {problem}", sensor)
+        return replace(built, is_on=problem is None)
 
     def _read_actuator(self, technique: Element, system: Element) -> None:
         """Give a joint the torque limit and the inertia of its motor, where the file has a motor."""
@@ -163,11 +196,10 @@ class ExtraReader:
             link.geometries = [replace(part, visible=False) for part in link.geometries]
 
 
-def _camera(sensor: Element) -> Intrinsics | None:
-    """Return the intrinsics of a camera: fx s cx 0 fy cy, and width, height and channels."""
-    values = numbers(child(sensor, "intrinsic")).tolist()
-    size = numbers(child(sensor, "image_dimensions")).tolist()
-    if len(values) < 6 or len(size) < 2 or not all(map(math.isfinite, (*values, *size))):
-        return None
-    fx, _, cx, _, fy, cy = values[:6]
-    return Intrinsics(fx, fy, cx, cy, int(size[0]), int(size[1]))
+def _device_type(sensor: Element) -> str:
+    """Return the name of the device that a ``<sensor>`` is: the interface that it names, else its type."""
+    for technique in children(child(sensor, "interface_type"), "technique"):
+        named = " ".join(words(child(technique, "interface")))
+        if named:
+            return named
+    return sensor.get("type", "")

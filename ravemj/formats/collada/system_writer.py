@@ -10,9 +10,10 @@ from ravemj.formats.collada.sections import Sections
 from ravemj.formats.collada.supplement import OTHER_NUMBERS, PROFILE
 from ravemj.formats.collada.trees import Tree
 from ravemj.formats.parameters import write_parameters
+from ravemj.formats.sensor_tags import written
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.joints import rests
-from ravemj.model.scene import AttachedSensor, Axis, Joint, KinBody, Manipulator
+from ravemj.model.scene import SENSOR_COLOR, AttachedSensor, Axis, Joint, KinBody, Manipulator
 
 _PLAIN = Axis((0.0, 0.0, 1.0))
 
@@ -178,11 +179,14 @@ class SystemWriter:
         if sensor.type is None:
             return
         out.element("instance_sensor", url=f"#{name}")
-        library, camera = self._sections.sensors, sensor.camera
+        library = self._sections.sensors
         with library.inside("sensor", id=name, type=sensor.type):
-            if camera is not None:
-                library.element("intrinsic", (camera.fx, 0, camera.cx, 0, camera.fy, camera.cy))
-                library.element("image_dimensions", (camera.width, camera.height, 3))
+            for tag, content in () if sensor.device is None else written(sensor.device, collada=True):
+                library.element(tag, content)
+            if sensor.is_on:
+                library.element("power", 1)
+            if sensor.color != SENSOR_COLOR:
+                library.element("color", sensor.color)
 
     def _write_actuator(self, index: int, axis: Axis) -> None:
         """Write a motor without a gear."""

@@ -2,7 +2,7 @@
 
 from ravemj.errors import Diagnostics
 from ravemj.formats.openrave_xml.context import Context
-from ravemj.formats.openrave_xml.sensor import Device, read_device
+from ravemj.formats.openrave_xml.sensor import SensorElement, read_device
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
 from ravemj.formats.openrave_xml.tree import Element
 from ravemj.formats.openrave_xml.values import Placement, leading_numbers, vector, word
@@ -104,7 +104,7 @@ class _SensorScope:
         self.context = context
         self.placement = Placement()
         self.link: str | None = None
-        self.device = Device()
+        self.device = SensorElement()
 
     def translate(self, element: Element) -> None:
         """Read a ``<Translation>``."""
@@ -145,8 +145,10 @@ def read_attached_sensor(body: BodyBuilder, element: Element, context: Context) 
         link=None if scope.link is None else body.find_link(scope.link),
         T_link_sensor=scope.placement.pose,
         type=scope.device.type,
-        camera=scope.device.camera,
+        device=scope.device.device,
         source=element.source,
+        is_on=scope.device.is_on,
+        color=scope.device.color,
     )
     body.sensors.append(SensorBuilder(sensor, scope.link))
 

@@ -1,104 +1,112 @@
-"""``<Sensor>``: the kind of a sensor and, of cameras, the intrinsics."""
+"""``<Sensor>``: the kind of a sensor and what is fixed about it."""
 
-from dataclasses import replace
+from collections.abc import Mapping
+from functools import partial
 from typing import NamedTuple
 
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
 from ravemj.formats.openrave_xml.tree import Element
-from ravemj.formats.openrave_xml.values import leading_numbers, number, numbers
-from ravemj.model.scene import Intrinsics
-
-_CAMERA_TYPE = "basecamera"
-_KNOWN_TYPES = {
-    name.lower(): name
-    for name in ("BaseCamera", "BaseLaser2D", "BaseSpinningLaser2D", "BaseFlashLidar3D", "BaseForce6D")
-}
+from ravemj.formats.openrave_xml.values import is_true, leading_numbers, numbers, vector
+from ravemj.formats.sensor_tags import SensorTag, described, is_text, sensor_tags
+from ravemj.model.scene import SENSOR_COLOR, SENSOR_KINDS, Device, Intrinsics, Rgb, SensorKind
 
 
-def known_type(kind: str) -> str | None:
-    """Return OpenRAVE's name of a kind of sensor in XML, also where COLLADA spells it another way; None for others."""
-    plain = kind.lower().replace("_", "").replace("pinhole", "")
-    return _KNOWN_TYPES.get(plain)
-
-
-class Device(NamedTuple):
-    """The device of an attached sensor.
+class SensorElement(NamedTuple):
+    """What a ``<Sensor>`` says.
 
     Attributes:
         type: OpenRAVE's name of its kind, or None for a frame without a device.
-        camera: Its intrinsics, of a camera.
+        device: What is fixed about it.
+        is_on: Whether it measures from the start.
+        color: Colour in which viewers draw it.
     """
 
     type: str | None = None
-    camera: Intrinsics | None = None
+    device: Device | None = None
+    is_on: bool = False
+    color: Rgb = SENSOR_COLOR
 
 
-class _Camera:
-    """An open ``<Sensor type="BaseCamera">``."""
+class _Sensor:
+    """An open ``<Sensor>``."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, context: Context, kind: SensorKind) -> None:
         self.context = context
-        self.intrinsics = Intrinsics(0.0, 0.0, 0.0, 0.0, 0, 0)
+        self.type = kind.name
+        self.device = kind.device
+        self.is_on = False
+        self.color = SENSOR_COLOR
 
-    def read_kk(self, element: Element) -> None:
-        """Read fx fy cx cy."""
-        fx, fy, cx, cy = numbers(element, 4, self.context.diagnostics)
-        self.intrinsics = replace(self.intrinsics, fx=fx, fy=fy, cx=cx, cy=cy)
+    def describe(self, element: Element, tag: SensorTag) -> None:
+        """Read an element that the tables shared with COLLADA describe."""
+        if is_text(self.device, tag):
+            self.device = described(self.device, tag, " ".join(element.text.split()))
+        elif tag.numbers:
+            self.device = described(self.device, tag, numbers(element, tag.numbers, self.context.diagnostics))
+        else:
+            self.device = described(self.device, tag, leading_numbers(element.text).values)
 
-    def read_intrinsic(self, element: Element) -> None:
-        """Read two rows of the camera matrix: fx 0 cx 0 fy cy."""
-        fx, _, cx, _, fy, cy = numbers(element, 6, self.context.diagnostics)
-        self.intrinsics = replace(self.intrinsics, fx=fx, fy=fy, cx=cx, cy=cy)
+    def switch(self, element: Element) -> None:
+        """Read whether it measures from the start."""
+        self.is_on = is_true(element.text.strip())
 
-    def read_width(self, element: Element) -> None:
-        self.intrinsics = replace(self.intrinsics, width=int(number(element, self.context.diagnostics)))
-
-    def read_height(self, element: Element) -> None:
-        self.intrinsics = replace(self.intrinsics, height=int(number(element, self.context.diagnostics)))
-
-    def read_dimensions(self, element: Element) -> None:
-        """Read width and height; a third number, the channels, may follow."""
-        values = [*leading_numbers(element.text).values, 0.0, 0.0]
-        self.intrinsics = replace(self.intrinsics, width=int(values[0]), height=int(values[1]))
+    def paint(self, element: Element) -> None:
+        """Read the colour of what viewers draw."""
+        self.color = vector(element, self.context.diagnostics, self.color)
 
 
-CAMERA_TAGS: dict[str, Tag[_Camera]] = {
-    "kk": Tag(_Camera.read_kk, "fx fy cx cy [pixels]"),
-    "intrinsic": Tag(_Camera.read_intrinsic, "fx 0 cx 0 fy cy [pixels]"),
-    "width": Tag(_Camera.read_width, "[pixels]"),
-    "height": Tag(_Camera.read_height, "[pixels]"),
-    "image_dimensions": Tag(_Camera.read_dimensions, "width and height [pixels]; channels may follow"),
+COMMON_TAGS: dict[str, Tag[_Sensor]] = {
+    "power": Tag(_Sensor.switch, "1: it measures from the start"),
+    "color": Tag(_Sensor.paint, "of what viewers draw: red, green, blue from 0 to 1"),
 }
-NO_DEVICE = "of sensors that are no cameras, only kind and place are kept"
 DEVICE_ATTRIBUTES = {
-    "type": ", ".join(_KNOWN_TYPES.values()),
+    "type": ", ".join(kind.name for kind in SENSOR_KINDS.values()),
     "file": "read in its place",
     "name": "takes no effect; the name is that of the AttachedSensor",
 }
 DEVICE_IGNORED_ATTRIBUTES = {"args": "no sensor here takes arguments"}
-CAMERA_IGNORED = reasons(
-    NO_EFFECT_HERE, "framerate", "focal_length", "color", "power", "gain", "measurement_time", "format",
-    "sensor_reference", "target_region", "hardware_id", "distortion_model", "distortion_coeffs",
-)  # fmt: skip
+COMMON_IGNORED = reasons(NO_EFFECT_HERE, "hardware_id")
+_CAMERA_IGNORED = {
+    "framerate": "pictures are taken when somebody asks for them",
+    **reasons(
+        NO_EFFECT_HERE, "focal_length", "gain", "measurement_time", "format", "sensor_reference", "target_region",
+        "distortion_model", "distortion_coeffs",
+    ),
+}  # fmt: skip
 
 
-def read_device(element: Element, context: Context) -> Device:
+def device_tags(kind: SensorKind) -> Mapping[str, Tag[_Sensor]]:
+    """Return the table of what only a kind of sensor has."""
+    shared = sensor_tags(kind.device).items()
+    return {name.lower(): Tag(partial(_describe, tag=tag), tag.meaning) for name, tag in shared}
+
+
+def device_ignored(kind: SensorKind) -> Mapping[str, str]:
+    """Return what only a kind of sensor has and is left out, and why."""
+    return _CAMERA_IGNORED if isinstance(kind.device, Intrinsics) else {}
+
+
+def _describe(sensor: _Sensor, element: Element, tag: SensorTag) -> None:
+    sensor.describe(element, tag)
+
+
+def read_device(element: Element, context: Context) -> SensorElement:
     """Read a ``<Sensor>``; with ``file``, that of the file."""
     context.check_attributes(element, DEVICE_ATTRIBUTES, DEVICE_IGNORED_ATTRIBUTES)
     root = context.include(element)
-    found = Device() if root is None or root.tag != "sensor" else read_device(root, context)
-    kind = element.attributes.get("type")
-    if kind is None:
+    found = SensorElement() if root is None or root.tag != "sensor" else read_device(root, context)
+    name = element.attributes.get("type")
+    if name is None:
         return found
-    if kind.split()[0].lower() not in _KNOWN_TYPES if kind.strip() else True:
-        context.diagnostics.error("unknown-interface", f"there is no sensor of type '{kind}'", element.source)
-        return Device()
-    name = _KNOWN_TYPES[kind.split()[0].lower()]
-    if name.lower() != _CAMERA_TYPE:
-        for child in element.children:
-            context.leave_out(child, NO_DEVICE)
-        return Device(name)
-    camera = _Camera(context)
-    context.walk(element, CAMERA_TAGS, CAMERA_IGNORED, camera)
-    return Device(name, camera.intrinsics)
+    kind = SENSOR_KINDS.get(next(iter(name.split()), "").lower())
+    if kind is None:
+        context.diagnostics.error("unknown-interface", f"there is no sensor of type '{name}'", element.source)
+        return SensorElement()
+    sensor = _Sensor(context, kind)
+    tags, ignored = {**device_tags(kind), **COMMON_TAGS}, {**device_ignored(kind), **COMMON_IGNORED}
+    context.walk(element, tags, ignored, sensor)
+    problem = sensor.device.problem() if sensor.is_on else None
+    if problem is not None:
+        context.diagnostics.warn("bad-sensor", f"the sensor stays off: {problem}", element.source)
+    return SensorElement(kind.name, sensor.device, sensor.is_on and problem is None, sensor.color)

@@ -13,10 +13,21 @@ from ravemj.formats.openrave_xml.geom_writer import GeomWriter, MeshFormat, writ
 from ravemj.formats.openrave_xml.joint_writer import JointWriter, listed_poses, needs_values, writable
 from ravemj.formats.openrave_xml.mass import single
 from ravemj.formats.openrave_xml.part_names import PartNames
-from ravemj.formats.openrave_xml.sensor import known_type
 from ravemj.formats.parameters import write_parameters
+from ravemj.formats.sensor_tags import written
 from ravemj.formats.xml_text import XmlText
-from ravemj.model.scene import OWN_SHAPES, AttachedSensor, Inertial, KinBody, Link, Manipulator, Scene, View
+from ravemj.model.scene import (
+    OWN_SHAPES,
+    SENSOR_COLOR,
+    AttachedSensor,
+    Inertial,
+    KinBody,
+    Link,
+    Manipulator,
+    Scene,
+    View,
+    sensor_kind,
+)
 
 
 @dataclass(frozen=True)
@@ -161,7 +172,7 @@ class _Writer:
             write_pose(self.out, settled.pose(manipulator.T_effector_tool))
 
     def _write_sensor(self, sensor: AttachedSensor, names: PartNames) -> None:
-        kind = None if sensor.type is None else known_type(sensor.type)
+        kind = None if sensor.type is None else sensor_kind(sensor.type)
         if kind is None and sensor.type is not None:
             message = f"OpenRAVE XML knows no sensor of type '{sensor.type}'; of '{sensor.name}' only the frame is kept"
             self.diagnostics.warn("not-written", message, sensor.source)
@@ -169,11 +180,11 @@ class _Writer:
             if sensor.link is not None:
                 self.out.element("link", names.links[sensor.link])
             write_pose(self.out, settled.pose(sensor.T_link_sensor))
-            if kind is not None and sensor.camera is None:
-                self.out.element("Sensor", type=kind)
-            elif kind is not None and sensor.camera is not None:
-                camera = sensor.camera
-                with self.out.inside("Sensor", type=kind):
-                    self.out.element("KK", (camera.fx, camera.fy, camera.cx, camera.cy))
-                    self.out.element("width", camera.width)
-                    self.out.element("height", camera.height)
+            if kind is not None:
+                with self.out.inside("Sensor", type=kind.name):
+                    for tag, content in written(sensor.device or kind.device):
+                        self.out.element(tag, content)
+                    if sensor.is_on:
+                        self.out.element("power", 1)
+                    if sensor.color != SENSOR_COLOR:
+                        self.out.element("color", sensor.color)

@@ -109,6 +109,23 @@ class Renderer(Protocol):
         """
         ...
 
+    def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
+        """Measure how far away what each pixel centre shows is; drawings hide nothing.
+
+        Args:
+            data: State of the model with the poses computed.
+            camera: Where the picture is taken from.
+
+        Returns:
+            A new array (height, width) of distances along the viewing direction [m], infinite where nothing is.
+            Transparent geoms count.
+
+        Raises:
+            ArgumentError: the data are of another model.
+            RenderingError: the renderer is closed.
+        """
+        ...
+
     def close(self) -> None:
         """Free what the renderer holds. Also done at the end of a ``with`` block."""
         ...

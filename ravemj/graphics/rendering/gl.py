@@ -14,6 +14,9 @@ from ravemj.graphics.rendering.gl_scene import GlScene, Quality
 from ravemj.graphics.rendering.style import AS_IT_IS, Style
 from ravemj.model.drawing import NOTHING, Primitives
 
+_DEPTH_ZERO_FAR = 1
+"""MuJoCo's ``mjDEPTH_ZEROFAR``: depths are handed out as they are drawn, which loses no digits."""
+
 
 class GlRenderer:
     """Draws one model with MuJoCo's classic OpenGL renderer.
@@ -70,6 +73,20 @@ class GlRenderer:
             stage.set_buffer(width, height, samples)
             mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, stage.context)
 
+    def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
+        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        stage = self._filled_stage(data, camera, NOTHING, AS_IT_IS)
+        width, height = self._size
+        buffer = np.empty((height, width), dtype=np.float32)
+        with self._context.current():
+            stage.draw_ids(self._viewport)
+            shown = self._read(stage, buffer).any(axis=2)
+        eye = stage.scene.camera[0]
+        near, far = eye.frustum_near, eye.frustum_far
+        # 1 at the nearest depth that is drawn, 0 at the farthest.
+        depths = near * far / (buffer[::-1].astype(np.float64) * (far - near) + near)
+        return np.where(shown, depths, np.inf).astype(np.float32)
+
     def close(self) -> None:
         """Free the context and what is in it; a second call does nothing."""
         stage, self._gl_scene = self._gl_scene, None
@@ -102,10 +119,12 @@ class GlRenderer:
         self._gl_scene.fill(data, camera, self._size, primitives, style)
         return self._gl_scene
 
-    def _read(self, stage: GlScene) -> NDArray[np.uint8]:
+    def _read(self, stage: GlScene, depth: NDArray[np.float32] | None = None) -> NDArray[np.uint8]:
+        """Return what was drawn; a buffer for depths is filled too, the last row first."""
         width, height = self._size
         pixels = np.empty((height, width, 3), dtype=np.uint8)
-        mujoco.mjr_readPixels(pixels, None, self._viewport, stage.context)
+        stage.context.readDepthMap = _DEPTH_ZERO_FAR
+        mujoco.mjr_readPixels(pixels, depth, self._viewport, stage.context)
         return pixels[::-1].copy()
 
 

@@ -99,6 +99,16 @@ class RayRenderer:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
         self._size, self._samples = (width, height), samples
 
+    def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
+        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        width, height = self._size
+        depths = np.empty((height, width), dtype=np.float32)
+        with self._scene(data, camera) as scene:
+            for rows, rays in self._bands(camera):  # rays go 1 m ahead, so that their lengths are depths
+                geom_ids, depth, _ = scene.cast(rays)
+                depths[rows] = np.where(geom_ids < 0, np.inf, depth).reshape(-1, width)
+        return depths
+
     def close(self) -> None:
         """Refuse further pictures; there is nothing to free."""
         self._closed = True

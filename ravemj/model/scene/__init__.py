@@ -4,7 +4,7 @@ Readers make a ``Scene`` (through ``ravemj.model.builder``), writers and the run
 angles radians, masses kilograms. Links are referred to by their index in ``KinBody.links``.
 """
 
-from ravemj.model.scene.body import AttachedSensor, Grab, Intrinsics, KinBody, Manipulator
+from ravemj.model.scene.body import AttachedSensor, Grab, KinBody, Manipulator
 from ravemj.model.scene.mechanism import (
     AXES,
     NO_PARAMETERS,
@@ -19,6 +19,21 @@ from ravemj.model.scene.mechanism import (
     Parameters,
 )
 from ravemj.model.scene.mesh import Bounds, Mesh
+from ravemj.model.scene.sensors import (
+    SENSOR_COLOR,
+    SENSOR_KINDS,
+    Device,
+    FlashLidar,
+    ForceTorque,
+    Imu,
+    Intrinsics,
+    JointEncoder,
+    Laser,
+    Odometry,
+    SensorKind,
+    Tactile,
+    sensor_kind,
+)
 from ravemj.model.scene.shapes import (
     SHAPE_TYPES,
     Box,
@@ -45,6 +60,8 @@ __all__ = [
     "AXES",
     "NO_PARAMETERS",
     "OWN_SHAPES",
+    "SENSOR_COLOR",
+    "SENSOR_KINDS",
     "SHAPE_TYPES",
     "UNLIMITED",
     "AttachedSensor",
@@ -56,28 +73,38 @@ __all__ = [
     "Container",
     "CrossSection",
     "Cylinder",
+    "Device",
+    "FlashLidar",
+    "ForceTorque",
     "Geometry",
     "Grab",
+    "Imu",
     "Inertial",
     "Intrinsics",
     "Joint",
+    "JointEncoder",
     "JointKind",
     "KinBody",
+    "Laser",
     "Link",
     "Manipulator",
     "Mesh",
     "MeshFile",
     "Mimic",
     "NoShape",
+    "Odometry",
     "Parameters",
     "Prism",
     "Rgb",
     "Scene",
+    "SensorKind",
     "Shape",
     "ShapeType",
     "Solid",
     "Sphere",
     "Surface",
+    "Tactile",
     "TriMesh",
     "View",
+    "sensor_kind",
 ]

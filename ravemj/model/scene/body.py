@@ -6,6 +6,7 @@ from ravemj.core.transforms import Pose, Vec3
 from ravemj.errors import Source
 from ravemj.model.scene.mechanism import Axis, Joint, Link
 from ravemj.model.scene.record import Record
+from ravemj.model.scene.sensors import SENSOR_COLOR, Device, Intrinsics
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
@@ -39,18 +40,6 @@ class Manipulator(Record):
     gripper_name: str = ""
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Intrinsics(Record):
-    """A pinhole camera: u = fx x / z + cx, v = fy y / z + cy [pixels], z forward and y down."""
-
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    width: int
-    height: int
-
-
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class AttachedSensor(Record):
     """A sensor on a link.
@@ -60,16 +49,25 @@ class AttachedSensor(Record):
         link: Index of the link that carries it, or None.
         T_link_sensor: Its pose in the link.
         type: OpenRAVE's name of the kind of sensor, or None for a frame without a device.
-        camera: The camera that it is, or None.
+        device: What is fixed about it; None for a frame, and where the kind is not known.
         source: The element that it comes from.
+        is_on: Whether it measures from the start.
+        color: Colour in which viewers draw it.
     """
 
     name: str
     link: int | None
     T_link_sensor: Pose
     type: str | None
-    camera: Intrinsics | None
+    device: Device | None
     source: Source
+    is_on: bool = False
+    color: Vec3 = SENSOR_COLOR
+
+    @property
+    def camera(self) -> Intrinsics | None:
+        """The camera that it is, or None."""
+        return self.device if isinstance(self.device, Intrinsics) else None
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)

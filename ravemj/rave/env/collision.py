@@ -115,6 +115,9 @@ class Collision(Contents):
             rows = rows.reshape(-1, 6)
         if rows.ndim != 2 or rows.shape[1] != 6:
             raise ArgumentError(f"CheckCollisionRays: rays have shape {rows.shape}, and should have shape (n, 6)")
+        if not np.isfinite(rows).all():
+            row = int(np.flatnonzero(~np.isfinite(rows).all(axis=1))[0])
+            raise ArgumentError(f"CheckCollisionRays: ray {row} is {rows[row].tolist()}, and should be finite numbers")
         with self._simulation.lock:
             world = self._simulation.collisions()
             targets = self.GetCollisionChecker().ray_targets(world, ... if body is None else body)

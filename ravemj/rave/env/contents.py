@@ -7,7 +7,7 @@ from weakref import WeakValueDictionary
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.handles import Handle
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceAddMode, TriangulateOptions
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.env.triangulation import chosen, triangles
@@ -49,6 +49,7 @@ class Contents(EnvironmentPart):
         self._kept_objects: dict[BodyState, KinBody] = {}  # of bodies that are in the environment
         self._body_callbacks: list[BodyCallback] = []
         self._modules: list[Module] = []
+        self._sensors: list[Sensor] = []  # those that no robot carries
 
     @property
     def _environment(self) -> "Environment":
@@ -66,7 +67,13 @@ class Contents(EnvironmentPart):
             return found
 
     def _remove_all(self) -> None:
-        """Take all bodies out of the environment."""
+        """Take all bodies and sensors out of the environment."""
+        for body in self._kept_objects.values():
+            if isinstance(body, Robot):
+                body.forget_sensors()
+        for sensor in self._sensors:
+            sensor.hide()
+        self._sensors.clear()
         gone = [self.wrap(state) for state in self._simulation.bodies] if self._body_callbacks else []
         self._simulation.clear()
         self._kept_objects.clear()
@@ -101,6 +108,8 @@ class Contents(EnvironmentPart):
         """
         if isinstance(interface, Module):
             self.AddModule(interface, cmdargs)
+        elif isinstance(interface, Sensor):
+            self.AddSensor(interface, _renames(addMode))
         elif not isinstance(interface, KinBody):
             self._add_other(interface)
         else:
@@ -150,16 +159,37 @@ class Contents(EnvironmentPart):
         self._add_other(sensor)
 
     def AddSensor(self, sensor: object, anonymous: bool = False) -> None:
-        """Refuse a sensor that no robot carries.
+        """Add a sensor that no robot carries, so that it measures as time passes.
 
         Args:
-            sensor: The sensor.
-            anonymous: Without meaning.
+            sensor: What ``RaveCreateSensor`` made for this environment; it has a name.
+            anonymous: Whether it gets another name if this one is taken.
 
         Raises:
-            UnsupportedError: always; ``robot.AddAttachedSensor`` attaches cameras to links.
+            openrave_exception: another sensor has the name (``SensorNameConflict``), the name is empty, or this is no
+                sensor of this environment that no robot carries. Nothing has changed then.
+
+        Example:
+            >>> laser = ravemj.RaveCreateSensor(env, "BaseLaser2D")
+            >>> laser.SetName("door")
+            >>> env.AddSensor(laser)
         """
-        raise UnsupportedError("AddSensor", "sensors without a robot")
+        self._check_alive()
+        added = checked_kind(sensor, Sensor, "AddSensor: sensor")
+        if added.GetEnv() is not self._environment or added.attached is not None:
+            raise ArgumentError(f"AddSensor: {added!r} was made for another environment, or a robot carries it")
+        if added in self._sensors:
+            return
+        name, number = added.GetName(), 0
+        if not name:
+            raise RavemjError("AddSensor: the sensor has no name; give it one with SetName", ErrorCode.Failed)
+        while self.GetSensor(added.GetName()) is not None:
+            if not anonymous:
+                raise RavemjError(f"AddSensor: there already is a sensor '{name}'", ErrorCode.SensorNameConflict)
+            added.SetName(f"{name}{number}")
+            number += 1
+        with self._simulation.lock:
+            self._sensors.append(added)
 
     @also_named(obj="interface", body="interface", prob="interface")
     def Remove(self, interface: object) -> bool:
@@ -168,7 +198,7 @@ class Contents(EnvironmentPart):
         It stays usable as a body that is not added, and can be added again. What it held, and what held it, let go.
 
         Args:
-            interface: A body, a robot, a module or a viewer.
+            interface: A body, a robot, a module, a sensor or a viewer.
 
         Returns:
             False if it was not there.
@@ -187,6 +217,8 @@ class Contents(EnvironmentPart):
                 f"Remove: '{interface.GetName()}' was made for {interface.GetEnv()!r}, not for {self!r}"
             )
         self._kept_objects.pop(state, None)
+        if isinstance(interface, Robot):
+            interface.forget_sensors()
         was_there = self._simulation.remove(state)
         if was_there:
             self._tell_of_body(interface, 0)
@@ -213,6 +245,11 @@ class Contents(EnvironmentPart):
         if isinstance(interface, Module) and interface in self._modules:
             self._modules.remove(interface)
             interface.end()
+            return True
+        if isinstance(interface, Sensor) and interface in self._sensors:
+            with self._simulation.lock:
+                self._sensors.remove(interface)
+                interface.hide()
             return True
         for viewer in self._viewers:
             if viewer is interface:
@@ -278,12 +315,12 @@ class Contents(EnvironmentPart):
         return body if isinstance(body, Robot) else None
 
     def GetSensors(self) -> list[Sensor]:
-        """Return the sensors on all robots; see ``robot.GetAttachedSensors``."""
+        """Return the sensors on all robots, then those that no robot carries; see ``robot.GetAttachedSensors``."""
         found = (attached.GetSensor() for robot in self.GetRobots() for attached in robot.GetAttachedSensors())
-        return [sensor for sensor in found if sensor is not None]
+        return [*(sensor for sensor in found if sensor is not None), *self._sensors]
 
     def GetSensor(self, name: str) -> Sensor | None:
-        """Return the sensor of that name, ``robot:sensor``, or None."""
+        """Return the sensor of that name, ``robot:sensor`` where a robot carries it, or None."""
         return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
 
     def GetBodyFromEnvironmentBodyIndex(self, bodyIndex: int) -> KinBody | None:

@@ -187,6 +187,12 @@ class Simulating(Contents):
                 body.step_controller(timestep)
         for module in tuple(self._modules):
             module.SimulationStep(timestep)
+        stamp = self._clock.now + round(timestep * 1e6)
+        for body in map(self.wrap, self._simulation.bodies):
+            if isinstance(body, Robot):
+                body.step_sensors(timestep, stamp)
+        for sensor in tuple(self._sensors):
+            sensor.advance(timestep, stamp)
 
 
 def _checked_step(timestep: float, name: str, least: float = 0.0) -> float:

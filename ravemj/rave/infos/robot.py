@@ -17,6 +17,7 @@ from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.infos.base import Info, identity, info_class, pose, vector
 from ravemj.rave.infos.json import PLAIN, POSE, TEXT, Entry, Json, info
 from ravemj.rave.infos.sensor import CameraGeomData, SensorGeometry
+from ravemj.rave.infos.sensor_devices import device_of, geometry_of
 
 if TYPE_CHECKING:
     from ravemj.model.manipulators import ManipulatorBuilder
@@ -127,7 +128,7 @@ class AttachedSensorInfo(Info):
         _linkname: Name of the link that carries it.
         _trelative: ``T_link_sensor``, shape (4, 4).
         _sensorname: OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``; empty for a mere frame.
-        _sensorgeometry: What is fixed about it: of a camera a ``CameraGeomData``.
+        _sensorgeometry: What is fixed about it: of a camera a ``CameraGeomData``; None: OpenRAVE's defaults.
     """
 
     _called = "Robot.AttachedSensorInfo"
@@ -147,7 +148,7 @@ class AttachedSensorInfo(Info):
             _linkname="" if sensor.link is None else body.links[sensor.link].name,
             _trelative=sensor.T_link_sensor.matrix(),
             _sensorname=sensor.type,
-            _sensorgeometry=None if sensor.camera is None else CameraGeomData.of(sensor.camera),
+            _sensorgeometry=None if sensor.device is None else geometry_of(sensor.device),
         )
 
     def sensor(self, links: Sequence[str]) -> scene.AttachedSensor:
@@ -155,20 +156,30 @@ class AttachedSensorInfo(Info):
 
         Args:
             links: The names of the robot's links.
+
+        Raises:
+            ArgumentError: the geometry is of another kind of sensor, or holds something else than numbers.
         """
-        geometry = self._sensorgeometry
+        geometry, kind = self._sensorgeometry, scene.sensor_kind(self._sensorname or "")
+        device = None if kind is None else kind.device
+        if device is not None and geometry is not None:
+            device = device_of(geometry, device)
+            if device is None:
+                message = f"a {type(geometry).__name__} says nothing about a {self._sensorname}"
+                raise ArgumentError(f"AttachedSensorInfo._sensorgeometry: {message}")
         return scene.AttachedSensor(
             name=self._name or "",
             link=links.index(self._linkname) if self._linkname in links else None,
             T_link_sensor=pose(self._trelative, "AttachedSensorInfo._trelative"),
             type=self._sensorname or None,
-            camera=geometry.camera() if isinstance(geometry, CameraGeomData) else None,
+            device=device,
             source=FROM_SCRIPT,
         )
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        del obj
-        return _SENSOR_JSON
+        kind = scene.sensor_kind(str((obj or {}).get("type", self._sensorname) or "BaseCamera"))
+        described = CameraGeomData if kind is None else type(geometry_of(kind.device))
+        return (*_SENSOR_JSON, Entry("sensorGeometry", "_sensorgeometry", info(described), optional=True))
 
 
 _SENSOR_JSON = (
@@ -177,7 +188,6 @@ _SENSOR_JSON = (
     Entry("linkName", "_linkname", TEXT),
     Entry("transform", "_trelative", POSE),
     Entry("type", "_sensorname", TEXT),
-    Entry("sensorGeometry", "_sensorgeometry", info(CameraGeomData), optional=True),
 )
 
 

@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats
-from ravemj.model import scene
+from ravemj.errors import RavemjError
 from ravemj.rave.enums import SensorType
 from ravemj.rave.infos.base import Info, info_class
 from ravemj.rave.infos.json import PLAIN, TEXT, Entry, Json, info
@@ -68,19 +69,35 @@ _INTRINSICS_JSON = (
 )
 
 
+_PINHOLE_JSON = (
+    Entry("intrinsics", "intrinsics", info(CameraIntrinsics)),
+    Entry("width", "width", PLAIN),
+    Entry("height", "height", PLAIN),
+)
+
+
 @info_class
 class SensorGeometry(Info):
-    """What is fixed about a sensor; each kind of sensor has its own class.
+    """What is fixed about a sensor of any kind; each kind of sensor has its own class.
 
     Attributes:
         hardware_id: What its maker calls it.
     """
 
     _called = "SensorGeometry"
+    _internal = ("sensor_type",)
     _type = SensorType.Invalid
-    _keys: "Sequence[tuple[str, str]]" = ()
+    _keys: ClassVar[Sequence[tuple[str, str]]] = ()
 
     hardware_id: str = ""
+
+    def __init__(self, *args: object, **kwargs: object) -> None:
+        raise RavemjError("SensorGeometry stands for all kinds of geometry: make a CameraGeomData, for instance")
+
+    @classmethod
+    def sensor_type(cls) -> SensorType:
+        """Return the kind of sensor that objects of this class describe."""
+        return cls._type
 
     def GetType(self) -> SensorType:
         """Return the kind of sensor."""
@@ -114,18 +131,6 @@ class CameraGeomData(SensorGeometry):
     gain: float = 1.0
     target_region: str = ""
 
-    @classmethod
-    def of(cls, camera: scene.Intrinsics) -> "CameraGeomData":
-        """Return what a camera of a scene has."""
-        matrix = np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]])
-        return cls(intrinsics=CameraIntrinsics(matrix), width=camera.width, height=camera.height)
-
-    def camera(self) -> scene.Intrinsics:
-        """Return the camera of a scene."""
-        K = np.asarray(self.intrinsics.K, dtype=float)
-        fx, fy, cx, cy = (float(K[place]) for place in ((0, 0), (1, 1), (0, 2), (1, 2)))
-        return scene.Intrinsics(fx, fy, cx, cy, int(self.width), int(self.height))
-
     @property
     def KK(self) -> Floats:
         """The camera matrix [pixels], shape (3, 3)."""
@@ -138,9 +143,7 @@ class CameraGeomData(SensorGeometry):
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
         return [
             *super()._json(obj),
-            Entry("intrinsics", "intrinsics", info(CameraIntrinsics)),
-            Entry("width", "width", PLAIN),
-            Entry("height", "height", PLAIN),
+            *_PINHOLE_JSON,
             Entry("measurementTime", "measurement_time", PLAIN),
             Entry("gain", "gain", PLAIN),
             Entry("targetRegion", "target_region", TEXT),
@@ -163,6 +166,11 @@ class LaserGeomData(SensorGeometry):
 
     _called = "LaserGeomData"
     _type = SensorType.Laser
+    _keys = (
+        *(("minAngle", "min_angle"), ("maxAngle", "max_angle"), ("resolution", "resolution")),
+        *(("minRange", "min_range"), ("maxRange", "max_range")),
+        *(("timeIncrement", "time_increment"), ("timeScan", "time_scan")),
+    )
 
     min_angle: Sequence[float] = (0.0, 0.0)
     max_angle: Sequence[float] = (0.0, 0.0)
@@ -171,6 +179,47 @@ class LaserGeomData(SensorGeometry):
     max_range: float = 0.0
     time_increment: float = 0.0
     time_scan: float = 0.0
+
+
+@info_class
+class SpinningLaserGeomData(LaserGeomData):
+    """A laser scanner whose plane turns about a second axis, ``BaseSpinningLaser2D``; OpenRAVE has it in XML only.
+
+    Attributes:
+        spin_axis: The axis, in the sensor's frame.
+        spin_position: A point on it [m].
+        spin_speed: How fast the plane turns [rad/s].
+    """
+
+    _called = "SpinningLaserGeomData"
+    _keys = (
+        *LaserGeomData._keys,
+        *(("spinAxis", "spin_axis"), ("spinPosition", "spin_position"), ("spinSpeed", "spin_speed")),
+    )
+
+    spin_axis: Sequence[float] = (1.0, 0.0, 0.0)
+    spin_position: Sequence[float] = (0.0, 0.0, 0.0)
+    spin_speed: float = 0.0
+
+
+@info_class
+class FlashLidarGeomData(LaserGeomData):
+    """A camera that measures distances, ``BaseFlashLidar3D``; OpenRAVE has it in XML only. Angles mean nothing here.
+
+    Attributes:
+        intrinsics: The camera matrix [rays].
+        width: Columns.
+        height: Rows.
+    """
+
+    _called = "FlashLidarGeomData"
+
+    intrinsics: CameraIntrinsics = field(default_factory=CameraIntrinsics)
+    width: int = 0
+    height: int = 0
+
+    def _json(self, obj: Json | None = None) -> Sequence[Entry]:
+        return [*super()._json(obj), *_PINHOLE_JSON]
 
 
 @info_class
@@ -183,6 +232,7 @@ class JointEncoderGeomData(SensorGeometry):
 
     _called = "JointEncoderGeomData"
     _type = SensorType.JointEncoder
+    _keys = (("resolution", "resolution"),)
 
     resolution: Sequence[float] = ()
 
@@ -214,6 +264,7 @@ class IMUGeomData(SensorGeometry):
 
     _called = "IMUGeomData"
     _type = SensorType.IMU
+    _keys = (("timeMeasurement", "time_measurement"),)
 
     time_measurement: float = 0.0
 
@@ -228,6 +279,7 @@ class OdometryGeomData(SensorGeometry):
 
     _called = "OdometryGeomData"
     _type = SensorType.Odometry
+    _keys = (("targetId", "targetid"),)
 
     targetid: str = ""
 
@@ -242,6 +294,7 @@ class TactileGeomData(SensorGeometry):
 
     _called = "TactileGeomData"
     _type = SensorType.Tactile
+    _keys = (("thickness", "thickness"),)
 
     thickness: float = 0.0
 

@@ -1,0 +1,115 @@
+"""The sensors of a robot."""
+
+from typing import TYPE_CHECKING, cast
+
+from ravemj.core.arguments import checked_kind
+from ravemj.errors import ArgumentError
+from ravemj.model import scene
+from ravemj.rave.attached_sensor import AttachedSensor
+from ravemj.rave.body.base import BodyPart
+from ravemj.rave.infos import AttachedSensorInfo
+from ravemj.rave.sensors import Sensor
+
+if TYPE_CHECKING:
+    from ravemj.rave.robot import Robot
+
+
+class Sensors(BodyPart):
+    """What a robot carries to measure with."""
+
+    _devices: dict[str, Sensor]
+    """The devices that were asked for, by the names of their places."""
+    _internal = ("device", "forget_sensors", "step_sensors")
+
+    def GetAttachedSensors(self) -> list[AttachedSensor]:
+        """Return the sensors on the robot's links, in the order of the file."""
+        robot = cast("Robot", self)
+        return [AttachedSensor(robot, self._state, index) for index in range(len(self._state.scene.sensors))]
+
+    def GetAttachedSensor(self, sensorname: str) -> AttachedSensor | None:
+        """Return an attached sensor, or None where there is none of that name.
+
+        Args:
+            sensorname: Its name.
+        """
+        return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == sensorname), None)
+
+    GetSensors = GetAttachedSensors
+    GetSensor = GetAttachedSensor
+
+    def AddAttachedSensor(
+        self, attachedsensorinfo: AttachedSensorInfo, removeduplicate: bool = False
+    ) -> AttachedSensor:
+        """Attach a sensor to a link.
+
+        Args:
+            attachedsensorinfo: Its description.
+            removeduplicate: Whether it replaces one of the same name.
+
+        Returns:
+            The new attached sensor.
+
+        Raises:
+            openrave_exception: there is one of that name, or no such link. Nothing has changed then.
+        """
+        body = self._state.scene
+        info = checked_kind(attachedsensorinfo, AttachedSensorInfo, "AddAttachedSensor: attachedsensorinfo")
+        made = info.sensor([link.name for link in body.links])
+        if made.link is None:
+            message = f"'{body.name}' has no such link as {info!r} names"
+            raise ArgumentError(f"AddAttachedSensor: {message}")
+        sensors, names = list(body.sensors), [sensor.name for sensor in body.sensors]
+        index = names.index(made.name) if made.name in names else len(names)
+        if index < len(names) and not removeduplicate:
+            raise ArgumentError(f"AddAttachedSensor: '{body.name}' has a sensor '{made.name}' already")
+        kind = scene.sensor_kind(made.type or "")
+        is_told = kind is not None and made.device is not None and made.device != kind.device
+        problem = made.device.problem() if is_told and made.device is not None else None
+        if problem is not None:
+            raise ArgumentError(f"AddAttachedSensor: '{made.name}' cannot measure: {problem}")
+        with self._simulation.lock:
+            self.forget_sensors(made.name)
+            self._state.edit(sensors=(*sensors[:index], made, *sensors[index + 1 :]))
+        return self.GetAttachedSensors()[index]
+
+    def RemoveAttachedSensor(self, attsensor: AttachedSensor) -> bool:
+        """Take a sensor off; those behind it move up.
+
+        Args:
+            attsensor: The attached sensor.
+
+        Returns:
+            Whether it was there.
+        """
+        if attsensor not in self.GetAttachedSensors():
+            return False
+        with self._simulation.lock:
+            name = attsensor.GetName()
+            self.forget_sensors(name)
+            self._state.edit(sensors=tuple(one for one in self._state.scene.sensors if one.name != name))
+        return True
+
+    def device(self, attached: AttachedSensor) -> Sensor | None:
+        """Return the one object that users have for the device of an attached sensor; None for a mere frame."""
+        name, description = attached.GetName(), attached.description
+        if description.type is None:
+            return None
+        with self._simulation.lock:
+            if name not in self._devices:
+                self._devices[name] = Sensor(attached.GetRobot().GetEnv(), description, attached)
+            return self._devices[name]
+
+    def step_sensors(self, timestep: float, stamp: int) -> None:
+        """Let the sensors measure in a step of time [s] that ends at a stamp [microseconds]; others are not made."""
+        for attached in self.GetAttachedSensors():
+            if attached.GetName() in self._devices or attached.description.is_on:
+                sensor = attached.GetSensor()
+                if sensor is not None:
+                    sensor.advance(timestep, stamp)
+
+    def forget_sensors(self, name: str | None = None) -> None:
+        """Switch a device off and forget it, with what is drawn of it; None: all."""
+        for known in [*self._devices] if name is None else [name]:
+            sensor = self._devices.pop(known, None)
+            if sensor is not None:
+                sensor.hide()

@@ -1,0 +1,188 @@
+"""What is fixed about sensors: name, place, geometry."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import ArrayLike
+
+from ravemj.core.arrays import checked_transform
+from ravemj.core.transforms import Floats, pose_of
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.model import scene
+from ravemj.rave.enums import InterfaceType, SensorType
+from ravemj.rave.infos.sensor import SensorGeometry
+from ravemj.rave.infos.sensor_devices import device_of, geometry_of, sensor_type
+from ravemj.rave.interface import Interface
+from ravemj.rave.sensor_data import DATA, SensorData
+from ravemj.rave.user_data import Annotations
+
+if TYPE_CHECKING:
+    from ravemj.rave.attached_sensor import AttachedSensor
+    from ravemj.rave.environment import Environment
+
+
+class DescribedSensor(Interface):
+    """A sensor as the scene describes it, on a robot or on its own.
+
+    Attributes:
+        attached: Its place on a robot, or None.
+    """
+
+    _interface_type = InterfaceType.sensor
+    _internal = ("attached", "description", "device")
+
+    def __init__(
+        self, env: "Environment", description: scene.AttachedSensor, attached: "AttachedSensor | None"
+    ) -> None:
+        self._env = env
+        self._annotations = Annotations()
+        self._own = description
+        self.attached = attached
+
+    @property
+    def description(self) -> scene.AttachedSensor:
+        """What the scene says about the sensor; of one without a robot the pose is that in the world."""
+        return self._own if self.attached is None else self.attached.description
+
+    @property
+    def device(self) -> scene.Device:
+        """What is fixed about the sensor.
+
+        Raises:
+            UnsupportedError: its kind is not known.
+        """
+        device = self.description.device
+        if device is None:
+            raise UnsupportedError(f"sensor '{self.GetXMLId()}'", "simulation of sensors of this kind")
+        return device
+
+    def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.AttachedSensor
+        if self.attached is None:
+            self._own = replace(self._own, **changes)
+        else:
+            self.attached.edit(**changes)
+
+    def _moved(self) -> None:
+        """Take note that a sensor without a robot is elsewhere."""
+
+    def _take_over(self) -> None:
+        """Begin anew with another device."""
+
+    def _problem(self) -> str | None:
+        """Return why the sensor cannot measure, or None."""
+        description, device = self.description, self.device
+        if self.attached is not None and description.link is None:
+            return "it is attached to no link"
+        if self.attached is None and not isinstance(device, scene.Intrinsics | scene.Laser | scene.FlashLidar):
+            return "it measures what a link feels: attach it to a robot, with robot.AddAttachedSensor"
+        return device.problem()
+
+    def GetName(self) -> str:
+        """Return the names of the robot and of the attached sensor, with a colon between them."""
+        if self.attached is None:
+            return self._own.name
+        return f"{self.attached.GetRobot().GetName()}:{self.attached.GetName()}"
+
+    def SetName(self, name: str) -> None:
+        """Give a sensor without a robot a name.
+
+        Args:
+            name: The name.
+
+        Raises:
+            openrave_exception: a robot carries the sensor, or the environment has another one of that name.
+        """
+        self._check_loose("SetName", "its robot and its place on it name it")
+        other = self._env.GetSensor(name)
+        if other is not None and other is not self and self in self._env.GetSensors():
+            raise RavemjError(f"SetName: there already is a sensor '{name}'", ErrorCode.SensorNameConflict)
+        self._edit(name=str(name))
+
+    def _check_loose(self, caller: str, reason: str) -> None:
+        if self.attached is not None:
+            raise RavemjError(f"{caller}: '{self.GetName()}' is on a robot: {reason}", ErrorCode.InvalidState)
+
+    def GetXMLId(self) -> str:
+        """Return OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``."""
+        return self.description.type or ""
+
+    def GetTransform(self) -> Floats:
+        """Return the pose in the world, shape (4, 4): that of the attached sensor."""
+        return self._own.T_link_sensor.matrix() if self.attached is None else self.attached.GetTransform()
+
+    def GetTransformPose(self) -> Floats:
+        """Return the pose in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return pose_of(self.GetTransform()).numbers()
+
+    def SetTransform(self, transform: ArrayLike) -> None:
+        """Move a sensor without a robot.
+
+        Args:
+            transform: ``T_world_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
+
+        Raises:
+            openrave_exception: a robot carries it; ``attached.SetRelativeTransform`` moves it on its link.
+        """
+        self._check_loose("SetTransform", "attached.SetRelativeTransform moves it on its link")
+        self._edit(T_link_sensor=pose_of(checked_transform(transform, "SetTransform: transform")))
+        self._moved()
+
+    def SetSensorGeometry(self, geometry: SensorGeometry) -> bool:
+        """Give the sensor another resolution, range or calibration; it begins to measure anew.
+
+        Args:
+            geometry: A description as ``GetSensorGeometry`` returns it.
+
+        Returns:
+            Whether the description is of its kind, and was taken over.
+
+        Raises:
+            openrave_exception: nothing can be measured with it. Nothing has changed then.
+        """
+        with self._env.simulation.lock:
+            device = device_of(geometry, self.device)
+            if device is None:
+                return False
+            problem = device.problem()
+            if problem is not None:
+                raise ArgumentError(f"SetSensorGeometry: '{self.GetName()}' cannot measure like this: {problem}")
+            self._edit(device=device)
+            self._take_over()
+        return True
+
+    def GetSensorGeometry(self, type: SensorType | None = None) -> SensorGeometry | None:  # OpenRAVE's name
+        """Return what is fixed about the sensor, a copy; None where it has no geometry of this kind.
+
+        Args:
+            type: The kind of geometry that is asked for; None: the sensor's own.
+        """
+        device = self.description.device
+        geometry = None if device is None else geometry_of(device)
+        is_meant = geometry is not None and type in {None, SensorType.Invalid, geometry.GetType()}
+        return geometry if is_meant else None
+
+    def CreateSensorData(self, type: SensorType | None = None) -> SensorData:  # OpenRAVE's name
+        """Return an empty measurement.
+
+        Args:
+            type: The kind of data; None: the sensor's own.
+
+        Raises:
+            openrave_exception: the sensor gives no data of this kind.
+        """
+        return DATA[self._checked_type(type, "CreateSensorData")]()
+
+    def Supports(self, type: SensorType) -> bool:  # OpenRAVE's name
+        """Return whether the sensor gives this kind of data.
+
+        Args:
+            type: A ``Sensor.Type``.
+        """
+        device = self.description.device
+        return device is not None and type == sensor_type(device)
+
+    def _checked_type(self, type: SensorType | None, caller: str) -> SensorType:  # as in OpenRAVE
+        own = sensor_type(self.device)
+        if type not in {None, SensorType.Invalid, own}:
+            raise ArgumentError(f"{caller}: '{self.GetXMLId()}' has no data of type {SensorType(type).name}")
+        return own
