@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import tutorial
 from command_line import ravemj_command
 
 import ravemj
@@ -20,9 +21,11 @@ def blocks(page: Path, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if page.name != "tutorial.md"], ids=lambda page: page.name)
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if page.stem not in tutorial.PAGES], ids=lambda page: page.name
+)
 def test_python_runs(page, tmp_path, monkeypatch, capsys):
-    """The tutorial has tests of its own."""
+    """The tutorials have tests of their own."""
     (tmp_path / "models").symlink_to(ROOT / "models")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(sys.modules, "openravepy", ravemj.compat.openravepy)  # as in `ravemj run`
