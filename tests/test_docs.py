@@ -86,5 +86,9 @@ def test_links_lead_somewhere(page):
 
 def test_the_first_screen_has_the_picture_and_the_commands():
     first_screen = "\n".join((ROOT / "README.md").read_text().splitlines()[:30])
-    for piece in ("swing.webp", "./scripts/play", "./scripts/test", "import ravemj"):
+    pictures = ("swing.webp", "arms.png", "plan.webp")
+    for piece in (*pictures, "URDF", "MJCF", "./scripts/play", "./scripts/test", "import ravemj"):
         assert piece in first_screen
+    shown = "\n".join(blocks(ROOT / "README.md", "sh"))
+    for command in re.findall(r"`(ravemj (?:play|ik|plan) [^`]+)`", first_screen):
+        assert command in shown, "commands of the blocks are executed"
