@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import tutorial
 from command_line import ravemj_command
 
 import ravemj
@@ -20,9 +21,11 @@ def blocks(page: Path, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if page.name != "tutorial.md"], ids=lambda page: page.name)
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if page.stem not in tutorial.PAGES], ids=lambda page: page.name
+)
 def test_python_runs(page, tmp_path, monkeypatch, capsys):
-    """The tutorial has tests of its own."""
+    """The tutorials have tests of their own."""
     (tmp_path / "models").symlink_to(ROOT / "models")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(sys.modules, "openravepy", ravemj.compat.openravepy)  # as in `ravemj run`
@@ -83,5 +86,9 @@ def test_links_lead_somewhere(page):
 
 def test_the_first_screen_has_the_picture_and_the_commands():
     first_screen = "\n".join((ROOT / "README.md").read_text().splitlines()[:30])
-    for piece in ("swing.webp", "./scripts/play", "./scripts/test", "import ravemj"):
+    pictures = ("swing.webp", "arms.png", "plan.webp")
+    for piece in (*pictures, "URDF", "MJCF", "./scripts/play", "./scripts/test", "import ravemj"):
         assert piece in first_screen
+    shown = "\n".join(blocks(ROOT / "README.md", "sh"))
+    for command in re.findall(r"`(ravemj (?:play|ik|plan) [^`]+)`", first_screen):
+        assert command in shown, "commands of the blocks are executed"
