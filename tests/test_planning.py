@@ -83,18 +83,10 @@ def test_the_smaller_tree_is_grown_so_that_none_is_fed_in_vain():
     assert first + second <= 2 + search.iterations * (1 + lines), "memory is bounded by the iterations"
 
 
-def in_a_tube(values):
-    """A narrow way out of a pocket along the first value."""
-    return values[0] > -1.0 or np.abs(values[1:]).max() < 0.1
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_trees_in_narrow_places_take_shorter_lines(seed):
-    start, goal = np.array([-2.0, 0, 0, 0, 0]), np.array([1.5, 1.5, 0, 0, 0])
-    narrow = space(5)
-    search = connect(Edges(narrow, in_a_tube), [start], [goal], budget(3000), np.random.default_rng(seed))
-    assert search.end is End.found
-    assert path_is_allowed(Edges(narrow, in_a_tube), search.path)
+def test_a_tree_that_cannot_grow_leaves_the_other_its_turn():
+    search = found(lambda values: values[0] > -0.5 or (values == START).all(), iterations=2000)
+    first, second = (tree.count for tree in search.trees)
+    assert (first, second > 30) == (1, True)
 
 
 def test_one_of_several_starts_leads_to_one_of_several_goals():

@@ -1,6 +1,6 @@
 """Rapidly-exploring random trees.
 
-``connect`` is RRT-Connect (J. Kuffner and S. LaValle, ICRA 2000) with balanced trees: the one that is grown is always
+``connect`` is RRT-Connect (J. Kuffner and S. LaValle, ICRA 2000) with balanced trees: the one that is grown is mostly
 the smaller one, so that a tree in a narrow place is not fed in vain.
 """
 
@@ -19,9 +19,8 @@ from ravemj.planning.trees import Tree
 RANGE = 1.0
 """How far [rad or m] one line of a tree goes at most."""
 
-_LEAST_RANGE = 0.05
-_SHORTER, _LONGER = 0.98, 1.5
-"""A tree whose lines are blocked takes shorter ones, as it needs in narrow places, until one is free."""
+_PATIENCE = 20
+"""After so many blocked lines of the smaller tree, the other one has a turn: perhaps it finds the way in."""
 
 _MOST_LINES = 16
 """Of straight lines from starts to goals that are tried before any tree is grown."""
@@ -138,8 +137,7 @@ class _Growth:
         for start in starts:
             self.trees[0].add(start)
         self._goals = [self.trees[1].add(goal) for goal in goals]
-        self._ranges = [RANGE, RANGE]
-        self._grown = 0
+        self._grown = self._blocked = 0
 
     def add_goal(self, goal: Floats | None) -> None:
         """Add a further goal, if it is one."""
@@ -157,16 +155,15 @@ class _Growth:
 
     def grow(self, target: Floats, iteration: int) -> Search | None:
         """Grow the smaller tree towards a configuration, and the other to where it got; return the path, or None."""
-        near, far, farthest = self.trees[self._grown], self.trees[1 - self._grown], self._ranges[self._grown]
-        added = _extend(self._edges, near, target, farthest)
-        farthest *= _SHORTER if added is None else _LONGER
-        self._ranges[self._grown] = min(max(farthest, _LEAST_RANGE), RANGE)
+        near, far = self.trees[self._grown], self.trees[1 - self._grown]
+        added = _extend(self._edges, near, target)
         met = None if added is None else _reach(self._edges, far, near.node(added))
         if added is not None and met is not None:
             ends = (added, met) if self._grown == 0 else (met, added)
             return self._found(*ends, iteration)
-        if near.count > far.count:
-            self._grown = 1 - self._grown
+        self._blocked = self._blocked + 1 if added is None else 0
+        if near.count > far.count or self._blocked >= _PATIENCE:
+            self._grown, self._blocked = 1 - self._grown, 0
         return None
 
     def _found(self, at_start: int, at_goal: int, iteration: int) -> Search:
@@ -225,14 +222,14 @@ def explore(edges: Edges, starts: Sequence[Floats], size: int, budget: Budget, r
     return tree
 
 
-def _extend(edges: Edges, tree: Tree, target: Floats, farthest: float = RANGE) -> int | None:
+def _extend(edges: Edges, tree: Tree, target: Floats) -> int | None:
     """Grow a tree towards a configuration by one line; return the new node, or None where it is blocked."""
     nearest = tree.nearest(target)
     start = tree.node(nearest)
     step = edges.space.difference(target, start)
     far = math.sqrt(step.dot(step))
-    if far > farthest:
-        step *= farthest / far
+    if far > RANGE:
+        step *= RANGE / far
     return tree.add(start + step, nearest) if edges.line(start, step) else None
 
 
