@@ -58,11 +58,10 @@ def _place(start: Floats, step: Floats, length: float, along: float) -> Floats:
 
 
 def _without_straight_corners(edges: Edges, path: Floats) -> Floats:
-    """Return the path without corners that lines make needless: to its end if that is allowed, else half as far, ..."""
-    space, kept, last = edges.space, [0], len(path) - 1
-    while kept[-1] < last:
-        here, ahead = kept[-1], last - kept[-1]
-        while ahead > 1 and not edges.line(path[here], space.difference(path[here + ahead], path[here])):
-            ahead //= 2
-        kept.append(here + ahead)
-    return path[kept]
+    """Return the path without corners that a line to the next one but one makes needless."""
+    space, kept = edges.space, [0]
+    for index in range(1, len(path) - 1):
+        before, after = path[kept[-1]], path[index + 1]
+        if not edges.line(before, space.difference(after, before)):
+            kept.append(index)
+    return path[[*kept, len(path) - 1]] if len(path) > 1 else path
