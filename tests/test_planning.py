@@ -15,7 +15,7 @@ from ravemj.planning.retiming.linear import Linear
 from ravemj.planning.retiming.parabolic import Parabolic
 from ravemj.planning.retiming.polynomials import Cubic, Quintic
 from ravemj.planning.retiming.segments import Limits, OutsideLimitsError, RetimingError, retime
-from ravemj.planning.rrt import Budget, End, MoreGoals, connect, explore, single
+from ravemj.planning.rrt import RANGE, Budget, End, MoreGoals, connect, explore, single
 from ravemj.planning.shortcuts import shorten
 from ravemj.planning.space import Coordinates, Space
 from ravemj.planning.verification import Samples, flaw
@@ -57,8 +57,8 @@ def budget(iterations: int = 20000, **options) -> Budget:
     return Budget(iterations, **options)
 
 
-def found(allowed, *, starts=(START,), goals=(GOAL,), seed=0, **options):
-    return connect(Edges(space(), allowed), starts, goals, budget(), np.random.default_rng(seed), **options)
+def found(allowed, *, starts=(START,), goals=(GOAL,), seed=0, iterations=20000, **options):
+    return connect(Edges(space(), allowed), starts, goals, budget(iterations), np.random.default_rng(seed), **options)
 
 
 @pytest.mark.parametrize("allowed", [round_a_wall, in_a_tunnel, lambda values: True])
@@ -75,10 +75,18 @@ def test_paths_are_allowed_everywhere_and_join_start_and_goal(allowed, seed):
 
 
 def test_the_smaller_tree_is_grown_so_that_none_is_fed_in_vain():
-    search = found(nowhere)
+    search = found(nowhere, iterations=4000)
     first, second = (tree.count for tree in search.trees)
-    assert (search.end, search.path, search.iterations) == (End.iterations, None, 20000)
+    assert (search.end, search.path, search.iterations) == (End.iterations, None, 4000)
     assert min(first, second) > 0.4 * max(first, second)
+    lines = np.ceil(np.linalg.norm(space().upper - space().lower) / RANGE)  # of a tree to where the other got
+    assert first + second <= 2 + search.iterations * (1 + lines), "memory is bounded by the iterations"
+
+
+def test_a_tree_that_cannot_grow_leaves_the_other_its_turn():
+    search = found(lambda values: values[0] > -0.5 or (values == START).all(), iterations=2000)
+    first, second = (tree.count for tree in search.trees)
+    assert (first, second > 30) == (1, True)
 
 
 def test_one_of_several_starts_leads_to_one_of_several_goals():

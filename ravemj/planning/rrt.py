@@ -1,6 +1,6 @@
 """Rapidly-exploring random trees.
 
-``connect`` is RRT-Connect (J. Kuffner and S. LaValle, ICRA 2000) with balanced trees: the one that is grown is always
+``connect`` is RRT-Connect (J. Kuffner and S. LaValle, ICRA 2000) with balanced trees: the one that is grown is mostly
 the smaller one, so that a tree in a narrow place is not fed in vain.
 """
 
@@ -18,6 +18,9 @@ from ravemj.planning.trees import Tree
 
 RANGE = 1.0
 """How far [rad or m] one line of a tree goes at most."""
+
+_PATIENCE = 20
+"""After so many blocked lines of the smaller tree, the other one has a turn: perhaps it finds the way in."""
 
 _MOST_LINES = 16
 """Of straight lines from starts to goals that are tried before any tree is grown."""
@@ -134,7 +137,7 @@ class _Growth:
         for start in starts:
             self.trees[0].add(start)
         self._goals = [self.trees[1].add(goal) for goal in goals]
-        self._grown = 0
+        self._grown = self._blocked = 0
 
     def add_goal(self, goal: Floats | None) -> None:
         """Add a further goal, if it is one."""
@@ -158,8 +161,9 @@ class _Growth:
         if added is not None and met is not None:
             ends = (added, met) if self._grown == 0 else (met, added)
             return self._found(*ends, iteration)
-        if near.count > far.count:
-            self._grown = 1 - self._grown
+        self._blocked = self._blocked + 1 if added is None else 0
+        if near.count > far.count or self._blocked >= _PATIENCE:
+            self._grown, self._blocked = 1 - self._grown, 0
         return None
 
     def _found(self, at_start: int, at_goal: int, iteration: int) -> Search:
