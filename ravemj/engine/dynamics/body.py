@@ -322,18 +322,23 @@ class BodyDynamics:
     ) -> tuple[Floats, Floats, Floats]:
         """Return the parts of ``inverse``: of accelerations, of joint velocities, and of all else."""
         by_acceleration, by_velocity, rest = self._part_rows
+        model, data = self._model, self._data
         self._set_gravity(gravity)
-        # Gravity and the base are in all three motions, so that differences leave what is asked for. The first is the
-        # one with velocities as they are in MuJoCo's data already.
-        for with_joints in (self._with_joints, not self._with_joints):
-            self._set_velocities(velocities, with_joints=with_joints)
-            if with_joints:
-                self._set_accelerations(accelerations)
-                mujoco.mj_rne(self._model, self._data, 1, by_acceleration)
+        self._set_velocities(velocities)
+        self._set_accelerations(accelerations)
+        mujoco.mj_rne(model, data, 1, by_acceleration)
+        self._set_accelerations(None)
+        mujoco.mj_rne(model, data, 1, rest)
+        by_acceleration -= rest
+        if self._roots_move:
+            self._set_velocities(velocities, with_joints=False)
             self._set_accelerations(None)
-            mujoco.mj_rne(self._model, self._data, 1, by_velocity if with_joints else rest)
-        by_acceleration -= by_velocity
-        by_velocity -= rest
+            mujoco.mj_rne(model, data, 1, by_velocity)
+            np.subtract(rest, by_velocity, by_velocity)
+        else:  # without gravity, the joint velocities are all that is left; no velocity has to be written for that
+            self._gravity[...] = 0.0
+            mujoco.mj_rne(model, data, 1, by_velocity)
+        rest -= by_velocity
         if external:
             self._add_external(rest, external)
         of_accelerations, of_velocities, others = self._of_dofs(self._parts)
