@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from benchmarks.measure import MODEL, Row, run_python
 
-_PROCESSES = 21
+_PROCESSES = 11
 _TIMED = """
 import time
 wall, processor = time.perf_counter(), time.process_time()
