@@ -5,13 +5,14 @@ import math
 
 import numpy as np
 import pytest
+from conftest import MODELS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ravemj
 from ravemj import CollisionOptions, CollisionReport, KinBody, Ray
 from ravemj.engine.collision import pairs
-from ravemj.engine.collision.configurations import collision_test
+from ravemj.engine.collision.moving import moving_test
 from ravemj.geometry_functions import CheckOBBCollision, OrientedBox
 
 pytestmark = pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
@@ -696,7 +697,8 @@ class TestManyPairs:
     def test_as_planners_ask(self, env, snake):
         values = np.random.default_rng(3).uniform(-2.5, 2.5, (60, snake.GetDOF()))
         before = snake.GetLinkTransformations()
-        with env.simulation.lock, collision_test(snake.simulation_state) as collides:
+        with env, snake:
+            collides = moving_test(snake.simulation_state, range(snake.GetDOF()))
             found = [collides(one) for one in values]
         np.testing.assert_array_equal(snake.GetLinkTransformations(), before)
         for one, answer in zip(values, found, strict=True):
@@ -709,6 +711,24 @@ class TestManyPairs:
         for number in range(5):
             snake.SetDOFValues(np.full(snake.GetDOF(), 0.3 * number))
             self.check(env, snake)
+
+
+@pytest.mark.parametrize("place", [(0.45, 0.1, 0.5), (0, 0, -0.05)], ids=["before it", "under its base"])
+def test_batch_follows_mimic_and_displaced_joints(place):
+    env = ravemj.load(MODELS / "panda.xml")
+    panda = env.GetRobots()[0]
+    box(env, "box", place, (0.15, 0.15, 0.15))
+    finger = panda.GetLinks()[-1]
+    finger.SetTransform(finger.GetTransform() @ ravemj.matrixFromPose([1, 0, 0, 0, 0, 0, 0.3]))
+    displaced = finger.GetTransform()
+    values = np.random.default_rng(5).uniform(*panda.GetDOFLimits(), (40, panda.GetDOF()))
+    found = {itself: panda.batch_collides(values, itself).tolist() for itself in (False, True)}
+    np.testing.assert_array_equal(finger.GetTransform(), displaced)
+    for row, *answers in zip(values, *found.values(), strict=True):
+        panda.SetDOFValues(row)
+        others = env.CheckCollision(panda)
+        assert answers == [others, others or panda.CheckSelfCollision()]
+    assert sum(found[False]) == len(values) if place[0] == 0 else 0 < sum(found[False]) < len(values)
 
 
 def test_batch_agrees_with_single_questions(env, arm):

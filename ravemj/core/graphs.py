@@ -78,7 +78,7 @@ class ShortestPaths:
             through = self.lengths[:, node, None] + self.lengths[node]
             shorter = through < self.lengths
             np.copyto(self.lengths, through, where=shorter)
-            np.copyto(self._edge, np.broadcast_to(self._edge[node], shorter.shape), where=shorter)
+            np.copyto(self._edge, self._edge[node], where=shorter)
 
     def path(self, start: int, end: int) -> list[int]:
         """Return the edges from one node to another; none where there is no path, or no need of one."""

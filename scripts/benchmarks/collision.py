@@ -12,7 +12,7 @@ import ravemj
 from benchmarks.kinematics import robots
 from benchmarks.measure import ROOT, Row, microseconds, take_turns
 from ravemj.core.transforms import Floats
-from ravemj.engine.collision.configurations import collision_test
+from ravemj.engine.collision.moving import moving_test
 
 _LINKS = 7
 _LINK = """<Body name="l{n}"><offsetfrom>l{before}</offsetfrom><Translation>0 0 .3</Translation>
@@ -55,7 +55,8 @@ def _panda_rows(panda: ravemj.Robot) -> Iterator[Row]:
     both, floor = free.measure(lambda: env.CheckCollision(panda) or panda.CheckSelfCollision())
     label = f"{what}: SetDOFValues + CheckCollision + CheckSelfCollision : mj_kinematics + mj_collision"
     yield Row(label, "µs", both, floor)
-    with env.simulation.lock, collision_test(panda.simulation_state) as collides:
+    with env, panda:
+        collides = moving_test(panda.simulation_state, range(panda.GetDOF()))
         tested, floor = free.measure(collides=collides)
     yield Row(f"{what}: the same as planners ask : mj_kinematics + mj_collision", "µs", tested, floor, 1.5)
     values, qpos = zip(*(free.one() for _ in range(_BATCH)), strict=True)

@@ -16,12 +16,20 @@ def rows() -> list[Row]:
     model = mujoco.MjModel.from_xml_string(text)
     scene = read_file(MODEL).scene
     floor = microseconds(lambda: mujoco.MjModel.from_xml_string(text))
-    whole, bare = take_turns([microseconds(lambda: ravemj.load(MODEL)), floor], 500)
+    whole, stated, bare, bare_stated = take_turns(
+        [
+            microseconds(lambda: ravemj.load(MODEL)),
+            microseconds(lambda: ravemj.load(MODEL).data),
+            floor,
+            microseconds(lambda: mujoco.MjData(mujoco.MjModel.from_xml_string(text))),
+        ],
+        300,
+    )
     read, write, compiled, make_data, bare_again = take_turns(
         [
             microseconds(lambda: read_file(MODEL)),
             microseconds(lambda: mjcf.write(scene, Diagnostics())),
-            microseconds(lambda: Compiled(scene, Diagnostics())),
+            microseconds(lambda: Compiled(scene, Diagnostics()).data),
             microseconds(lambda: mujoco.MjData(model)),
             floor,
         ],
@@ -29,6 +37,7 @@ def rows() -> list[Row]:
     )
     return [
         Row("load, translate, compile env.xml : MjModel.from_xml_string", "µs", whole, bare, 3.5),
+        Row("  the same with the state : MjModel.from_xml_string, MjData", "µs", stated, bare_stated, 3.5),
         Row("  reading alone", "µs", read, bare_again),
         Row("  writing MJCF alone", "µs", write, bare_again),
         Row("  writing MJCF, MjSpec, MjModel, MjData", "µs", compiled, bare_again),

@@ -5,8 +5,10 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, held_with, itself
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
@@ -17,29 +19,87 @@ _KEY = 1 << 31
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], bool] | None:
-    """Return a fast test of values of some joints, or None where joints have to be set one by one.
+    """Return a fast test of values of some joints, or None where links are displaced from their joints.
 
     It looks at what the joints move, and answers for a body that stays as it is otherwise, in a world that stays as it
-    is; the caller holds the lock all the time. The model of the world is moved, the body itself is not:
-    ``body.moved()`` brings it back.
+    is; the caller holds the lock all the time. The model of the world is moved, the body at most by its joints:
+    ``body.restore`` brings both back.
 
     Args:
         body: The body; what it holds moves along.
-        dofs: The joints: hinges and sliders that no mimic joint follows.
+        dofs: The joints.
     """
-    kinematics = body.kinematics
-    followed = {dof for joint in body.scene.all_joints if joint.mimic is not None for dof in joint.mimic.dofs}
     world = body.simulation.collisions()
-    places = world.model.qpos_indices(body)[list(dofs)]
-    if kinematics.displaced or followed & set(dofs) or (places < 0).any():
+    if body.kinematics.displaced:
         return None
-    return _MovingTest(world, body, places, _pairs(world, body, MovedBy(tuple(dofs))))
+    return _MovingTest(world, body, _placement(world, body, dofs), _pairs(world, body, MovedBy(tuple(dofs))))
+
+
+def batch_collides(body: BodyState, values: Floats, *, itself_too: bool) -> NDArray[np.bool_]:
+    """Return for each configuration whether the body collides. The caller holds the lock.
+
+    Args:
+        body: The body; it is back in its configuration afterwards, and so is what it holds.
+        values: Joint values [rad or m], shape (n, dof).
+        itself_too: Whether collisions of the body with itself count.
+
+    Returns:
+        Shape (n,).
+    """
+    before, stamp = body.configuration(), body.stamp
+    held = [(grab.body, grab.body.configuration()) for grab in body.grabs]
+    try:
+        if len(values) and body.kinematics.displaced:
+            body.set_values(values[0])  # brings displaced links back to their joints
+        dofs, world = range(body.dof), body.simulation.collisions()
+        kinds = (body_and_others, itself) if itself_too else (body_and_others,)
+        moved = MovedBy(tuple(dofs))
+        if any(world.collide(_apart_from(world, kind(world, body), kind(world, body, moved))) for kind in kinds):
+            return np.ones(len(values), dtype=bool)
+        pairs = np.concatenate([_as_array(kind(world, body, moved)) for kind in kinds])
+        collides = _MovingTest(world, body, _placement(world, body, dofs), pairs)
+        return np.array([collides(one) for one in values], dtype=bool)
+    finally:
+        body.restore(before)
+        for one, configuration in held:
+            one.restore(configuration)
+        body.stamp = stamp
+
+
+def _placement(world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> Callable[[Floats], None]:
+    """Return a function that moves joints of a body in the model of the world."""
+    kinematics, part, qpos, columns = body.kinematics, world.model.part(body), world.model.data.qpos, list(dofs)
+    followed = {dof for joint in body.scene.all_joints if joint.mimic is not None for dof in joint.mimic.dofs}
+    places = world.model.qpos_indices(body)[columns]
+    full = kinematics.values()
+
+    def place(values: Floats) -> None:
+        qpos[places] = values
+
+    def place_all(values: Floats) -> None:
+        full[columns] = values
+        kinematics.set_values(full)
+        if part.take(kinematics):
+            world.model.pose_stamp += 1
+
+    return place_all if followed & set(dofs) or (places < 0).any() else place
 
 
 def _pairs(world: CollisionWorld, body: BodyState, moved: MovedBy) -> Ints:
     """Return the pairs of geoms that joints move against each other, shape (n, 2)."""
-    sets = (body_and_others(world, body, moved), itself(world, body, moved))
-    return np.concatenate([np.stack([one.first, one.second], axis=1) for one in sets])
+    return np.concatenate([_as_array(body_and_others(world, body, moved)), _as_array(itself(world, body, moved))])
+
+
+def _as_array(pairs: Pairs) -> Ints:
+    """Return the geoms of pairs, shape (n, 2)."""
+    return np.stack([pairs.first, pairs.second], axis=1)
+
+
+def _apart_from(world: CollisionWorld, pairs: Pairs, others: Pairs) -> Pairs:
+    """Return those of some pairs that are not among others."""
+    known = _as_array(others)
+    kept = ~np.isin(_keys(_as_array(pairs)), _keys(np.concatenate([known, known[:, ::-1]])))
+    return world.make_pairs(pairs.first[kept], pairs.second[kept])
 
 
 def _keys(pairs: Ints) -> Ints:
@@ -50,9 +110,9 @@ def _keys(pairs: Ints) -> Ints:
 class _MovingTest:
     """See ``moving_test``: MuJoCo's own collision detection, and the pairs of geoms that it leaves out."""
 
-    def __init__(self, world: CollisionWorld, body: BodyState, places: Ints, pairs: Ints) -> None:
+    def __init__(self, world: CollisionWorld, body: BodyState, place: Callable[[Floats], None], pairs: Ints) -> None:
         self._model, self._data = world.model.model, world.model.data
-        self._qpos, self._places, self._world = self._data.qpos, places, world
+        self._place, self._world = place, world
         tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
         meant = pairs[tested]
         self._meant = {*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()}
@@ -63,7 +123,7 @@ class _MovingTest:
     def __call__(self, values: Floats) -> bool:
         """Return whether the body collides."""
         model, data = self._model, self._data
-        self._qpos[self._places] = values
+        self._place(values)
         mujoco.mj_kinematics(model, data)
         if self._held:
             for held in self._held:
