@@ -174,6 +174,7 @@ def _menu(menu: list[Control], right: float) -> dict[Control, Rect]:
 
 def shortened(labels: list[str]) -> dict[str, str]:
     """Return for each label a text that has room; where there is a place to cut at, all of them stay different."""
+    cut: dict[str, str] = {}
     for tail in range(_LONGEST_NAME // 2, _LONGEST_NAME - 2):
         head = _LONGEST_NAME - 2 - tail
         cut = {label: label if len(label) <= _LONGEST_NAME else f"{label[:head]}..{label[-tail:]}" for label in labels}
