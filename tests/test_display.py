@@ -131,7 +131,7 @@ def test_styles_are_seen():
     assert plain[0] > 60 > plain[2]
     assert np.array_equal(plain, again), "a style is for one picture"
     assert middle[Style(collision=True)][2] > 60 > middle[Style(collision=True)][0]
-    assert middle[Style(lit=1)][0] > plain[0] + 20
+    assert middle[Style(lit=1)][2] > plain[2] + 50
     assert middle[Style(transparent=True)][2] > 100, "white is seen through it"
     white = (lines > 250).all(axis=2).mean()
     assert 0.7 < white < 0.999

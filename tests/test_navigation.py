@@ -344,6 +344,14 @@ def test_what_is_shown_is_switched_by_its_key_and_its_button(hand, shortcut):
     assert shortcut.name not in hand.gui.controls.display.shown
 
 
+def test_a_press_is_for_what_is_there_now(env):
+    other, hand = Hand(env), Hand(env)
+    other.gui.overlay()
+    rect = next(rect for control, rect in other.gui._hand.layout.places.items() if control.name == "view")
+    hand.click((rect.x + 2, rect.y + 2))  # before anything was drawn
+    assert "home" in {control.name for control in hand.gui.overlay().controls}
+
+
 def test_menus_unfold_one_at_a_time(hand):
     assert {"front", "home"} <= {control.name for control in unfolded(hand, "view")}
     assert "floor" in {control.name for control in unfolded(hand, "display")}

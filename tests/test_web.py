@@ -445,6 +445,12 @@ def test_the_view_moves_while_the_script_has_the_environment_and_says_so(env, vi
         assert LOCKED not in page.overlay["lines"]
 
 
+def test_a_page_that_comes_while_the_script_has_the_environment_keeps_nobody_waiting(env, viewer):
+    with env, Page(viewer), time_limit():
+        await_that(lambda: viewer._clients)
+        viewer.SetCamera(FROM_FRONT)
+
+
 def test_a_body_is_removed_while_it_is_selected(env, viewer):
     with Page(viewer) as page:
         page.escape()

@@ -11,6 +11,7 @@ from conftest import MODELS
 from waiting import await_that
 
 import ravemj
+from ravemj.gui.interaction.shortcuts import sections
 
 pytestmark = NEEDS_A_BROWSER
 LONG = ravemj.Motion.line([0, 0], [2.0, -1.0], 100.0)
@@ -58,6 +59,7 @@ def fold(desk, unfolded: bool) -> None:
 def test_the_motion_is_there_while_there_is_one(desk):
     assert not desk.page.locator("#motion").is_visible()
     desk.page.focus("#view")
+    desk.await_picture()
     plain = desk.picture()
     for key in ("Space", "ArrowLeft", "ArrowRight"):
         desk.page.keyboard.press(key)
@@ -177,6 +179,49 @@ def test_sliders_turn_joints_and_show_what_scripts_do(desk):
     fold(desk, False)
     desk.other_robot.SetDOFValues([-1.0, 0.5])
     desk.await_robot()
+
+
+def test_numbers_are_typed_in_the_unit_that_is_shown(desk):
+    fold(desk, True)
+    number = desk.page.get_by_role("textbox", name="Joint1, value")
+    number.fill("0.5")
+    number.press("Enter")
+    await_that(lambda: desk.robot.GetDOFValues()[1] == pytest.approx(0.5), "the joint does not turn")
+    desk.page.locator("#joint-tools").get_by_role("button", name="degrees").click()
+    await_that(lambda: number.input_value() == "28.6 deg", "there are no degrees")
+    number.fill("-90")
+    number.press("Enter")
+    await_that(lambda: desk.robot.GetDOFValues()[1] == pytest.approx(-np.pi / 2), "these are no degrees")
+    button(desk, "Bring all joints to 0").click()
+    await_that(lambda: not desk.robot.GetDOFValues().any(), "the joints stay")
+    desk.page.locator("#joint-tools").get_by_role("button", name="degrees").click()
+
+
+def test_letters_that_are_typed_are_no_keys_of_the_view(desk):
+    camera = desk.viewer.GetCameraTransform()
+    fold(desk, True)
+    desk.page.get_by_role("textbox", name="Joint1, value").press_sequentially("1h0f2g")
+    desk.page.get_by_role("textbox", name="Joint1, value").press("Tab")
+    await_that(lambda: desk.robot.GetDOFValues()[1], "the number before the letters does not count")
+    assert np.array_equal(desk.viewer.GetCameraTransform(), camera)
+    assert desk.page.locator("#help").is_hidden()
+
+
+def test_the_help_has_every_gesture_and_key_and_goes_away_by_a_click(desk):
+    desk.page.focus("#view")
+    desk.page.keyboard.press("?")
+    await_that(lambda: desk.page.locator("#help").is_visible(), "there is no help")
+    text = desk.page.inner_text("#help")
+    for title, rows in sections():
+        assert title in text
+        for to, how in rows:
+            assert to in text
+            assert how in text
+    box = desk.page.locator("#help").bounding_box()
+    assert box["x"] >= 0
+    assert box["x"] + box["width"] <= SIZE[0]
+    desk.page.locator("#help").click()
+    await_that(lambda: desk.page.locator("#help").is_hidden(), "it stays")
 
 
 def test_a_picture_is_downloaded_as_it_is_seen_without_buttons(desk):

@@ -79,8 +79,8 @@ def _picture_rows(name: str, env: ravemj.Environment) -> list[Row]:
 
     def draw(level: Level) -> float:
         begin, used = time.monotonic(), time.process_time()
-        size = (int(level.scale * length) for length in _LARGE)
-        env.renderer.render(camera, (1.0, 1.0, 1.0), Format(*size, samples=level.samples))
+        width, height = (int(level.scale * length) for length in _LARGE)
+        env.renderer.render(camera, (1.0, 1.0, 1.0), Format(width, height, samples=level.samples))
         sharpness.drew(level, time.monotonic() - begin)
         return 1e3 * (time.process_time() - used)
 

@@ -1,4 +1,4 @@
-"""Writes the table of gestures and keys into docs/viewer.md: python scripts/pages/viewer_help.py."""
+"""Writes the table of gestures and keys into docs/viewer.md."""
 
 import re
 from pathlib import Path

@@ -11,8 +11,9 @@ from ravemj.graphics.rendering.visibility import DRAWN_GROUPS
 COLLISION_GROUPS = np.array([1, 0, 0, 1, 0, 0], dtype=np.uint8)
 """Geom groups of what collides: 2 is only seen, 3 only collides."""
 
-_EMISSION = 0.35
-"""What a body that is brighter shines by itself."""
+_TINT = np.array([0.3, 0.6, 1.0])
+_TINT_PART = 0.4
+"""A body that is pointed at has so much of this colour, which shows on white and on black."""
 
 _OPACITY = 0.35
 
@@ -26,7 +27,7 @@ class Style:
         hulls: Whether meshes are drawn as their convex hulls.
         transparent: Whether bodies are half transparent.
         wireframe: Whether only edges are drawn.
-        lit: The body of the model that is brighter than the others; -1: none.
+        lit: The body of the model that stands out from the others by a tint; -1: none.
     """
 
     collision: bool = False
@@ -46,7 +47,7 @@ class Style:
         option.flags[mujoco.mjtVisFlag.mjVIS_CONVEXHULL] = self.hulls
 
     def finish(self, model: mujoco.MjModel, scene: mujoco.MjvScene) -> None:
-        """Change a scene that was filled: edges only, bodies that are brighter, or transparent."""
+        """Change a scene that was filled: edges only, a body that is tinted, or all transparent."""
         scene.flags[mujoco.mjtRndFlag.mjRND_WIREFRAME] = self.wireframe
         if self.lit < 0 and not self.transparent:
             return
@@ -57,7 +58,7 @@ class Style:
                 geom.rgba[3] *= _OPACITY
                 geom.transparent = 1
             if model.geom_bodyid[geom.objid] == self.lit:
-                geom.emission = min(geom.emission + _EMISSION, 1.0)
+                geom.rgba[:3] = (1 - _TINT_PART) * geom.rgba[:3] + _TINT_PART * _TINT
 
 
 AS_IT_IS = Style()

@@ -14,7 +14,7 @@ from ravemj.graphics.rendering import Camera, Style, bounding_sphere
 from ravemj.gui.interaction import floor, mode_buttons
 from ravemj.gui.interaction.controls import Controls
 from ravemj.gui.interaction.display import Display
-from ravemj.gui.interaction.events import Event, Move, Press, Release
+from ravemj.gui.interaction.events import Event, Move, Press, Release, Wheel
 from ravemj.gui.interaction.figures import figures, names
 from ravemj.gui.interaction.hand import Hand, Mode
 from ravemj.gui.interaction.mode_buttons import Tool
@@ -117,6 +117,8 @@ class Interaction:
         """Do what an event asks for. The simulation is locked meanwhile."""
         with self._simulation.lock:
             self._forget_what_is_gone()
+            if isinstance(event, Press | Wheel):
+                self._hand.look()  # scripts may have changed what there is to press
             self._hand.do(event)
             hovers = self._hand.hovers()
             if not isinstance(event, Move) or self._hand.buttons or hovers or self._hovered:

@@ -5,7 +5,6 @@ from collections.abc import Callable
 import numpy as np
 
 from ravemj.core.transforms import Floats, Ints, rows_from_wxyz
-from ravemj.engine.collision.world import cross
 from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.gui.interaction.joint_handle import joint_frame
 from ravemj.gui.interaction.overlay import Label
@@ -132,6 +131,8 @@ _SPHERE, _FACETS = _sphere()
 
 def _contacts(simulation: Simulation, radius: float) -> list[Primitives]:
     """Return a sphere where shapes of different bodies are deepest in each other."""
+    from ravemj.engine.collision.world import cross  # noqa: PLC0415 - slow to import
+
     world = simulation.collisions()
     points: list[Floats] = []
     for number, body in enumerate(simulation.bodies):

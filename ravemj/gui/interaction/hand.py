@@ -7,6 +7,7 @@ from enum import Enum
 
 from ravemj.engine.simulation import Simulation
 from ravemj.gui.interaction import mode_buttons
+from ravemj.gui.interaction.control_layout import ControlLayout
 from ravemj.gui.interaction.control_panel import ControlPanel
 from ravemj.gui.interaction.controls import Controls
 from ravemj.gui.interaction.events import (
@@ -75,7 +76,7 @@ class Hand:
         self.mode = Mode.CAMERA
         self.has_tools = has_tools
         self.panel = ControlPanel(controls, is_drawn=has_tools)
-        self.layout = self.panel.layout(navigation.view.size)
+        self.layout = ControlLayout.of((), navigation.view.size)  # until it is looked: this must not wait for bodies
         self.buttons: set[Button] = set()
         self.pointer: tuple[float, float] | None = None
         self._keys: set[str] = set()

@@ -47,8 +47,8 @@ class FrameSource:
         interaction, renderer = self._interaction(), self._renderer()
         if interaction is None or renderer is None:
             return None
-        gizmos = interaction.overlay().primitives
-        return renderer.render(interaction.view.camera, self._background, self._form, gizmos=gizmos)
+        over, camera = interaction.overlay(), interaction.drawn_view.camera
+        return renderer.render(camera, self._background, self._form, gizmos=over.primitives, style=over.style)
 
     def close(self) -> None:
         """Free what this thread has drawn with."""

@@ -349,8 +349,8 @@ class Viewer(Playing):
             RenderingError: nothing can draw here.
         """
         form = self._format(width, height, "render")
-        gizmos = self.interaction.overlay().primitives
-        picture = self._renderer.render(self.camera, self._background, form, gizmos=gizmos)
+        over = self.interaction.overlay()
+        picture = self._renderer.render(self.camera, self._background, form, gizmos=over.primitives, style=over.style)
         self._image_callbacks.call(picture)
         return picture
 

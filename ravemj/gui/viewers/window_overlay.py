@@ -187,7 +187,6 @@ def _gl() -> Callable[..., None]:
     import glfw  # noqa: PLC0415 - loads the libraries of the display
 
     glfw_module: Any = glfw
-    prototype: Any = getattr(ctypes, "WINFUNCTYPE", ctypes.CFUNCTYPE)  # the former on Windows alone
     argument_types: dict[str, tuple[Any, ...]] = {
         "glPushAttrib": (ctypes.c_uint,),
         "glPopAttrib": (),
@@ -199,7 +198,8 @@ def _gl() -> Callable[..., None]:
         "glDrawPixels": (ctypes.c_int, ctypes.c_int, ctypes.c_uint, ctypes.c_uint, ctypes.c_void_p),
     }
     functions: dict[str, Any] = {
-        name: prototype(None, *types)(glfw_module.get_proc_address(name)) for name, types in argument_types.items()
+        name: ctypes.CFUNCTYPE(None, *types)(glfw_module.get_proc_address(name))
+        for name, types in argument_types.items()
     }
 
     def call(name: str, *arguments: object) -> None:

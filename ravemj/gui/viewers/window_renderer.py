@@ -51,6 +51,8 @@ class WindowRenderer:
         self._gl_scene: GlScene | None = None
         self._scene_key: object = None
         self._seen: object = None
+        self._seen_view: object = None
+        self._line = ""
         self._bodies: object = None
         self._drawn: object = None
         self._overlay: Overlay | None = None
@@ -73,10 +75,11 @@ class WindowRenderer:
         compiled = simulation.compiled()
         looks = appearance(simulation)
         seen = (looks, interaction.version, surface)
-        if seen == self._seen:
+        if seen == self._seen and not self._line:
             return False
-        self._seen = seen
+        self._seen, self._line = seen, ""
         self._overlay, self._view = interaction.overlay(), interaction.drawn_view
+        self._seen_view = self._view.camera, self._view.size, interaction.mode, surface
         primitives = merge([simulation.drawings.primitives(), self._overlay.primitives])
         stage = self._prepared_scene(compiled.model, simulation.version)
         stage.fill(compiled.data, self._view.camera, surface.pixels, primitives, self._overlay.style)
@@ -95,10 +98,10 @@ class WindowRenderer:
             Whether anything looks different from last time.
         """
         view = interaction.drawn_view
-        seen = view.camera, view.size, interaction.mode, surface, line
-        if self._gl_scene is None or self._overlay is None or seen == self._seen:
+        seen = view.camera, view.size, interaction.mode, surface
+        if self._gl_scene is None or self._overlay is None or (seen == self._seen_view and line == self._line):
             return False
-        self._seen, self._view = seen, view
+        self._seen_view, self._line, self._view = seen, line, view
         lines = tuple(other for other in self._overlay.lines if other != line)
         self._overlay = self._overlay._replace(lines=(line, *lines) if line else lines)
         self._gl_scene.aim(view.camera, surface.pixels)

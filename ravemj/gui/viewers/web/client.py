@@ -90,6 +90,8 @@ class Client:
         self._ratio = 1.0
         self._waiting: deque[Message] = deque([Leave()])  # of what an earlier connection of the page has left
         self._seen: object = None
+        self._seen_view: object = None
+        self._says_locked = False
         self._complaint = ""
         self._changed_at = 0.0
         self._is_crisp = True
@@ -154,9 +156,11 @@ class Client:
             if not self._link.is_free:
                 return None
             seen = appearance(self._simulation), self.interaction.version, style, self._ratio
-            if not self._is_due(seen, now):
+            has_changed = seen != self._seen or self._says_locked
+            if not self._is_due(now, has_changed=has_changed):
                 self.looks += 1
                 return None
+            self._seen, self._seen_view, self._says_locked = seen, self._view(style), False
             self._overlay = self.interaction.overlay()
         finally:
             self._simulation.lock.release()
@@ -175,19 +179,26 @@ class Client:
         self._has_moved |= self.interaction.view.camera is not before
         self.interaction.pass_time_without_bodies(now)
         is_long = now - self._free_at > PATIENCE
-        view = self.interaction.drawn_view
-        seen = view.camera, view.size, self.interaction.mode, style, self._ratio, is_long
-        if self._overlay is None or not self._link.is_free or not self._is_due(seen, now):
+        if self._overlay is None or not self._link.is_free:
             return None
+        seen = self._view(style)
+        if not self._is_due(now, has_changed=seen != self._seen_view or is_long != self._says_locked):
+            return None
+        self._seen_view, self._says_locked = seen, is_long
         lines = tuple(line for line in self._overlay.lines if line != LOCKED)
         self._overlay = self._overlay._replace(lines=(LOCKED, *lines) if is_long else lines)
         level = self._level(now)
-        return self._renderer.render_again(view.camera, style.background, self._form(level))
+        return self._renderer.render_again(self.interaction.drawn_view.camera, style.background, self._form(level))
 
-    def _is_due(self, seen: object, now: float) -> bool:
+    def _view(self, style: PageStyle) -> object:
+        """Return what is equal for as long as the view looks the same, apart from bodies and texts."""
+        view = self.interaction.drawn_view
+        return view.camera, view.size, self.interaction.mode, style, self._ratio
+
+    def _is_due(self, now: float, *, has_changed: bool) -> bool:
         """Return whether a picture is to be drawn of what is seen: it has changed, or come to rest."""
-        if seen != self._seen:
-            self._seen, self._changed_at, self._is_crisp = seen, now, False
+        if has_changed:
+            self._changed_at, self._is_crisp = now, False
         elif self._is_crisp or now - self._changed_at < REST:
             return False
         else:

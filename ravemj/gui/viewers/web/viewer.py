@@ -90,11 +90,10 @@ class WebViewer(Viewer):
 
     def SetCamera(self, transform: ArrayLike, focalDistance: float = 0.0) -> None:
         """Set the camera of all pages; see ``Viewer.SetCamera``."""
-        super().SetCamera(transform, focalDistance)
-        with self._lock:
-            views = list(self._views.values())
-        for interaction in views:
-            interaction.look_from(self.camera, self.GetCameraDistanceToFocus())
+        with self._simulation.lock, self._lock:  # in this order: who has the first one may be here
+            super().SetCamera(transform, focalDistance)
+            for interaction in self._views.values():
+                interaction.look_from(self.camera, self.GetCameraDistanceToFocus())
 
     def EnvironmentSync(self) -> None:
         """Wait until all pages were sent the environment as it is now; half a second at most, where one is slow."""
@@ -155,9 +154,9 @@ class WebViewer(Viewer):
         client.take_in(messages, self.server.complain)
         style = PageStyle(self._background, self._title)
         picture = client.attend(connection, style)
-        view = client.interaction.view
         if client.take_moved():
-            self.interaction.look_as(view)
+            with self._lock:  # or a script's camera, which comes to the views one by one, would be lost
+                self.interaction.look_as(client.interaction.view)
         if picture is not None:
             self._image_callbacks.call(picture)
         for request in client.interaction.controls.take_requests():
