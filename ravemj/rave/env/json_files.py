@@ -7,6 +7,8 @@ import json
 from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Any, cast
 
+import numpy as np
+
 from ravemj.core.output import new_file
 from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError, send_warnings
 from ravemj.model.scene import KinBody
@@ -118,8 +120,16 @@ def _skip_geometry(body: KinBodyInfo) -> None:
         link._vgeometryinfos, link._mapExtraGeometries = [], {}
 
 
+def _skip_masses(body: KinBodyInfo) -> None:
+    for link in body._vLinkInfos:
+        link._mass, link._tMassFrame, link._vinertiamoments = 1e-10, np.eye(4), np.full(3, 1e-7)
+
+
 _SKIPS: dict[str, _Given] = {
     "geometry": _skip_geometry,
+    "visual": _skip_geometry,
+    "physics": _skip_masses,
+    "readable": lambda body: None,
     "sensors": lambda body: setattr(body, "_vAttachedSensorInfos", []),
     "manipulators": lambda body: setattr(body, "_vManipInfos", []),
 }
