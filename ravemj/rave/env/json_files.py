@@ -11,7 +11,7 @@ import numpy as np
 
 from ravemj.core.output import new_file
 from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError, send_warnings
-from ravemj.model.scene import KinBody
+from ravemj.model.scene import KinBody, View
 from ravemj.rave.env.described import Described
 from ravemj.rave.infos import KinBodyInfo
 
@@ -45,7 +45,14 @@ class JsonFiles(Described):
             body._vGrabbedInfos = [grab for grab in body._vGrabbedInfos if cast("Any", grab)._grabbedname in names]
             for word in skipped:
                 _SKIPS[word](body)
-        _warn_of_losses(path, [body.simulation_state.scene for body in self.GetBodies() if body.GetName() in names])
+        diagnostics = Diagnostics()
+        if self._simulation.view not in (None, View()):
+            message = "background and camera are left out: JSON has no place for them"
+            diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML keeps them")
+        _warn_of_losses(
+            diagnostics, path, [body.simulation_state.scene for body in self.GetBodies() if body.GetName() in names]
+        )
+        send_warnings(diagnostics)
         try:
             text = json.dumps(info.SerializeJSON(), allow_nan=False)
         except ValueError as error:
@@ -97,9 +104,8 @@ def _parsed(path: str) -> dict[str, Any]:
     return cast("dict[str, Any]", content)
 
 
-def _warn_of_losses(path: str, bodies: Iterable[KinBody]) -> None:
-    """Warn of what OpenRAVE's JSON cannot say."""
-    diagnostics = Diagnostics()
+def _warn_of_losses(diagnostics: Diagnostics, path: str, bodies: Iterable[KinBody]) -> None:
+    """Warn of what OpenRAVE's JSON cannot say of bodies."""
     for body in bodies:
         if not body.joined_links_adjacent:
             message = f"that links of '{body.name}' can collide at their joints is left out; JSON cannot say it"
@@ -108,7 +114,6 @@ def _warn_of_losses(path: str, bodies: Iterable[KinBody]) -> None:
         if drawn:
             message = f"meshes that '{body.name}' draws in place of its shapes are left out; JSON cannot say them"
             diagnostics.warn("not-written", message, Source(path))
-    send_warnings(diagnostics)
 
 
 def _refuse(word: str) -> None:
