@@ -488,6 +488,9 @@ class TestJson:
             (b'{"bodies": [{"name": "b", "links": [{"transform": [1, 2]}]}]}', "transform"),
             (b'{"bodies": [{"name": "b", "links": [], "grabbed": [{"grabbedName": "x"}]}]}', "no body 'x'"),
             (b'{"bodies": ' + b"[" * 100_000, "nested too deep"),
+            (b'{"bodies": [{"name": 7}]}', "should be a text"),
+            (b'{"bodies": [], "gravity": [1]}', "wrong kind"),
+            (b'{"bodies": [], "keywords": 7}', "wrong kind"),
             (b"\xff\xfe", "cannot be read"),
         ],
     )

@@ -80,6 +80,8 @@ class JsonFiles(Described):
             raise SourceError(str(error), Source(found)) from error
         except (ArithmeticError, RecursionError) as error:
             raise SourceError("a number in the file is too large to compute with", Source(found)) from error
+        except (TypeError, ValueError, LookupError) as error:  # values of wrong kinds, in any of a hundred places
+            raise SourceError(f"a value in the file is of a wrong kind: {error}", Source(found)) from error
 
 
 def _parsed(path: str) -> dict[str, Any]:
