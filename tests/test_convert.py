@@ -169,6 +169,16 @@ def test_a_target_that_cannot_be_written_is_one_line(folder):
     assert "'floating'" in refused(folder, "arm.xml", "--base", "floating", code=2)
 
 
+def test_json_of_openrave_and_back(folder):
+    (folder / "k.env.xml").write_text("<Environment>" + ARM + "</Environment>")
+    convert(folder, "k.env.xml", "-o", "k.json")
+    assert "bodies" in json.loads((folder / "k.json").read_text())
+    assert "no differences" in ravemj_command(folder, "diff", "k.env.xml", "k.json").stdout
+    convert(folder, "k.json", "-o", "again.robot.xml")
+    (folder / "broken.json").write_text("{")
+    assert "not well-formed" in refused(folder, "broken.json", "-o", "x.dae")
+
+
 def test_openrave_bases_fall_unless_they_are_static(folder):
     convert(folder, "plain.xml", "-o", "free.xml", "--base", "openrave")
     assert mujoco.MjModel.from_xml_path(str(folder / "free.xml")).nq == 8

@@ -13,7 +13,12 @@ from hypothesis import given
 from strategies import Choices, RandomChoices, chance, choices, examples, number, one_of, vector
 
 from ravemj.core.transforms import Pose, rotate, wxyz_from_axis_angle
-from ravemj.formats.openrave_xml import read_text
+from ravemj.errors import Diagnostics
+from ravemj.formats.collada.writer import write as collada_document
+from ravemj.formats.openrave_xml import read, read_text
+from ravemj.formats.readers import read_data
+from ravemj.model.comparison import compare
+from ravemj.model.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -166,11 +171,11 @@ def numbers_of(found) -> dict[str, np.ndarray]:
     return {"rigid": np.array(rigid), "shapes": np.array(shapes), "axes": np.array(axes)}
 
 
-def assert_same(found, wanted) -> None:
+def assert_same(found, wanted, atol=1e-9) -> None:
     assert structure(found) == structure(wanted)
-    np.testing.assert_allclose(poses_of(found), poses_of(wanted), atol=1e-9)
+    np.testing.assert_allclose(poses_of(found), poses_of(wanted), atol=atol)
     for name, values in numbers_of(wanted).items():
-        np.testing.assert_allclose(numbers_of(found)[name], values, atol=1e-9, err_msg=name)
+        np.testing.assert_allclose(numbers_of(found)[name], values, atol=atol, err_msg=name)
 
 
 @pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
@@ -207,6 +212,53 @@ class TestWhatMeansTheSame:
         assert found.is_robot
         assert_same(found, body(f'<KinBody name="k">{flat(parts, absolutely=True)}</KinBody>'))
 
+    @given(choices())
+    @examples(100)
+    def test_openrave_xml_and_collada(self, choices):
+        """Both say the same of a robot, with its adjacent links, its arm and a joint that follows another."""
+        parts = draw_parts(choices)
+        last = len(parts) - 1
+        xml = flat(parts, absolutely=chance(choices, 50)) + f"<adjacent>l0 l{last}</adjacent>"
+        if last > 1 and {parts[1].kind, parts[last].kind} == {"hinge"}:
+            xml = xml.replace(f'name="j{last}"', f'name="j{last}" mimic_pos="0.5*j1+0.1" mimic_vel="|j1 0.5"')
+        arm = f'<Manipulator name="m"><base>l0</base><effector>l{last}</effector><Translation>1 2 3</Translation>'
+        wanted = read_text(f'<Robot name="k"><KinBody>{xml}</KinBody>{arm}</Manipulator></Robot>', "test")
+        found = read_data(collada_document(wanted.scene, Diagnostics()))
+        assert (wanted.failure, found.failure) == (None, None)
+        assert compare(wanted.scene, found.scene) == []
+
+    @given(choices())
+    @examples(120)
+    def test_masses_of_shapes_and_their_numbers(self, choices):
+        """The mass of a box by its density is the custom mass with the same numbers."""
+        parts = draw_parts(choices)
+        boxes, custom = (flat(parts, absolutely=True) for _ in range(2))
+        for part in parts:
+            x, y, z = part.extents
+            total = 8 * x * y * z * part.mass
+            written = content(part)[content(part).index("<Mass") :]
+            boxes = boxes.replace(written, f'<Mass type="mimicgeom"><density>{part.mass!r}</density></Mass>', 1)
+            moments = [total / 3 * (a * a + b * b) for a, b in ((y, z), (x, z), (x, y))]
+            inertia = text([moments[0], 0, 0, 0, moments[1], 0, 0, 0, moments[2]])
+            numbers = f"<total>{total!r}</total><inertia>{inertia}</inertia>"
+            custom = custom.replace(written, f'<Mass type="custom">{numbers}</Mass>', 1)
+        found, wanted = (body(f'<KinBody name="k">{xml}</KinBody>') for xml in (boxes, custom))
+        assert_same(found, wanted, atol=1e-6)  # OpenRAVE reads totals in single precision
+
+    @given(choices=choices())
+    @examples(60)
+    def test_included_and_written_out(self, choices, tmp_path_factory):
+        """A file that a KinBody includes, with a prefix, and the same text with the prefix in each name."""
+        parts = draw_parts(choices)
+        folder = tmp_path_factory.mktemp("parts")
+        xml = flat(parts, absolutely=False)
+        (folder / "inner.xml").write_text(f"<KinBody>{xml}</KinBody>")
+        (folder / "outer.xml").write_text('<Robot name="k"><KinBody file="inner.xml" prefix="p_"/></Robot>')
+        named = xml.replace('name="l', 'name="p_l').replace('name="j', 'name="p_j')
+        named = named.replace("<Body>l", "<Body>p_l").replace("<offsetfrom>l", "<offsetfrom>p_l")
+        (found,) = read(folder / "outer.xml").scene.bodies
+        assert_same(found, body(f'<Robot name="k"><KinBody>{named}</KinBody></Robot>'))
+
 
 @pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
 class TestWhatChangesOneThing:
@@ -233,6 +285,35 @@ class TestWhatChangesOneThing:
         np.testing.assert_array_equal(poses_of(found), poses_of(plain))
         for name, values in numbers_of(plain).items():
             np.testing.assert_array_equal(numbers_of(found)[name], values, err_msg=name)
+
+    @given(choices())
+    @examples(100)
+    def test_another_name_is_all_that_it_changes(self, choices):
+        xml = flat(draw_parts(choices), absolutely=True)
+        plain, found = (body(f'<KinBody name="{name}">{xml}</KinBody>') for name in ("k", "other"))
+        assert compare(Scene((plain,)), Scene((replace(found, name="k"),))) == []
+        assert found.name == "other"
+
+    @given(choices())
+    @examples(60)
+    def test_a_unit_of_collada_scales_lengths(self, choices):
+        plain = body(f'<KinBody name="k">{flat(draw_parts(choices), absolutely=True)}</KinBody>')
+        document = collada_document(Scene((plain,)), Diagnostics())
+        unit = one_of(choices, [0.5, 3.0])
+        (found,) = read_data(document.replace('meter="1"', f'meter="{unit}"')).scene.bodies
+        assert structure(found) == structure(plain)
+        wanted = poses_of(plain)
+        wanted[:, :3, 3] *= unit
+        np.testing.assert_allclose(poses_of(found), wanted, atol=1e-9)
+        numbers = numbers_of(plain)
+        numbers["rigid"][:, 1:4] *= unit
+        numbers["shapes"] *= unit
+        for name in ("rigid", "shapes"):
+            np.testing.assert_allclose(numbers_of(found)[name], numbers[name], atol=1e-9, err_msg=name)
+        for one, other in zip(found.joints, plain.joints, strict=True):
+            factor = unit if one.slides() else 1.0
+            for name in ("lower", "upper", "value", "max_velocity"):
+                assert getattr(one.axes[0], name) == pytest.approx(factor * getattr(other.axes[0], name), abs=1e-9)
 
     @given(choices())
     @examples(150)

@@ -11,6 +11,7 @@ import pytest
 from agreement import CORPUS
 from conftest import MODELS, REPOSITORY
 from hypothesis import given
+from round_trips import NAMES, check_round_trip, contents
 from strategies import Taste, examples, scene_node, scenes, xml
 
 import ravemj
@@ -39,7 +40,6 @@ KNOWN_LOSSES = {
     ("openrave", "willowgarage-pr2.zae"): {"direction"},  # of a weld, which OpenRAVE XML turns about the z axis
     ("openrave", "calibration_board.dae"): {"shapes"},  # OpenRAVE XML has no such shape; a box stands for it
 }
-NAMES = {"openrave": "model.env.xml", "collada": "model.dae"}
 
 
 def corpus() -> list[str]:
@@ -47,24 +47,6 @@ def corpus() -> list[str]:
         return []
     with open(CORPUS / "index.csv", encoding="utf8") as file:
         return [row["file"] for row in csv.DictReader(file)]
-
-
-def check_round_trip(scene: Scene, kind: str, folder: Path) -> set[str]:
-    """Write and read a scene, and write it again; return what quantities differ. The second files equal the first."""
-    first, second = folder / "first", folder / "second"
-    for target in (first, second):
-        target.mkdir(exist_ok=True)
-    save(first / NAMES[kind], scene, Diagnostics(), kind)
-    reading = read_file(first / NAMES[kind])
-    assert reading.failure is None
-    assert not {finding.code for finding in reading.diagnostics} & {"unknown-tag", "unknown-attribute", "ignored-tag"}
-    save(second / NAMES[kind], reading.scene, Diagnostics(), kind)
-    assert contents(second) == contents(first)
-    return {difference.quantity for difference in compare(scene, reading.scene)}
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 def losses(kind: str, name: str) -> set[str]:
@@ -304,6 +286,17 @@ class TestSave:
             assert all(not link.GetGeometries() for link in body.GetLinks())
             assert not body.IsRobot() or not body.GetManipulators()
 
+    @pytest.mark.parametrize("name", ["bare.dae", "bare.json"])
+    def test_skipwrite_of_masses_and_visuals(self, world, tmp_path, name):
+        world.Save(tmp_path / name, atts={"skipwrite": "physics visual readable"})
+        for body in ravemj.load(tmp_path / name).GetBodies():
+            assert all(not link.GetGeometries() and link.GetMass() == 1e-10 for link in body.GetLinks())
+
+    def test_external_references_are_written_in_full(self, env, tmp_path):
+        with pytest.warns(ravemj.RavemjWarning, match="stand in the file itself"):
+            env.Save(tmp_path / "a.dae", atts={"externalref": "*"})
+        assert ravemj.load(tmp_path / "a.dae").GetRobots()[0].GetDOF() == 2
+
     def test_archive(self, env, tmp_path):
         env.Save(tmp_path / "a b.zae")
         assert zipfile.ZipFile(tmp_path / "a b.zae").namelist() == ["a b.dae", "manifest.xml"]
@@ -495,6 +488,9 @@ class TestJson:
             (b'{"bodies": [{"name": "b", "links": [{"transform": [1, 2]}]}]}', "transform"),
             (b'{"bodies": [{"name": "b", "links": [], "grabbed": [{"grabbedName": "x"}]}]}', "no body 'x'"),
             (b'{"bodies": ' + b"[" * 100_000, "nested too deep"),
+            (b'{"bodies": [{"name": 7}]}', "should be a text"),
+            (b'{"bodies": [], "gravity": [1]}', "wrong kind"),
+            (b'{"bodies": [], "keywords": 7}', "wrong kind"),
             (b"\xff\xfe", "cannot be read"),
         ],
     )

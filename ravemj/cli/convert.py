@@ -17,13 +17,14 @@ from ravemj.rave import Environment
 
 _FORMATS = {
     (".dae", ".zae"): "collada",
+    (".json",): "json",
     (".robot.xml", ".kinbody.xml", ".env.xml"): "openrave",
 }
 """Formats by the ends of names; other names stand for MJCF."""
 
 
 def convert(options: argparse.Namespace) -> int:
-    """Translate a model to MJCF, or write it as COLLADA or OpenRAVE XML."""
+    """Translate a model to MJCF, or write it as COLLADA, OpenRAVE XML or JSON."""
     kind = options.format or next((form for ends, form in _FORMATS.items() if _ends(options.output, ends)), "mjcf")
     env = load_model(options)
     if kind != "mjcf":

@@ -129,7 +129,7 @@ def _add_convert(commands: Commands) -> None:
     parser = command(
         commands,
         "convert",
-        "translate a model to MJCF, MuJoCo's format, to COLLADA or to OpenRAVE XML",
+        "translate a model to MJCF, MuJoCo's format, to COLLADA, OpenRAVE XML or OpenRAVE's JSON",
         "ravemj convert robot.xml -o robot/      # robot/robot.xml, and assets/ for meshes",
         "ravemj convert puma560 -o puma.mjcf.xml --actuators position",
         "ravemj convert puma560 -o puma560.dae",
@@ -148,9 +148,9 @@ def _add_convert(commands: Commands) -> None:
     )
     parser.add_argument(
         "--format",
-        choices=["mjcf", "collada", "openrave"],
-        help="what to write; default: collada for .dae and .zae, openrave for .robot.xml, .kinbody.xml and .env.xml, "
-        "else mjcf",
+        choices=["mjcf", "collada", "openrave", "json"],
+        help="what to write; default: collada for .dae and .zae, json for .json, openrave for .robot.xml, "
+        ".kinbody.xml and .env.xml, else mjcf",
     )
     parser.add_argument(
         "--meshes",

@@ -18,6 +18,7 @@ from ravemj.model.scene import Scene, View
 ModelFormat = Literal["collada", "openrave"]
 
 _ARCHIVE_SUFFIX = ".zae"
+_COMPRESSION = 2  # of 9: a fifth of the time of the default, and files that are a tenth larger
 _NO_TIME = (1980, 1, 1, 0, 0, 0)  # the first that zip archives know, so that one scene always gives the same bytes
 
 
@@ -66,5 +67,5 @@ def _archive(name: str, content: bytes) -> bytes:
         for member, data in ((name, content), ("manifest.xml", manifest.encode())):
             info = zipfile.ZipInfo(member, _NO_TIME)
             info.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(info, data)
+            archive.writestr(info, data, compresslevel=_COMPRESSION)
     return stream.getvalue()

@@ -235,7 +235,9 @@ def poses_in(body: KinBody, dof_values: Sequence[float]) -> list[Pose]:
 
 
 def _random_value(axis: Axis, random: np.random.Generator) -> float:
-    return float(random.uniform(max(axis.lower, -_FARTHEST), min(axis.upper, _FARTHEST)))
+    """Return a value within the limits, and not far from 0 if they allow it."""
+    low, high = (min(max(end, axis.lower), axis.upper) for end in (-_FARTHEST, _FARTHEST))
+    return float(random.uniform(low, high))
 
 
 def _names(parts: Iterable[Link | Joint | KinBody | Manipulator | AttachedSensor]) -> list[str]:

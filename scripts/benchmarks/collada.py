@@ -18,6 +18,7 @@ from ravemj.formats.collada.archive import Archive
 from ravemj.formats.meshes.collada.document import ColladaDocument
 from ravemj.formats.meshes.collada.triangles import triangle_meshes
 from ravemj.formats.readers import read_file
+from ravemj.formats.writers import ModelFormat, save
 
 _ROBOTS = CORPUS / "rdiankov+collada_robots"
 _CORNERS = 1000  # of the circles of the SCARA: meshes as large as those of real robots
@@ -46,7 +47,31 @@ def _published(name: str, file: str, folder: Path, limit: float | None = None) -
     path = _ROBOTS / file
     if not path.is_file():
         return [Row(f"{name}: left out", "", 0.0, note=f"there is no {path}; it belongs to another project")]
-    return [*_times(name, path, folder, limit), _memory(name, path)]
+    return [*_times(name, path, folder, limit), *_saved(name, path, folder), _memory(name, path)]
+
+
+def _saved(name: str, path: Path, folder: Path) -> list[Row]:
+    """Measure saving and reading back in both formats, without a cache, against reading."""
+    scene = read_file(path).scene
+    files: dict[ModelFormat, Path] = {"collada": folder / "saved.dae", "openrave": folder / "saved.robot.xml"}
+
+    def there_and_back(kind: ModelFormat) -> None:
+        save(files[kind], scene, Diagnostics(), kind)
+        read_file(files[kind])
+
+    os.environ["RAVEMJ_CACHE"] = "off"
+    reading, collada, xml = take_turns(
+        [
+            microseconds(lambda: read_file(path)),
+            microseconds(lambda: there_and_back("collada")),
+            microseconds(lambda: there_and_back("openrave")),
+        ],
+        _ROUNDS,
+    )
+    return [
+        Row(f"{name}, save as COLLADA and read back : read", "µs", collada, reading, 3.0),
+        Row(f"{name}, save as OpenRAVE XML and read back : read", "µs", xml, reading, 3.0),
+    ]
 
 
 def _times(name: str, path: Path, folder: Path, limit: float | None = None) -> list[Row]:

@@ -7,9 +7,11 @@ import json
 from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Any, cast
 
+import numpy as np
+
 from ravemj.core.output import new_file
 from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError, send_warnings
-from ravemj.model.scene import KinBody
+from ravemj.model.scene import KinBody, View
 from ravemj.rave.env.description import Description
 from ravemj.rave.infos import KinBodyInfo
 
@@ -43,7 +45,14 @@ class JsonFiles(Description):
             body._vGrabbedInfos = [grab for grab in body._vGrabbedInfos if cast("Any", grab)._grabbedname in names]
             for word in skipped:
                 _SKIPS[word](body)
-        _warn_of_losses(path, [body.simulation_state.scene for body in self.GetBodies() if body.GetName() in names])
+        diagnostics = Diagnostics()
+        if self._simulation.view not in (None, View()):
+            message = "background and camera are left out: JSON has no place for them"
+            diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML keeps them")
+        _warn_of_losses(
+            diagnostics, path, [body.simulation_state.scene for body in self.GetBodies() if body.GetName() in names]
+        )
+        send_warnings(diagnostics)
         try:
             text = json.dumps(info.SerializeJSON(), allow_nan=False)
         except ValueError as error:
@@ -71,6 +80,8 @@ class JsonFiles(Description):
             raise SourceError(str(error), Source(found)) from error
         except (ArithmeticError, RecursionError) as error:
             raise SourceError("a number in the file is too large to compute with", Source(found)) from error
+        except (TypeError, ValueError, LookupError) as error:  # values of wrong kinds, in any of a hundred places
+            raise SourceError(f"a value in the file is of a wrong kind: {error}", Source(found)) from error
 
 
 def _parsed(path: str) -> dict[str, Any]:
@@ -95,9 +106,8 @@ def _parsed(path: str) -> dict[str, Any]:
     return cast("dict[str, Any]", content)
 
 
-def _warn_of_losses(path: str, bodies: Iterable[KinBody]) -> None:
-    """Warn of what OpenRAVE's JSON cannot say."""
-    diagnostics = Diagnostics()
+def _warn_of_losses(diagnostics: Diagnostics, path: str, bodies: Iterable[KinBody]) -> None:
+    """Warn of what OpenRAVE's JSON cannot say of bodies."""
     for body in bodies:
         if not body.joined_links_adjacent:
             message = f"that links of '{body.name}' can collide at their joints is left out; JSON cannot say it"
@@ -106,7 +116,6 @@ def _warn_of_losses(path: str, bodies: Iterable[KinBody]) -> None:
         if drawn:
             message = f"meshes that '{body.name}' draws in place of its shapes are left out; JSON cannot say them"
             diagnostics.warn("not-written", message, Source(path))
-    send_warnings(diagnostics)
 
 
 def _refuse(word: str) -> None:
@@ -118,8 +127,16 @@ def _skip_geometry(body: KinBodyInfo) -> None:
         link._vgeometryinfos, link._mapExtraGeometries = [], {}
 
 
+def _skip_masses(body: KinBodyInfo) -> None:
+    for link in body._vLinkInfos:
+        link._mass, link._tMassFrame, link._vinertiamoments = 1e-10, np.eye(4), np.full(3, 1e-7)
+
+
 _SKIPS: dict[str, _Given] = {
     "geometry": _skip_geometry,
+    "visual": _skip_geometry,
+    "physics": _skip_masses,
+    "readable": lambda body: None,
     "sensors": lambda body: setattr(body, "_vAttachedSensorInfos", []),
     "manipulators": lambda body: setattr(body, "_vManipInfos", []),
 }

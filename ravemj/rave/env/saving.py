@@ -6,10 +6,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from ravemj.core.arguments import checked_kind
+from ravemj.core.transforms import ZERO
 from ravemj.engine.simulation.world import DEFAULT_GRAVITY
 from ravemj.engine.snapshot import snapshot
 from ravemj.errors import ArgumentError, Diagnostics, UnsupportedError, send_warnings
-from ravemj.model.scene import KinBody, Scene, View
+from ravemj.model.scene import Inertial, KinBody, Scene, View
+from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import SelectionOptions
 from ravemj.rave.env.json_files import JsonFiles, is_json
 
@@ -27,11 +29,30 @@ _CHOICES: dict[SelectionOptions, Callable[[KinBody, Sequence[str]], bool]] = {
     SelectionOptions.Body: lambda body, targets: body.name in targets,
     SelectionOptions.AllExceptBody: lambda body, targets: body.name not in targets,
 }
+_NO_MASS = Inertial(1e-10, ZERO, ((1e-7, 0.0, 0.0), (0.0, 1e-7, 0.0), (0.0, 0.0, 1e-7)))  # as without <rigid_body>
+
+
+def _without_shapes(body: KinBody) -> KinBody:
+    return replace(body, links=tuple(replace(link, geometries=(), groups=()) for link in body.links))
+
+
 _PARTS: dict[str, Callable[[KinBody], KinBody]] = {
-    "geometry": lambda body: replace(body, links=tuple(replace(link, geometries=()) for link in body.links)),
+    "geometry": _without_shapes,
+    "visual": _without_shapes,
+    "physics": lambda body: replace(body, links=tuple(replace(link, inertial=_NO_MASS) for link in body.links)),
+    "readable": lambda body: body,  # ravemj writes none
     "sensors": lambda body: replace(body, sensors=()),
     "manipulators": lambda body: replace(body, manipulators=()),
 }
+_NO_EFFECT = {
+    "externalref": "references to the files that bodies come from are not written; the bodies stand in the file itself",
+    "forcewrite": "there are no references to other files, beside which something could be written",
+    "ignoreexternaluri": "there are no references to other files",
+    "openravescheme": "there are no references to other files",
+    "reusesimilar": "each body is written by itself",
+}
+"""OpenRAVE's options that change nothing about what is read again."""
+
 _VALUES = {"skipwrite": tuple(_PARTS), "format": ("collada", "openrave", "json"), "meshes": ("stl", "obj")}
 
 
@@ -55,9 +76,11 @@ class Saving(JsonFiles):
             atts: The name of a body, for ``SelectionOptions.Body`` and ``AllExceptBody``, or a dict or pairs of
 
                 * ``target``: a body; several pairs name several;
-                * ``skipwrite``: words for what is left out: ``geometry``, ``sensors``, ``manipulators``;
+                * ``skipwrite``: words for what is left out: ``geometry`` or ``visual``, ``physics`` (masses),
+                  ``sensors``, ``manipulators``, ``readable``;
                 * ``format``: ``openrave`` for OpenRAVE XML, with meshes in the folder ``meshes`` beside the file;
                   ``collada`` and ``json``;
+                * ``externalref`` and what OpenRAVE has beside it: a warning, since bodies stand in the file itself;
                 * ``meshes``: the kind of these, ``stl`` or ``obj``.
 
         Raises:
@@ -117,13 +140,21 @@ def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:
         if len(pair) != 2 or not all(isinstance(text, str) for text in pair):
             raise ArgumentError(f"Save: atts: {pair!r} is no pair of a name and a text")
     for name, value in pairs:
-        known = _VALUES.get(name)
-        if known is None and name != "target":
-            raise ArgumentError(f"Save: atts: nothing reads '{name}'; there are target, {', '.join(_VALUES)}")
-        for word in value.split() if known else ():
-            if word not in (known or ()):
-                raise ArgumentError(f"Save: atts: {name} is '{value}'; known are {', '.join(known or ())}")
+        if name in _NO_EFFECT:
+            diagnostics = Diagnostics()
+            diagnostics.warn("ignored-option", f"Save: '{name}' has no effect: {_NO_EFFECT[name]}", FROM_SCRIPT)
+            send_warnings(diagnostics)
+        elif name != "target":
+            _check_words(name, value)
     return pairs
+
+
+def _check_words(name: str, value: str) -> None:
+    if name not in _VALUES:
+        raise ArgumentError(f"Save: atts: nothing reads '{name}'; there are target, {', '.join(_VALUES)}")
+    for word in value.split():
+        if word not in _VALUES[name]:
+            raise ArgumentError(f"Save: atts: {name} is '{value}'; known are {', '.join(_VALUES[name])}")
 
 
 def _chosen(bodies: Sequence[KinBody], options: int, targets: Sequence[str]) -> list[KinBody]:

@@ -184,7 +184,13 @@ def named(names: Mapping[Any, str]) -> Form:
     return Form(lambda value, scale: names[value], read)
 
 
+def _text(value: Any) -> str | None:  # noqa: ANN401 - whatever JSON holds
+    if value is not None and not isinstance(value, str):
+        raise TypeError(f"is {value!r}, and should be a text")
+    return value
+
+
 PLAIN = Form(lambda value, scale: plain(value), lambda value, scale, present: _array(value))
-TEXT = Form(lambda value, scale: "" if value is None else str(value), lambda value, scale, present: value)
+TEXT = Form(lambda value, scale: "" if value is None else str(value), lambda value, scale, present: _text(value))
 POSE = Form(_write_pose, _read_pose)
 LENGTHS = lengths()
