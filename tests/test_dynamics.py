@@ -155,9 +155,11 @@ class TestVelocities:
     def test_forms_of_the_call(self, robot):
         robot.SetDOFVelocities([0.5, -0.25], [1, 2, 3], [0.1, 0.2, 0.3])
         np.testing.assert_allclose(robot.GetDOFVelocities(), [0.5, -0.25], atol=1e-12)
-        robot.SetDOFVelocities([0.75], 0, [1])  # the base keeps its velocity
-        np.testing.assert_allclose(robot.GetDOFVelocities([1, 0]), [0.75, 0.5], atol=1e-12)
+        robot.SetDOFVelocities([0.75], 0, [0])  # the base keeps its velocity
+        np.testing.assert_allclose(robot.GetDOFVelocities([1, 0]), [0, 0.75], atol=1e-12)
         np.testing.assert_allclose(robot.GetLinks()[0].GetVelocity(), [1, 2, 3, 0.1, 0.2, 0.3])
+        robot.SetDOFVelocities([0.5], 0, [1])  # as in OpenRAVE the first DOF alone counts: random-api-117
+        np.testing.assert_allclose(robot.GetDOFVelocities(), [0.75, 0], atol=1e-12)
         robot.SetDOFVelocities([9, 9], checklimits=0, indices=[1, 0])
         np.testing.assert_allclose(robot.GetDOFVelocities(), [9, 9], atol=1e-12)
         assert robot.GetDOFVelocities([]).shape == (0,)

@@ -4,6 +4,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
+from types import EllipsisType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,7 +43,7 @@ class ArmCollision:
 
     def CheckEndEffectorCollision(
         self,
-        transform: Target = None,
+        transform: "Target | EllipsisType" = ...,
         report: CollisionReport | None = None,
         numredundantsamples: int = 0,
     ) -> bool:
@@ -61,7 +62,9 @@ class ArmCollision:
             False
         """
         del numredundantsamples
-        target, report = _sorted_out(transform, report)
+        if transform is ... and report is None:
+            raise TypeError("CheckEndEffectorCollision: takes a pose, a report or both")  # random-api-21
+        target, report = _sorted_out(None if transform is ... else transform, report)
         return self._answer(arms.end_and_others, report, target)
 
     def CheckEndEffectorSelfCollision(

@@ -205,7 +205,7 @@ class JointLimits(Member):
         """Return the steps of planners [rad or m], shape (axes,)."""
         return self._of_axes("resolution")
 
-    def GetResolution(self, axis: int = 0) -> float:
+    def GetResolution(self, axis: int) -> float:
         """Return the step of planners [rad or m].
 
         Args:

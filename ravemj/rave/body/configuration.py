@@ -87,6 +87,9 @@ class Configuration(BodyPart):
                 and values.shape == (kinematics.dof,)
             ):
                 target = values
+            elif dofindices is not None and dofindices is not ... and not np.size(values):
+                checked_indices(dofindices, kinematics.dof)
+                return  # random-api-145
             else:
                 target = self._full_values(kinematics, values, dofindices)
             if not kinematics.limits.contain(target):
@@ -114,8 +117,6 @@ class Configuration(BodyPart):
                 )
             return np.zeros(0)
         indices = checked_indices(dofindices, dof)
-        if not given.size:
-            return kinematics.values()  # random-api-145
         if given.ndim != 1 or len(given) < len(indices):
             raise ArgumentError(f"SetDOFValues: values has shape {given.shape} for {len(indices)} dofindices")
         full = kinematics.values()
