@@ -1,11 +1,13 @@
 """Loading of models, from files and from text."""
 
+import json
 import logging
 import os
 import tempfile
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
 
 from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, Source, SourceError, UnnamedError, send_warnings
@@ -35,7 +37,7 @@ class Loading(EnvironmentPart):
 
         Args:
             filename: An OpenRAVE XML file with an environment, a robot or a kinbody, a COLLADA file (``.dae``,
-                ``.zae``), or a mesh file. It is looked for in the working folder, then in the folders of the
+                ``.zae``), OpenRAVE's JSON (``.json``), or a mesh file. It is looked for in the working folder, then in the folders of the
                 environment variable ``OPENRAVE_DATA``.
             atts: Attributes as of a ``<Robot>``: ``name`` in place of the body's, ``prefix`` before the names of its
                 parts, ``skipgeometry`` ("1": without shapes), ``scalegeometry`` ("2" or "2 3 4"; lengths times that,
@@ -58,6 +60,8 @@ class Loading(EnvironmentPart):
             True
         """
         checked_kind(filename, (str, bytes, os.PathLike), "Load: filename", "a path")
+        if os.fsdecode(filename).lower().endswith(".json"):
+            return self._load_json(os.fsdecode(filename))
         reading = _read_file(filename, _checked_attributes(atts, "Load"))
         try:
             return self._take(reading)
@@ -68,6 +72,28 @@ class Loading(EnvironmentPart):
             return False
 
     LoadURI = Load
+
+    def _load_json(self, filename: str) -> bool:
+        """Take over the bodies of a file of OpenRAVE's JSON; return False, with the reason in the log, if it is none."""
+        from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
+
+        path = find(filename)
+        try:
+            if path is None:
+                raise SourceError("there is no such file", Source(filename), "check the path, or set OPENRAVE_DATA")
+            content = json.loads(Path(path).read_text(encoding="utf-8"))
+            return self.LoadJSON(checked_kind(content, dict, "Load: the file's content", "an object"))
+        except (OSError, ValueError, RecursionError, RavemjError) as error:
+            _LOG.error("%s: %s", filename, error)
+            return False
+
+    def LoadJSON(self, envInfo: Mapping[str, Any]) -> bool:
+        """Take over an environment in OpenRAVE's JSON; see ``Described``.
+
+        Args:
+            envInfo: The environment, as a dict.
+        """
+        raise NotImplementedError
 
     def LoadData(self, data: str | bytes, atts: Attributes | None = None) -> bool:
         """Add the content of a model that is given as text, as ``Load`` adds that of a file.

@@ -1,11 +1,16 @@
 """Saving of the environment's bodies in files."""
 
+# The fields of infos have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from ravemj.core.arguments import checked_kind
+from ravemj.core.output import new_file
 from ravemj.engine.simulation.world import DEFAULT_GRAVITY
 from ravemj.engine.snapshot import snapshot
 from ravemj.errors import ArgumentError, Diagnostics, UnsupportedError, send_warnings
@@ -16,6 +21,7 @@ from ravemj.rave.env.base import EnvironmentPart
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.geom_writer import MeshFormat
     from ravemj.formats.writers import ModelFormat
+    from ravemj.rave.infos import EnvironmentBaseInfo
 
 SaveArguments = str | Mapping[str, str] | Sequence[tuple[str, str]]
 """What ``Save`` is told beside the selection: the name of a body, or texts by name, of which some may come twice."""
@@ -50,7 +56,7 @@ class Saving(EnvironmentPart):
 
         Args:
             filename: The file. It gets COLLADA 1.5 with OpenRAVE's extras, whatever its name; one that ends in ``.zae``
-                gets a zip archive of it. ``Load`` reads all of them.
+                gets a zip archive of it, one in ``.json`` OpenRAVE's JSON. ``Load`` reads all of them.
             options: Which bodies, a ``SelectionOptions``.
             atts: The name of a body, for ``SelectionOptions.Body`` and ``AllExceptBody``, or a dict or pairs of
 
@@ -73,10 +79,13 @@ class Saving(EnvironmentPart):
 
         checked_kind(filename, (str, os.PathLike), "Save: filename", "a path")
         path = os.fspath(filename)
-        if path.lower().endswith((".json", ".msgpack")):
-            raise UnsupportedError("Save", "JSON files")
+        if path.lower().endswith(".msgpack"):
+            raise UnsupportedError("Save", "MessagePack files")
         given = _checked(atts)
         self._check_alive()
+        if path.lower().endswith(".json"):
+            self._save_json(path, options, given)
+            return
         with self._simulation.lock:
             bodies = [snapshot(body) for body in self._simulation.bodies]
             view, gravity = self._simulation.view, self._simulation.gravity
@@ -95,6 +104,24 @@ class Saving(EnvironmentPart):
             cast("MeshFormat", named.get("meshes", "stl")),
         )
         send_warnings(diagnostics)
+
+
+    def _save_json(self, path: str, options: int, given: Sequence[tuple[str, str]]) -> None:
+        """Write what ``ExtractInfo`` says about bodies."""
+        others = [name for name, _ in given if name != "target"]
+        if others:
+            raise ArgumentError(f"Save: atts: {others[0]} has no meaning for JSON files, which take target alone")
+        with self._simulation.lock:
+            info = self.ExtractInfo()
+            chosen = _chosen([body.scene for body in self._simulation.bodies], options, [name for _, name in given])
+        names = [body.name for body in chosen]
+        info._vBodyInfos = [one for one in info._vBodyInfos if one._name in names]
+        with new_file(path) as file:
+            file.write_text(json.dumps(info.SerializeJSON()), encoding="utf-8")
+
+    def ExtractInfo(self) -> "EnvironmentBaseInfo":
+        """Return the description of the environment; see ``Described``."""
+        raise NotImplementedError
 
 
 def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:
