@@ -11,7 +11,7 @@ from ravemj.engine.kinematics import BodyKinematics, Configuration
 from ravemj.engine.kinematics.displacement import place_links
 from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model.inertia import Inertias
-from ravemj.model.scene import Axis, Geometry, Inertial, Joint, KinBody, Link
+from ravemj.model.scene import Axis, Geometry, Inertial, KinBody, Link
 from ravemj.model.zero import rezeroed
 
 if TYPE_CHECKING:

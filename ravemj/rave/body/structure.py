@@ -229,8 +229,7 @@ class Structure(BodyPart):
         """Return the closed loops of links: each is a list of links, each with the joint that leads to the next."""
         links, joints = self._all_links(), self._all_joints()
         return [
-            [(links[link], joints[joint]) for link, joint in loop]
-            for loop in chains.closed_loops(self._state.scene)
+            [(links[link], joints[joint]) for link, joint in loop] for loop in chains.closed_loops(self._state.scene)
         ]
 
     def GetRigidlyAttachedLinks(self, linkindex: int) -> list[Link]:

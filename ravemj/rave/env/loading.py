@@ -10,7 +10,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, Diagnostic, ErrorCode, RavemjError, Source, SourceError, UnnamedError, send_warnings
+from ravemj.errors import (
+    ArgumentError,
+    Diagnostic,
+    ErrorCode,
+    RavemjError,
+    Source,
+    SourceError,
+    UnnamedError,
+    send_warnings,
+)
 from ravemj.model.scene import Mesh
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.kinbody import KinBody

@@ -105,7 +105,6 @@ class Saving(EnvironmentPart):
         )
         send_warnings(diagnostics)
 
-
     def _save_json(self, path: str, options: int, given: Sequence[tuple[str, str]]) -> None:
         """Write what ``ExtractInfo`` says about bodies."""
         others = [name for name, _ in given if name != "target"]
