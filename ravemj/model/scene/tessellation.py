@@ -36,11 +36,45 @@ def solid_mesh(kind: str, size: tuple[float, ...]) -> Mesh:
 @functools.cache
 def _cube() -> tuple[Floats, Ints]:
     corners = np.array([[x, y, z] for z in (-1.0, 1.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0)])
-    triangles = np.array(
-        [[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4], [2, 6, 3], [3, 6, 7]]
-        + [[0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]]
-    )
-    return corners, triangles
+    triangles = [
+        0,
+        2,
+        1,
+        1,
+        2,
+        3,
+        4,
+        5,
+        6,
+        5,
+        7,
+        6,
+        0,
+        1,
+        4,
+        1,
+        5,
+        4,
+        2,
+        6,
+        3,
+        3,
+        6,
+        7,
+        0,
+        4,
+        2,
+        2,
+        4,
+        6,
+        1,
+        3,
+        5,
+        3,
+        7,
+        5,
+    ]
+    return corners, np.array(triangles).reshape(-1, 3)
 
 
 @functools.cache

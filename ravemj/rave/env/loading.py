@@ -46,8 +46,8 @@ class Loading(EnvironmentPart):
 
         Args:
             filename: An OpenRAVE XML file with an environment, a robot or a kinbody, a COLLADA file (``.dae``,
-                ``.zae``), OpenRAVE's JSON (``.json``), or a mesh file. It is looked for in the working folder, then in the folders of the
-                environment variable ``OPENRAVE_DATA``.
+                ``.zae``), OpenRAVE's JSON (``.json``), or a mesh file. It is looked for in the working folder, then in
+                the folders of the environment variable ``OPENRAVE_DATA``.
             atts: Attributes as of a ``<Robot>``: ``name`` in place of the body's, ``prefix`` before the names of its
                 parts, ``skipgeometry`` ("1": without shapes), ``scalegeometry`` ("2" or "2 3 4"; lengths times that,
                 but sizes of boxes, spheres and cylinders of XML as they are). They act where a robot, a kinbody, a
@@ -83,7 +83,7 @@ class Loading(EnvironmentPart):
     LoadURI = Load
 
     def _load_json(self, filename: str) -> bool:
-        """Take over the bodies of a file of OpenRAVE's JSON; return False, with the reason in the log, if it is none."""
+        """Take over the bodies of a file of OpenRAVE's JSON; False, with the reason in the log, if it is none."""
         from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
 
         path = find(filename)
