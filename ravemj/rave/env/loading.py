@@ -90,8 +90,8 @@ class Loading(EnvironmentPart):
         try:
             if path is None:
                 raise SourceError("there is no such file", Source(filename), "check the path, or set OPENRAVE_DATA")
-            content = json.loads(Path(path).read_text(encoding="utf-8"))
-            return self.LoadJSON(checked_kind(content, dict, "Load: the file's content", "an object"))
+            content: object = json.loads(Path(path).read_text(encoding="utf-8"))
+            return self.LoadJSON(cast("dict[str, Any]", checked_kind(content, dict, "Load: its content", "an object")))
         except (OSError, ValueError, RecursionError, RavemjError) as error:
             _LOG.error("%s: %s", filename, error)
             return False
