@@ -468,7 +468,10 @@ def test_links_touching_when_added_are_looked_up_where_they_were(env, arm):
 def test_end_effector(env, arm):
     hand = arm.GetActiveManipulator()
     box(env, "wall", (1.9, 0.6, 0.3), (0.1, 0.1, 0.1))
-    assert not hand.CheckEndEffectorCollision()
+    assert not hand.CheckEndEffectorCollision(hand.GetTransform())
+    assert not hand.CheckEndEffectorCollision(report=CollisionReport())
+    with pytest.raises(TypeError, match="pose"):
+        hand.CheckEndEffectorCollision()
     T = hand.GetTransform()
     T[1, 3] += 0.6
     before = arm.GetLinkTransformations()

@@ -96,7 +96,7 @@ class TestApi:
             assert joint.GetMaxVel() == max_velocity
             assert joint.GetMaxAccel() == 50
             assert joint.GetMaxTorque() == 0
-            assert joint.GetResolution() == pytest.approx(0.0174533, abs=1e-7)
+            assert joint.GetResolution(0) == pytest.approx(0.0174533, abs=1e-7)
         assert first.GetHierarchyParentLink() == robot.GetLink("Base")
         assert first.GetHierarchyChildLink() == second.GetHierarchyParentLink() == robot.GetLink("Arm0")
 

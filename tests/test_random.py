@@ -7,6 +7,7 @@ off the list; ``python tests/test_random.py`` writes the list anew, with the pla
 import importlib.util
 import json
 import os
+import re
 import subprocess
 import sys
 import tarfile
@@ -20,6 +21,11 @@ from waiting import PATIENCE
 DATA = Path(__file__).parent / "data" / "random"
 LIST = DATA / "differs.txt"
 KINDS = ("xml", "graph", "api")
+MISTAKES = {
+    r"ComputeInverseDynamics(\[\])+$": "OpenRAVE divides forces of sliders by 2 pi and leaves out what followers need",
+    r"GetLinkAccelerations(\[\])+$": "OpenRAVE leaves out what accelerates followers",
+}
+"""Places where numbers of scripts may differ, and why; the same are left out of the API scripts."""
 PARTS = 4
 """One part of each kind runs by default, all of them with ``-m stress``."""
 
@@ -46,10 +52,14 @@ def differing(kind: str, parts: tuple[int, ...], folder: Path) -> tuple[list[str
     compare, found = _program().compare, dict[str, list[str]]()
     for name, path in zip(names, inputs, strict=True):
         theirs, ours = (json.loads(Path(f"{path}.{who}.json").read_text()) for who in ("openravepy", "ours"))
-        differences = compare(theirs, ours)
+        differences = [(place, text) for place, text in compare(theirs, ours) if not _is_mistake(place)]
         if differences:
             found[name] = [f"{place}: {text}" for place, text in differences]
     return names, found
+
+
+def _is_mistake(place: str) -> bool:
+    return any(re.match(mistake, place) for mistake in MISTAKES)
 
 
 def _program() -> types.ModuleType:

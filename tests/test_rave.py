@@ -223,7 +223,7 @@ class TestDofValues:
     def test_bad_values_change_nothing(self, robot, values, words, checklimits):
         robot.SetDOFValues([0.3, 0.4])
         with pytest.raises(ravemj.openrave_exception, match=words) as caught:
-            robot.SetDOFValues(values, None, checklimits)
+            robot.SetDOFValues(values, checklimits=checklimits)
         assert caught.value.GetCode() == "InvalidArguments"
         assert not isinstance(caught.value, ValueError)  # as in OpenRAVE
         assert robot.GetDOFValues().tolist() == [0.3, 0.4]

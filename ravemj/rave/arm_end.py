@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
+from types import EllipsisType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -120,7 +121,7 @@ class ArmEnd(ArmPart):
 
     def CheckEndEffectorCollision(
         self,
-        transform: Target = None,
+        transform: "Target | EllipsisType" = ...,
         report: CollisionReport | None = None,
         numredundantsamples: int = 0,
     ) -> bool:
@@ -139,7 +140,9 @@ class ArmEnd(ArmPart):
             False
         """
         del numredundantsamples
-        target, report = _sorted_out(transform, report)
+        if transform is ... and report is None:
+            raise TypeError("CheckEndEffectorCollision: takes a pose, a report or both")  # random-api-21
+        target, report = _sorted_out(None if transform is ... else transform, report)
         return self._answer(arms.end_and_others, report, target)
 
     def CheckEndEffectorSelfCollision(

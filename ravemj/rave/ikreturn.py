@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
 from ravemj.rave.enums import IkReturnAction
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.specification import IkParameterization
@@ -136,6 +137,21 @@ class IkFailureInfo(ApiObject):
     def GetCollisionReport(self) -> CollisionReport:
         """Return the collision; empty if it was none."""
         return self._report
+
+    def GetMapData(self, key: str) -> Floats:
+        """Return further numbers of a solver, of which those here give none.
+
+        Args:
+            key: Their name.
+
+        Raises:
+            openrave_exception: there are none of that name.
+        """
+        raise ArgumentError(f"GetMapData: there are no numbers '{key}'")
+
+    def GetMapDataDict(self) -> dict[str, Floats]:
+        """Return all further numbers of a solver by name: none."""
+        return {}
 
     def GetDescription(self) -> str:
         """Return a sentence that says why."""

@@ -205,7 +205,7 @@ class JointLimits(Member):
         """Return the steps of planners [rad or m], shape (axes,)."""
         return self._of_axes("resolution")
 
-    def GetResolution(self, axis: int = 0) -> float:
+    def GetResolution(self, axis: int) -> float:
         """Return the step of planners [rad or m].
 
         Args:
@@ -234,7 +234,8 @@ class JointLimits(Member):
             if numbers.shape != (len(axes),) or np.isnan(numbers).any():
                 wanted = f"{len(axes)} numbers, one for each axis"
                 message = f"{caller}: values are {numbers.tolist()}, and should be {wanted}"
-                raise ArgumentError(message, ErrorCode.Failed)
+                is_length = numbers.shape != (len(axes),)  # random-api-74
+                raise ArgumentError(message, ErrorCode.Failed if is_length else ErrorCode.InvalidArguments)
             for index, number in enumerate(numbers.tolist()):
                 changes: dict[str, Any] = {field: number}
                 axes[index] = replace(axes[index], **changes)

@@ -84,7 +84,7 @@ class Robot(ActiveDofs, Manipulators, Sensors, KinBody):
         self.arm_solvers: dict[tuple[str, IkParameterizationType], ArmSolver] = {}
 
     def set_following(self, index: int, equations: Equations) -> None:
-        """Let a joint follow others, or none; where DOFs get other numbers by it, no choice of active ones lasts."""
+        """Let a joint follow others, or none; where DOFs get other numbers, all are active again."""
         before = self.GetDOF()
         super().set_following(index, equations)
         if self.GetDOF() != before:

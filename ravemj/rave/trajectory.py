@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import also_named
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.output import AnyPath, new_file
 from ravemj.core.transforms import Floats
@@ -55,6 +56,7 @@ class Trajectory(Interface):
         """Return the name of the type, as it was spelled when the trajectory was made."""
         return self._xmlid
 
+    @also_named(group="spec")
     def Init(self, spec: Spec) -> None:
         """Remove all waypoints, and set the specification of new ones.
 
@@ -127,6 +129,7 @@ class Trajectory(Interface):
         """
         return len(self.waypoints)
 
+    @also_named(group="spec")
     def GetWaypoint(self, index: int, spec: Spec | None = None) -> Floats:
         """Return a waypoint; a copy.
 
@@ -147,6 +150,7 @@ class Trajectory(Interface):
         start = index % count
         return self.GetWaypoints(start, start + 1, spec)
 
+    @also_named(group="spec")
     def GetWaypoints(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
         """Return the waypoints from ``startindex`` to before ``endindex``, one behind the other, shape (n * dof,).
 
@@ -157,6 +161,7 @@ class Trajectory(Interface):
         """
         return self.GetWaypoints2D(startindex, endindex, spec).ravel()
 
+    @also_named(group="spec")
     def GetWaypoints2D(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
         """Return the waypoints from ``startindex`` to before ``endindex``, shape (n, dof); a copy.
 
@@ -167,6 +172,7 @@ class Trajectory(Interface):
         """
         return self._as(self.waypoints.rows(startindex, endindex), spec)
 
+    @also_named(group="spec")
     def GetAllWaypoints2D(self, spec: Spec | None = None) -> Floats:
         """Return all waypoints, shape (n, dof); a copy.
 
@@ -190,6 +196,7 @@ class Trajectory(Interface):
         """
         return self.waypoints.first_after(time)
 
+    @also_named(group="spec")
     def Sample(self, time: float, spec: Spec | None = None) -> Floats:
         """Return the configuration at a time, interpolated as the groups say.
 
@@ -212,6 +219,7 @@ class Trajectory(Interface):
         find = self._env.simulation.body
         return self._as(self.waypoints.sample(time, restamped=spec is None, find_body=find)[None], spec)[0]
 
+    @also_named(group="spec")
     def SampleFromPrevious(self, data: ArrayLike, time: float, spec: Spec) -> Floats:
         """Return the configuration at a time; what the trajectory lacks is taken from ``data``. See ``Sample``.
 
@@ -224,6 +232,7 @@ class Trajectory(Interface):
         target = ConfigurationSpecification(spec)
         return self.GetConfigurationSpecification().ConvertDataFromPrevious(data, target, source, 1, self._env)
 
+    @also_named(group="spec")
     def SamplePoints2D(self, times: ArrayLike, spec: Spec | None = None) -> Floats:
         """Return the configurations at some times [s], shape (n, dof). See ``Sample``.
 
@@ -235,6 +244,7 @@ class Trajectory(Interface):
         dof = (self.GetConfigurationSpecification() if spec is None else ConfigurationSpecification(spec)).GetDOF()
         return np.array(rows).reshape(len(rows), dof)
 
+    @also_named(group="spec")
     def SamplePointsSameDeltaTime2D(self, deltatime: float, ensurelastpoint: bool, spec: Spec | None = None) -> Floats:
         """Return the configurations at equal distances of time.
 
@@ -248,6 +258,7 @@ class Trajectory(Interface):
         """
         return self.SampleRangeSameDeltaTime2D(deltatime, 0.0, self.GetDuration(), ensurelastpoint, spec)
 
+    @also_named(group="spec", startTime="starttime", stopTime="stoptime")
     def SampleRangeSameDeltaTime2D(
         self, deltatime: float, starttime: float, stoptime: float, ensurelastpoint: bool, spec: Spec | None = None
     ) -> Floats:

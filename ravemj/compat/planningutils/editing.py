@@ -7,7 +7,7 @@ from functools import reduce
 
 import numpy as np
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.rave.specification import ConfigurationSpecification
@@ -30,6 +30,7 @@ def ConvertTrajectorySpecification(trajectory: Trajectory, spec: ConfigurationSp
     trajectory.Insert(0, rows.ravel())
 
 
+@also_named(trajectory="traj")
 def ReverseTrajectory(traj: Trajectory) -> Trajectory:
     """Return the trajectory backwards, in a new one.
 

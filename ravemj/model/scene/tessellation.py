@@ -36,13 +36,8 @@ def solid_mesh(kind: str, size: tuple[float, ...]) -> Mesh:
 @functools.cache
 def _cube() -> tuple[Floats, Ints]:
     corners = np.array([[x, y, z] for z in (-1.0, 1.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0)])
-    triangles = np.array(
-        [
-            *([0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4]),
-            *([2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]),
-        ]
-    )
-    return corners, triangles
+    triangles = "021 123 456 576 014 154 263 367 042 246 135 375"
+    return corners, np.array([[int(corner) for corner in three] for three in triangles.split()])
 
 
 @functools.cache

@@ -95,6 +95,9 @@ class Configuration(Limits):
                 and values.shape == (kinematics.dof,)
             ):
                 target = values
+            elif dofindices is not None and dofindices is not ... and not np.size(values):
+                checked_indices(dofindices, kinematics.dof)
+                return  # random-api-145
             else:
                 target = full_values(state.scene, kinematics, values, dofindices)
             if not kinematics.limits.contain(target):

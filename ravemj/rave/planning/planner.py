@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, ClassVar
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.handles import Handle
 from ravemj.errors import ArgumentError
 from ravemj.rave.enums import InterfaceType, PlannerAction, PlannerStatusCode
@@ -49,6 +49,7 @@ class Planner(Interface):
         """Return the name of the planner, as it was spelled when it was made."""
         return self._xmlid
 
+    @also_named(xmlparams="params")
     def InitPlan(self, robot: Robot | None, params: PlannerParameters | str, releasegil: bool = False) -> bool:
         """Take over a problem.
 

@@ -48,6 +48,13 @@ class PlannerStatus(ApiObject):
     Interrupted: ClassVar["PlannerStatus"]
     InterruptedWithSolution: ClassVar["PlannerStatus"]
 
+    statusCode: PlannerStatusCode = PlannerStatusCode.Failed
+    description: str = ""
+    errorOrigin: str = ""
+    jointValues: Floats = np.zeros(0)
+    ikparam: "IkParameterization | None" = None
+    report: CollisionReport | None = None
+
     def __init__(
         self,
         description: str = "",
@@ -61,7 +68,7 @@ class PlannerStatus(ApiObject):
         self.description = description
         self.errorOrigin = errorOrigin
         self.jointValues = np.zeros(0) if jointValues is None else jointValues
-        self.ikparam: IkParameterization | None = None
+        self.ikparam = None
         self.report = report
 
     def __bool__(self) -> bool:

@@ -1,0 +1,166 @@
+"""Rules of OpenRAVE that random scripts showed, on inputs of our own."""
+
+import json
+
+import numpy as np
+import pytest
+
+import ravemj
+
+CHAIN = """<Robot name="r"><KinBody>
+  <Body name="a" type="{base}"><Geom type="box"><extents>.1 .1 .1</extents></Geom></Body>
+  <Body name="b"><Translation>.5 0 0</Translation><Mass type="custom"><total>2</total><com>.3 0 .1</com></Mass>
+    <Geom type="box"><extents>.1 .1 .1</extents></Geom></Body>
+  <Body name="c"><Translation>1 .2 0</Translation><Mass type="custom"><total>1</total><com>.1 .2 0</com></Mass></Body>
+  <Joint name="one" type="hinge" {circular}><Body>a</Body><Body>b</Body><offsetfrom>b</offsetfrom>
+    <axis>0 1 0</axis>{motor}</Joint>
+  <Joint name="two" type="slider" {more}><Body>b</Body><Body>c</Body><offsetfrom>c</offsetfrom>
+    <axis>1 0 0</axis><limits>-1 1</limits>{motor}</Joint>
+</KinBody></Robot>"""
+MOTOR = """<actuator type="electric_motor"><gear_ratio>{}</gear_ratio><rotor_inertia>.2</rotor_inertia>
+  <coloumb_friction>.4</coloumb_friction><viscous_friction>.7</viscous_friction></actuator>"""
+
+
+def chain(base="dynamic", circular="", more="", motor=""):
+    env = ravemj.Environment()
+    env.StopSimulation()
+    assert env.LoadData(CHAIN.format(base=base, circular=circular, more=more, motor=motor))
+    return env, env.GetRobot("r")
+
+
+class TestMotors:
+    """gap-16: rotor inertia and friction count, of hinges and sliders."""
+
+    @pytest.mark.parametrize(("gear", "rates"), [(3, [0.5, -2]), (1, [0, 0.1]), (3, [-1e-15, 0])])
+    def test_they_add_to_what_links_need(self, gear, rates):
+        (_, free), (_, driven) = chain(), chain(motor=MOTOR.format(gear))
+        accelerations = np.array([0.3, -0.7])
+        for robot in (free, driven):
+            robot.SetDOFValues([0.4, 0.2])
+            robot.SetDOFVelocities(rates, [0.1, 0.2, 0.3], [0.5, -0.3, 0.2])
+        signs = np.where(np.abs(rates) > np.array(1e-9), np.sign(rates), 0)
+        motors = 0.2 * gear**2 * accelerations + 0.4 * signs + 0.7 * np.array(rates)
+        added = driven.ComputeInverseDynamics(accelerations) - free.ComputeInverseDynamics(accelerations)
+        np.testing.assert_allclose(added, motors, atol=1e-9)
+        parts = zip(
+            driven.ComputeInverseDynamics(accelerations, None, True),
+            free.ComputeInverseDynamics(accelerations, None, True),
+            strict=True,
+        )
+        by_acceleration, by_velocity, rest = (one - other for one, other in parts)
+        np.testing.assert_allclose(by_acceleration, 0.2 * gear**2 * accelerations, atol=1e-9)
+        np.testing.assert_allclose(by_velocity, 0.4 * signs + 0.7 * np.array(rates), atol=1e-9)
+        np.testing.assert_allclose(rest, 0, atol=1e-9)
+
+    def test_many_configurations_agree_with_one(self):
+        _, robot = chain(motor=MOTOR.format(2))
+        Q, rates, accelerations = np.random.default_rng(1).uniform(-1, 1, (3, 5, 2))
+        many = robot.batch_inverse_dynamics(Q, rates, accelerations)
+        for values, rate, acceleration, expected in zip(Q, rates, accelerations, many, strict=True):
+            robot.SetDOFValues(values)
+            robot.SetDOFVelocities(rate, [0, 0, 0], [0, 0, 0], 0)
+            np.testing.assert_allclose(robot.ComputeInverseDynamics(acceleration), expected, atol=1e-9)
+
+
+def test_a_joint_that_nobody_moves_has_no_inverse_dynamics():  # random-api-92
+    _, robot = chain(more='enable="false"')
+    with pytest.raises(ravemj.openrave_exception, match="'two' has no DOF") as caught:
+        robot.ComputeInverseDynamics([0])
+    assert caught.value.GetCode() == "Assert"
+
+
+@pytest.mark.parametrize(("base", "difference"), [("dynamic", 5 - 2 * np.pi), ("static", 5)])
+def test_differences_of_circular_joints(base, difference):  # gap-13, random-api-102
+    _, robot = chain(base=base, circular='circular="true"')
+    np.testing.assert_allclose(robot.SubtractDOFValues([5, 0.5], [0, 0.1]), [difference, 0.4])
+    np.testing.assert_allclose(robot.SubtractDOFValues([5], [0], [0]), [difference])
+    assert robot.SubtractDOFValues([], [], []).shape == (0,)
+    assert robot.GetJoint("one").SubtractValue(5, 0, 0) == pytest.approx(difference)
+    robot.SetActiveDOFs([0], ravemj.DOFAffine.X)
+    np.testing.assert_allclose(robot.SubtractActiveDOFValues([5, 3], [0, 1]), [difference, 2])
+
+
+def test_arguments_that_openrave_does_not_take():
+    env, robot = chain()
+    box = ravemj.RaveCreateKinBody(env, "")
+    with pytest.raises(TypeError):
+        robot.SetDOFWeights([1], [0])  # random-api-103
+    with pytest.raises(ravemj.openrave_exception, match="no robot") as caught:
+        box.GetNonAdjacentLinks(ravemj.KinBody.AdjacentOptions.ActiveDOFs)  # random-api-90
+    assert caught.value.GetCode() == "InvalidArguments"
+    with pytest.raises(ValueError, match="position"):
+        robot.ComputeJacobianTranslation(99, [1, 2])  # random-api-5: the point is looked at first
+
+
+def test_values_without_numbers_change_nothing():  # random-api-145, random-api-238
+    _, robot = chain()
+    robot.SetDOFValues([0.1, 3], [0, 1], 0)
+    robot.SetDOFValues([], [1])
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.1, 3])
+    robot.SetDOFValues([0.2, 0.3, 9], None)
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.2, 0.3])
+    with pytest.raises(ravemj.openrave_exception, match="shape"):
+        robot.SetDOFValues([0.2, 0.3, 9])
+
+
+def test_limits_that_close_hold_a_joint_where_it_is():  # random-api-117
+    env, robot = chain()
+    robot.SetDOFValues([0.5, 0.25])
+    stood = robot.link_transforms()
+    robot.SetDOFLimits([1], [-1], [0])
+    assert robot.GetJoint("one").IsStatic()
+    assert not env.CheckCollision(robot)
+    np.testing.assert_allclose(robot.link_transforms(), stood, atol=1e-12)
+    robot.SetDOFLimits([-1], [1], [0])
+    robot.SetDOFValues([0.5, 0.25])
+    assert not env.CheckCollision(robot)
+    np.testing.assert_allclose(robot.link_transforms(), stood, atol=1e-12)
+
+
+def test_axes_stay_at_their_parents_when_links_are_moved():  # random-api-234
+    _, robot = chain()
+    robot.GetLink("b").SetTransform(ravemj.matrixFromPose([0.5, 0.5, 0.5, 0.5, 1, 2, 3]))
+    point = np.array([0.3, 0.4, 0.5])
+    one, two = robot.GetJoints()
+    expected = np.column_stack([np.cross(one.GetAxis(0), point - one.GetAnchor()), two.GetAxis(0)])
+    np.testing.assert_allclose(robot.ComputeJacobianTranslation(2, point), expected, atol=1e-12)
+
+
+def test_clones_are_within_their_limits():  # random-api-232
+    env, robot = chain()
+    robot.SetDOFValues([0.2, 3], [0, 1], 0)
+    np.testing.assert_allclose(env.CloneSelf(1).GetRobot("r").GetDOFValues(), [0.2, 1])
+    np.testing.assert_allclose(robot.GetDOFValues(), [0.2, 3])
+
+
+def test_sliders_have_no_last_value():  # random-api-102
+    _, robot = chain()
+    robot.SetDOFValues([0.4, 0.3])
+    np.testing.assert_allclose(robot.GetLinkTransformations(True)[1], [0.4, 0])
+
+
+def test_json_files(tmp_path):  # name-11
+    env, robot = chain()
+    robot.SetDOFValues([0.4, 0.3])
+    env.LoadData('<KinBody name="k"><Body name="x"/></KinBody>')
+    path = tmp_path / "scene.json"
+    env.Save(path, env.SelectionOptions.Body, "r")
+    assert [body["name"] for body in json.loads(path.read_text())["bodies"]] == ["r"]
+    other = ravemj.Environment()
+    assert other.Load(path)
+    np.testing.assert_allclose(other.GetRobot("r").link_transforms(), robot.link_transforms(), atol=1e-12)
+    path.write_text("[1")
+    assert not other.Load(path)
+    assert not other.Load(tmp_path / "none.json")
+    with pytest.raises(ravemj.openrave_exception, match="target"):
+        env.Save(path, atts={"skipwrite": "geometry"})
+    assert path.read_text() == "[1"
+
+
+def test_a_body_without_a_name_is_refused():  # gap-18, random-api-82
+    env, _ = chain()
+    for text in ("<KinBody/>", '<Environment><KinBody><Body name="x"/></KinBody></Environment>'):
+        with pytest.raises(ravemj.openrave_exception, match="no name") as caught:
+            env.LoadData(text)
+        assert caught.value.GetCode() == "Failed"
+    assert len(env.GetBodies()) == 1
