@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # at run time as MODULE_OF says
         RaveCreateMultiController,
         VelocityController,
     )
-    from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
+    from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot, RaveCreateTrajectory
     from ravemj.rave.enums import (
         AdjacentOptions,
         CheckLimitsAction,
@@ -169,7 +169,7 @@ if TYPE_CHECKING:  # at run time as MODULE_OF says
         IkParameterization,
         RaveGetAffineConfigurationSpecification,
     )
-    from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
+    from ravemj.rave.trajectory import Trajectory
     from ravemj.rave.trimesh import TriMesh
     from ravemj.rave.units import (
         AngleUnit,

@@ -1,4 +1,4 @@
-"""OpenRAVE's functions that make bodies."""
+"""OpenRAVE's functions that make bodies and trajectories."""
 
 from ravemj.model.scene import KinBody as SceneBody
 from ravemj.model.shape_bodies import FROM_SCRIPT
@@ -6,6 +6,7 @@ from ravemj.rave.environment import Environment
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
+from ravemj.rave.trajectory import KIND, Trajectory
 
 
 def RaveCreateKinBody(env: Environment, name: str = "") -> KinBody | None:
@@ -46,3 +47,22 @@ def _empty(env: Environment, *, is_robot: bool) -> KinBody:
     checked_environment(env, "RaveCreateRobot" if is_robot else "RaveCreateKinBody")
     scene = SceneBody(name="", is_robot=is_robot, links=(), joints=(), passive_joints=(), source=FROM_SCRIPT)
     return env.wrap(env.simulation.create(scene))
+
+
+def RaveCreateTrajectory(env: Environment, name: str = "") -> Trajectory | None:
+    """Make a trajectory.
+
+    Args:
+        env: The environment with the robots that the trajectory may refer to.
+        name: ``GenericTrajectory``, the only type, in any letter case; empty: that one.
+
+    Returns:
+        The trajectory, or None where there is no such type.
+
+    Example:
+        >>> trajectory = RaveCreateTrajectory(env, "")
+        >>> trajectory.Init(robot.GetConfigurationSpecification("linear"))
+    """
+    checked_environment(env, "RaveCreateTrajectory")
+    xmlid = next(iter(name.split()), KIND)
+    return Trajectory(env, xmlid) if xmlid.lower() == KIND.lower() else None

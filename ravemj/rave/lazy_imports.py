@@ -9,7 +9,7 @@ _NAMES = {
         Controller IdealController MultiController RaveCreateController RaveCreateMultiController
         VelocityController
     """,
-    "ravemj.rave.creation": "RaveCreateKinBody RaveCreateRobot",
+    "ravemj.rave.creation": "RaveCreateKinBody RaveCreateRobot RaveCreateTrajectory",
     "ravemj.rave.enums": """
         AdjacentOptions CheckLimitsAction CloningOptions CollisionAction CollisionOptions
         ConstraintFilterOptions DebugLevel EnvironmentCreateOptions GeometryType GrabbedInfoCheckResult
@@ -67,7 +67,7 @@ _NAMES = {
     "ravemj.rave.specification": """
         ConfigurationSpecification IkParameterization RaveGetAffineConfigurationSpecification
     """,
-    "ravemj.rave.trajectory": "RaveCreateTrajectory Trajectory",
+    "ravemj.rave.trajectory": "Trajectory",
     "ravemj.rave.trimesh": "TriMesh",
     "ravemj.rave.units": """
         AngleUnit GetAngleUnitConversionScale GetAngleUnitFromString GetAngleUnitStandardValue

@@ -7,7 +7,7 @@ from ravemj.core.arguments import checked_kind
 from ravemj.errors import UnsupportedError
 from ravemj.rave.collision import CollisionChecker, RaveCreateCollisionChecker
 from ravemj.rave.controllers import RaveCreateController
-from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot
+from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot, RaveCreateTrajectory
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.iksolver import RaveCreateIkSolver
 from ravemj.rave.interface import Interface
@@ -21,7 +21,7 @@ from ravemj.rave.plugins import (
 )
 from ravemj.rave.samplers import RaveCreateSpaceSampler
 from ravemj.rave.sensors import RaveCreateSensor
-from ravemj.rave.trajectory import RaveCreateTrajectory, Trajectory
+from ravemj.rave.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment

@@ -15,7 +15,7 @@ from ravemj.core.output import AnyPath, new_file
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
-from ravemj.rave.interface import Interface, checked_environment
+from ravemj.rave.interface import Interface
 from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.user_data import Annotations
 from ravemj.trajectories.groups import Group
@@ -388,22 +388,3 @@ class Trajectory(Interface):
 
 def _groups(spec: Spec) -> Sequence[Group]:
     return ConfigurationSpecification(spec).GetGroups()
-
-
-def RaveCreateTrajectory(env: "Environment", name: str = "") -> Trajectory | None:
-    """Make a trajectory.
-
-    Args:
-        env: The environment with the robots that the trajectory may refer to.
-        name: ``GenericTrajectory``, the only type, in any letter case; empty: that one.
-
-    Returns:
-        The trajectory, or None where there is no such type.
-
-    Example:
-        >>> trajectory = RaveCreateTrajectory(env, "")
-        >>> trajectory.Init(robot.GetConfigurationSpecification("linear"))
-    """
-    checked_environment(env, "RaveCreateTrajectory")
-    xmlid = next(iter(name.split()), KIND)
-    return Trajectory(env, xmlid) if xmlid.lower() == KIND.lower() else None

@@ -1,4 +1,4 @@
-"""Collision checking of an environment."""
+"""Collision checking of an environment, and its shapes as triangles."""
 
 from collections.abc import Callable
 
@@ -11,9 +11,12 @@ from ravemj.core.handles import Handle
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.rave.collision import CollisionChecker, NoCollisionChecker
+from ravemj.rave.enums import TriangulateOptions
 from ravemj.rave.env.contents import Contents
+from ravemj.rave.env.triangulation import chosen, triangles
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.report import CollisionReport
+from ravemj.rave.trimesh import TriMesh
 
 CollisionCallback = Callable[[CollisionReport, bool], int]
 """A function of a report of one collision and of whether physics asks; it returns a ``CollisionAction``."""
@@ -24,7 +27,15 @@ class CollisionCallbackHandle(Handle):
 
 
 class Collision(Contents):
-    """Collision checking: what touches what, and what rays hit."""
+    """Collision checking: what touches what, and what rays hit; and the triangles of all shapes."""
+
+    TriangulateOptions = TriangulateOptions
+    SelectionOptions = TriangulateOptions
+    NoRobots = TriangulateOptions.NoRobots
+    Robots = TriangulateOptions.Robots
+    Everything = TriangulateOptions.Everything
+    Body = TriangulateOptions.Body
+    AllExceptBody = TriangulateOptions.AllExceptBody
 
     _internal = ("collision_callbacks",)
 
@@ -140,3 +151,23 @@ class Collision(Contents):
     def HasRegisteredCollisionCallbacks(self) -> bool:
         """Return whether there are functions of ``RegisterCollisionCallback``."""
         return bool(self.collision_callbacks)
+
+    def Triangulate(self, body: KinBody) -> TriMesh:
+        """Return all shapes of a body as triangles, in the world as the body stands now.
+
+        Args:
+            body: The body; what it holds is left out.
+        """
+        checked_kind(body, KinBody, "Triangulate: body")
+        with self._simulation.lock:
+            return triangles([body.simulation_state])
+
+    def TriangulateScene(self, options: int = TriangulateOptions.Everything, name: str = "") -> TriMesh:
+        """Return the shapes of several bodies as triangles, in the world as they stand now.
+
+        Args:
+            options: Which bodies, a ``TriangulateOptions``.
+            name: The name that ``Body`` and ``AllExceptBody`` mean.
+        """
+        with self._simulation.lock:
+            return triangles(chosen(self._simulation.bodies, TriangulateOptions(options), name))

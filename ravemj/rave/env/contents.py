@@ -8,15 +8,13 @@ from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.handles import Handle
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.rave.enums import InterfaceAddMode, TriangulateOptions
+from ravemj.rave.enums import InterfaceAddMode
 from ravemj.rave.env.base import EnvironmentPart
-from ravemj.rave.env.triangulation import chosen, triangles
 from ravemj.rave.interface import Interface
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.module import Module
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor
-from ravemj.rave.trimesh import TriMesh
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
@@ -31,15 +29,7 @@ class BodyCallbackHandle(Handle):
 
 
 class Contents(EnvironmentPart):
-    """The bodies of an environment, as objects and as triangles; and its modules."""
-
-    TriangulateOptions = TriangulateOptions
-    SelectionOptions = TriangulateOptions
-    NoRobots = TriangulateOptions.NoRobots
-    Robots = TriangulateOptions.Robots
-    Everything = TriangulateOptions.Everything
-    Body = TriangulateOptions.Body
-    AllExceptBody = TriangulateOptions.AllExceptBody
+    """The bodies, sensors and modules of an environment."""
 
     _internal = ("wrap",)
 
@@ -183,9 +173,9 @@ class Contents(EnvironmentPart):
         name, number = added.GetName(), 0
         if not name:
             raise RavemjError("AddSensor: the sensor has no name; give it one with SetName", ErrorCode.Failed)
+        if not anonymous and self.GetSensor(name) is not None:
+            raise RavemjError(f"AddSensor: there already is a sensor '{name}'", ErrorCode.SensorNameConflict)
         while self.GetSensor(added.GetName()) is not None:
-            if not anonymous:
-                raise RavemjError(f"AddSensor: there already is a sensor '{name}'", ErrorCode.SensorNameConflict)
             added.SetName(f"{name}{number}")
             number += 1
         with self._simulation.lock:
@@ -345,26 +335,6 @@ class Contents(EnvironmentPart):
     def GetMaxEnvironmentBodyIndex(self) -> int:
         """Return the largest number of a body; 0 without bodies."""
         return max((body.index for body in self._simulation.bodies), default=0)
-
-    def Triangulate(self, body: KinBody) -> TriMesh:
-        """Return all shapes of a body as triangles, in the world as the body stands now.
-
-        Args:
-            body: The body; what it holds is left out.
-        """
-        checked_kind(body, KinBody, "Triangulate: body")
-        with self._simulation.lock:
-            return triangles([body.simulation_state])
-
-    def TriangulateScene(self, options: int = TriangulateOptions.Everything, name: str = "") -> TriMesh:
-        """Return the shapes of several bodies as triangles, in the world as they stand now.
-
-        Args:
-            options: Which bodies, a ``TriangulateOptions``.
-            name: The name that ``Body`` and ``AllExceptBody`` mean.
-        """
-        with self._simulation.lock:
-            return triangles(chosen(self._simulation.bodies, TriangulateOptions(options), name))
 
     def AddModule(self, module: Module | None, args: str = "") -> int:
         """Add a module and start it.
