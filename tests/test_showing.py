@@ -123,7 +123,7 @@ def test_infos_compare_by_content(env):
 
 # Names that are not OpenRAVE's, and that users call all the same
 OURS = """
-    animation save_html
+    animation save_html null_space null_space_path set_noise segmentation_image depth_image
     background batch_collides serve_viewer batch_inverse_dynamics batch_jacobians batch_link_transforms camera close
     com_jacobian data default_camera diagnostics drawaabb drawarrow drawboxarray drawlabel drawobb drawbox drawlinelist
     drawlinestrip drawplane drawtrimesh

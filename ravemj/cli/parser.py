@@ -278,8 +278,8 @@ def _add_completion(commands: Commands) -> None:
         commands,
         "completion",
         "print what lets a shell complete commands, options and models",
-        'eval "$(ravemj completion bash)"                                  # in ~/.bashrc',
-        'autoload -U compinit; compinit; eval "$(ravemj completion zsh)"   # in ~/.zshrc',
+        "ravemj completion bash > ~/.local/share/bash-completion/completions/ravemj",
+        "ravemj completion zsh > ~/.zfunc/_ravemj      # with fpath+=~/.zfunc before compinit in ~/.zshrc",
         "ravemj completion fish > ~/.config/fish/completions/ravemj.fish",
     )
     parser.add_argument("shell", choices=["bash", "zsh", "fish"], metavar="SHELL", help="bash, zsh or fish")
