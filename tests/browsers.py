@@ -39,7 +39,7 @@ SIZE = 640, 480
 ASLANT = np.array(
     [[-0.643, 0.324, -0.694, 0.943], [0.766, 0.272, -0.583, 0.792], [0, -0.906, -0.423, 0.474], [0, 0, 0, 1]]
 )
-CLEAR = slice(90, 390), slice(60, 525)
+CLEAR = slice(90, 390), slice(60, 510)
 """Rows and columns where neither text nor buttons are."""
 
 
