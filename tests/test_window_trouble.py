@@ -120,6 +120,7 @@ def test_the_prompt_of_ipython_stays_free_and_sees_what_the_user_drags(display, 
     display.tool(*place, *map(str, start), "mousedown", "1", *place, *map(str, end), "mouseup", "1")
     await_that(lambda: says("abs(robot.GetDOFValues()[1]) > 0.1") == "True", "it is not dragged")
     assert says("robot.GetDOFValues()[0] == pi / 2") == "True"
+    display.tool(*place, "5", "240", "key", "Escape")  # without the text, which would cover the upper arm
     terminal.sendline("play_trajectory(robot, get_swing_trajectory(robot))")  # from where the user has left it
     display.await_pose(window, "upright")
     terminal.sendline("exit()")
