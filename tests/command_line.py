@@ -68,7 +68,7 @@ def ravemj_command(folder: Path, *arguments: str | Path, **variables: str) -> su
         note = note_on_rays()
         assert done.stderr.endswith(note)
         done.stderr = done.stderr.removesuffix(note)
-    if arguments[0] == "plan":  # which draws only where it should
+    if arguments[:1] == ("plan",):  # which draws only where it should
         done.stderr = done.stderr.replace(RAYS_DREW, "")
     return done
 

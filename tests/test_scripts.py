@@ -91,7 +91,7 @@ EXPECTED = {
     "rotations": f"""quat {"0.70710678 0 0 0.70710678 " * 2}\npoint 1 3 3 1 3 3\ninverse 1 0 0 0 1 2 3
         slerp {math.pi / 4}\naxis angle 0 0 {math.pi / 2} 0 0 {math.pi}\nturned 0 1 0""",
     "sensors": """sensor eye arm:eye hand\ncamera 320 320 240\nlooks 0 1 0 0 0.7 0.35\nunknown None None 1
-        image (240, 320, 3) uint8 160\nmissing simulation of sensors""",
+        image (240, 320, 3) uint8 160\nmade baselaser2d""",
     "stack": "box0 0.301 False\nbox1 0.452 False\nbox2 0.523 False",
     "state_saving": f"""inner 1 1\ncaught out\nouter 0 0 4 True\nheld 0 moved {0.8 * math.sin(1)}
         mug {tip(1, 0, 0.4)}\nmug {tip(1, 0, 0.4)}\noptions 4\noptions 0""",

@@ -399,7 +399,7 @@ class TestState:
         robot = env.GetRobots()[0]
         held, other = [body for body in env.GetBodies() if not body.IsRobot()][:2]
         robot.Grab(held, robot.GetLinks()[-1])
-        robot.Grab(other, robot.GetLinks()[1], [robot.GetLinks()[2].GetIndex()])
+        robot.Grab(other, robot.GetLinks()[1], [robot.GetLinks()[2].GetIndex()], None)
         robot.SetDOFValues([0.3, -0.4, 0.5], [0, 1, 2])
         joint, link = robot.GetJoints()[0], robot.GetLinks()[1]
         joint.SetFloatParameters("stiffness", [1.5, 1 / 3])

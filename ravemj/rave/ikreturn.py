@@ -139,7 +139,7 @@ class IkFailureInfo(ApiObject):
         return self._report
 
     def GetMapData(self, key: str) -> Floats:
-        """Return further numbers of a solver, of which those here give none.
+        """Return further numbers of a solver, shape (k,), of which those here give none.
 
         Args:
             key: Their name.

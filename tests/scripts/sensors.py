@@ -16,7 +16,4 @@ sensor.Configure(Sensor.ConfigureCommand.PowerOn)
 env.StepSimulation(0.1)
 data = sensor.GetSensorData(Sensor.Type.Camera)
 print('image', data.imagedata.shape, data.imagedata.dtype, data.KK[0, 2])
-try:
-    RaveCreateSensor(env, 'baselaser2d')
-except NotImplementedError as e:
-    print('missing', e.capability)
+print('made', RaveCreateSensor(env, 'baselaser2d').GetXMLId())
