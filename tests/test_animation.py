@@ -13,6 +13,7 @@ from browsers import CHROMIUM, FLAGS, NEEDS_A_BROWSER
 from command_line import run
 from conftest import MODELS
 from PIL import Image
+from waiting import await_that
 
 import ravemj
 from ravemj.errors import ArgumentError, OutputError
@@ -226,7 +227,7 @@ def opened(tmp_path_factory):
             page.on("console", lambda message: page.troubles.append(message.text))
             page.on("request", lambda request: page.requests.append(request.url))
             page.goto(path.as_uri())
-            page.wait_for_function("window.ravemj || !document.getElementById('error').hidden")
+            await_that(lambda: page.evaluate("!!window.ravemj || !document.getElementById('error').hidden"))
             return Player(page)
 
         yield open_page
@@ -344,7 +345,7 @@ class TestInABrowser:
         assert page.evaluate("ravemj.time") == 0.5
         page.keyboard.press("Tab")
         page.click("#joints")
-        page.wait_for_function("document.querySelector('#values').innerText.includes('0.750 rad')")
+        await_that(lambda: page.evaluate("document.querySelector('#values').innerText.includes('0.750 rad')"))
         first = player.camera().T_world_camera
         page.mouse.move(60, 60)
         page.mouse.down()
@@ -353,7 +354,7 @@ class TestInABrowser:
         turned = player.camera().T_world_camera
         assert not np.allclose(first[:3, :3], turned[:3, :3])
         page.mouse.wheel(0, 120)
-        page.wait_for_function("ravemj.view.distance > ravemj.first.distance")
+        await_that(lambda: page.evaluate("ravemj.view.distance > ravemj.first.distance"))
         page.click("#home")
         assert player.camera().T_world_camera == pytest.approx(first)
         assert page.troubles == []
@@ -364,7 +365,7 @@ class TestInABrowser:
         for kind, places in (("Start", [100]), ("Start", [100, 200]), ("Move", [100, 300]), ("End", [])):
             points = [{"x": x, "y": 100, "id": number} for number, x in enumerate(places)]
             session.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
-        player.page.wait_for_function("ravemj.view.distance < ravemj.first.distance")
+        await_that(lambda: player.page.evaluate("ravemj.view.distance < ravemj.first.distance"))
         assert player.page.evaluate("ravemj.view.distance / ravemj.first.distance") == pytest.approx(0.5)
 
     def test_without_webgl_the_page_says_so(self, env, opened):
