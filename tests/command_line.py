@@ -64,7 +64,8 @@ def ravemj_command(folder: Path, *arguments: str | Path, **variables: str) -> su
     Where there is no OpenGL, a line says so once a picture is drawn: it is checked here, and taken away.
     """
     done = run(folder, "-m", "ravemj", *arguments, variables=variables)
-    if done.stdout.startswith("wrote ") and arguments[0] in {"play", "render"}:
+    is_drawn = done.stdout.startswith("wrote ") and ".html (" not in done.stdout
+    if is_drawn and arguments[0] in {"play", "render"}:
         note = note_on_rays()
         assert done.stderr.endswith(note)
         done.stderr = done.stderr.removesuffix(note)

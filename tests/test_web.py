@@ -431,7 +431,9 @@ def test_a_page_may_say_much_while_the_script_holds_the_environment(env, viewer)
         page.settled()
 
 
-def test_the_view_moves_while_the_script_has_the_environment_and_says_so(env, viewer):
+@pytest.mark.parametrize("backend", ["", "disable"])
+def test_the_view_moves_while_the_script_has_the_environment_and_says_so(env, viewer, backend, monkeypatch):
+    monkeypatch.setenv("MUJOCO_GL", backend)
     with Page(viewer) as page:
         before = page.settled()
         with env:

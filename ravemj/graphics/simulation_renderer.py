@@ -53,7 +53,7 @@ class Format(NamedTuple):
 class SimulationRenderer:
     """Draws a simulation; each thread keeps the renderer of its last picture, for the next one.
 
-    The simulation is locked while its state is copied, and free while OpenGL draws.
+    The simulation is locked while its state is copied, and free while the picture is drawn.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -91,8 +91,6 @@ class SimulationRenderer:
             shown = merge([primitives, gizmos]) if len(gizmos) else primitives
             renderer = self._current(form)
             finer = self._finer(form)
-            if renderer.backend == RAY:  # it hides geoms of the model while it draws
-                return renderer.render(compiled.data, camera, background, shown)
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
             self._kept.shown = shown, style
         if finer == 1:
@@ -129,8 +127,6 @@ class SimulationRenderer:
         with self._simulation.lock:
             compiled = self._simulation.compiled()
             renderer = self._current(form)
-            if renderer.backend == RAY:  # it hides geoms of the model while it draws
-                return measure(renderer, compiled.data)
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
         return measure(renderer, self._kept.data)
 
@@ -143,9 +139,9 @@ class SimulationRenderer:
             form: Size and quality; with or without shadows as before.
 
         Returns:
-            Shape (height, width, 3), top row first; None where nothing was drawn, or rays draw, which change the model.
+            Shape (height, width, 3), top row first; None where this thread has drawn nothing yet.
         """
-        if getattr(self._kept, "key", None) is None or self._kept.renderer.backend == RAY:
+        if getattr(self._kept, "key", None) is None:
             return None
         self._kept.renderer.resize(form.width, form.height, form.samples)
         return self._kept.renderer.render(self._kept.data, camera, background, *self._kept.shown)

@@ -5,6 +5,7 @@ microseconds per pixel and geom in view.
 """
 
 import contextlib
+import copy
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from typing import Self
@@ -77,22 +78,22 @@ class RayRenderer:
         width, height = self._size
         color = color_bytes(background)
         picture = np.empty((height, width, 3), dtype=np.uint8)
-        with self._scene(data, camera) as scene:
-            drawn = Raster(camera, self._size, self._lights).fragments(primitives)
-            for rows, rays in self._bands(camera):
-                here = drawn.between(rows.start * width, rows.stop * width)
-                picture[rows] = np.rint(scene.colors(rays, color, here)).reshape(-1, width, 3)
-            if self._samples:
-                self._smooth_edges(picture, scene, camera, color, primitives)
+        scene = self._scene(data, camera)
+        drawn = Raster(camera, self._size, self._lights).fragments(primitives)
+        for rows, rays in self._bands(camera):
+            here = drawn.between(rows.start * width, rows.stop * width)
+            picture[rows] = np.rint(scene.colors(rays, color, here)).reshape(-1, width, 3)
+        if self._samples:
+            self._smooth_edges(picture, scene, camera, color, primitives)
         return picture
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
         width, height = self._size
         geom_ids = np.empty((height, width), dtype=np.int32)
-        with self._scene(data, camera) as scene:
-            for rows, rays in self._bands(camera):
-                geom_ids[rows] = scene.cast(rays)[0].reshape(-1, width)
+        scene = self._scene(data, camera)
+        for rows, rays in self._bands(camera):
+            geom_ids[rows] = scene.cast(rays)[0].reshape(-1, width)
         return geom_ids
 
     def resize(self, width: int, height: int, samples: int) -> None:
@@ -103,10 +104,10 @@ class RayRenderer:
         """See :class:`ravemj.graphics.rendering.Renderer`."""
         width, height = self._size
         depths = np.empty((height, width), dtype=np.float32)
-        with self._scene(data, camera) as scene:
-            for rows, rays in self._bands(camera):  # rays go 1 m ahead, so that their lengths are depths
-                geom_ids, depth, _ = scene.cast(rays)
-                depths[rows] = np.where(geom_ids < 0, np.inf, depth).reshape(-1, width)
+        scene = self._scene(data, camera)
+        for rows, rays in self._bands(camera):  # rays go 1 m ahead, so that their lengths are depths
+            geom_ids, depth, _ = scene.cast(rays)
+            depths[rows] = np.where(geom_ids < 0, np.inf, depth).reshape(-1, width)
         return depths
 
     def close(self) -> None:
@@ -119,20 +120,15 @@ class RayRenderer:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    @contextlib.contextmanager
-    def _scene(self, data: mujoco.MjData, camera: Camera) -> "Generator[_RayScene]":
-        """Hide what is not drawn for as long as one picture takes; the model gets its groups back."""
+    def _scene(self, data: mujoco.MjData, camera: Camera) -> "_RayScene":
+        """Hide what is not drawn, in a copy of the model, which others may draw or change meanwhile."""
         if self._closed:
             raise RenderingError("this renderer is closed")
-        model = self._model
-        check_data(model, data)
+        check_data(self._model, data)
+        model = copy.copy(self._model)
         self._lights.update(data, camera, Contents.of(model, data).depths(camera))
-        groups = model.geom_group.copy()
-        try:
-            model.geom_group[~drawn_geoms(model)] = _HIDDEN_GROUP
-            yield _RayScene(model, data, camera.position, geom_rgba(model), self._lights)
-        finally:
-            model.geom_group[:] = groups
+        model.geom_group[~drawn_geoms(model)] = _HIDDEN_GROUP
+        return _RayScene(model, data, camera.position, geom_rgba(model), self._lights)
 
     def _bands(self, camera: Camera) -> Iterator[tuple[slice, Floats]]:
         width, height = self._size
