@@ -11,7 +11,9 @@ from screens import display, folder  # noqa: F401 - fixtures
 
 import ravemj
 
-REPOSITORY = Path(__file__).resolve().parent.parent
+TESTS = Path(__file__).resolve().parent
+DATA = TESTS / "data"
+REPOSITORY = TESTS.parent
 MODELS = REPOSITORY / "models"
 
 # Examples may take as long as a busy machine needs for them.

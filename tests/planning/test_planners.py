@@ -1,0 +1,445 @@
+"""Planners, their parameters, and what they say when there is no way."""
+
+import gc
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import TESTS
+from waiting import PATIENCE
+
+import ravemj
+from ravemj import Planner, PlannerStatus, planningutils
+from ravemj.engine.collision.moving import moving_test
+
+ARM = """<Environment><Robot name="arm"><KinBody>
+<Body name="base"><Geom type="box"><extents>0.1 0.1 0.05</extents></Geom></Body>
+<Body name="upper"><offsetfrom>base</offsetfrom><Translation>0 0 0.1</Translation>
+  <Geom type="box"><extents>0.2 0.03 0.03</extents><Translation>0.2 0 0</Translation></Geom></Body>
+<Body name="fore"><offsetfrom>upper</offsetfrom><Translation>0.4 0 0.08</Translation>
+  <Geom type="box"><extents>0.15 0.02 0.03</extents><Translation>0.15 0 0</Translation></Geom></Body>
+<Joint name="one" type="hinge"><Body>base</Body><Body>upper</Body><offsetfrom>upper</offsetfrom><axis>0 0 1</axis>
+  <limitsrad>-2.8 2.8</limitsrad><maxvel>2</maxvel><maxaccel>8</maxaccel></Joint>
+<Joint name="two" type="hinge"><Body>upper</Body><Body>fore</Body><offsetfrom>fore</offsetfrom><axis>0 0 1</axis>
+  <limitsrad>-2.5 2.5</limitsrad><maxvel>3</maxvel><maxaccel>6</maxaccel></Joint>
+</KinBody><Manipulator name="hand"><base>base</base><effector>fore</effector></Manipulator></Robot></Environment>"""
+
+
+@pytest.fixture
+def env():
+    made = ravemj.Environment()
+    made.LoadData(ARM)
+    box(made, "post", [0.55, 0, 0.15, 0.05, 0.05, 0.2])
+    made.GetRobot("arm").SetDOFValues([-1.2, 0.2])
+    return made
+
+
+@pytest.fixture
+def robot(env):
+    return env.GetRobot("arm")
+
+
+def box(env, name, numbers):
+    body = ravemj.RaveCreateKinBody(env, "")
+    body.InitFromBoxes([numbers])
+    body.SetName(name)
+    env.Add(body)
+    return body
+
+
+def parameters(robot, goal=(1.2, 0.2), **numbers):
+    params = Planner.PlannerParameters()
+    params.SetRobotActiveJoints(robot)
+    params.SetGoalConfig(goal)
+    params.SetMaxIterations(numbers.get("iterations", 5000))
+    return params
+
+
+def planned(robot, params, name="birrt"):
+    planner = ravemj.RaveCreatePlanner(robot.GetEnv(), name)
+    planner.InitPlan(robot, params)
+    trajectory = ravemj.RaveCreateTrajectory(robot.GetEnv(), "")
+    return planner.PlanPath(trajectory), trajectory
+
+
+@pytest.mark.parametrize("name", ["birrt", "BIRRT", "BasicRRT", "RAStar", "ra*"])
+def test_plans_keep_limits_and_collisions_at_every_moment(robot, name):
+    status, trajectory = planned(robot, parameters(robot), name)
+    assert status == PlannerStatus.HasSolution
+    planningutils.VerifyTrajectory(None, trajectory, 0.01)
+    assert robot.GetDOFValues() == pytest.approx([-1.2, 0.2])
+    spec = robot.GetActiveConfigurationSpecification()
+    assert trajectory.GetWaypoint(0, spec) == pytest.approx([-1.2, 0.2])
+    assert trajectory.GetWaypoint(-1, spec) == pytest.approx([1.2, 0.2])
+
+
+def test_exploration_gives_configurations_without_collisions(robot):
+    params = parameters(robot)
+    params.SetExtraParameters("<expectedsize>30</expectedsize>")
+    status, trajectory = planned(robot, params, "ExplorationRRT")
+    assert (status.statusCode, trajectory.GetNumWaypoints()) == (1, 30)
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "words"),
+    [
+        ([-1.2, 0.2], [0, 0], "goal: it collides: link 'fore' of 'arm' with link '.*' of 'post'"),
+        ([0, 0], [1.2, 0.2], "start: it collides: "),
+        ([-1.2, 0.2], [3, 0.2], r"goal: joint 'one' is 3, outside its limits \[-2.8, 2.8\]"),
+        ([-1.2, 0.2], [np.nan, 0.2], r"goal: \[nan, 0.2\] should be finite"),
+        ([-1.2, 0.2], [], "there is no goal"),
+        ([-1.2, 0.2], [1, 2, 3], "_vgoalconfig: has 3 numbers, and should have a multiple of 2"),
+    ],
+)
+def test_what_cannot_be_planned_says_why(robot, start, goal, words):
+    robot.SetDOFValues(start)
+    params = parameters(robot, goal)
+    assert ravemj.RaveCreatePlanner(robot.GetEnv(), "birrt").InitPlan(robot, params) is False
+    status, trajectory = planned(robot, params)
+    assert status == PlannerStatus.Failed
+    assert not status
+    with pytest.raises(ravemj.openrave_exception):
+        trajectory.GetNumWaypoints()
+    assert re.search(words, status.description), status.description
+    assert robot.GetDOFValues() == pytest.approx(start)
+
+
+def test_parameters_that_make_no_sense_are_named(env, robot):
+    for name, tag in (("BasicRRT", "goalbias"), ("ExplorationRRT", "expectedsize")):
+        params = parameters(robot)
+        params.SetExtraParameters(f"<{tag}>some</{tag}>")
+        with pytest.raises(ravemj.openrave_exception, match=f"<{tag}>: 'some' should be a number"):
+            planned(robot, params, name)
+    params = parameters(robot)
+    params.SetRandomGeneratorSeed(-5)
+    assert planned(robot, params)[0] == PlannerStatus.HasSolution
+    robot.SetDOFVelocityLimits([2, 0])
+    assert "velocity or acceleration limit is 0" in planned(robot, parameters(robot))[0].description
+    robot.SetDOFVelocityLimits([2, 3])
+    robot.SetDOFLimits([-np.inf, -2.5], [np.inf, 2.5])
+    assert planned(robot, parameters(robot))[0].description == "joint 'one' has no limits, and should have some"
+
+
+@pytest.mark.parametrize("slow", [False, True])
+def test_a_robot_that_is_removed_while_it_is_planned_for(env, robot, slow):
+    params = parameters(robot)
+    if slow:
+        params.add_constraint(lambda values: True)
+    planner = ravemj.RaveCreatePlanner(env, "birrt")
+    planner.InitPlan(robot, params)
+    handle = planner.RegisterPlanCallback(lambda progress: env.Remove(robot) and None)
+    with pytest.raises(ravemj.openrave_exception, match="'arm' is not in an environment"):
+        planner.PlanPath(ravemj.RaveCreateTrajectory(env, ""))
+    handle.Close()
+    env.Add(robot)
+    assert robot.GetDOFValues() == pytest.approx([-1.2, 0.2])
+    assert planner.PlanPath(ravemj.RaveCreateTrajectory(env, "")) == PlannerStatus.HasSolution
+
+
+def test_another_thread_removes_a_robot_when_the_planner_is_done(env, robot):
+    params = parameters(robot)
+    planner = ravemj.RaveCreatePlanner(env, "birrt")
+    planner.InitPlan(robot, params)
+    remover = threading.Thread(target=env.Remove, args=[robot])
+    handle = planner.RegisterPlanCallback(lambda progress: None if remover.ident else remover.start())
+    assert planner.PlanPath(ravemj.RaveCreateTrajectory(env, "")) == PlannerStatus.HasSolution
+    remover.join()
+    handle.Close()
+    assert env.GetRobots() == []
+
+
+CTRL_C = """
+import signal, sys
+sys.path[:0] = {folders!r}
+import numpy, ravemj, test_planners
+env = ravemj.Environment()
+env.LoadData(test_planners.ARM)
+robot = env.GetRobot("arm")
+robot.SetDOFValues([-1.2, 0.2])
+test_planners.box(env, "wall", [0.4, 0, 0.2, 0.2, 0.01, 0.3])
+helper = ravemj.interfaces.BaseManipulation(robot)
+print("planning", flush=True)
+try:
+    helper.MoveActiveJoints([1.2, 0.2], maxiter=10**9)
+except KeyboardInterrupt:
+    print(robot.GetDOFValues().tolist(), robot.GetController().IsDone(), env.GetRobots() == [robot])
+"""
+
+
+def test_ctrl_c_leaves_the_robot_where_it_was_and_nothing_half_executed():
+    script = CTRL_C.format(folders=[str(TESTS), str(TESTS / "planning")])
+    process = subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "planning\n"
+    time.sleep(0.1)  # any time will do
+    process.send_signal(signal.SIGINT)
+    said, complaints = process.communicate(timeout=PATIENCE)
+    assert (said, complaints) == ("[-1.2, 0.2] True True\n", "")
+
+
+def test_a_failure_for_want_of_time_or_iterations_says_so(robot):
+    params = parameters(robot, iterations=20)
+    params.add_constraint(lambda values: abs(values[0]) > 0.1)  # a wall
+    assert "the iterations were used up after 20 iterations" in planned(robot, params)[0].description
+    params.SetMaxIterations(10**9)
+    params.SetMaxPlanningTime(50)
+    assert "the time was used up" in planned(robot, params)[0].description
+
+
+def test_callbacks_interrupt(robot):
+    seen = []
+    planner = ravemj.RaveCreatePlanner(robot.GetEnv(), "birrt")
+    planner.InitPlan(robot, parameters(robot))
+
+    def stop(progress):
+        seen.append(progress._iteration)
+        return ravemj.PlannerAction.Interrupt
+
+    handle = planner.RegisterPlanCallback(stop)
+    trajectory = ravemj.RaveCreateTrajectory(robot.GetEnv(), "")
+    assert planner.PlanPath(trajectory) == ravemj.PlannerStatusCode.Interrupted
+    assert seen == [0]
+    handle.Close()
+    assert planner.PlanPath(trajectory) == ravemj.PlannerStatusCode.HasSolution
+    assert seen == [0]
+
+
+def test_an_exception_in_a_callback_leaves_the_robot_where_it_was(robot):
+    planner = ravemj.RaveCreatePlanner(robot.GetEnv(), "birrt")
+    planner.InitPlan(robot, parameters(robot))
+
+    def fail(progress):
+        if progress._iteration > 1:
+            raise KeyboardInterrupt
+
+    handle = planner.RegisterPlanCallback(fail)
+    with pytest.raises(KeyboardInterrupt):
+        planner.PlanPath(ravemj.RaveCreateTrajectory(robot.GetEnv(), ""))
+    assert robot.GetDOFValues() == pytest.approx([-1.2, 0.2])
+    assert not robot.GetEnv().CheckCollision(robot)
+    handle.Close()
+
+
+def test_constraints_and_goals_of_the_users_own(robot):
+    params = parameters(robot)
+    params.add_constraint(lambda values: values[1] < 2.4)
+    asked = []
+    params.set_goal_sampler(lambda: asked.append(1) or np.array([1.1, 0.3]), 0.5)
+    params.SetPostProcessing("", "")
+    status, trajectory = planned(robot, params)
+    assert status == PlannerStatus.HasSolution
+    assert trajectory.GetAllWaypoints2D()[:, 1].max() < 2.4
+    params.add_constraint(lambda values: values[0] < 0)
+    assert "a constraint does not allow it" in planned(robot, params)[0].description
+
+
+def test_held_bodies_plan_with_the_robot(env, robot):
+    params = parameters(robot)
+    pole = box(env, "pole", [0, 0, 0, 0.02, 0.02, 0.1])
+    T = robot.GetLink("fore").GetTransform() @ ravemj.matrixFromPose([1, 0, 0, 0, 0.32, 0, 0])
+    pole.SetTransform(T)
+    robot.Grab(pole, robot.GetLink("fore"))
+    status, trajectory = planned(robot, params)
+    assert status == PlannerStatus.HasSolution
+    for moment in np.linspace(0, trajectory.GetDuration(), 300):
+        spec = robot.GetActiveConfigurationSpecification()
+        robot.SetActiveDOFValues(trajectory.Sample(moment, spec))
+        assert not env.CheckCollision(robot)
+    robot.SetDOFValues([-1.2, 0.2])
+    assert pole.GetTransform() == pytest.approx(T)
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_the_fast_test_of_planners_is_the_general_one(env, robot, held):
+    if held:
+        pole = box(env, "pole", [0, 0, 0, 0.02, 0.02, 0.1])
+        pole.SetTransform(robot.GetLink("fore").GetTransform() @ ravemj.matrixFromPose([1, 0, 0, 0, 0.32, 0, 0]))
+        robot.Grab(pole, robot.GetLink("fore"))
+    box(env, "far", [-0.4, 0.3, 0.15, 0.1, 0.05, 0.2])
+    samples = np.random.default_rng(0).uniform([-2.8, -2.5], [2.8, 2.5], (300, 2))
+    state = robot.simulation_state
+    with env:
+        collides = moving_test(state, (0, 1))
+        fast = [collides(one) for one in samples]
+        state.moved()
+    general = []
+    for one in samples:
+        robot.SetDOFValues(one)
+        general.append(env.CheckCollision(robot) or robot.CheckSelfCollision())
+    assert fast == general
+    assert 30 < sum(fast) < 270
+
+
+def test_parameters_as_text_and_back(robot):
+    params = parameters(robot)
+    params.SetExtraParameters("<foo>3</foo>")
+    text = repr(params).split('"""')[1]
+    retimer = ravemj.RaveCreatePlanner(robot.GetEnv(), "LinearTrajectoryRetimer")
+    assert retimer.InitPlan(None, text)
+    again = retimer.GetParameters()
+    assert again.GetConfigVelocityLimit().tolist() == params.GetConfigVelocityLimit().tolist()
+    assert again.GetConfigurationSpecification() == params.GetConfigurationSpecification()
+    assert repr(again).startswith(repr(params).partition("<foo>")[0])
+    assert "<foo>3</foo>" in repr(again)
+    assert "<pointtolerance>0.2</pointtolerance>" in repr(again)
+    birrt = ravemj.RaveCreatePlanner(robot.GetEnv(), "birrt")
+    params.SetExtraParameters("<_nmaxiterations>17</_nmaxiterations>")
+    birrt.InitPlan(robot, params)
+    assert re.findall("<_nmaxiterations>([^<]*)<", repr(birrt.GetParameters())) == ["17", "20", "100"]
+    assert "<minimumgoalpaths>1</minimumgoalpaths>" in repr(birrt.GetParameters())
+    assert Planner.PlannerParameters(params) == params
+
+
+def test_planners_without_a_problem_and_with_a_wrong_one(robot):
+    planner = ravemj.RaveCreatePlanner(robot.GetEnv(), "birrt")
+    status = planner.PlanPath(ravemj.RaveCreateTrajectory(robot.GetEnv(), ""))
+    assert (status.statusCode, status.errorOrigin) == (0, "birrt")
+    with pytest.raises(TypeError):
+        planner.InitPlan(robot, 5)
+    with pytest.raises(ravemj.openrave_exception, match="give PlannerParameters"):
+        planner.InitPlan(robot, "<plannerparameters/>")
+    assert planner.InitPlan(robot, Planner.PlannerParameters()) is False
+    with pytest.raises(ravemj.openrave_exception, match="trajectory: is None"):
+        planningutils.RetimeActiveDOFTrajectory(None, robot)
+
+
+def line(robot, points):
+    trajectory = ravemj.RaveCreateTrajectory(robot.GetEnv(), "")
+    trajectory.Init(robot.GetActiveConfigurationSpecification())
+    trajectory.Insert(0, np.ravel(points))
+    return trajectory
+
+
+@pytest.mark.parametrize("name", ["Linear", "Parabolic", "Cubic", "Cubic2", "Quintic"])
+def test_retimed_trajectories_pass_the_strict_check(robot, name):
+    planner = f"{name.rstrip('2')}TrajectoryRetimer{'2' if name.endswith('2') else ''}"
+    trajectory = line(robot, [[-1.2, 0.2], [-0.8, 0.3], [-1.0, 1.0]])
+    assert planningutils.RetimeActiveDOFTrajectory(trajectory, robot, plannername=planner)
+    planningutils.VerifyTrajectory(None, trajectory, 0.003)
+    robot.SetDOFVelocityLimits([0.1, 0.1])
+    with pytest.raises(ravemj.openrave_exception, match=r"speed of value . is") as caught:
+        planningutils.VerifyTrajectory(None, trajectory, 0.003)
+    assert caught.value.GetCode() == "InconsistentConstraints"
+
+
+@pytest.mark.parametrize("name", ["LinearSmoother", "ParabolicSmoother", "CubicSmoother", "QuinticSmoother"])
+def test_smoothed_trajectories_pass_the_strict_check(robot, name):
+    trajectory = line(robot, [[-1.2, 0.2], [-1.2, 2.45], [0, 2.45], [1.2, 2.45], [1.2, 0.2]])
+    retimed = line(robot, trajectory.GetAllWaypoints2D())
+    planningutils.RetimeActiveDOFTrajectory(retimed, robot, plannername="ParabolicTrajectoryRetimer")
+    assert planningutils.SmoothActiveDOFTrajectory(trajectory, robot, plannername=name)
+    planningutils.VerifyTrajectory(None, trajectory, 0.01)
+    if name == "ParabolicSmoother":
+        assert trajectory.GetDuration() < retimed.GetDuration()
+
+
+def test_smoothers_refuse_paths_in_collision(robot):
+    trajectory = line(robot, [[-1.2, 0.2], [1.2, 0.2]])
+    status = planningutils.SmoothActiveDOFTrajectory(trajectory, robot)
+    assert "the path is in collision from the start" in status.description
+    assert trajectory.GetDuration() == 0
+
+
+@pytest.mark.parametrize("call", [planningutils.RetimeActiveDOFTrajectory, planningutils.SmoothActiveDOFTrajectory])
+def test_trajectories_of_other_robots_are_refused(env, robot, call):
+    other = ravemj.RaveCreateRobot(env, "")
+    other.Clone(robot, 0)
+    other.SetName("brother")
+    env.Add(other)
+    trajectory = line(other, [[0, 0], [1, 0.5]])
+    status = call(trajectory, robot)
+    assert not status
+    assert "the trajectory has no group 'joint_values arm 0 1'" in status.description
+    assert trajectory.GetAllWaypoints2D().tolist() == [[0, 0], [1, 0.5]]
+
+
+def test_post_processing_by_an_unknown_planner_fails(robot):
+    params = parameters(robot)
+    params.SetPostProcessing("nosuchsmoother", "")
+    assert "there is no planner 'nosuchsmoother'" in planned(robot, params)[0].description
+
+
+def test_circular_joints_go_the_short_way_at_every_moment():
+    env = ravemj.Environment()
+    circular = ARM.replace('name="one" type="hinge"', 'name="one" type="hinge" circular="true"')
+    env.LoadData(circular.replace("<limitsrad>-2.8 2.8</limitsrad>", ""))
+    robot = env.GetRobot("arm")
+    for name in ("Linear", "Parabolic", "Cubic", "Quintic"):
+        trajectory = line(robot, [[3.0, 0], [-3.0, 0], [-2.0, 0.1]])
+        assert planningutils.RetimeActiveDOFTrajectory(trajectory, robot, plannername=f"{name}TrajectoryRetimer")
+        spec = robot.GetActiveConfigurationSpecification()
+        turned = [np.cos(trajectory.Sample(t, spec)[0]) for t in np.linspace(0, trajectory.GetDuration(), 50)]
+        assert max(turned) < 0  # the long way passes 0
+        planningutils.VerifyTrajectory(None, trajectory, 0.01)
+
+
+def test_modules_take_commands(env, robot):
+    module = ravemj.RaveCreateModule(env, "BaseManipulation")
+    env.Add(module, True, "arm")
+    text = module.SendCommand("MoveActiveJoints goal -0.9 0.3 maxiter 100 execute 0 outputtraj")
+    trajectory = ravemj.RaveCreateTrajectory(env, "").deserialize(text)
+    assert trajectory.GetWaypoint(-1, robot.GetActiveConfigurationSpecification()) == pytest.approx([-0.9, 0.3])
+    assert module.SendCommand("moveactivejoints goals 2 -0.9 0.3 -0.8 0.3 jitter 0.01") == ""
+    assert module.SendCommand("MoveActiveJoints goal 0 0 execute 0 jitter 0") is None
+    assert module.SendCommand("JitterActive execute 0 outputfinal").split() == ["-1.2", "0.2"]
+    for wrong in ("MoveActiveJoints goal 1", "MoveActiveJoints nosuch 1", "MoveActiveJoints goal a b"):
+        with pytest.raises(ravemj.openrave_exception) as caught:
+            module.SendCommand(wrong)
+        assert caught.value.GetCode() == "InvalidArguments"
+    env.Remove(robot)
+    with pytest.raises(ravemj.openrave_exception, match="there is no robot"):
+        module.SendCommand("MoveActiveJoints goal 0 0")
+
+
+def test_helpers_take_their_modules_with_them(env, robot):
+    helper = ravemj.interfaces.BaseManipulation(robot, plannername="nosuch", maxvelmult=0.5)
+    assert [one.GetXMLId() for one in env.GetModules()] == ["BaseManipulation"]
+    assert "maxvelmult 5.0" in helper.args
+    env.Reset()
+    assert len(env.GetModules()) == 1
+    del helper
+    gc.collect()
+    assert env.GetModules() == []
+
+
+def test_execution_begins_with_the_next_step(env, robot):
+    env.StopSimulation()
+    helper = ravemj.interfaces.BaseManipulation(robot)
+    assert helper.MoveActiveJoints(goal=[-0.9, 0.3]) is None
+    assert robot.GetDOFValues() == pytest.approx([-1.2, 0.2])
+    for _ in range(200):
+        env.StepSimulation(0.01)
+    assert robot.GetDOFValues() == pytest.approx([-0.9, 0.3])
+    with pytest.raises(ravemj.PlanningError, match="goal: it collides"):
+        helper.MoveActiveJoints(goal=[0, 0])
+    assert robot.GetController().IsDone()
+
+
+def test_a_touching_start_is_jittered_and_left(env, robot):
+    robot.SetDOFValues([0, 0.64])
+    assert env.CheckCollision(robot)
+    helper = ravemj.interfaces.BaseManipulation(robot)
+    trajectory = helper.MoveActiveJoints(goal=[0.5, 1.0], execute=False, outputtrajobj=True, jitter=0.1)
+    spec = robot.GetActiveConfigurationSpecification()
+    assert trajectory.GetWaypoint(0, spec) == pytest.approx([0, 0.64])
+    assert trajectory.GetWaypoint(-1, spec) == pytest.approx([0.5, 1.0])
+    with pytest.raises(ravemj.PlanningError, match="start: it collides"):
+        helper.MoveActiveJoints(goal=[0.5, 1.0], jitter=0)
+
+
+def test_what_joints_do_not_move_is_no_obstacle_of_theirs(env, robot):
+    box(env, "floor", [0, 0, -0.1, 0.3, 0.3, 0.1])
+    assert env.CheckCollision(robot)  # the base stands on it
+    assert planned(robot, parameters(robot))[0] == PlannerStatus.HasSolution
+    params = parameters(robot)
+    params.add_constraint(lambda values: True)  # this takes the slow test
+    assert planned(robot, params)[0] == PlannerStatus.HasSolution
+    env.GetKinBody("floor").SetTransform(ravemj.matrixFromPose([1, 0, 0, 0, 0, 0, 0.2]))
+    described = planned(robot, parameters(robot))[0].description
+    assert re.match("start: it collides: link 'upper' of 'arm' with link .* of 'floor'", described), described
