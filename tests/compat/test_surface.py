@@ -4,9 +4,8 @@
 ``PYTHONPATH=tests:scripts/pages python tests/compat/test_surface.py``.
 """
 
-from conftest import DATA, REPOSITORY
-
 import api_surface
+from conftest import DATA
 
 LIST = DATA / "surface-missing.txt"
 

@@ -1,7 +1,8 @@
 """Models, joint graphs and scripts made by chance, each with OpenRAVE's answer.
 
 ``data/random/differs.txt`` lists the inputs that ravemj answers otherwise, with the reason. Whoever mends one takes it
-off the list; ``PYTHONPATH=tests python tests/rave/test_random.py`` writes the list anew, with the places of new differences as reasons.
+off the list; ``PYTHONPATH=tests python tests/rave/test_random.py`` writes the list anew, with the places of new
+differences as reasons.
 """
 
 import importlib.util
