@@ -14,6 +14,8 @@ from packaging.markers import default_environment
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+import ravemj
+
 LOCKS = REPOSITORY / "scripts" / "locks"
 PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())
 GROUPS = PROJECT["dependency-groups"]
@@ -216,4 +218,4 @@ def test_files_of_a_published_project_are_there():
     for name in ["LICENSE", "CONTRIBUTING.md", "CHANGELOG.md", "ravemj/py.typed"]:
         assert (REPOSITORY / name).is_file(), name
     assert "Apache License" in (REPOSITORY / "LICENSE").read_text()
-    assert "## [Unreleased]" in (REPOSITORY / "CHANGELOG.md").read_text()
+    assert f"## [{ravemj.__version__}]" in (REPOSITORY / "CHANGELOG.md").read_text()
