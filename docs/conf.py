@@ -9,7 +9,7 @@ import ravemj  # noqa: E402 - this repository's
 
 project = "ravemj"
 version = release = ravemj.__version__
-html_title = "ravemj"
+html_title = f"ravemj {release}"
 html_theme = "furo"
 html_static_path = ["extensions/pages.css"]
 html_css_files = ["pages.css"]
@@ -17,7 +17,7 @@ html_extra_path = ["motions"]  # beside the pages that hold them
 html_copy_source = html_show_sourcelink = False
 html_show_copyright = html_show_sphinx = False
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "reference"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode", "reference"]
 myst_heading_anchors = 3
 
 toc_object_entries_show_parents = "hide"

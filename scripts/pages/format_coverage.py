@@ -15,14 +15,14 @@ Meanings = Mapping[str, str]
 _NONE: Meanings = MappingProxyType({})
 
 _HEAD = """\
-# What is read of OpenRAVE's XML
+# Coverage of OpenRAVE's XML
 
-Made by `scripts/docs` from the tables by which the reader itself decides; a test compares.
+`scripts/docs` makes this page from the reader's own tables; a test compares.
 
-*read*: it has OpenRAVE's effect. *left out*: OpenRAVE knows it, and here it has no effect, for the reason given;
-loading says so with the code `ignored-tag` or `ignored-attribute`. What is in no table OpenRAVE does not know either:
-loading says so with `unknown-tag` or `unknown-attribute` and skips it. The letter case of tags and attributes does not
-matter. `ravemj check FILE` lists what applies to a file.
+*read*: the tag has OpenRAVE's effect. *left out*: OpenRAVE knows the tag, and ravemj ignores it for the reason given, with
+a warning (`ignored-tag`, `ignored-attribute`). OpenRAVE does not know what is in no table; ravemj skips it, with a warning
+(`unknown-tag`, `unknown-attribute`). The letter case of tags and attributes does not matter. `ravemj check FILE` lists
+what applies to a file.
 """
 
 
