@@ -86,10 +86,10 @@ class Loading(JsonFiles):
     LoadURI = Load
 
     def _try_json(self, path: str, given: Attributes) -> bool:
+        diagnostics = Diagnostics()
         for name in given:
-            diagnostics = Diagnostics()
             diagnostics.warn("unknown-attribute", f"nothing reads '{name}' for a JSON file", Source(path))
-            send_warnings(diagnostics)
+        send_warnings(diagnostics)
         try:
             self._load_json(path)
         except SourceError as error:
