@@ -1,8 +1,10 @@
 """Saving of the environment's bodies in files."""
 
 import os
+import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from ravemj.core.arguments import checked_kind
@@ -52,6 +54,8 @@ _NO_EFFECT = {
     "reusesimilar": "each body is written by itself",
 }
 """OpenRAVE's options that change nothing about what is read again."""
+
+_FILE_TYPES = {"collada": ".dae", "json": ".json", "msgpack": ".msgpack"}
 
 _VALUES = {"skipwrite": tuple(_PARTS), "format": ("collada", "openrave", "json"), "meshes": ("stl", "obj")}
 
@@ -125,6 +129,28 @@ class Saving(JsonFiles):
             cast("MeshFormat", named.get("meshes", "stl")),
         )
         send_warnings(diagnostics)
+
+
+    def WriteToMemory(
+        self, filetype: str, options: int = SelectionOptions.Everything, atts: SaveArguments | None = None
+    ) -> bytes:
+        """Return what ``Save`` writes to a file.
+
+        Args:
+            filetype: ``collada``, or ``json`` for OpenRAVE's JSON.
+            options: As for ``Save``.
+            atts: As for ``Save``.
+
+        Raises:
+            openrave_exception: as ``Save``, or there is no such type.
+        """
+        if filetype not in _FILE_TYPES:
+            known = ", ".join(_FILE_TYPES)
+            raise ArgumentError(f"WriteToMemory: filetype is {filetype!r}; there are {known}")
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, f"scene{_FILE_TYPES[filetype]}")
+            self.Save(path, options, atts)
+            return path.read_bytes()
 
 
 def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:
