@@ -151,13 +151,15 @@ def test_units():
     assert (units.lengthUnit, units.SerializeJSON()["massUnit"]) == (ravemj.LengthUnit.mm, "kg")
 
 
-def test_environments_compute_in_metres(env):
-    env.SetUnit("m", 1.0)
-    env.SetUnitInfo(env.GetUnitInfo())
+def test_units_other_than_those_of_length_stay(env):
+    assert env.GetUnit() == ("m", 1)
+    env.SetUnit("mm", 0.001)
+    assert env.GetUnit() == ("mm", 0.001)
+    with pytest.raises(ravemj.openrave_exception, match=r"0\.001 m long"):
+        env.SetUnit("mm", 1)
     with pytest.raises(NotImplementedError):
-        env.SetUnit("mm", 0.001)
-    with pytest.raises(NotImplementedError):
-        env.SetUnitInfo(ravemj.UnitInfo(lengthUnit=ravemj.LengthUnit.mm))
+        env.SetUnitInfo(ravemj.UnitInfo(massUnit=ravemj.MassUnit.g))
+    assert env.GetUnitInfo() == ravemj.UnitInfo(lengthUnit=ravemj.LengthUnit.mm)
 
 
 def test_what_an_environment_is_called():

@@ -79,3 +79,45 @@ def test_affine_settings_by_openraves_names(env):
     np.testing.assert_array_equal(twin.GetAffineTranslationMaxVels(), [1, 2, 3])
     np.testing.assert_array_equal(twin.GetAffineRotation3DMaxVels(), [4, 5, 6])
     np.testing.assert_array_equal(twin.GetAffineRotationQuatLimits(), [0.5, 0, 0, 0])
+
+
+class TestUnits:
+    """An environment in millimetres: COLLADA and JSON are converted, XML and what is there are not."""
+
+    @pytest.fixture
+    def millimetres(self):
+        env = ravemj.Environment()
+        env.SetUnitInfo(ravemj.UnitInfo(lengthUnit=ravemj.LengthUnit.mm))
+        return env
+
+    @pytest.mark.parametrize("name", ["scene.dae", "scene.json"])
+    def test_files_with_a_unit_are_converted(self, env, millimetres, tmp_path, name):
+        env.Save(tmp_path / name)
+        assert millimetres.Load(tmp_path / name)
+        for body in env.GetBodies():
+            twin = millimetres.GetKinBody(body.GetName())
+            small, large = body.ComputeAABB(), twin.ComputeAABB()
+            np.testing.assert_allclose(large.pos(), 1000 * small.pos(), atol=1e-3)
+            np.testing.assert_allclose(large.extents(), 1000 * small.extents(), rtol=1e-5)
+
+    def test_xml_is_not(self, env, millimetres):
+        assert millimetres.Load(MODELS / "env.xml")
+        for body, twin in zip(env.GetBodies(), millimetres.GetBodies(), strict=True):
+            np.testing.assert_array_equal(twin.GetTransform(), body.GetTransform())
+
+    def test_they_come_back_in_metres(self, env, millimetres, tmp_path):
+        env.Save(tmp_path / "metres.json")
+        assert millimetres.Load(tmp_path / "metres.json")
+        millimetres.Save(tmp_path / "millimetres.json")
+        other = ravemj.Environment()
+        assert other.Load(tmp_path / "millimetres.json")
+        assert other.GetUnit() == ("m", 1)
+        for body, twin in zip(env.GetBodies(), other.GetBodies(), strict=True):
+            np.testing.assert_allclose(twin.GetTransform(), body.GetTransform(), atol=1e-9)
+            np.testing.assert_allclose(twin.GetLinkTransformations(), body.GetLinkTransformations(), atol=1e-9)
+        with pytest.raises(NotImplementedError, match="COLLADA"):
+            millimetres.Save(tmp_path / "scene.dae")
+
+    def test_a_whole_description_has_its_unit(self, env, millimetres):
+        millimetres.UpdateFromInfo(env.ExtractInfo())
+        assert millimetres.GetUnit() == ("m", 1)

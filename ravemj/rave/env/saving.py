@@ -115,6 +115,9 @@ class Saving(JsonFiles):
         if named.get("format") == "json" or ("format" not in named and is_json(path)):
             self._save_json(path, names, skipped)
             return
+        kind = cast("ModelFormat", named.get("format", "collada"))
+        if self.metre != 1 and kind == "collada":
+            raise UnsupportedError("Save", "COLLADA files of environments in other units than metres; JSON has a unit")
         bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
         for part in skipped:
             bodies = [_PARTS[part](body) for body in bodies]
@@ -125,7 +128,7 @@ class Saving(JsonFiles):
             path,
             scene,
             diagnostics,
-            cast("ModelFormat", named.get("format", "collada")),
+            kind,
             cast("MeshFormat", named.get("meshes", "stl")),
         )
         send_warnings(diagnostics)
