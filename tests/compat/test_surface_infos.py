@@ -217,8 +217,28 @@ def test_interfaces_by_kind(env, robot):
     engine = ravemj.RaveCreatePhysicsEngine(env, "ode")
     engine.SetGravity([0, 0, -1])
     assert ravemj.RaveClone(engine).GetGravity()[2] == -1
-    with pytest.raises(NotImplementedError):
-        ravemj.RaveClone(robot.GetController())
+    controller = robot.GetController()
+    controller.SetDescription("mine")
+    controller.SetUserData("key", 3)
+    copy = ravemj.RaveClone(controller)
+    assert (type(copy), copy.GetRobot()) == (type(controller), None)
+    assert (copy.GetDescription(), copy.GetUserData("key")) == ("mine", 3)
+    copy.SetUserData("key", 4)
+    assert controller.GetUserData("key") == 3
+    module = ravemj.RaveCreateModule(env, "BaseManipulation")
+    assert ravemj.RaveClone(module).GetXMLId() == "BaseManipulation"
+    with pytest.raises(ravemj.openrave_exception, match="Clone: ref"):
+        copy.Clone(engine)
+    camera = ravemj.RaveCreateSensor(env, "BaseCamera")
+    geometry = camera.GetSensorGeometry()
+    geometry.width = 77
+    camera.SetSensorGeometry(geometry)
+    camera.SetTransform([1, 0, 0, 0, 1, 2, 3])
+    twin = ravemj.RaveClone(camera)
+    assert twin.GetSensorGeometry().width == 77
+    assert twin.GetTransform()[2, 3] == 3
+    with pytest.raises(ravemj.openrave_exception, match="Clone: ref"):
+        twin.Clone(ravemj.RaveCreateSensor(env, "BaseLaser2D"))
     with pytest.raises(NotImplementedError):
         ravemj.RaveCreateSensorSystem(env, "mocap")
 
