@@ -231,7 +231,7 @@ def test_interfaces_by_kind(env, robot):
         copy.Clone(engine)
     camera = ravemj.RaveCreateSensor(env, "BaseCamera")
     geometry = camera.GetSensorGeometry()
-    geometry.width = 77
+    geometry.width, geometry.height, geometry.intrinsics.K = 77, 48, [[100, 0, 38], [0, 100, 24], [0, 0, 1]]
     camera.SetSensorGeometry(geometry)
     camera.SetTransform([1, 0, 0, 0, 1, 2, 3])
     twin = ravemj.RaveClone(camera)

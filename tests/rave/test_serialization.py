@@ -121,3 +121,14 @@ class TestUnits:
     def test_a_whole_description_has_its_unit(self, env, millimetres):
         millimetres.UpdateFromInfo(env.ExtractInfo())
         assert millimetres.GetUnit() == ("m", 1)
+
+
+def test_the_module_logging_saves_scenes(env, tmp_path):
+    module = ravemj.RaveCreateModule(env, "logging")
+    env.Add(module)
+    assert module.SendCommand(f"savescene filename {tmp_path / 'scene.xml'}") == ""
+    other = ravemj.Environment()
+    assert other.Load(tmp_path / "scene.xml")
+    assert [body.GetName() for body in other.GetBodies()] == [body.GetName() for body in env.GetBodies()]
+    with pytest.raises(ravemj.openrave_exception, match="filename"):
+        module.SendCommand("savescene")

@@ -133,7 +133,6 @@ class Saving(JsonFiles):
         )
         send_warnings(diagnostics)
 
-
     def WriteToMemory(
         self, filetype: str, options: int = SelectionOptions.Everything, atts: SaveArguments | None = None
     ) -> bytes:
