@@ -113,7 +113,7 @@ class Description(Simulating):
 
     def GetUnit(self) -> tuple[str, float]:
         """Return the unit of length and how many metres it is."""
-        return GetLengthUnitString(self._units.lengthUnit), 1 / self.metre
+        return GetLengthUnitString(self._units.lengthUnit), 1 / self._metre
 
     def SetUnit(self, unitname: str, unitmult: float) -> None:
         """Say in which unit lengths are; see ``SetUnitInfo``.
@@ -154,8 +154,8 @@ class Description(Simulating):
         self._units = replace(unitInfo, lengthUnit=LengthUnit(unitInfo.lengthUnit))
 
     @property
-    def metre(self) -> float:
-        """Length of a metre in the environment's unit; not of OpenRAVE's API."""
+    def _metre(self) -> float:
+        """Length of a metre in the environment's unit."""
         return GetLengthUnitStandardValue(self._units.lengthUnit)
 
     def ExtractInfo(self) -> EnvironmentBaseInfo:
@@ -263,7 +263,7 @@ class Description(Simulating):
         """Fill an info with what JSON has, in the environment's unit of length."""
         info._unitInfo = self.GetUnitInfo()
         info.DeserializeJSON({"unitInfo": content.get("unitInfo", {})})
-        scale = self.metre / GetLengthUnitStandardValue(info._unitInfo.lengthUnit)
+        scale = self._metre / GetLengthUnitStandardValue(info._unitInfo.lengthUnit)
         info.DeserializeJSON(dict(content), scale)
         info._unitInfo = self.GetUnitInfo()
 

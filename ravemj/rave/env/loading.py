@@ -121,12 +121,12 @@ class Loading(JsonFiles):
     def _read_file(self, path: Text, given: Attributes) -> "Reading":
         from ravemj.formats.readers import read_file  # noqa: PLC0415 - takes a while, and not every script reads a file
 
-        return read_file(os.fsdecode(path), given, self.metre)
+        return read_file(os.fsdecode(path), given, self._metre)
 
     def _read_data(self, data: str | bytes, given: Attributes) -> "Reading":
         from ravemj.formats.readers import read_data  # noqa: PLC0415
 
-        return read_data(data, given, self.metre)
+        return read_data(data, given, self._metre)
 
     def _take(self, reading: "Reading") -> bool:
         self._add(reading)

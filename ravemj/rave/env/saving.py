@@ -116,7 +116,7 @@ class Saving(JsonFiles):
             self._save_json(path, names, skipped)
             return
         kind = cast("ModelFormat", named.get("format", "collada"))
-        if self.metre != 1 and kind == "collada":
+        if self._metre != 1 and kind == "collada":
             raise UnsupportedError("Save", "COLLADA files of environments in other units than metres; JSON has a unit")
         bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
         for part in skipped:
