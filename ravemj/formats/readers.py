@@ -17,13 +17,15 @@ from ravemj.model.scene import KinBody, Scene
 _COLLADA, _HEAD = b"<COLLADA", 1000  # the root element, and the bytes that it is looked for in
 
 
-def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING) -> Reading:
+def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING, metre: float = 1.0) -> Reading:
     """Read a model file: beside the working folder, or in the folders of ``OPENRAVE_DATA``.
 
     Args:
         path: An OpenRAVE XML file, a COLLADA file, or a mesh file, which becomes a static body. ``robot.dae#arm`` is
             what has the id ``arm`` in a COLLADA file.
         given: Attributes that act on the bodies of the file; see ``openrave_xml.given``.
+        metre: Length of a metre in the unit of the scene. COLLADA says its unit, and its lengths are converted;
+            gravity and the numbers of other files stay as they are, as in OpenRAVE.
 
     Returns:
         What was read; its ``failure`` says what ended the reading.
@@ -41,14 +43,17 @@ def read_file(path: str | os.PathLike[str], given: Attributes = NOTHING) -> Read
     elif found.lower().endswith(collada.SUFFIXES) or _holds_collada(found):
         uri = f"{found}#{wanted}" if wanted else found
         return _read_collada(
-            found, given, lambda context, scale: collada.read_file(uri, context.diagnostics, context.files, scale=scale)
+            found,
+            given,
+            metre,
+            lambda context, scale: collada.read_file(uri, context.diagnostics, context.files, scale=scale),
         )
     else:
         return read_mesh_file(found, given) if is_mesh(found) else read(found, given)
     return Reading(Scene(), Diagnostics(), failure)
 
 
-def read_data(data: str | bytes, given: Attributes = NOTHING) -> Reading:
+def read_data(data: str | bytes, given: Attributes = NOTHING, metre: float = 1.0) -> Reading:
     """Read the text of an OpenRAVE XML or COLLADA document, as ``read_file`` reads a file."""
     head = data[:_HEAD] if isinstance(data, bytes) else data[:_HEAD].encode()
     if _COLLADA in head:
@@ -56,6 +61,7 @@ def read_data(data: str | bytes, given: Attributes = NOTHING) -> Reading:
         return _read_collada(
             "data",
             given,
+            metre,
             lambda context, scale: collada.read_text(text, "data", context.diagnostics, context.files, scale),
         )
     return read_text(data, "data", given)
@@ -72,13 +78,15 @@ def _holds_collada(path: str) -> bool:
         return False
 
 
-def _read_collada(path: str, given: Attributes, read_content: "Callable[[Context, float], collada.Content]") -> Reading:
+def _read_collada(
+    path: str, given: Attributes, metre: float, read_content: "Callable[[Context, float], collada.Content]"
+) -> Reading:
     context, source = Context(), Source(path)
     check_given(given, source, context)
     bodies: list[KinBody] = []
     gravity = failure = None
     try:
-        content = read_content(context, uniform(given_scale(given), source, context))
+        content = read_content(context, metre * uniform(given_scale(given), source, context))
         gravity = content.gravity
         if not content.bodies and not content.others:
             raise SourceError("there is no body in it", source)

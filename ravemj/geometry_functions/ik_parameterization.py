@@ -61,6 +61,25 @@ def checked_goal(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: A
             return _checked_direction(values) if kind == _Type.Direction3D else values
 
 
+def length_scales(kind: IkParameterizationType, factor: float) -> Floats:
+    """Return what multiplies the numbers of a goal in another unit of length: the factor for lengths, else 1.
+
+    Args:
+        kind: Type of the goal.
+        factor: Lengths in the other unit, divided by those here.
+    """
+    scales = np.full(goal_size(kind), factor)
+    if kind == _Type.TranslationXYOrientation3D:
+        scales[2:] = 1
+    elif kind in _WITH_ANGLE:
+        scales[:1] = 1
+    elif kind in _WITH_DIRECTION:
+        scales[:3] = 1
+    elif kind in {_Type.Transform6D, _Type.Rotation3D}:
+        scales[:4] = 1
+    return scales
+
+
 def _checked_direction(direction: Floats) -> Floats:
     square = float(direction @ direction)
     if not abs(square - 1) < _UNIT:

@@ -217,9 +217,11 @@ class Drawing:
 
     Attributes:
         state: Its primitives in the world; None while it is hidden. Replaced as a whole, so readers need no lock.
+        text: A text that viewers show at its first point; empty for none.
     """
 
-    def __init__(self, primitives: Primitives) -> None:
+    def __init__(self, primitives: Primitives, text: str = "") -> None:
+        self.text = text
         self._primitives = primitives
         self._transform = np.eye(4)
         self._shown = True
@@ -247,9 +249,9 @@ class Drawings:
         self._keys = itertools.count()
         self._merged: tuple[tuple[Primitives, ...], Primitives] = ((), NOTHING)
 
-    def add(self, primitives: Primitives) -> tuple[int, Drawing]:
-        """Add a drawing; return the key that removes it, and the drawing."""
-        key, drawing = next(self._keys), Drawing(primitives)
+    def add(self, primitives: Primitives, text: str = "") -> tuple[int, Drawing]:
+        """Add a drawing, with a text at its first point; return the key that removes it, and the drawing."""
+        key, drawing = next(self._keys), Drawing(primitives, text)
         self._drawn[key] = drawing
         return key, drawing
 
@@ -270,6 +272,11 @@ class Drawings:
             merged = merge(visible)
             self._merged = (visible, merged)
         return merged
+
+    def texts(self) -> list[tuple[Floats, str]]:
+        """Return where the texts of visible drawings are, shape (3,) each, and the texts."""
+        labels = [(drawing.state, drawing.text) for drawing in self._drawn.copy().values() if drawing.text]
+        return [(state.points.corners[0, 0], text) for state, text in labels if state is not None]
 
 
 def merge(parts: Iterable[Primitives]) -> Primitives:

@@ -64,7 +64,7 @@ if TYPE_CHECKING:  # at run time as MODULE_OF says
     )
     from ravemj.rave.geometry import Geometry
     from ravemj.rave.graph_handle import GraphHandle
-    from ravemj.rave.ikreturn import IkFailureInfo, IkReturn
+    from ravemj.rave.ikreturn import IkFailureAccumulatorBase, IkFailureInfo, IkReturn
     from ravemj.rave.iksolver import IkSolver, RaveCreateIkSolver
     from ravemj.rave.infos import (
         AttachedSensorInfo,
@@ -261,6 +261,7 @@ __all__ = [
     "GripperInfo",
     "IMUGeomData",
     "IdealController",
+    "IkFailureAccumulatorBase",
     "IkFailureInfo",
     "IkFilterOptions",
     "IkParameterization",

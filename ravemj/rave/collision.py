@@ -66,6 +66,17 @@ class CollisionChecker(CheckerExtras):
         """Return the name that the checker was made by."""
         return self._name
 
+    def Clone(self, ref: "CollisionChecker", cloningoptions: int = 0) -> None:
+        """Take over the options, the description and the data of users from another checker.
+
+        Args:
+            ref: The other checker.
+            cloningoptions: Not used.
+        """
+        super().Clone(ref, cloningoptions)
+        self._tolerance = ref.GetTolerance()
+        self.SetCollisionOptions(ref.GetCollisionOptions())
+
     def InitEnvironment(self) -> bool:
         """Return True; nothing needs to be prepared."""
         return True

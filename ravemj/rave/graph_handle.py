@@ -16,8 +16,8 @@ class GraphHandle(Handle):
         >>> handle = None  # gone
     """
 
-    def __init__(self, drawings: Drawings, primitives: Primitives) -> None:
-        key, self._drawing = drawings.add(primitives)
+    def __init__(self, drawings: Drawings, primitives: Primitives, text: str = "") -> None:
+        key, self._drawing = drawings.add(primitives, text)
         super().__init__(drawings.remove, key)
 
     def SetTransform(self, transform: ArrayLike) -> None:

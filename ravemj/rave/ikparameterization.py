@@ -1,16 +1,19 @@
 """What the tool of an arm shall reach."""
 
+from collections.abc import Mapping
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions.ik_parameterization import (
     goal_distance_squared,
     goal_moved_in_its_frame,
+    length_scales,
     moved_custom_values,
     moved_goal,
 )
@@ -28,13 +31,16 @@ class IkParameterizationData(GoalValues):
     Type = IkParameterizationType
     __array_ufunc__ = None  # so that ``matrix * goal`` is ours
 
+    @also_named(primitive="value", ikparam="value", str="value")
     def __init__(self, value: Any = None, type: IkParameterizationType | int | None = None) -> None:  # noqa: ANN401 - as the type asks for
         self._type = _Type.none
         self._values = np.zeros(0)
         self._custom: dict[str, Floats] = {}
+        self._id = self._name = ""
         if isinstance(value, IkParameterizationData):
             self._type, self._values = value._type, value._values.copy()
             self._custom = {name: numbers.copy() for name, numbers in value._custom.items()}
+            self._id, self._name = value._id, value._name
         elif isinstance(value, str):
             self._read(value.split())
         elif type is not None:
@@ -44,13 +50,29 @@ class IkParameterizationData(GoalValues):
         """Return the type."""
         return self._type
 
-    def GetDOF(self) -> int:
-        """Return how many degrees of freedom the goal takes away."""
-        return self.GetDOFFromType(self._type)
+    def GetId(self) -> str:
+        """Return the id that ``DeserializeJSON`` read; empty without one."""
+        return self._id
 
-    def GetNumberOfValues(self) -> int:
-        """Return how many numbers the goal has."""
-        return self.GetNumberOfValuesFromType(self._type)
+    def GetName(self) -> str:
+        """Return the name that ``DeserializeJSON`` read; empty without one."""
+        return self._name
+
+    def GetDOF(self, type: int | None = None) -> int:
+        """Return how many degrees of freedom the goal takes away.
+
+        Args:
+            type: Another type, whose goals are meant.
+        """
+        return self.GetDOFFromType(self._type if type is None else type)
+
+    def GetNumberOfValues(self, type: int | None = None) -> int:
+        """Return how many numbers the goal has.
+
+        Args:
+            type: Another type, whose goals are meant.
+        """
+        return self.GetNumberOfValuesFromType(self._type if type is None else type)
 
     @staticmethod
     def GetDOFFromType(type: int) -> int:
@@ -174,7 +196,42 @@ class IkParameterizationData(GoalValues):
             del self._custom[known]
         return len(names)
 
-    # Text
+    # JSON and text
+
+    def SerializeJSON(self, unitScale: float = 1.0) -> dict[str, Any]:
+        """Return the goal as dicts, lists, numbers and texts.
+
+        Args:
+            unitScale: Factor for lengths; those in data of users stay as they are.
+        """
+        scales = length_scales(self._type, unitScale)
+        written: dict[str, Any] = {"type": int(self._type), "values": (self._values * scales).tolist()}
+        if self._custom:
+            written["customData"] = {name: numbers.tolist() for name, numbers in self._custom.items()}
+        texts = {"id": self._id, "name": self._name}
+        return {**{key: text for key, text in texts.items() if text}, **written}
+
+    def DeserializeJSON(self, obj: Mapping[str, Any], unitScale: float = 1.0) -> None:
+        """Take over what ``SerializeJSON`` returned.
+
+        Args:
+            obj: The dict.
+            unitScale: Factor for lengths.
+
+        Raises:
+            openrave_exception: something in it is missing or wrong; nothing has changed then.
+        """
+        checked_kind(obj, Mapping, "DeserializeJSON: obj", "a dict")
+        try:
+            read = type(self)()
+            read.SetValues(obj["values"], obj["type"])
+            read._values = read._values * length_scales(read._type, unitScale)
+            for name, numbers in obj.get("customData", {}).items():
+                read.SetCustomValues(name, numbers)
+        except (KeyError, ValueError, TypeError, AttributeError) as error:
+            raise ArgumentError(f"IkParameterization.DeserializeJSON: {error!r} in {obj}") from None
+        self._type, self._values, self._custom = read._type, read._values, read._custom
+        self._id, self._name = str(obj.get("id", self._id)), str(obj.get("name", self._name))
 
     def _read(self, words: list[str]) -> None:
         """Take over what ``str`` gave."""

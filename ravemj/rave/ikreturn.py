@@ -156,3 +156,17 @@ class IkFailureInfo(ApiObject):
     def GetDescription(self) -> str:
         """Return a sentence that says why."""
         return self._description
+
+    def SerializeJSON(self) -> dict[str, Any]:
+        """Return the failure as dicts, lists, numbers and texts."""
+        return {
+            "action": int(self._action),
+            "config": self._configuration.tolist(),
+            "ikparam": self._goal.SerializeJSON(),
+            "description": self._description,
+            "collisions": [str(pair) for pair in self._report.collisionInfos],
+        }
+
+
+class IkFailureAccumulatorBase(list[IkFailureInfo]):
+    """A list of failures, for ``ikFailureAccumulator``; any list will do."""

@@ -1,11 +1,12 @@
 """What all objects of an environment have in common."""
 
 from collections.abc import Callable, Mapping
+from copy import copy
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.readables import ReadableInterface
 from ravemj.rave.user_data import UserData
@@ -62,16 +63,20 @@ class Interface(UserData, ReadableInterface):
         self._annotations.description = str(description)
 
     def Clone(self, ref: Any, cloningoptions: int = 0) -> None:  # noqa: ANN401 - another object of its class
-        """Refuse to become like another object; bodies and trajectories do.
+        """Take over the description and the data of users that another object of the same class has.
+
+        Bodies, trajectories, collision checkers, physics engines and sensors take over what they are, too. A copy of a
+        controller has no robot yet, one of a module was not started.
 
         Args:
             ref: The other object.
             cloningoptions: OpenRAVE's; ignored.
-
-        Raises:
-            UnsupportedError: always.
         """
-        raise UnsupportedError(f"{type(self).__name__}.Clone", "copies of what is neither body nor trajectory")
+        del cloningoptions
+        checked_kind(ref, type(self), "Clone: ref")
+        self._annotations = copy(ref._annotations)
+        self._annotations.data = dict(ref._annotations.data)
+        self._readables = ref.GetReadableInterfaces()
 
     def SupportsJSONCommand(self, cmd: str) -> bool:
         """Return whether ``SendJSONCommand`` knows a command: none.

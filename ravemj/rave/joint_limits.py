@@ -217,10 +217,8 @@ class JointLimits(Member):
         """Set the step of planners, the same for all axes.
 
         Args:
-            resolution: Step [rad or m], positive.
+            resolution: Step [rad or m]; planners take one of their own where it is not positive.
         """
-        if not np.all(checked_numbers(resolution, "SetResolution: resolution") > 0):
-            raise ArgumentError(f"SetResolution: resolution is {resolution}, and should be positive")
         self._set_axes("SetResolution", resolution=[resolution] * len(self._scene.axes))
 
     def _of_axes(self, field: str) -> Floats:

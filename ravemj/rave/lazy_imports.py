@@ -22,7 +22,7 @@ _NAMES = {
     """,
     "ravemj.rave.geometry": "Geometry",
     "ravemj.rave.graph_handle": "GraphHandle",
-    "ravemj.rave.ikreturn": "IkFailureInfo IkReturn",
+    "ravemj.rave.ikreturn": "IkFailureAccumulatorBase IkFailureInfo IkReturn",
     "ravemj.rave.iksolver": "IkSolver RaveCreateIkSolver",
     "ravemj.rave.infos": """
         AttachedSensorInfo AxialSlice ConnectedBodyInfo ElectricMotorActuatorInfo EnvironmentBaseInfo

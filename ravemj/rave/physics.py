@@ -46,6 +46,16 @@ class PhysicsEngine(Interface):
         """Return the name of the kind of engine, as it was spelt when it was made."""
         return self._xml_id
 
+    def Clone(self, ref: "PhysicsEngine", cloningoptions: int = 0) -> None:
+        """Take over gravity, the description and the data of users from another engine.
+
+        Args:
+            ref: The other engine.
+            cloningoptions: Not used.
+        """
+        super().Clone(ref, cloningoptions)
+        self.SetGravity(ref.GetGravity())
+
     def SetGravity(self, gravity: ArrayLike) -> None:
         """Set the acceleration of free fall in the world [m/s^2], shape (3,).
 

@@ -27,7 +27,6 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
         InterfaceType.module: {
             "grasper": _GRASPING,
             "ikfast": "compiling of solvers of inverse kinematics",
-            "logging": "saving of scenes by a module",
             "taskcaging": "caging of handles",
             "visualfeedback": "visual feedback",
         },
@@ -41,7 +40,8 @@ def RaveCreateModule(env: Environment, name: str) -> Module | None:
 
     Args:
         env: The environment.
-        name: ``BaseManipulation``, ``TaskManipulation`` or ``viewerrecorder``, which writes videos; in any letter case.
+        name: ``BaseManipulation``, ``TaskManipulation``, ``viewerrecorder``, which writes videos, or ``logging``, which
+            saves scenes; in any letter case.
 
     Returns:
         The module; None, as in OpenRAVE, where no plugin has a module of that name: a warning is logged.

@@ -4,15 +4,14 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arguments import checked_kind
-from ravemj.errors import UnsupportedError
-from ravemj.rave.collision import CollisionChecker, RaveCreateCollisionChecker
+from ravemj.errors import ArgumentError, UnsupportedError
+from ravemj.rave.collision import RaveCreateCollisionChecker
 from ravemj.rave.controllers import RaveCreateController
 from ravemj.rave.creation import RaveCreateKinBody, RaveCreateRobot, RaveCreateTrajectory
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.iksolver import RaveCreateIkSolver
 from ravemj.rave.interface import Interface
-from ravemj.rave.kinbody import KinBody
-from ravemj.rave.physics import PhysicsEngine, RaveCreatePhysicsEngine
+from ravemj.rave.physics import RaveCreatePhysicsEngine
 from ravemj.rave.planning import RaveCreatePlanner
 from ravemj.rave.plugins import (
     RaveCreateModule,
@@ -21,7 +20,6 @@ from ravemj.rave.plugins import (
 )
 from ravemj.rave.samplers import RaveCreateSpaceSampler
 from ravemj.rave.sensors import RaveCreateSensor
-from ravemj.rave.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -148,7 +146,7 @@ def RaveCreateInterface(env: "Environment", type: InterfaceType, name: str) -> A
 
 
 def RaveClone(ref: Interface, cloningoptions: int = 0, cloneenv: "Environment | None" = None) -> Any:  # noqa: ANN401 - of the same kind
-    """Return a copy of a body, a trajectory, a collision checker or a physics engine, which is not added.
+    """Return a copy, which is not added: an object of the same kind and name that takes over what ``Clone`` copies.
 
     Args:
         ref: What to copy.
@@ -156,7 +154,7 @@ def RaveClone(ref: Interface, cloningoptions: int = 0, cloneenv: "Environment | 
         cloneenv: The environment of the copy; None: that of ``ref``.
 
     Raises:
-        UnsupportedError: it is something else.
+        openrave_exception: nothing of its kind and name can be made.
 
     Example:
         >>> copy = ravemj.RaveClone(robot, 0)
@@ -164,24 +162,8 @@ def RaveClone(ref: Interface, cloningoptions: int = 0, cloneenv: "Environment | 
         >>> env.Add(copy)
     """
     env = checked_kind(ref, Interface, "RaveClone: ref").GetEnv() if cloneenv is None else cloneenv
-    if isinstance(ref, PhysicsEngine):
-        engine = RaveCreatePhysicsEngine(env, ref.GetXMLId())
-        assert engine is not None
-        engine.SetGravity(ref.GetGravity())
-        return engine
-    if isinstance(ref, CollisionChecker):
-        checker = CollisionChecker(env, ref.GetXMLId())
-        checker.SetCollisionOptions(ref.GetCollisionOptions())
-        checker.SetTolerance(ref.GetTolerance())
-        return checker
-    if isinstance(ref, Trajectory):
-        trajectory = RaveCreateTrajectory(env, ref.GetXMLId())
-        assert trajectory is not None
-        trajectory.Clone(ref, cloningoptions)
-        return trajectory
-    if isinstance(ref, KinBody):
-        body = RaveCreateRobot(env) if ref.IsRobot() else RaveCreateKinBody(env)
-        assert body is not None
-        body.Clone(ref, cloningoptions)
-        return body
-    raise UnsupportedError(f"RaveClone of a {type(ref).__name__}", "copies of what is neither body nor trajectory")
+    copy = RaveCreateInterface(env, ref.GetInterfaceType(), ref.GetXMLId())
+    if copy is None:
+        raise ArgumentError(f"RaveClone: nothing makes another {type(ref).__name__} '{ref.GetXMLId()}'")
+    copy.Clone(ref, cloningoptions)
+    return copy

@@ -8,6 +8,7 @@ from threading import Condition, RLock
 from types import EllipsisType
 from typing import TYPE_CHECKING
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import also_named, checked_kind
@@ -69,6 +70,7 @@ class Robot(ActiveDofs, Manipulators, Sensors, KinBody):
         "affine_kinds",
         "arm_solvers",
         "ik_solvers",
+        "quaternion_limits",
         "step_controller",
         "take_choices",
     )
@@ -78,6 +80,7 @@ class Robot(ActiveDofs, Manipulators, Sensors, KinBody):
         super().__init__(env, state)
         self.active_choice = ActiveChoice()
         self.affine_kinds = default_kinds()
+        self.quaternion_limits = np.array([np.pi, 0.0, 0.0, 0.0])
         self._active_manipulator = None
         self._devices = {}
         self.ik_solvers: dict[str, IkSolver] = {}
@@ -298,10 +301,22 @@ class Robot(ActiveDofs, Manipulators, Sensors, KinBody):
             _vGripperInfos=self.GetGripperInfos(),
         )
 
+    def Clone(self, ref: KinBody, cloningoptions: int = 0) -> None:
+        """Become like another body, as ``KinBody.Clone`` does; a robot's active DOFs, arm and solvers are copied, too.
+
+        Args:
+            ref: The body to copy; what it holds is not copied.
+            cloningoptions: OpenRAVE's; ignored.
+        """
+        super().Clone(ref, cloningoptions)
+        if isinstance(ref, Robot):
+            self.take_choices(ref)
+
     def take_choices(self, other: "Robot") -> None:
         """Take over the active DOFs, the active manipulator and the solvers of another robot like this."""
         self.active_choice = other.active_choice
         self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
+        self.quaternion_limits = other.quaternion_limits.copy()
         self._active_manipulator = other._active_manipulator
         self.ik_solvers = {name: solver.copy_for(self) for name, solver in other.ik_solvers.items()}
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
@@ -149,6 +150,25 @@ class DescribedSensor(Interface):
             self._edit(device=device)
             self._take_over()
         return True
+
+    def Clone(self, ref: "DescribedSensor", cloningoptions: int = 0) -> None:
+        """Take over geometry, description and data of users from another sensor of this kind; its pose, if on no robot.
+
+        Args:
+            ref: The other sensor.
+            cloningoptions: Not used.
+
+        Raises:
+            openrave_exception: it is of another kind.
+        """
+        if checked_kind(ref, DescribedSensor, "Clone: ref").GetXMLId().lower() != self.GetXMLId().lower():
+            raise ArgumentError(f"Clone: ref is a '{ref.GetXMLId()}', and this is a '{self.GetXMLId()}'")
+        super().Clone(ref, cloningoptions)
+        with self._env.simulation.lock:
+            self._edit(device=ref.description.device)
+            if self.attached is None:
+                self.SetTransform(ref.GetTransform())
+            self._take_over()
 
     def GetSensorGeometry(self, type: SensorType | None = None) -> SensorGeometry | None:  # OpenRAVE's name
         """Return what is fixed about the sensor, a copy; None where it has no geometry of this kind.

@@ -181,3 +181,21 @@ def test_samples_by_distance():
     lattice = sampler.sampleR3lattice(0.5, [1, 2, 0.5])
     assert lattice.shape == (8, 3)
     assert lattice.max(axis=0).tolist() == [0.5, 1.5, 0]
+
+
+def test_rotations_from_the_direction_that_they_take_to_x():
+    sampler = misc.SpaceSamplerExtra()
+    polar, azimuth = 0.7, 2.0
+    direction = [np.cos(polar), -np.sin(polar) * np.sin(azimuth), np.sin(polar) * np.cos(azimuth)]
+    one, other = sampler.hopf2quat([[polar, azimuth, 0], [polar, azimuth, -0.4]])
+    for rotation in (one, other):
+        np.testing.assert_allclose(ravemj.rotationMatrixFromQuat(rotation) @ direction, [1, 0, 0], atol=1e-12)
+    turn = ravemj.quatMult(other, ravemj.quatInverse(one))
+    np.testing.assert_allclose(ravemj.axisAngleFromQuat(turn), [-0.4, 0, 0], atol=1e-12)
+    samples = sampler.sampleSO3(1)
+    separation = sampler.computeSepration(samples)
+    assert separation.shape == (len(samples),)
+    nearest = sorted(np.arccos(min(1.0, abs(samples[0] @ other))) for other in samples[1:])[0]
+    assert separation[0] == pytest.approx(nearest)
+    with pytest.raises(NotImplementedError, match="HEALPix"):
+        sampler.computeFaceIndices(8)

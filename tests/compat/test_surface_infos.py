@@ -151,13 +151,15 @@ def test_units():
     assert (units.lengthUnit, units.SerializeJSON()["massUnit"]) == (ravemj.LengthUnit.mm, "kg")
 
 
-def test_environments_compute_in_metres(env):
-    env.SetUnit("m", 1.0)
-    env.SetUnitInfo(env.GetUnitInfo())
+def test_units_other_than_those_of_length_stay(env):
+    assert env.GetUnit() == ("m", 1)
+    env.SetUnit("mm", 0.001)
+    assert env.GetUnit() == ("mm", 0.001)
+    with pytest.raises(ravemj.openrave_exception, match=r"0\.001 m long"):
+        env.SetUnit("mm", 1)
     with pytest.raises(NotImplementedError):
-        env.SetUnit("mm", 0.001)
-    with pytest.raises(NotImplementedError):
-        env.SetUnitInfo(ravemj.UnitInfo(lengthUnit=ravemj.LengthUnit.mm))
+        env.SetUnitInfo(ravemj.UnitInfo(massUnit=ravemj.MassUnit.g))
+    assert env.GetUnitInfo() == ravemj.UnitInfo(lengthUnit=ravemj.LengthUnit.mm)
 
 
 def test_what_an_environment_is_called():
@@ -215,8 +217,28 @@ def test_interfaces_by_kind(env, robot):
     engine = ravemj.RaveCreatePhysicsEngine(env, "ode")
     engine.SetGravity([0, 0, -1])
     assert ravemj.RaveClone(engine).GetGravity()[2] == -1
-    with pytest.raises(NotImplementedError):
-        ravemj.RaveClone(robot.GetController())
+    controller = robot.GetController()
+    controller.SetDescription("mine")
+    controller.SetUserData("key", 3)
+    copy = ravemj.RaveClone(controller)
+    assert (type(copy), copy.GetRobot()) == (type(controller), None)
+    assert (copy.GetDescription(), copy.GetUserData("key")) == ("mine", 3)
+    copy.SetUserData("key", 4)
+    assert controller.GetUserData("key") == 3
+    module = ravemj.RaveCreateModule(env, "BaseManipulation")
+    assert ravemj.RaveClone(module).GetXMLId() == "BaseManipulation"
+    with pytest.raises(ravemj.openrave_exception, match="Clone: ref"):
+        copy.Clone(engine)
+    camera = ravemj.RaveCreateSensor(env, "BaseCamera")
+    geometry = camera.GetSensorGeometry()
+    geometry.width, geometry.height, geometry.intrinsics.K = 77, 48, [[100, 0, 38], [0, 100, 24], [0, 0, 1]]
+    camera.SetSensorGeometry(geometry)
+    camera.SetTransform([1, 0, 0, 0, 1, 2, 3])
+    twin = ravemj.RaveClone(camera)
+    assert twin.GetSensorGeometry().width == 77
+    assert twin.GetTransform()[2, 3] == 3
+    with pytest.raises(ravemj.openrave_exception, match="Clone: ref"):
+        twin.Clone(ravemj.RaveCreateSensor(env, "BaseLaser2D"))
     with pytest.raises(NotImplementedError):
         ravemj.RaveCreateSensorSystem(env, "mocap")
 

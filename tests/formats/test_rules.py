@@ -62,6 +62,14 @@ class TestMotors:
             np.testing.assert_allclose(robot.ComputeInverseDynamics(acceleration), expected, atol=1e-9)
 
 
+def test_a_joint_that_nobody_moves_has_no_inverse_dynamics():  # random-api-92
+    _, robot = chain(more='enable="false"')
+    with pytest.raises(ravemj.openrave_exception, match="'two' has no DOF") as caught:
+        robot.ComputeInverseDynamics([0])
+    assert caught.value.GetCode() == "Assert"
+    assert robot.batch_inverse_dynamics([[0]], [[0]], [[0]]).shape == (1, 1)
+
+
 @pytest.mark.parametrize(("base", "difference"), [("dynamic", 5 - 2 * np.pi), ("static", 5)])
 def test_differences_of_circular_joints(base, difference):  # gap-13, random-api-102
     _, robot = chain(base=base, circular='circular="true"')

@@ -75,7 +75,6 @@ CALLS = {
         geometry.SetAmbientColor("red")
         geometry.SetTransparency(nan)
         joint.SetAccelerationLimits([nan])
-        joint.SetResolution(-1)
         joint.SetResolution("x")
         robot.GetChain(0, 99)
         robot.GetChain(-1, 0)

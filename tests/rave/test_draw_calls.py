@@ -54,6 +54,7 @@ CALLS = {
     "plane of bytes": lambda env: env.drawplane([1, 0, 0, 0, 0, 0, 0], [1, 1, 0], np.zeros((2, 2), dtype=np.uint8)),
     "mesh": lambda env: env.drawtrimesh(P),
     "indexed mesh": lambda env: env.drawtrimesh(P, np.array([[0, 1, 2]], dtype=np.int64), np.ones((3, 4))),
+    "label": lambda env: env.drawlabel(label="goal", worldPosition=[1, 2, 3], color=[1, 0, 0], height=0.1),
     "flat mesh": lambda env: env.drawtrimesh(P.reshape(-1), [0, 1, 2, 2, 1, 0], [1, 0, 0]),
 }
 
@@ -362,3 +363,31 @@ def test_callbacks_live_as_long_as_their_handles(env, caplog):
         register(print).Close()
         with pytest.raises(ArgumentError, match="cannot be called"):
             register(None)
+
+
+def test_labels_go_with_their_handles(env):
+    def labels():
+        return [(label.point.tolist(), label.text) for label in env.GetViewer().interaction.overlay().labels]
+
+    handle = env.drawlabel("goal", [0.5, 0, 0], [1, 0, 0])
+    other = ravemj.misc.DrawLabel(env, "start", [1, 2, 3])
+    assert labels() == [([0.5, 0, 0], "goal"), ([1, 2, 3], "start")]
+    handle.SetTransform([1, 0, 0, 0, 0, 0, 2])
+    other.SetShow(False)
+    assert labels() == [([0.5, 0, 2], "goal")]
+    del handle
+    gc.collect()
+    assert labels() == []
+    with pytest.raises(RavemjError, match="worldPosition"):
+        env.drawlabel("goal", [1, 2])
+
+
+def test_a_viewer_shows_one_text_of_the_user(env):
+    viewer = env.GetViewer()
+    viewer.SetUserText("one\ntwo")
+    viewer.interaction.pass_time(time.monotonic() + 1e6)
+    assert viewer.interaction.overlay().lines == ("one", "two")
+    viewer.SetUserText(userText="three")
+    assert viewer.interaction.overlay().lines == ("three",)
+    viewer.SetUserText("")
+    assert viewer.interaction.overlay().lines == ()

@@ -10,6 +10,7 @@ from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.rave.environment import Environment
+from ravemj.rave.graph_handle import GraphHandle
 from ravemj.rave.specification import IkParameterization
 
 _FRAMES = {
@@ -169,17 +170,17 @@ def DrawLabel(
     worldPosition: ArrayLike = (0, 0, 0),
     color: ArrayLike = (0, 0, 0, 1),
     height: float = 0.05,
-) -> None:
-    """Refuse to draw a text; see ``env.drawlabel``.
+) -> GraphHandle | None:
+    """Write a text beside a point; see ``env.drawlabel``.
 
     Args:
         env: The environment.
         label: The text.
-        worldPosition: Where it begins [m], shape (3,).
-        color: One colour.
-        height: Height of the letters [m].
+        worldPosition: The point [m], shape (3,).
+        color: One colour, of the point.
+        height: Not used.
 
-    Raises:
-        UnsupportedError: always.
+    Returns:
+        The handle that keeps the text; None without a viewer.
     """
-    env.drawlabel(label, worldPosition, color, height)
+    return env.drawlabel(label, worldPosition, color, height)

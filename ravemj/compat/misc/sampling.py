@@ -5,8 +5,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_vector
+from ravemj.core.arrays import checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
+from ravemj.errors import UnsupportedError
 
 
 class SpaceSamplerExtra:
@@ -43,7 +44,21 @@ class SpaceSamplerExtra:
         directions = self.sampleS2(level) if quatdelta is None else self.sampleS2(angledelta=quatdelta)
         turns = np.arange(0, 2 * math.pi - 1e-9, angle)
         polar, azimuth = np.arccos(directions[:, 2]), np.arctan2(directions[:, 1], directions[:, 0])
-        polar, azimuth, turn = np.repeat(polar, len(turns)), np.repeat(azimuth, len(turns)), np.tile(turns, len(polar))
+        repeated = [np.repeat(angles, len(turns)) for angles in (polar, azimuth)]
+        return self.hopf2quat(np.column_stack([*repeated, np.tile(turns, len(polar))]))
+
+    @staticmethod
+    def hopf2quat(hopfarray: ArrayLike) -> Floats:
+        """Return rotations that are given by Hopf's coordinates: the direction that turns to x, and a turn about x.
+
+        Args:
+            hopfarray: For each the direction's angle to x, its azimuth about x (0: towards z, pi / 2: towards -y), and
+                the turn [rad], shape (N, 3).
+
+        Returns:
+            Unit quaternions [w, x, y, z], shape (N, 4).
+        """
+        polar, azimuth, turn = checked_numbers(hopfarray, "hopf2quat: hopfarray").reshape(-1, 3).T
         cosine, sine = np.cos(polar / 2), np.sin(polar / 2)
         return np.column_stack(
             [
@@ -53,6 +68,33 @@ class SpaceSamplerExtra:
                 sine * np.sin(azimuth + turn / 2),
             ]
         )
+
+    @staticmethod
+    def computeSepration(qarray: ArrayLike) -> Floats:
+        """Return how far each rotation is from the nearest other one.
+
+        Args:
+            qarray: Unit quaternions [w, x, y, z], shape (N, 4).
+
+        Returns:
+            Angles between quaternions [rad], half of those between the rotations, shape (N,).
+        """
+        rotations = checked_numbers(qarray, "computeSepration: qarray").reshape(-1, 4)
+        cosines = np.abs(rotations @ rotations.T)
+        np.fill_diagonal(cosines, 0)
+        return np.arccos(np.minimum(cosines.max(axis=1, initial=0), 1))
+
+    def computeFaceIndices(self, N: int) -> None:
+        """Refuse to number the pixels of a face: the directions lie on a spiral, not on HEALPix's grid.
+
+        Args:
+            N: The number of pixels along an edge.
+
+        Raises:
+            UnsupportedError: always.
+        """
+        del N
+        raise UnsupportedError("SpaceSamplerExtra.computeFaceIndices", "HEALPix's grid of directions")
 
     def sampleR3lattice(self, averagedist: float, boxdims: ArrayLike) -> Floats:
         """Return points of a grid.

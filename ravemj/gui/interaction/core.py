@@ -167,11 +167,11 @@ class Interaction:
             mark = self._mark(hit)
             takes_link = mark is None and hit is not None and self.mode is Mode.INTERACTION
             parts = [self._selector.primitives(), mark or NOTHING]
-            labels: tuple[Label, ...] = ()
+            labels = tuple(Label(point, text) for point, text in self._simulation.drawings.texts())
             if shown:
                 sphere = self._scene_sphere()
                 parts += figures(self._simulation, shown, sphere[1])
-                labels = names(self._simulation) if "names" in shown else ()
+                labels += names(self._simulation) if "names" in shown else ()
                 if "floor" in shown:
                     parts.append(floor.grid(*sphere))
                     labels += floor.marks(*sphere)

@@ -1,6 +1,7 @@
 """What every viewer can do, and the viewer without a window."""
 
 import contextlib
+import math
 import weakref
 
 import numpy as np
@@ -26,7 +27,7 @@ _LARGEST = 16384
 
 _FIGURES = "SetFiguresInCamera"
 
-TEXTS = "texts in viewers"
+TEXTS = "texts of other sizes in viewers"
 
 LOCKED = "Locked by the script"
 """What a window or a page says while a script has had the environment for long."""
@@ -61,6 +62,7 @@ class Viewer(Playing):
         super().__init__(simulation, renderer.file_camera() or renderer.camera_from_above(), _SIZE)
         self._background = simulation.view.background
         self._recorder = Recorder(self.interaction.controls.notices)
+        self._user_lines: list[str] = []
         weakref.finalize(self, self._recorder.end)
         self._title = name
         self._size = _SIZE
@@ -134,15 +136,17 @@ class Viewer(Playing):
         raise UnsupportedError("Viewer.SetTextSize", TEXTS)
 
     def SetUserText(self, userText: str) -> None:
-        """Refuse to show a text.
+        """Show a text in the corner, in place of the one before.
 
         Args:
-            userText: The text.
-
-        Raises:
-            UnsupportedError: always.
+            userText: The text; empty: none.
         """
-        raise UnsupportedError("Viewer.SetUserText", TEXTS)
+        notices = self.interaction.controls.notices
+        for line in self._user_lines:
+            notices.take_back(line)
+        self._user_lines = userText.splitlines()
+        for line in self._user_lines:
+            notices.say(line, math.inf)
 
     def RegisterCallback(self, properties: object, callback: Callback) -> Handle:
         """Return a handle; the older form of ``RegisterItemSelectionCallback``.

@@ -60,7 +60,7 @@ _SETTINGS = {
 """By the end of a method's name: the fields of ``AffineKind``, and what they are."""
 
 _ARGUMENTS = {
-    "MaxVels": "\n\nArgs:\n    velocities: Largest velocities.",
+    "MaxVels": "\n\nArgs:\n    {argument}: Largest velocities.",
     "Resolution": "\n\nArgs:\n    resolution: Step for each value.",
 }
 
@@ -98,12 +98,19 @@ def with_affine_settings(topic: type[Topic]) -> type[Topic]:
     """Give the methods for affine DOFs of a class, of which only the signatures are written, bodies and docstrings."""
     for kind, about in _KINDS.items():
         for setting, (fields, what) in _SETTINGS.items():
+            if (kind, setting) == ("RotationQuat", "Limits"):  # a rotation and an angle, not two limits
+                continue
             words = what.format(**about._asdict())
             get, set_ = (getattr(topic, f"{verb}Affine{kind}{setting}") for verb in ("Get", "Set"))
-            get.__doc__, set_.__doc__ = f"Return {words}", f"Set {words}{_ARGUMENTS.get(setting, '')}"
+            get.__doc__, set_.__doc__ = f"Return {words}", f"Set {words}{_argument(setting, set_)}"
             for method, body in ((get, _getter(kind, fields)), (set_, _setter(kind, fields, signature(set_)))):
                 setattr(topic, method.__name__, wraps(method)(body))
     return topic
+
+
+def _argument(setting: str, setter: Callable[..., None]) -> str:
+    *_, name = signature(setter).parameters
+    return _ARGUMENTS.get(setting, "").format(argument=name)
 
 
 def _getter(kind: str, fields: tuple[str, ...]) -> Callable[[_WithKinds], Floats | tuple[Floats, ...]]:

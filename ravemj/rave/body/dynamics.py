@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_first, checked_point, checked_vector
 from ravemj.core.transforms import Floats, wxyz_jacobian
-from ravemj.errors import ArgumentError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
 
 
@@ -212,12 +212,22 @@ class Dynamics(BodyPart):
             of the accelerations (``M qdd``), of the joint velocities (Coriolis and centrifugal forces), and of gravity,
             external forces and the velocity of the base.
 
+        Raises:
+            openrave_exception: a joint without DOFs moves by itself, since it follows no other (``Assert``): no torques
+                of DOFs determine how. ``batch_inverse_dynamics`` takes it as fixed.
+
         Example:
             >>> robot.ComputeInverseDynamics([0, 0])  # torques that hold the robot against gravity
             >>> inertia, coriolis, gravity = robot.ComputeInverseDynamics([1, 0], None, True)
         """
         accelerations = self._checked_accelerations(dofaccelerations, "ComputeInverseDynamics")
         pushes = self._checked_pushes(externalforcetorque, "externalforcetorque") if externalforcetorque else {}
+        for joint in self._state.scene.passive_joints:
+            if joint.mimic is None and not joint.static:  # random api-5000-92; graph-5000-102 where it closes a loop
+                message = f"joint '{joint.name}' has no DOF and follows no other, so no torques determine its motion"
+                raise RavemjError(
+                    f"ComputeInverseDynamics: {message}; batch_inverse_dynamics takes it as fixed", ErrorCode.Assert
+                )
         with self._simulation.lock:
             state, gravity = self._state, self._simulation.gravity
             if returncomponents:

@@ -19,19 +19,23 @@ from ravemj.rave.infos import EnvironmentBaseInfo, GrabbedInfo, KinBodyInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.library import RaveGetHomeDirectory
 from ravemj.rave.robot import Robot
-from ravemj.rave.units import LengthUnit, UnitInfo
+from ravemj.rave.units import (
+    GetLengthUnitConversionScale,
+    GetLengthUnitFromString,
+    GetLengthUnitStandardValue,
+    GetLengthUnitString,
+    LengthUnit,
+    UnitInfo,
+)
 
-OTHER_UNITS = "environments in other units than metres, kilograms, radians and seconds"
+OTHER_UNITS = "environments in other units than kilograms, radians and seconds"
 
 
 Json = Mapping[str, Any]
 
 
 class Description(Simulating):
-    """Name, description, keywords and numbers of an environment, its units, and all of it as an info or as JSON.
-
-    The units are always the same.
-    """
+    """Name, description, keywords and numbers of an environment, its units, and all of it as an info or as JSON."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -39,6 +43,7 @@ class Description(Simulating):
         self._description = ""
         self._keywords: list[str] = []
         self._numbers: dict[str, int] = {}
+        self._units = UnitInfo()
 
     def GetName(self) -> str:
         """Return the name that ``Environment(name)`` gave; else empty."""
@@ -107,38 +112,51 @@ class Description(Simulating):
         return RaveGetHomeDirectory()
 
     def GetUnit(self) -> tuple[str, float]:
-        """Return the unit of length and how many metres it is: always the metre."""
-        return ("m", 1.0)
+        """Return the unit of length and how many metres it is."""
+        return GetLengthUnitString(self._units.lengthUnit), 1 / self._metre
 
     def SetUnit(self, unitname: str, unitmult: float) -> None:
-        """Accept the metre.
+        """Say in which unit lengths are; see ``SetUnitInfo``.
 
         Args:
             unitname: Name of the unit of length.
             unitmult: How many metres it is.
 
         Raises:
-            UnsupportedError: it is another one.
+            openrave_exception: there is no such unit, or it is not that long.
         """
-        if (unitname, unitmult) not in {("m", 1.0), ("meter", 1.0)}:
-            raise UnsupportedError(f"SetUnit('{unitname}', {unitmult})", OTHER_UNITS)
+        unit = GetLengthUnitFromString(unitname, LengthUnit.m)
+        metres = GetLengthUnitConversionScale(unit, LengthUnit.m)
+        if not np.isclose(unitmult, metres):
+            raise ArgumentError(f"SetUnit: unitmult is {unitmult}, and '{unitname}' is {metres:g} m long")
+        self._units.lengthUnit = unit
 
     def GetUnitInfo(self) -> UnitInfo:
-        """Return the units: metres, kilograms, radians and seconds."""
-        return UnitInfo()
+        """Return the units, a copy."""
+        return replace(self._units)
 
     def SetUnitInfo(self, unitInfo: UnitInfo) -> None:
-        """Accept the units of ``GetUnitInfo``.
+        """Say in which unit lengths are.
+
+        As in OpenRAVE, all that is there keeps its numbers. Lengths in COLLADA files and in JSON are converted when
+        they are loaded from then on; gravity and the numbers of XML files stay as they are.
 
         Args:
             unitInfo: The units.
 
         Raises:
-            UnsupportedError: they are others.
+            UnsupportedError: another unit than kilograms, radians and seconds.
         """
         checked_kind(unitInfo, UnitInfo, "SetUnitInfo: unitInfo")
-        if replace(unitInfo, timeStampUnit=UnitInfo().timeStampUnit) != UnitInfo():
-            raise UnsupportedError(f"SetUnitInfo({LengthUnit(unitInfo.lengthUnit).name}, …)", OTHER_UNITS)
+        usual = UnitInfo()
+        if replace(unitInfo, lengthUnit=usual.lengthUnit, timeStampUnit=usual.timeStampUnit) != usual:
+            raise UnsupportedError(f"SetUnitInfo({unitInfo})", OTHER_UNITS)
+        self._units = replace(unitInfo, lengthUnit=LengthUnit(unitInfo.lengthUnit))
+
+    @property
+    def _metre(self) -> float:
+        """Length of a metre in the environment's unit."""
+        return GetLengthUnitStandardValue(self._units.lengthUnit)
 
     def ExtractInfo(self) -> EnvironmentBaseInfo:
         """Return the description of the environment as it stands, a copy."""
@@ -149,6 +167,7 @@ class Description(Simulating):
                 _description=self.GetDescription(),
                 _keywords=self.GetKeywords(),
                 _uInt64Parameters=dict(self._numbers),
+                _unitInfo=self.GetUnitInfo(),
             )
 
     def UpdateFromInfo(
@@ -172,6 +191,8 @@ class Description(Simulating):
         with self._simulation.lock:
             named = {one._name for one in info._vBodyInfos}
             exact = UpdateFromInfoMode(updateMode) == UpdateFromInfoMode.Exact
+            if exact:
+                self.SetUnitInfo(info._unitInfo)
             removed = [body for body in self.GetBodies() if exact and body.GetName() not in named]
             for body in removed:
                 self.Remove(body)
@@ -234,9 +255,17 @@ class Description(Simulating):
             if "gravity" in envInfo
             else EnvironmentBaseInfo(_gravity=self.GetPhysicsEngine().GetGravity())
         )
-        info.DeserializeJSON(dict(envInfo))
+        self._read_json(info, envInfo)
         self.UpdateFromInfo(info, updateMode)
         return True
+
+    def _read_json(self, info: EnvironmentBaseInfo, content: Json) -> None:
+        """Fill an info with what JSON has, in the environment's unit of length."""
+        info._unitInfo = self.GetUnitInfo()
+        info.DeserializeJSON({"unitInfo": content.get("unitInfo", {})})
+        scale = self._metre / GetLengthUnitStandardValue(info._unitInfo.lengthUnit)
+        info.DeserializeJSON(dict(content), scale)
+        info._unitInfo = self.GetUnitInfo()
 
     def ReadKinBodyJSON(self, envInfo: Json, atts: Mapping[str, str] | None = None, uri: str = "") -> KinBody | None:
         """Return the first body of an environment in OpenRAVE's JSON, without adding it; None where it has none.
@@ -248,7 +277,7 @@ class Description(Simulating):
         """
         del atts
         info = EnvironmentBaseInfo()
-        info.DeserializeJSON(dict(envInfo))
+        self._read_json(info, envInfo)
         if not info._vBodyInfos:
             return None
         first = info._vBodyInfos[0]

@@ -3,9 +3,10 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Ints
-from ravemj.errors import ArgumentError, ErrorCode, UnsupportedError
+from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.geometry_functions import AABB, OrientedBox
 from ravemj.model import drawing
 from ravemj.model.drawing import Primitives
@@ -13,6 +14,8 @@ from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.graph_handle import GraphHandle
 
 _DEFAULT_COLOR = (1.0, 0.5, 0.5, 1.0)
+_LABEL_POINT = 4.0
+"""Size of the point of a label [pixels]."""
 
 
 class Drawing(EnvironmentPart):
@@ -23,8 +26,8 @@ class Drawing(EnvironmentPart):
     ``env.SetViewer('offscreen')`` is enough for drawings to be in ``env.render()`` and in videos.
     """
 
-    def _draw(self, primitives: Primitives) -> GraphHandle | None:
-        return None if self._viewer is None else GraphHandle(self._simulation.drawings, primitives)
+    def _draw(self, primitives: Primitives, text: str = "") -> GraphHandle | None:
+        return None if self._viewer is None else GraphHandle(self._simulation.drawings, primitives, text)
 
     def plot3(
         self, points: ArrayLike, pointsize: float, colors: ArrayLike | None = None, drawstyle: int = 0
@@ -190,19 +193,25 @@ class Drawing(EnvironmentPart):
 
     def drawlabel(
         self, label: str, worldPosition: ArrayLike, color: ArrayLike | None = None, height: float = 0.05
-    ) -> None:
-        """Refuse to draw a text.
+    ) -> GraphHandle | None:
+        """Write a text beside a point. Windows and pages show it, in letters of their size; pictures show the point.
 
         Args:
             label: The text.
-            worldPosition: Where it begins [m], (3,).
-            color: One colour.
-            height: Height of the letters [m].
+            worldPosition: The point [m], (3,).
+            color: One colour, of the point.
+            height: Not used.
 
-        Raises:
-            UnsupportedError: always.
+        Returns:
+            The handle that keeps the text; None without a viewer.
+
+        Example:
+            >>> handle = env.drawlabel("goal", [0.5, 0, 1])
         """
-        raise UnsupportedError("drawlabel", "texts in drawings")
+        del height
+        position = _checked_points(checked_vector(worldPosition, 3, "worldPosition"))
+        text = checked_kind(label, str, "drawlabel: label", "a text")
+        return self._draw(drawing.points(position, _LABEL_POINT, _checked_colors(color, 1)), text)
 
     def drawplane(self, transform: ArrayLike, extents: ArrayLike, texture: ArrayLike) -> GraphHandle | None:
         """Draw an image on a rectangle, in at most 64 x 64 cells of one colour.

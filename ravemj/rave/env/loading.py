@@ -74,7 +74,7 @@ class Loading(JsonFiles):
         checked_kind(filename, (str, bytes, os.PathLike), "Load: filename", "a path")
         if is_json(os.fsdecode(filename)):
             return self._try_json(os.fsdecode(filename), _checked_attributes(atts, "Load"))
-        reading = _read_file(filename, _checked_attributes(atts, "Load"))
+        reading = self._read_file(filename, _checked_attributes(atts, "Load"))
         try:
             return self._take(reading)
         except RavemjError as error:
@@ -86,10 +86,10 @@ class Loading(JsonFiles):
     LoadURI = Load
 
     def _try_json(self, path: str, given: Attributes) -> bool:
+        diagnostics = Diagnostics()
         for name in given:
-            diagnostics = Diagnostics()
             diagnostics.warn("unknown-attribute", f"nothing reads '{name}' for a JSON file", Source(path))
-            send_warnings(diagnostics)
+        send_warnings(diagnostics)
         try:
             self._load_json(path)
         except SourceError as error:
@@ -116,7 +116,17 @@ class Loading(JsonFiles):
             True
         """
         checked_kind(data, (str, bytes), "LoadData: data", "a text")
-        return self._take(_read_data(data, _checked_attributes(atts, "LoadData")))
+        return self._take(self._read_data(data, _checked_attributes(atts, "LoadData")))
+
+    def _read_file(self, path: Text, given: Attributes) -> "Reading":
+        from ravemj.formats.readers import read_file  # noqa: PLC0415 - takes a while, and not every script reads a file
+
+        return read_file(os.fsdecode(path), given, self._metre)
+
+    def _read_data(self, data: str | bytes, given: Attributes) -> "Reading":
+        from ravemj.formats.readers import read_data  # noqa: PLC0415
+
+        return read_data(data, given, self._metre)
 
     def _take(self, reading: "Reading") -> bool:
         self._add(reading)
@@ -177,14 +187,14 @@ class Loading(JsonFiles):
             >>> env.Add(mug)
         """
         into, filename, given = _read_arguments("ReadKinBodyURI", arguments, named)
-        return self._read(_read_file(filename, given), into, is_robot=False)
+        return self._read(self._read_file(filename, given), into, is_robot=False)
 
     ReadKinBodyXMLFile = ReadKinBodyURI
 
     def ReadKinBodyData(self, *arguments: _Argument, **named: _Argument) -> KinBody | None:
         """Return a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
         into, data, given = _read_arguments("ReadKinBodyData", arguments, named)
-        return self._read(_read_data(data, given), into, is_robot=False)
+        return self._read(self._read_data(data, given), into, is_robot=False)
 
     ReadKinBodyXMLData = ReadKinBodyData
 
@@ -194,7 +204,7 @@ class Loading(JsonFiles):
         A body that the file does not call a robot becomes one.
         """
         into, filename, given = _read_arguments("ReadRobotURI", arguments, named)
-        robot = self._read(_read_file(filename, given), into, is_robot=True)
+        robot = self._read(self._read_file(filename, given), into, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLFile = ReadRobotURI
@@ -202,7 +212,7 @@ class Loading(JsonFiles):
     def ReadRobotData(self, *arguments: _Argument, **named: _Argument) -> Robot | None:
         """Return a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
         into, data, given = _read_arguments("ReadRobotData", arguments, named)
-        robot = self._read(_read_data(data, given), into, is_robot=True)
+        robot = self._read(self._read_data(data, given), into, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLData = ReadRobotData
@@ -274,7 +284,7 @@ class Loading(JsonFiles):
         Returns:
             The robot or body; None, with the reason in the log, if there is none in the file.
         """
-        reading = _read_file(filename, _checked_attributes(atts, "ReadInterfaceURI"))
+        reading = self._read_file(filename, _checked_attributes(atts, "ReadInterfaceURI"))
         return self._read(reading, None, is_robot=False)
 
     ReadInterfaceXMLFile = ReadInterfaceURI
@@ -318,18 +328,3 @@ def _checked_attributes(atts: object, caller: str) -> Attributes:
         checked_kind(name, str, wanted, "a text").lower(): checked_kind(value, str, wanted, "a text")
         for name, value in given.items()
     }
-
-
-# Readers are imported when they are asked for: that takes a while, and not every script reads a file.
-
-
-def _read_file(path: Text, given: Attributes) -> "Reading":
-    from ravemj.formats.readers import read_file  # noqa: PLC0415
-
-    return read_file(os.fsdecode(path), given)
-
-
-def _read_data(data: str | bytes, given: Attributes) -> "Reading":
-    from ravemj.formats.readers import read_data  # noqa: PLC0415
-
-    return read_data(data, given)

@@ -1,8 +1,10 @@
 """Saving of the environment's bodies in files."""
 
 import os
+import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from ravemj.core.arguments import checked_kind
@@ -52,6 +54,8 @@ _NO_EFFECT = {
     "reusesimilar": "each body is written by itself",
 }
 """OpenRAVE's options that change nothing about what is read again."""
+
+_FILE_TYPES = {"collada": ".dae", "json": ".json", "msgpack": ".msgpack"}
 
 _VALUES = {"skipwrite": tuple(_PARTS), "format": ("collada", "openrave", "json"), "meshes": ("stl", "obj")}
 
@@ -111,6 +115,9 @@ class Saving(JsonFiles):
         if named.get("format") == "json" or ("format" not in named and is_json(path)):
             self._save_json(path, names, skipped)
             return
+        kind = cast("ModelFormat", named.get("format", "collada"))
+        if self._metre != 1 and kind == "collada":
+            raise UnsupportedError("Save", "COLLADA files of environments in other units than metres; JSON has a unit")
         bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
         for part in skipped:
             bodies = [_PARTS[part](body) for body in bodies]
@@ -121,10 +128,31 @@ class Saving(JsonFiles):
             path,
             scene,
             diagnostics,
-            cast("ModelFormat", named.get("format", "collada")),
+            kind,
             cast("MeshFormat", named.get("meshes", "stl")),
         )
         send_warnings(diagnostics)
+
+    def WriteToMemory(
+        self, filetype: str, options: int = SelectionOptions.Everything, atts: SaveArguments | None = None
+    ) -> bytes:
+        """Return what ``Save`` writes to a file.
+
+        Args:
+            filetype: ``collada``, or ``json`` for OpenRAVE's JSON.
+            options: As for ``Save``.
+            atts: As for ``Save``.
+
+        Raises:
+            openrave_exception: as ``Save``, or there is no such type.
+        """
+        if filetype not in _FILE_TYPES:
+            known = ", ".join(_FILE_TYPES)
+            raise ArgumentError(f"WriteToMemory: filetype is {filetype!r}; there are {known}")
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, f"scene{_FILE_TYPES[filetype]}")
+            self.Save(path, options, atts)
+            return path.read_bytes()
 
 
 def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:

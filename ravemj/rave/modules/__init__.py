@@ -13,6 +13,7 @@ from ravemj.rave.module import Command, Module
 from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.commands import BaseCommands, TaskCommands, answering
 from ravemj.rave.modules.motions import Manipulation
+from ravemj.rave.modules.scene_saver import scene_module
 from ravemj.rave.modules.task_manipulation import TaskManipulation
 from ravemj.rave.modules.tokens import Tokens
 
@@ -23,7 +24,7 @@ __all__ = ["MODULES", "Module", "base_module", "made_module", "task_module"]
 
 _LOG = logging.getLogger("ravemj")
 
-MODULES = ("BaseManipulation", "TaskManipulation", "viewerrecorder")
+MODULES = ("BaseManipulation", "TaskManipulation", "logging", "viewerrecorder")
 """Names of the modules."""
 
 
@@ -47,6 +48,8 @@ def made_module(env: "Environment", name: str) -> Module | None:
         from ravemj.rave.viewer_recorder import ViewerRecorder  # noqa: PLC0415 - rarely wanted
 
         return ViewerRecorder(env, word)
+    if word.lower() == "logging":
+        return scene_module(env, word)
     make = {"basemanipulation": base_module, "taskmanipulation": task_module}.get(word.lower())
     return None if make is None else make(env, word)[0]
 
