@@ -123,7 +123,8 @@ def _segments(plan: Plan, nodes: Floats, lines: Sequence[tuple[int, int]]) -> Fl
 def _hand(plan: Plan, values: Floats) -> Floats:
     """Return where the tool is in the world, or the middle of the last link, for many joint values, shape (n, 3)."""
     if plan.arm is None:
-        link, place = plan.robot.GetLinks()[-1], plan.robot.GetLinks()[-1].GetLocalCOM()
+        link = plan.robot.GetLinks()[-1]
+        place = np.nan_to_num(link.GetLocalCOM())
     else:
         link, place = plan.arm.GetEndEffector(), plan.arm.GetLocalToolTransform()[:3, 3]
     assert link is not None

@@ -125,28 +125,32 @@ class Link(LinkGeometries):
     def _inertial(self) -> Inertial:
         return self._scene.inertial
 
+    def _answer(self, value: ArrayLike) -> Floats:
+        """Return mass, centre or inertia; NaN where OpenRAVE finds no number."""
+        return np.where(self._inertial.undefined, np.nan, value)
+
     def GetMass(self) -> float:
-        """Return the link's mass [kg]."""
-        return self._inertial.mass
+        """Return the link's mass [kg]; NaN, as its centre and inertia, for a total over shapes without a volume."""
+        return float(self._answer(self._inertial.mass))
 
     def GetLocalCOM(self) -> Floats:
         """Return the centre of mass in the link frame [m], shape (3,)."""
-        return np.array(self._inertial.com)
+        return self._answer(self._inertial.com)
 
     GetCOMOffset = GetLocalCOM
 
     def GetGlobalCOM(self) -> Floats:
         """Return the centre of mass in the world [m], shape (3,)."""
-        return self.GetTransform()[:3] @ (*self._inertial.com, 1.0)
+        return self.GetTransform()[:3] @ (*self.GetLocalCOM(), 1.0)
 
     def GetLocalInertia(self) -> Floats:
         """Return the inertia about the centre of mass, in axes parallel to the link's [kg m^2], shape (3, 3)."""
-        return np.array(self._inertial.inertia)
+        return self._answer(self._inertial.inertia)
 
     def GetGlobalInertia(self) -> Floats:
         """Return the inertia about the centre of mass, in axes parallel to the world's [kg m^2], shape (3, 3)."""
         rotation = self.GetTransform()[:3, :3]
-        return rotation @ self._inertial.inertia @ rotation.T
+        return rotation @ self.GetLocalInertia() @ rotation.T
 
     def GetLocalMassFrame(self) -> Floats:
         """Return the frame of the principal axes of inertia, at the centre of mass.
@@ -175,7 +179,7 @@ class Link(LinkGeometries):
             mass: Mass [kg].
         """
         (value,) = checked_vector([mass], 1, "SetMass: mass").tolist()
-        self._set_inertial(replace(self._inertial, mass=value))
+        self._set_inertial(replace(self._inertial, mass=value, undefined=False))
 
     def SetLocalMassFrame(self, massframe: ArrayLike) -> None:
         """Set where the centre of mass is, and how the principal axes lie; the moments about these stay.

@@ -67,6 +67,23 @@ class TestMass:
         assert env.model is not compiled
         np.testing.assert_allclose(env.model.body("Arm0").ipos, [0.1, 0.2, 0.3], atol=1e-9)
 
+    def test_a_total_over_shapes_without_a_volume_is_nan_and_computed_with_as_0(self, world):
+        """As random-xml-132: OpenRAVE divides by their mass, 0."""
+        mass = '<Mass type="mimicgeom"><total>5</total></Mass><Geom type="capsule"><radius>1</radius></Geom>'
+        joint = '<Joint name="j"><Body>a</Body><Body>b</Body><axis>1 0 0</axis></Joint>'
+        text = f"<KinBody name='k'><Body name='a'/><Body name='b'>{mass}</Body>{joint}</KinBody>"
+        with pytest.warns(ravemj.errors.RavemjWarning, match="undefined-mass"):
+            body = world.ReadKinBodyData(text)
+        world.Add(body)
+        one, other = body.GetLinks()
+        answers = [other.GetMass(), body.GetMass(), other.GetLocalCOM(), other.GetGlobalCOM(), other.GetLocalInertia()]
+        assert all(np.isnan(answer).any() for answer in [*answers, other.GetGlobalInertia()])
+        assert one.GetMass() == 1
+        assert np.isfinite(body.ComputeInverseDynamics([1.0])).all()
+        assert np.isfinite(body.GetCenterOfMass()).all()
+        other.SetMass(2)
+        assert (body.GetMass(), other.GetLocalCOM().tolist()) == (3, [0, 0, 0])
+
     def test_moments_and_frame_stay_as_they_are_set(self, robot):
         link = robot.GetLinks()[1]
         T = matrixFromAxisAngle([0.3, -0.5, 1.2])

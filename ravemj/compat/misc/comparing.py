@@ -129,7 +129,7 @@ def _alike(first: object, second: object, what: str) -> None:
 
 def _near(first: ArrayLike, second: ArrayLike, epsilon: float, what: str) -> None:
     one, other = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
-    same = one.shape == other.shape and bool((np.abs(one - other) <= epsilon).all())
+    same = one.shape == other.shape and np.allclose(one, other, rtol=0, atol=epsilon, equal_nan=True)
     assert same, f"{what} differ: {one.tolist()} and {other.tolist()}"
 
 

@@ -152,8 +152,10 @@ def read_link(
     rule = mass.rule or default_mass
     link.inertial = link_inertial(rule, link.geometries)
     if rule is not None and rule.by_total and rule.total and not link.inertial.mass:
-        message = f"link '{link.name}' has no shape with a volume, so its mimicgeom mass is 0 and not {rule.total:g}"
-        context.diagnostics.warn("openrave-bug", message, element.source, "write the mass as type custom")
+        number = "NaN, as in OpenRAVE, and computed with as 0" if link.inertial.undefined else "0"
+        message = f"link '{link.name}' has no shape with a volume: its mimicgeom mass is {number}, not {rule.total:g}"
+        code = "undefined-mass" if link.inertial.undefined else "openrave-bug"
+        context.diagnostics.warn(code, message, element.source, "write the mass as type custom")
     if "type" in element.attributes:
         link.static = element.attributes["type"].lower() == "static"
     if existing is None:

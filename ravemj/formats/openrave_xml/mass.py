@@ -227,14 +227,14 @@ def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Iner
 def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     """Combine the solids of all shapes by the parallel axis theorem.
 
-    With a total mass, OpenRAVE scales the masses of the parts and not their own inertias. Where no shape has a volume
-    the mass is 0, also with a total: OpenRAVE gives 0 or NaN there.
+    With a total mass, OpenRAVE scales the masses of the parts and not their own inertias. It divides a total by 0 where
+    there are shapes and none has a volume.
     """
     density = TOTAL_DENSITY if rule.by_total else rule.density
     solids = [geometry.shape.mass_moments(density) for geometry in geometries]
     mass = sum(part for part, _ in solids)
     if mass == 0.0:
-        return Inertial(0.0, ZERO, NO_INERTIA)
+        return Inertial(0.0, ZERO, NO_INERTIA, undefined=rule.by_total and bool(geometries))
     factor = rule.total / mass if rule.by_total else 1.0
     if len(geometries) == 1:
         position, wxyz = geometries[0].T_link_geometry

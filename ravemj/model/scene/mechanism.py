@@ -40,12 +40,15 @@ class Inertial(Record):
         com: Centre of mass in the link frame [m].
         inertia: Inertia tensor about the centre of mass, in axes parallel to the link's [kg m^2].
         axes: Orientation in the link of the principal axes that a script chose; None: any that fit the tensor.
+        undefined: True where OpenRAVE finds no number (random-xml-132: a total over shapes without a volume). Who asks
+            for mass, centre or inertia is answered NaN; what is computed takes the finite values that stand here.
     """
 
     mass: float
     com: Vec3
     inertia: Rows
     axes: Wxyz | None = None
+    undefined: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -266,7 +266,7 @@ class Structure(BodyPart):
 
     def GetMass(self) -> float:
         """Return the mass of all links [kg]."""
-        return sum(link.inertial.mass for link in self._state.scene.links)
+        return sum(link.GetMass() for link in self.GetLinks())
 
     def IsVisible(self) -> bool:
         """Return whether any shape of the body is drawn."""
