@@ -44,6 +44,13 @@ def checked_numbers(values: ArrayLike, name: str) -> Floats:
         raise ArgumentError(f"{name}: {values!r} should be numbers") from None
 
 
+def _floats(values: ArrayLike, name: str) -> Floats:
+    """Return ``checked_numbers``, or the array itself where it has floats."""
+    if type(values) is np.ndarray and values.dtype is FLOAT and values.ndim:
+        return values
+    return checked_numbers(values, name)
+
+
 def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     """Return a copy of a finite vector.
 
@@ -70,8 +77,8 @@ def checked_first(values: ArrayLike, length: int, name: str) -> Floats:
     Raises:
         ArgumentError: it has fewer, or one of them is no finite number.
     """
-    given = checked_numbers(values, name)
-    return checked_vector(given[:length] if given.ndim == 1 else given, length, name)
+    given = _floats(values, name)
+    return checked_vector(given[:length] if given.ndim == 1 and len(given) > length else given, length, name)
 
 
 def checked_point(values: ArrayLike, name: str) -> Floats:
@@ -81,7 +88,7 @@ def checked_point(values: ArrayLike, name: str) -> Floats:
         ValueError: it has another shape, as in OpenRAVE, whose bindings let Python's own error through.
         ArgumentError: something in it is no finite number.
     """
-    given = checked_numbers(values, name)
+    given = _floats(values, name)
     if given.shape != (3,):
         raise ValueError(f"{name}: has shape {given.shape}, and should have shape (3,)")
     return checked_vector(given, 3, name)

@@ -34,6 +34,17 @@ ARM = """<Environment><Robot name="arm"><KinBody>
 </KinBody><Manipulator name="hand"><base>base</base><effector>fore</effector><joints>j2</joints>
 <closingdirection>1</closingdirection></Manipulator></Robot></Environment>"""
 
+THING = """<KinBody name="thing">
+<Body name="handle"><Geom type="box"><extents>.1 .03 .03</extents></Geom></Body>
+<Body name="tip"><offsetfrom>handle</offsetfrom><Translation>.15 0 0</Translation>
+<Geom type="box"><Translation>.05 0 0</Translation><extents>.1 .02 .02</extents></Geom></Body>
+<Body name="rim"><offsetfrom>handle</offsetfrom><Translation>0 .1 0</Translation><Geom type="sphere"><radius>.02</radius>
+</Geom></Body>
+<Joint name="swivel" type="hinge"><Body>handle</Body><Body>tip</Body><offsetfrom>tip</offsetfrom><axis>0 1 0</axis>
+</Joint><Joint name="weld" type="hinge" enable="false"><Body>handle</Body><Body>rim</Body><offsetfrom>rim</offsetfrom>
+<axis>0 1 0</axis><limits>0 0</limits></Joint></KinBody>"""
+"""What an arm may hold: links before and behind a joint, and one that is welded on."""
+
 BOX = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 BOX_TRIANGLES = np.array([0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4])
 BOX_TRIANGLES = np.append(BOX_TRIANGLES, [1, 5, 7, 1, 7, 3]).reshape(12, 3)
@@ -734,10 +745,17 @@ def test_batch_follows_mimic_and_displaced_joints(place):
     assert sum(found[False]) == len(values) if place[0] == 0 else 0 < sum(found[False]) < len(values)
 
 
-def test_batch_agrees_with_single_questions(env, arm):
+@pytest.mark.parametrize("texts", [(ARM, THING), (THING, ARM)], ids=["the arm first", "what it holds first"])
+def test_batch_agrees_with_single_questions(env, texts):
+    for text in texts:
+        env.LoadData(text)
+    arm, thing = env.GetRobot("arm"), env.GetKinBody("thing")
     for number, position in enumerate([(1.2, 0.7, 0.3), (-0.5, 1.0, 0.3), (0.3, -1.2, 0.3)]):
         box(env, f"box{number}", position, (0.2, 0.2, 0.2))
-    thing = box(env, "thing", (2.2, 0, 0.3), (0.1, 0.03, 0.03))
+    place(thing, (2.2, 0, 0.3), (0.3, 0, 0))
+    box(env, "on thing", (2.4, 0, 0.4), (0.1, 0.02, 0.02))
+    thing.SetDOFValues([0.4])
+    thing.Grab(env.GetKinBody("on thing"), thing.GetLinks()[1])
     arm.Grab(thing)
     values = np.random.default_rng(4).uniform(*arm.GetDOFLimits(), (60, arm.GetDOF()))
     arm.SetDOFValues([0.1, 0.2, 0.3])

@@ -1,18 +1,17 @@
 """The query that planners make most: does a body collide when some of its joints have these values?"""
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats, Ints
+from ravemj.engine.collision.held import HeldRoots
 from ravemj.engine.collision.pairs import Pairs
-from ravemj.engine.collision.queries import MovedBy, body_and_others, held_with, itself
+from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
-from ravemj.engine.simulation.body import GrabbedBody
 
 _KEY = 1 << 31
 """More than the number of geoms: makes one number of a pair."""
@@ -70,11 +69,16 @@ def _placement(world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> C
     """Return a function that moves joints of a body in the model of the world."""
     kinematics, part, qpos, columns = body.kinematics, world.model.part(body), world.model.data.qpos, list(dofs)
     followed = {dof for joint in body.scene.all_joints if joint.mimic is not None for dof in joint.mimic.dofs}
-    places = world.model.qpos_indices(body)[columns]
+    places, multiples = world.model.qpos_indices(body)[columns], kinematics.multiples
     full = kinematics.values()
 
     def place(values: Floats) -> None:
         qpos[places] = values
+
+    def place_with_multiples(values: Floats) -> None:
+        qpos[places] = values
+        for column, one, index in followers:
+            qpos[index] = one.value(values[column])
 
     def place_all(values: Floats) -> None:
         full[columns] = values
@@ -82,7 +86,14 @@ def _placement(world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> C
         if part.take(kinematics):
             world.model.pose_stamp += 1
 
-    return place_all if followed & set(dofs) or (places < 0).any() else place
+    if (places < 0).any() or (multiples is None and followed & set(dofs)):
+        return place_all
+    followers = [
+        (columns.index(one.dof), one, part.qpos.start + kinematics.inner_index(one.qpos))
+        for one in multiples or ()
+        if one.dof in columns
+    ]
+    return place_with_multiples if followers else place
 
 
 def _pairs(world: CollisionWorld, body: BodyState, moved: MovedBy) -> Ints:
@@ -113,24 +124,26 @@ class _MovingTest:
     def __init__(self, world: CollisionWorld, body: BodyState, place: Callable[[Floats], None], pairs: Ints) -> None:
         self._model, self._data = world.model.model, world.model.data
         self._place, self._world = place, world
+        self._held = HeldRoots(world, body) if body.grabs else None
+        if self._held:
+            self._held.hang()
         tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
+        if self._held:
+            self._held.unhang()
         meant = pairs[tested]
         self._meant = {*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()}
         rest = pairs[~tested]
         self._rest = world.make_pairs(rest[:, 0], rest[:, 1]) if len(rest) else None
-        self._held = [held for grab in body.grabs for held in _carried(world, body, grab)]
 
     def __call__(self, values: Floats) -> bool:
         """Return whether the body collides."""
         model, data = self._model, self._data
         self._place(values)
-        mujoco.mj_kinematics(model, data)
-        if self._held:
-            for held in self._held:
-                held.follow(model, data)
+        if self._held is None:
             mujoco.mj_kinematics(model, data)
-            self._world.model.pose_stamp += 1  # else pairs without a joint between them are not looked at again
-        mujoco.mj_collision(model, data)
+            mujoco.mj_collision(model, data)
+        else:
+            self._detect_with(self._held)
         if data.ncon:
             touch = self._world.shapes.touch  # of meshes, MuJoCo takes the hulls
             for first, second in data.contact.geom.tolist():
@@ -138,38 +151,12 @@ class _MovingTest:
                     return True
         return self._rest is not None and self._world.collide(self._rest)
 
-
-class _Held(NamedTuple):
-    """A root link that is held.
-
-    Attributes:
-        root: MuJoCo's index of it.
-        carrier: MuJoCo's index of the link that holds it.
-        offset: Its position in the frame of the carrier [m], shape (3,).
-        wxyz: Its orientation there.
-    """
-
-    root: int
-    carrier: int
-    offset: Floats
-    wxyz: Floats
-
-    def follow(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Put it where the carrier is."""
-        model.body_pos[self.root] = data.xmat[self.carrier].reshape(3, 3) @ self.offset + data.xpos[self.carrier]
-        mujoco.mju_mulQuat(model.body_quat[self.root], data.xquat[self.carrier], self.wxyz)
-
-
-def _carried(world: CollisionWorld, body: BodyState, grab: GrabbedBody) -> list[_Held]:
-    """Return the root links of a held body, and of what it holds."""
-    model, data = world.model.model, world.model.data
-    carrier = int(world.model.part(body).body_ids[grab.link])
-    conjugate, found = data.xquat[carrier] * [1, -1, -1, -1], list[_Held]()
-    for one in held_with(grab.body):
-        for root in world.model.part(one).body_ids.tolist():
-            if model.body_parentid[root] == 0:
-                offset = data.xmat[carrier].reshape(3, 3).T @ (data.xpos[root] - data.xpos[carrier])
-                wxyz = np.empty(4)
-                mujoco.mju_mulQuat(wxyz, conjugate, data.xquat[root])
-                found.append(_Held(root, carrier, offset, wxyz))
-    return found
+    def _detect_with(self, held: HeldRoots) -> None:
+        """Let MuJoCo look for contacts, with what is held where its carriers are."""
+        held.hang()
+        mujoco.mj_kinematics(self._model, self._data)
+        if held.are_late:
+            mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_collision(self._model, self._data)
+        held.unhang()
+        self._world.model.pose_stamp += 1  # else pairs without a joint between them are not looked at again

@@ -54,10 +54,8 @@ class Detection:
         self._option = self._model.opt
         self._option.o_margin = _MARGIN  # only ``_OVERRIDE`` lets it count
         self._most = int(self._data.narena * _MOST_CONTACTS)
-        bodies = self._model.body_weldid
         self._bodies = self._model.geom_bodyid
-        self._welds = bodies[self._bodies]
-        self._carriers = bodies[self._model.body_parentid[self._welds]]
+        self._welds = self._model.body_weldid[self._bodies]
         self._masks = self._model.geom_contype, self._model.geom_conaffinity
 
     def are_welded(self, first: Ints, second: Ints) -> Bools:
@@ -66,8 +64,10 @@ class Detection:
 
     def finds(self, first: Ints, second: Ints) -> Bools:
         """Return for each pair of geoms whether MuJoCo's collision detection would look at it."""
-        welds, others = self._welds[first], self._welds[second]
-        hanging = (self._carriers[first] == others) | (self._carriers[second] == welds)
+        weld_ids = self._model.body_weldid
+        welds, others = weld_ids[self._bodies[first]], weld_ids[self._bodies[second]]
+        carriers = weld_ids[self._model.body_parentid]
+        hanging = (carriers[welds] == others) | (carriers[others] == welds)
         hanging &= (welds != 0) & (others != 0)
         types, affinities = self._masks
         masked = ((types[first] & affinities[second]) | (types[second] & affinities[first])) == 0

@@ -44,10 +44,8 @@ class BodyDynamics:
         self._coupling_matrix = None if constant is None else self._matrix(constant)
         columns = self._columns()
         self._are_one_to_one = columns is not None
-        self._moving, self._turning, self._forces, self._parts = (
-            Rows(shape, model.nv, columns) for shape in ((3,), (3,), (), (3,))
-        )
-        self._part_rows: list[Floats] = list(self._parts.matrix)
+        self._moving, self._turning = (Rows((3,), model.nv, columns) for _ in range(2))
+        self._forces, self._by_velocity, self._rest = (Rows((), model.nv, columns) for _ in range(3))
         self._xipos = self._data.xipos
         self._qvel, self._qacc, self._gravity = self._data.qvel, self._data.qacc, model.opt.gravity
         self._free_fall = (ZERO, np.zeros(3))  # the last gravity asked for, as given and as an array
@@ -308,12 +306,13 @@ class BodyDynamics:
         Returns:
             Torques and forces [N m or N], shape (dof,).
         """
+        forces = self._forces.matrix
         self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)
-        self._needed(self._forces.matrix)
+        self._needed(forces)
         if external:
-            self._add_external(self._forces.matrix, external)
+            self._add_external(forces, external)
         return self._of_dofs(self._forces)
 
     def _needed(self, forces: Floats) -> None:
@@ -331,23 +330,44 @@ class BodyDynamics:
         external: Mapping[int, Floats] | None = None,
     ) -> tuple[Floats, Floats, Floats]:
         """Return the parts of ``inverse``: of accelerations, of joint velocities, and of all else."""
-        by_acceleration, by_velocity, rest = self._part_rows
         self._set_gravity(gravity)
-        # Gravity and the base are in all three motions, so that differences leave what is asked for. The first is the
-        # one with velocities as they are in MuJoCo's data already.
-        for with_joints in (self._with_joints, not self._with_joints):
-            self._set_velocities(velocities, with_joints=with_joints)
-            if with_joints:
-                self._set_accelerations(accelerations)
-                self._needed(by_acceleration)
-            self._set_accelerations(None)
-            self._needed(by_velocity if with_joints else rest)
+        self._set_velocities(velocities)
+        self._set_accelerations(accelerations)
+        if self.motors or self._roots_move or self._coupling_matrix is None:
+            self._write_parts_of_all(velocities)
+        else:
+            self._write_parts_of_joints()
+        if external:
+            self._add_external(self._rest.matrix, external)
+        return self._of_dofs(self._forces), self._of_dofs(self._by_velocity), self._of_dofs(self._rest)
+
+    def _write_parts_of_joints(self) -> None:
+        """Write the parts of the forces for the motion in MuJoCo's data, where only joints without motors move.
+
+        MuJoCo leaves out accelerations if asked, and without gravity the velocities are what is left.
+        """
+        by_acceleration, by_velocity, rest = self._forces.matrix, self._by_velocity.matrix, self._rest.matrix
+        mujoco.mj_rne(self._model, self._data, 1, by_acceleration)
+        mujoco.mj_rne(self._model, self._data, 0, rest)
+        self._gravity[...] = 0.0
+        mujoco.mj_rne(self._model, self._data, 0, by_velocity)
+        by_acceleration -= rest
+        rest -= by_velocity
+
+    def _write_parts_of_all(self, velocities: Floats) -> None:
+        """Write the parts of the forces for the motion in MuJoCo's data.
+
+        Gravity and the base are in all three motions, so that differences leave what is asked for.
+        """
+        by_acceleration, by_velocity, rest = self._forces.matrix, self._by_velocity.matrix, self._rest.matrix
+        self._needed(by_acceleration)
+        self._set_accelerations(None)
+        self._needed(by_velocity)
+        self._set_velocities(velocities, with_joints=False)
+        self._set_accelerations(None)
+        self._needed(rest)
         by_acceleration -= by_velocity
         by_velocity -= rest
-        if external:
-            self._add_external(rest, external)
-        of_accelerations, of_velocities, others = self._of_dofs(self._parts)
-        return of_accelerations, of_velocities, others
 
     def _set_gravity(self, gravity: Vec3) -> None:
         if gravity is not self._free_fall[0]:
@@ -356,9 +376,10 @@ class BodyDynamics:
 
     def _add_external(self, forces: Floats, external: Mapping[int, Floats]) -> None:
         """Add forces and moments on links at their centres of mass."""
+        model, data, xipos = self._model, self._data, self._xipos
         for link, wrench in external.items():
             body_id = self._body_ids[link]
-            mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], self._xipos[body_id], body_id, forces)
+            mujoco.mj_applyFT(model, data, wrench[:3], wrench[3:], xipos[body_id], body_id, forces)
 
 
 def _turning_acceleration(velocity: Floats) -> Floats:

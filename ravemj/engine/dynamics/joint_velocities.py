@@ -6,7 +6,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.dynamics.coupling import rotation_rate
-from ravemj.engine.kinematics import BodyKinematics
+from ravemj.engine.kinematics import NO_QPOS, BodyKinematics
 from ravemj.model.scene import Joint
 
 _ONES = np.ones(3)
@@ -27,9 +27,11 @@ class JointAxes:
         slide_parent_ids: MuJoCo's index of it.
         slide_child_ids: MuJoCo's index of the child link.
         special: Those that have more than one axis, with their indices.
+        ids: MuJoCo's index of each joint; None where one has none, or has several axes.
     """
 
-    def __init__(self, joints: Sequence[Joint], body_ids: Ints) -> None:
+    def __init__(self, joints: Sequence[Joint], body_ids: Ints, ids: Ints | None = None) -> None:
+        self.ids = ids
         self.parents = np.array([joint.parent for joint in joints], dtype=int)
         self.children = np.array([joint.child for joint in joints], dtype=int)
         self.parent_ids = body_ids[self.parents]
@@ -38,6 +40,26 @@ class JointAxes:
         self.slide_parents = self.parents[self.slides]
         self.slide_parent_ids, self.slide_child_ids = self.parent_ids[self.slides], body_ids[self.children[self.slides]]
         self.special = [(index, joint) for index, joint in enumerate(joints) if len(joint.axes) > 1]
+        self._seen: tuple[Floats, Floats, Floats] | None = None
+
+    def relative(self, velocities: Floats) -> tuple[Floats, Floats]:
+        """Return how fast child links are against their parents.
+
+        Args:
+            velocities: Those of the links, shape (links, 6), in an array that is never changed: the same one is asked
+                for in one configuration after the other.
+
+        Returns:
+            Angular velocities, for sliders those of the origins, shape (joints, 3), and matrices that take the cross
+            product with the angular velocity of the parent of each slider, shape (sliders, 3, 3).
+        """
+        if self._seen is None or self._seen[0] is not velocities:
+            apart = velocities.take(self.children, 0) - velocities.take(self.parents, 0)
+            relative = apart[:, 3:].copy()
+            relative[self.slides] = apart[self.slides, :3]
+            spins = velocities[self.slide_parents, 3:]
+            self._seen = velocities, relative, cross(spins[:, None], np.eye(3)).transpose(0, 2, 1)
+        return self._seen[1:]
 
 
 class JointVelocities:
@@ -45,7 +67,10 @@ class JointVelocities:
 
     def __init__(self, kinematics: BodyKinematics) -> None:
         self._kinematics = kinematics
-        self._of_dofs = JointAxes(kinematics.body.joints, kinematics.body_ids)
+        joints, places = kinematics.body.joints, kinematics.qpos_indices
+        has_ids = len(places) == len(joints) and NO_QPOS not in places
+        ids = np.searchsorted(kinematics.model.jnt_qposadr, places) if has_ids else None
+        self._of_dofs = JointAxes(joints, kinematics.body_ids, ids)
 
     def of(self, joints: Sequence[Joint], velocities: Floats) -> list[Floats]:
         """Return the velocities of joints, active or passive, that velocities of links show.
@@ -80,17 +105,19 @@ class JointVelocities:
 
     def _of_first_axes(self, velocities: Floats, of: JointAxes) -> Floats:
         """Return the velocities of the first axes of joints, shape (joints,)."""
-        self._kinematics.place()
-        data = self._kinematics.data
-        rotations = data.xmat.take(of.parent_ids, 0).reshape(-1, 3, 3)
-        axes = np.matmul(rotations, of.directions)[:, :, 0]
-        apart = velocities.take(of.children, 0) - velocities.take(of.parents, 0)
-        rates = (axes * apart[:, 3:]).dot(_ONES)
+        kinematics, data = self._kinematics, self._kinematics.data
+        kinematics.place()
+        if of.ids is None or kinematics.displaced:
+            rotations = data.xmat.take(of.parent_ids, 0).reshape(-1, 3, 3)
+            axes = np.matmul(rotations, of.directions)[:, :, 0]
+        else:
+            axes = data.xaxis.take(of.ids, 0)
+        relative, crossings = of.relative(velocities)
         if len(slides := of.slides):
             arms = data.xpos.take(of.slide_child_ids, 0) - data.xpos.take(of.slide_parent_ids, 0)
-            moving = apart[slides, :3] - cross(velocities[of.slide_parents, 3:], arms)
-            rates[slides] = (axes[slides] * moving).dot(_ONES)
-        return rates
+            relative = relative.copy()
+            relative[slides] -= np.matmul(crossings, arms[:, :, None])[:, :, 0]
+        return (axes * relative).dot(_ONES)
 
     def _two_rates(self, joint: Joint, velocities: Floats) -> Floats:
         """Return the velocities of a joint with two axes, shape (2,)."""

@@ -1,0 +1,76 @@
+"""What a body holds follows it in the model of the world while only joint values change there."""
+
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.engine.collision.queries import held_with
+from ravemj.engine.collision.world import CollisionWorld
+from ravemj.engine.simulation import BodyState
+
+
+class HeldRoots:
+    """The root links of what a body holds: children of the world in the model, and for a while of their carriers.
+
+    Then ``mj_kinematics`` places them, and ``mj_collision`` looks at them and what is fixed to the world.
+
+    Attributes:
+        are_late: Whether one comes before its carrier, so that ``mj_kinematics`` has to run twice.
+    """
+
+    def __init__(self, world: CollisionWorld, body: BodyState) -> None:
+        """Find them, where they are now."""
+        model, data = world.model.model, world.model.data
+        self._parents, self._weld_ids = model.body_parentid, model.body_weldid
+        self._roots: list[_Root] = []
+        self._welds: list[tuple[int, int]] = []
+        for grab in body.grabs:
+            carrier = int(world.model.part(body).body_ids[grab.link])
+            inverse = np.empty(3), np.empty(4)
+            mujoco.mju_negPose(*inverse, data.xpos[carrier], data.xquat[carrier])
+            ids = [index for one in held_with(grab.body) for index in world.model.part(one).body_ids.tolist()]
+            for root in [index for index in ids if self._parents[index] == 0]:
+                place = np.empty(3), np.empty(4)
+                mujoco.mju_mulPose(*place, *inverse, data.xpos[root], data.xquat[root])
+                self._roots.append(_Root(root, carrier, model.body_pos[root], model.body_quat[root], *place))
+            fixed = [index for index in ids if self._weld_ids[index] == 0]
+            self._welds += zip(fixed, model.body_rootid[fixed].tolist(), strict=True)
+        self.are_late = any(one.index < one.carrier for one in self._roots)
+
+    def hang(self) -> None:
+        """Make them children of their carriers."""
+        for index, carrier, position, wxyz, offset, turn in self._roots:
+            self._parents[index] = carrier
+            position[...] = offset
+            wxyz[...] = turn
+        for index, root in self._welds:
+            self._weld_ids[index] = root
+
+    def unhang(self) -> None:
+        """Make them children of the world again; their poses there are for the caller to restore."""
+        for one in self._roots:
+            self._parents[one.index] = 0
+        for index, _ in self._welds:
+            self._weld_ids[index] = 0
+
+
+class _Root(NamedTuple):
+    """A root link that is held.
+
+    Attributes:
+        index: MuJoCo's index of it.
+        carrier: MuJoCo's index of the link that holds it.
+        position: Its position in its parent in the model [m], shape (3,); a view.
+        wxyz: Its orientation there; a view.
+        offset: Its position in the carrier [m], shape (3,).
+        turn: Its orientation there, wxyz.
+    """
+
+    index: int
+    carrier: int
+    position: Floats
+    wxyz: Floats
+    offset: Floats
+    turn: Floats
