@@ -158,7 +158,7 @@ def test_check_runs_all_three_though_the_first_fails(copy: Path):
     done = run(copy / "scripts/check", "ravemj/cli")
     assert done.returncode == 1
     lines = done.stdout.splitlines()
-    assert [lines[i + 1] for i, line in enumerate(lines) if line == "-m"] == ["ruff", "ruff", "pyright"]
+    assert [lines[i + 1] for i, line in enumerate(lines) if line == "-m"] == ["ruff", "ruff", "ruff", "pyright"]
     assert lines.count("ravemj/cli") == 3
 
 
