@@ -59,15 +59,6 @@ def body_and_others(
     return world.pairs(("others", body, links, without_bodies, without_links), find)
 
 
-def body_and_all(world: CollisionWorld, body: BodyState) -> Pairs:
-    """Return the pairs of ``body_and_others`` and of ``itself``."""
-
-    def find() -> tuple[Ints, Ints]:
-        return joined((pairs.first, pairs.second) for pairs in (body_and_others(world, body), itself(world, body)))
-
-    return world.pairs(("all", body), find)
-
-
 def each_other(
     world: CollisionWorld, first: BodyState | LinkOf, second: BodyState | LinkOf, links: Links = None
 ) -> Pairs:
