@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import urllib.request
+from collections.abc import Callable
 from pathlib import Path
 
 import av
@@ -22,11 +23,14 @@ SCRIPT = "import openravepy\nenv = openravepy.Environment()\nenv.Load('env.xml')
 def main() -> None:
     """Try every command that the parser knows."""
     assert Path(ravemj.__file__).is_relative_to(sys.prefix), f"{ravemj.__file__} is not in {sys.prefix}"
-    trials = (view, play, render, convert, check, diff, info, ik, run, shell, alias, doctor)
-    commands = make_parser()._actions[-1].choices  # argparse has no public way to them
-    assert {trial.__name__ for trial in trials} == set(commands or ()), "every command has a trial of its own"
-    for trial in trials:
+    for trial in trials():
         trial()
+
+
+def trials() -> list[Callable[[], None]]:
+    """Return the trial of each command that the parser knows: the function of its name."""
+    commands = make_parser()._actions[-1].choices  # argparse has no public way to them
+    return [globals()[name] for name in commands or ()]
 
 
 def printed(*words: str | Path, typed: str = "") -> str:
@@ -102,6 +106,12 @@ def ik() -> None:
     assert any(solution["valid"] for solution in solutions)
 
 
+def plan() -> None:
+    """Find a motion from hanging to upright."""
+    do("plan", "pendulum", "--to", "3,0", "-o", "plan.csv")
+    assert Path("plan.csv").read_text().startswith("time,")
+
+
 def run() -> None:
     """Run a script that imports openravepy."""
     Path("script.py").write_text(SCRIPT)
@@ -124,6 +134,11 @@ def alias() -> None:
 def doctor() -> None:
     """Say that rays draw at least."""
     assert re.search(r"^ *ray +yes", do("doctor"), re.MULTILINE)
+
+
+def completion() -> None:
+    """Print what bash runs."""
+    assert "ravemj" in do("completion", "bash")
 
 
 if __name__ == "__main__":

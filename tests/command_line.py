@@ -74,6 +74,32 @@ def ravemj_command(folder: Path, *arguments: str | Path, **variables: str) -> su
     return done
 
 
+class Served:
+    """A command that serves a page and runs on until a signal ends it.
+
+    Attributes:
+        url: The address that it prints.
+    """
+
+    def __init__(self, folder: Path, *words: str):
+        heed_interrupts()
+        command, variables = [sys.executable, "-m", "ravemj", *words], environment(folder)
+        self._process = subprocess.Popen(command, cwd=folder, env=variables, stdout=-1, stderr=-1, text=True)
+
+    def __enter__(self) -> "Served":
+        self.url = self._process.stdout.readline().strip()
+        return self
+
+    def __exit__(self, *reason: object) -> None:
+        self._process.kill()
+        self._process.communicate()
+
+    def end(self, number: int) -> tuple[int, str, str]:
+        """Send a signal; return the exit code and what else was printed."""
+        self._process.send_signal(number)
+        return self._process.wait(PATIENCE), *self._process.communicate()
+
+
 @functools.cache
 def note_on_rays() -> str:
     """What commands say where rays drew for want of OpenGL; nothing where it works, or ``MUJOCO_GL`` has chosen."""

@@ -21,6 +21,11 @@ settings.register_profile("patient", deadline=None, suppress_health_check=[Healt
 settings.load_profile("patient")
 
 
+def batches(count: int, usual: int = 1) -> list[object]:
+    """Return the numbers of the batches of a long test: the first ones always run, the others with ``-m stress``."""
+    return [pytest.param(number, marks=[] if number < usual else [pytest.mark.stress]) for number in range(count)]
+
+
 @pytest.fixture
 def models() -> Path:
     return MODELS

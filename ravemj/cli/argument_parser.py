@@ -1,4 +1,4 @@
-"""The parser behind all commands: what is wrong is said in one line, with a guess of what was meant."""
+"""The parser of all commands. It reports a wrong argument in one line, with a guess of what was meant."""
 
 import argparse
 import difflib

@@ -1,4 +1,4 @@
-"""Words of the command line as values; what makes no sense is an error that says what would."""
+"""Values of the words of a command line. Errors say which values are valid."""
 
 import argparse
 import math

@@ -31,8 +31,8 @@ class Solution(NamedTuple):
 
     Attributes:
         values: Joint values of the arm [rad or m], shape (n,).
-        branch: The name of the way to reach it.
-        trouble: What speaks against it: limits and collisions.
+        branch: The name of its branch of solutions.
+        trouble: The limits that it exceeds and the collisions that it has.
     """
 
     values: Floats
@@ -100,7 +100,7 @@ def start_values(path: str, robot: Robot) -> list[float]:
 def reached(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> list[tuple[Floats, str]]:
     """Return the joint values that reach a goal and their branches, those nearest to the present values first.
 
-    Of each angle the turn comes that is within the limits, if one is.
+    Full turns are added to angles until they are within the limits, where that is possible.
     """
     from ravemj.ik.limits import nearest_turns  # noqa: PLC0415 - slow to import
 
@@ -118,7 +118,7 @@ def reached(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> 
 
 
 def validated(arm: Manipulator, ways: Sequence[tuple[Floats, str]]) -> list[Solution]:
-    """Return solutions with what speaks against them; what the arm does not move does not count."""
+    """Return solutions with the limits and collisions that rule them out; contacts of other parts do not count."""
     robot, dofs = arm.GetRobot(), arm.GetArmIndices().tolist()
     checker, solutions = robot.GetEnv().GetCollisionChecker(), list[Solution]()
     with robot, CollisionOptionsStateSaver(checker, CollisionOptions.ActiveDOFs):
@@ -150,7 +150,7 @@ def add_ghost(robot: Robot, number: int, values: Floats, dofs: Sequence[int]) ->
 
     Args:
         robot: The robot.
-        number: Goes into the name of the copy.
+        number: A number for the name of the copy.
         values: Joint values of the copy, of some joints [rad or m].
         dofs: Their DOF indices; the other joints are where those of the robot are.
     """

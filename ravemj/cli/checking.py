@@ -13,7 +13,7 @@ from ravemj.rave import load
 Severity = Literal["error", "warning", "note"]
 
 FATAL_CODES = {"bad-number"}
-"""Findings that OpenRAVE reads over, and commands do not: nobody means the number that OpenRAVE makes of it."""
+"""Codes of findings that OpenRAVE overlooks and commands refuse: nobody means the number that OpenRAVE reads there."""
 
 
 class Finding(NamedTuple):
@@ -41,7 +41,7 @@ def check(path: str | os.PathLike[str]) -> list[Finding]:
     """Return all findings about a model file, in the order in which they are met.
 
     Args:
-        path: An OpenRAVE XML file. Nothing is raised for what is wrong with it.
+        path: An OpenRAVE XML file. Its mistakes become findings, never exceptions.
 
     Example:
         >>> from ravemj.cli.checking import check

@@ -15,6 +15,6 @@ def print_completion(options: argparse.Namespace) -> int:
 
 
 def models(prefix: str, **_: object) -> list[str]:
-    """Return how the name of a model may go on: those that come with ravemj, and files."""
+    """Return the completions of the name of a model: models that come with ravemj, and files."""
     shipped = [name for name in SHIPPED_MODELS if name.startswith(prefix)]
     return [*shipped, *FilesCompleter(("xml", "dae", "zae"))(prefix)]

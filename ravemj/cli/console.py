@@ -102,10 +102,10 @@ def progress(task: str, total: float, unit: str = "frames") -> Generator[Callabl
     Args:
         task: What is done.
         total: How much there is to do.
-        unit: Of what.
+        unit: The unit of ``total``.
 
     Yields:
-        Takes how much is done so far.
+        A function that takes how much is done so far.
     """
     if not sys.stderr.isatty():
         yield lambda done: None

@@ -49,7 +49,7 @@ def ik(options: argparse.Namespace) -> int:
 
 
 def _kind(options: argparse.Namespace) -> IkParameterizationType:
-    """Return the type of the goal: the one that is named, or what its numbers look like."""
+    """Return the type of the goal: the one that is named, else a point for three numbers and a pose for seven."""
     if options.type is not None:
         return IkParameterizationType[options.type]
     is_point = options.to is not None and len(options.to) == _POINT

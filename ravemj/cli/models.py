@@ -32,7 +32,7 @@ def loaded(file: str) -> Environment:
     """Load a file.
 
     Raises:
-        SourceError: it is missing or broken; the message is about what explains that.
+        SourceError: it is missing or broken; the message names the cause.
     """
     try:
         return load(file)

@@ -29,7 +29,7 @@ class Reloader:
             env: The environment, which was loaded from the model.
             viewer: What shows it.
             model: The file, or the name of a model that comes with ravemj.
-            watches: Whether to read it again when a file of it has changed, and not only when someone asks.
+            watches: Whether to read the model again when one of its files has changed; else only on request.
         """
         self._env, self._viewer, self._model, self._watches = env, viewer, model_file(model), watches
         self._files = env.files
@@ -118,7 +118,7 @@ def _is_error(finding: Diagnostic) -> bool:
 
 
 def _found_again(selected: Selection | None, env: Environment) -> Selection | None:
-    """Return what is called as what was selected is; None where there is no such body, link or joint any more."""
+    """Return the body, link or joint that has the name of the selected one; None if there is none any more."""
     body = None if selected is None else env.GetKinBody(selected.body.scene.name)
     if selected is None or body is None:
         return None
@@ -131,7 +131,7 @@ def _found_again(selected: Selection | None, env: Environment) -> Selection | No
 
 
 def _stamps(files: tuple[str, ...]) -> _Stamps:
-    """Return for each file when it was changed and its size; None where it is not there, as while it is being saved."""
+    """Return when each file was changed, and its size; None for a missing file, as while it is being saved."""
     stamps: _Stamps = {}
     for file in files:
         try:

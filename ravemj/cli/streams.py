@@ -1,4 +1,4 @@
-"""The standard streams of a command, which may be closed, full, or of few characters."""
+"""The standard streams of a command, which may be closed, full, or lack characters."""
 
 import codecs
 import io
@@ -15,8 +15,8 @@ _CHOSEN = {"replace", "ignore", "xmlcharrefreplace", "namereplace"}
 def prepare_streams() -> None:
     """Make the standard streams of this process ready for whatever is printed.
 
-    What the encoding of a stream does not have is written in ASCII. A standard output that is closed fails when it is
-    written to, like a full one. What cannot be told on standard error is lost.
+    Characters that the encoding of a stream lacks are written in ASCII. Writing to a closed standard output fails, as
+    to a full one. Messages that standard error does not take are lost.
     """
     codecs.register_error("ravemj", _in_ascii)
     # In this order they get the numbers 0, 1 and 2, where no other file would be safe from what C libraries print.

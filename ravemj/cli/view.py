@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ravemj.gui.viewers.web import WebViewer
 
 _LOOK = 0.1
-"""How often it is looked whether the model is to be read again, and whether the viewer is closed [s]."""
+"""Time between two checks for changed files and for a closed viewer [s]."""
 
 _ASPECT = 4 / 3
 """Width of a view divided by its height."""

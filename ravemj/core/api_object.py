@@ -15,7 +15,7 @@ class ApiObject(metaclass=_ApiType):
     """An object with a ``repr`` without an address, and a ``dir`` of the names that users call.
 
     ``dir`` and tab completion leave out names with an underscore, and those in ``_internal``, which other modules of
-    this package call. (An underscore instead would make these calls an access to private names.)
+    this package call. They have no underscore, since other modules may not call private names.
     """
 
     _internal: ClassVar[tuple[str, ...]] = ()

@@ -1,4 +1,4 @@
-"""Arguments that users hand in and that are no arrays, checked once."""
+"""Checks of arguments that are not arrays."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -15,10 +15,10 @@ Result = TypeVar("Result")
 
 
 def also_named(**names: str) -> Callable[[Callable[Arguments, Result]], Callable[Arguments, Result]]:
-    """Let arguments be given by further names, where OpenRAVE's overloads call them differently.
+    """Accept arguments under further names, which OpenRAVE's overloads use.
 
     Args:
-        names: By each further name the argument that it stands for.
+        names: The argument that each further name stands for.
     """
 
     def decorate(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
@@ -45,9 +45,9 @@ def checked_kind(thing: object, kind: type[Kind] | tuple[type[Kind], ...], name:
 
     Args:
         thing: The argument.
-        kind: The class that it should have, or several, of which it should have one.
+        kind: The class, or the classes, that it may have.
         name: What to call it in errors.
-        wanted: What to call what it should be; empty: by the class.
+        wanted: How errors call what is wanted; empty: by the class.
 
     Raises:
         ArgumentError: it is something else.

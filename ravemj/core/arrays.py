@@ -156,12 +156,12 @@ def checked_transform(transform: ArrayLike, name: str) -> Floats:
 
 
 def _is_exact(rows: Sequence[Vec3], name: str) -> bool:
-    """Return whether the rows of a rotation matrix, which may be scaled, are orthonormal but for rounding.
+    """Return whether a rotation matrix, which may be scaled, is orthonormal up to rounding.
 
-    In plain floats, which are several times faster than numpy for nine numbers.
+    It computes with plain floats, which are several times faster than numpy for nine numbers.
 
     Raises:
-        ArgumentError: they are not even so without the scale.
+        ArgumentError: it is not orthonormal even without its scale.
     """
     x, y, z = rows
     determinant = dot(x, cross(y, z))

@@ -57,9 +57,9 @@ def connected_components(count: int, edges: Iterable[Pair]) -> list[int]:
 
 
 class ShortestPaths:
-    """The shortest paths between all nodes of a graph without direction (Floyd and Warshall).
+    """The shortest paths between all nodes of an undirected graph (Floyd and Warshall).
 
-    Of several shortest paths it is the one whose greatest inner node is least, which is OpenRAVE's choice.
+    Among several shortest paths it takes the one whose largest inner node is smallest, as OpenRAVE does.
 
     Attributes:
         lengths: The number of edges on each, shape (count, count); ``count`` where there is none.
@@ -81,7 +81,7 @@ class ShortestPaths:
             np.copyto(self._edge, self._edge[node], where=shorter)
 
     def path(self, start: int, end: int) -> list[int]:
-        """Return the edges from one node to another; none where there is no path, or no need of one."""
+        """Return the edges of the path between two nodes; none if there is no path, or if the nodes are the same."""
         path: list[int] = []
         while start != end and self._edge[end, start] >= 0:
             path.append(int(self._edge[end, start]))
@@ -104,7 +104,7 @@ class ShortestPaths:
 
 
 def lies_between(edges: Sequence[Pair], edge: Pair, start: int, end: int) -> bool:
-    """Return whether an edge lies on a path between two nodes that meets no node twice.
+    """Return whether an edge lies on a simple path between two nodes, which visits no node twice.
 
     It does if no single node cuts its two ends off from these nodes (Menger).
     """

@@ -1,8 +1,8 @@
 """Files and folders that appear whole or not at all.
 
-They are written under a temporary name beside the target and renamed at the end. What fails leaves nothing behind,
-and a target that was there before stays as it was. Where a process is killed before it can tidy up, the next one that
-writes into the folder does it.
+They are written under a temporary name beside the target and renamed at the end. If writing fails, nothing
+is left behind, and an older target stays as it was. If a process is killed, the next process that writes into the
+folder removes its temporary files.
 """
 
 import os
@@ -114,7 +114,7 @@ def added_files(path: AnyPath) -> Generator[Path]:
 
 
 def _move_all(source: Path, target: Path) -> None:
-    """Move the files of a folder into another one; what fails is undone."""
+    """Move the files of a folder into another one, all or none."""
     is_new = not target.exists()
     target.mkdir(exist_ok=True)
     made: list[Path] = []
@@ -192,7 +192,7 @@ def _realm() -> str:
 
 
 def _remove_left_over(folder: Path) -> None:
-    """Remove the user's temporary files and folders of processes that have ended, as those that were killed."""
+    """Remove temporary files and folders that the user's processes left behind when they were killed."""
     if os.name != "posix":  # there is no harmless way to ask for a process
         return
     for path in folder.glob(f".ravemj-{_realm()}-*"):

@@ -1,8 +1,8 @@
 """How a command ends on Ctrl-C (SIGINT), SIGTERM and SIGHUP: with the exit code 128 + the signal's number.
 
-It ends at once, whatever it imports, loads or draws, after the functions of ``on_signal``. An exception out of nowhere,
-which is Python's way, is not safe there: C code makes other errors of it, and threads may wait for ever. It is raised
-only where a command waits for its user, in ``signals_raised``.
+It ends at once, whatever it imports, loads or draws, after the functions of ``on_signal``. Python's way, an exception
+at any place, is not safe there: C code turns it into other errors, and threads may wait for ever. Only where a command
+waits for its user, ``signals_raised`` raises one.
 
 ``ravemj/__init__.py`` imports this before all else, so that it holds from the first line on; therefore this imports
 next to nothing. Programs that import ravemj keep the handlers that they have.
@@ -13,7 +13,7 @@ import sys
 
 
 def _is_command() -> bool:
-    """Return whether this process is ``ravemj …`` or ``python -m ravemj …``, before anything of that has run."""
+    """Return whether this process is ``ravemj …`` or ``python -m ravemj …``, before any code of the command has run."""
     program = sys.argv[0] if sys.argv else ""
     if program == "-m":  # until Python has found the module to run, for which it imports the package
         return sys.orig_argv[-len(sys.argv)] in ("ravemj", "-mravemj")
@@ -58,7 +58,7 @@ def on_signal(function: Callable[[], object]) -> Generator[None]:
 
 @contextmanager
 def signals_delayed() -> Generator[None]:
-    """Have signals wait for the end of the block, in whichever thread that runs."""
+    """Delay signals until the end of the block, whichever thread runs it."""
     block = object()
     _delays.append(block)
     try:
@@ -95,7 +95,7 @@ def leave_signals_to_python() -> None:
 
 
 def message(number: int) -> str:
-    """Return what is said when a signal has ended a command."""
+    """Return the message that a command leaves when a signal has ended it."""
     return "ravemj: interrupted" if number == signal.SIGINT else f"ravemj: ended by {signal.Signals(number).name}"
 
 

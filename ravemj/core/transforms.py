@@ -139,9 +139,9 @@ _SHORTEST = 1e-290
 
 
 def wxyz_from_axis_angle(axis: Vec3, angle: float) -> Wxyz:
-    """Return the right-handed rotation by an angle [rad] about an axis of any length; no axis, no rotation.
+    """Return the right-handed rotation by an angle [rad] about an axis of any length; a zero axis means no rotation.
 
-    Quarter and half turns come out without rounding, since models are full of them.
+    Quarter and half turns are exact, since many models have them.
 
     Raises:
         OverflowError: the angle is infinite.

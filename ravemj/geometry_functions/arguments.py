@@ -1,6 +1,6 @@
 """Checks of the arguments of the geometry functions.
 
-As in OpenRAVE, what is too short is refused, and of what is too long the beginning is taken. A wrong shape is a
+As in OpenRAVE, vectors that are too short are refused, and longer ones are cut off. A wrong shape is a
 ``ValueError``, as there, whose bindings let Python's own error through (gap-03, random-api-6).
 """
 

@@ -1,10 +1,12 @@
-"""What of a tool's pose a goal of inverse kinematics asks for."""
+"""The types of goals of inverse kinematics."""
 
 from ravemj.core.enumerations import NamedInt
 
 
 class IkParameterizationType(NamedInt):
-    """What of a pose the end of an arm shall reach: the numbers hold DOF, count of values, and a unique number.
+    """Which part of a pose the tool of an arm shall reach.
+
+    Each number encodes the degrees of freedom, the count of values, and a unique number.
 
     Those that end in ``Velocity`` stand for velocities in trajectories; no goal is of such a type.
     """

@@ -50,7 +50,7 @@ def rotationMatrixFromAxisAngle(
     Args:
         axisangle: Unit axis times angle [rad], shape (3,); with ``angle``, the axis alone.
         angle: The angle [rad]; None: the length of the first argument.
-        axis: Which axis of the joint.
+        axis: The axis, by OpenRAVE's other name of the first argument.
     """
     return np.array(rows_from_wxyz(_turn(axisangle if axis is None else axis, angle)))
 
@@ -63,7 +63,7 @@ def matrixFromAxisAngle(
     Args:
         axisangle: Unit axis times angle [rad], shape (3,); with ``angle``, the axis alone.
         angle: The angle [rad]; None: the length of the first argument.
-        axis: Which axis of the joint.
+        axis: The axis, by OpenRAVE's other name of the first argument.
 
     Example:
         >>> T = matrixFromAxisAngle([0, 0, numpy.pi / 2])

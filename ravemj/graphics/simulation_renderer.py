@@ -123,7 +123,7 @@ class SimulationRenderer:
         return self._measured(form, lambda renderer, data: renderer.segment(data, camera))
 
     def _measured(self, form: Format, measure: Callable[[Renderer, mujoco.MjData], Drawn]) -> Drawn:
-        """Return what a function finds with the renderer of this thread, of the bodies as they are now."""
+        """Return what a function measures in the present state, with the renderer of this thread."""
         with self._simulation.lock:
             compiled = self._simulation.compiled()
             renderer = self._current(form)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Tool(NamedTuple):
-    """What is computed with at a manipulator.
+    """The parts of a manipulator that computations need.
 
     Attributes:
         arm: The description that it was made of.

@@ -31,9 +31,9 @@ Target = ArrayLike | IkParameterization | CollisionReport | None
 
 
 class ArmEnd(ArmPart):
-    """Links and joints beyond the arm; of a gripper the sign in which each joint closes, and the bodies that it holds.
+    """Links and joints beyond the arm; the closing direction of each joint of a gripper, and the bodies that it holds.
 
-    Collisions are tested of the links beyond the arm, also where the tool is not now, and of those before it.
+    Collisions are tested for the links beyond the arm, at any pose of the tool, and for those before it.
     """
 
     def GetChildJoints(self) -> list[Joint]:
@@ -72,13 +72,13 @@ class ArmEnd(ArmPart):
         return self._robot.GetDOFValues(self.GetGripperIndices())
 
     def GetChuckingDirection(self) -> Ints:
-        """Return for each DOF of the gripper the sign of closing: 1, 0 or -1."""
+        """Return the sign in which each DOF of the gripper closes: 1, 0 or -1."""
         return np.array(self._scene.chucking_direction, dtype=np.int_)
 
     GetClosingDirection = GetChuckingDirection
 
     def SetChuckingDirection(self, chuckingdirection: ArrayLike) -> None:
-        """Set for each DOF of the gripper the sign of closing.
+        """Set the sign in which each DOF of the gripper closes.
 
         Args:
             chuckingdirection: -1, 0 or 1 for each of the gripper's DOFs.
@@ -104,7 +104,7 @@ class ArmEnd(ArmPart):
                 self._robot.ReleaseAllGrabbedWithLink(link)
 
     def GetGripperName(self) -> str:
-        """Return the name of the ``GripperInfo`` that describes the gripper; empty where nobody says."""
+        """Return the name of the ``GripperInfo`` that describes the gripper; empty if there is none."""
         return self._scene.gripper_name
 
     def GetRestrictGraspSetNames(self) -> list[str]:

@@ -39,7 +39,7 @@ class IkBatch(NamedTuple):
     Attributes:
         solutions: Joint values [rad or m], shape (N, B, n); rows that are no solutions have any numbers.
         valid: Which rows are solutions, shape (N, B).
-        branches: A name for each of the B ways to reach a goal.
+        branches: A name for each of the B branches of solutions.
     """
 
     solutions: Floats
@@ -48,7 +48,7 @@ class IkBatch(NamedTuple):
 
 
 class ArmIk(ArmPart):
-    """Joint values that take the tool to goals, and where it is, as a goal."""
+    """Inverse kinematics: joint values that take the tool to goals, and the goal where the tool is now."""
 
     # Solvers
 
@@ -227,7 +227,7 @@ class ArmIk(ArmPart):
     # Many goals at once
 
     def ik_solver(self, iktype: IkParameterizationType = _Type.Transform6D) -> "IKSolver":
-        """Return what computes inverse kinematics of the arm; it is derived when first asked for.
+        """Return the solver of the arm, which is derived when it is first asked for.
 
         Args:
             iktype: The type of goal.

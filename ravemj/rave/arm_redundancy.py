@@ -15,7 +15,7 @@ _Type = IkParameterizationType
 
 
 class ArmRedundancy(ArmIk):
-    """What an arm with more joints than its goal needs can do meanwhile."""
+    """Motions of redundant arms, which have more joints than their goal needs."""
 
     def null_space(self, iktype: IkParameterizationType = _Type.Transform6D) -> Floats:
         """Return the joint velocities that leave the goal reached in which the tool is now.

@@ -175,7 +175,7 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
         self._remove_all()
 
     def Destroy(self) -> None:
-        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. Twice does no harm.
+        """Stop time, close the viewer, remove all bodies; nothing can be added afterwards. A second call does nothing.
 
         Example:
             >>> env = ravemj.Environment()

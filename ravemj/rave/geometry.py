@@ -22,8 +22,8 @@ from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 class Geometry(ApiObject):
     """A shape of a link; ``link.GetGeometries()`` makes it.
 
-    Getters of sizes answer for boxes and round shapes of any type from the same three numbers, as in OpenRAVE: half
-    extents; radius; radius and height. For others, getters of what the type does not have raise.
+    Boxes and round shapes share the same three numbers, as in OpenRAVE (half extents; radius; radius and height), so
+    each getter of sizes answers for all of them. For other types, getters of sizes that the type lacks raise.
 
     Setters act at once, also in viewers and in pictures.
 

@@ -8,7 +8,7 @@ from ravemj.model.drawing import Drawings, Primitives
 
 
 class GraphHandle(Handle):
-    """A drawing; it vanishes with the last reference to its handle, so keep the handle for as long as it should show.
+    """The handle of a drawing, which vanishes with the last reference to it: keep it while the drawing should show.
 
     Example:
         >>> handle = env.plot3([0, 0, 1], 8)

@@ -219,7 +219,7 @@ class Validator:
             self._reject(np.zeros(0), int(IkReturnAction.RejectJointLimits), "beyond the limits")
 
     def failure(self) -> IkReturn:
-        """Return the answer where no solution is good."""
+        """Return the answer for a goal without a good solution."""
         answer = IkReturn(self.action | _REJECT)
         failures = self._query.failures
         answer.name_failures([] if failures is None else list(range(self._started, len(failures))))

@@ -1,4 +1,4 @@
-"""How sensors come to their data: what engine and renderers measure at a place, in OpenRAVE's classes."""
+"""The data of sensors: what the engine and renderers measure at a place, in OpenRAVE's classes."""
 
 import math
 from collections.abc import Callable, Mapping

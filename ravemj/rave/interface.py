@@ -1,4 +1,4 @@
-"""What all objects of an environment have in common."""
+"""The base class of all objects of an environment."""
 
 from collections.abc import Callable, Mapping
 from copy import copy

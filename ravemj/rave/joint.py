@@ -181,7 +181,7 @@ class Joint(JointLimits):
         return self._scene.mimic is not None and axis <= 0
 
     def GetMimicEquation(self, axis: int = 0, itype: int = 0, format: str = "") -> str:  # OpenRAVE's names
-        """Return how the joint follows others, as the file has it.
+        """Return the equation by which the joint follows others, as the file has it.
 
         Args:
             axis: Which axis; only the first one can follow.

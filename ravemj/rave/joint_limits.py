@@ -76,7 +76,7 @@ class JointLimits(Member):
         self._set_axes("SetJerkLimits", max_jerk=maxlimits)
 
     def GetHardVelocityLimits(self) -> Floats:
-        """Return the velocities that planners never exceed [rad/s or m/s], shape (axes,); 0 where nobody says."""
+        """Return the velocities that planners never exceed [rad/s or m/s], shape (axes,); 0 if none is set."""
         return self._of_axes("hard_max_velocity")
 
     def SetHardVelocityLimits(self, maxlimits: ArrayLike) -> None:
@@ -88,7 +88,7 @@ class JointLimits(Member):
         self._set_axes("SetHardVelocityLimits", hard_max_velocity=maxlimits)
 
     def GetHardAccelerationLimits(self) -> Floats:
-        """Return the accelerations never to exceed [rad/s^2 or m/s^2], shape (axes,); 0 where nobody says."""
+        """Return the accelerations never to exceed [rad/s^2 or m/s^2], shape (axes,); 0 if none is set."""
         return self._of_axes("hard_max_acceleration")
 
     def SetHardAccelerationLimits(self, maxlimits: ArrayLike) -> None:
@@ -100,7 +100,7 @@ class JointLimits(Member):
         self._set_axes("SetHardAccelerationLimits", hard_max_acceleration=maxlimits)
 
     def GetHardJerkLimits(self) -> Floats:
-        """Return the jerks that planners never exceed [rad/s^3 or m/s^3], shape (axes,); 0 where nobody says."""
+        """Return the jerks that planners never exceed [rad/s^3 or m/s^3], shape (axes,); 0 if none is set."""
         return self._of_axes("hard_max_jerk")
 
     def SetHardJerkLimits(self, maxlimits: ArrayLike) -> None:
@@ -148,7 +148,7 @@ class JointLimits(Member):
         return self._scene.axes[axis].max_jerk
 
     def GetHardMaxVel(self, axis: int = 0) -> float:
-        """Return the velocity that planners never exceed [rad/s or m/s]; 0 where nobody says.
+        """Return the velocity that planners never exceed [rad/s or m/s]; 0 if none is set.
 
         Args:
             axis: Which axis of the joint.
@@ -156,7 +156,7 @@ class JointLimits(Member):
         return self._scene.axes[axis].hard_max_velocity
 
     def GetHardMaxAccel(self, axis: int = 0) -> float:
-        """Return the acceleration that planners never exceed [rad/s^2 or m/s^2]; 0 where nobody says.
+        """Return the acceleration that planners never exceed [rad/s^2 or m/s^2]; 0 if none is set.
 
         Args:
             axis: Which axis of the joint.
@@ -164,7 +164,7 @@ class JointLimits(Member):
         return self._scene.axes[axis].hard_max_acceleration
 
     def GetHardMaxJerk(self, axis: int = 0) -> float:
-        """Return the jerk that planners never exceed [rad/s^3 or m/s^3]; 0 where nobody says.
+        """Return the jerk that planners never exceed [rad/s^3 or m/s^3]; 0 if none is set.
 
         Args:
             axis: Which axis of the joint.

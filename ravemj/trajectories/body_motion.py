@@ -1,4 +1,4 @@
-"""Bodies that follow a motion or a trajectory: what viewers play."""
+"""Bodies that follow a motion or a trajectory, as viewers play them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -41,7 +41,7 @@ class BodyMotion:
 
     @classmethod
     def of_waypoints(cls, simulation: Simulation, waypoints: Waypoints) -> "BodyMotion":
-        """Let all bodies that a trajectory names follow its joint values and poses.
+        """Let all bodies of a trajectory follow its joint values and poses.
 
         Args:
             simulation: Where the bodies are.

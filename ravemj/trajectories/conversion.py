@@ -42,9 +42,8 @@ def converted(
         source: The data, a configuration in each row.
         target_groups: The layout that is wanted.
         target: What to write into a copy of, as many rows.
-        find_body: Finds the bodies whose present state stands for what the data has not; None: that stays as it is in
-            ``target``.
-        find_missing: The same for groups of which the data has nothing at all; None: ``find_body``.
+        find_body: Finds the bodies whose present state replaces what the data lacks; None: ``target`` keeps it.
+        find_missing: The same for groups that the data lacks entirely; None: ``find_body``.
     """
     result = target.copy()
     for group in target_groups:
@@ -89,7 +88,7 @@ def convert_group(
 
 
 def _labels(group: Group) -> Sequence[int | str]:
-    """Return what tells the values of a group apart."""
+    """Return labels that identify the values of a group."""
     if group.kind in JOINTS or group.kind in {"joint_torques", "grab"}:
         return joint_indices(group)
     if group.kind == "outputSignals":
@@ -121,7 +120,7 @@ def _positions(group: Group) -> list[DOFAffine]:
 
 
 def _present(group: Group, find_body: FindBody) -> Floats:
-    """Return the values that a group has at present; zeros, and no displacement, where that is not known."""
+    """Return the present values of a group; where they are unknown, zeros and the identity pose."""
     body = None if group.body is None else find_body(group.body)
     if group.kind == AFFINE[0]:
         parts, axis = affine_parts(group)

@@ -87,18 +87,18 @@ def ik_group(groups: Sequence[Group], robot: str, manipulator: str, order: int) 
 
 
 def time_column(groups: Sequence[Group]) -> int | None:
-    """Return where the time since the last waypoint is."""
+    """Return the column of the time since the last waypoint."""
     return next((group.offset for group in groups if group.name == DELTATIME), None)
 
 
 def used_bodies(groups: Sequence[Group]) -> list[str]:
-    """Return the names of the bodies whose values there are."""
+    """Return the names of the bodies that have values in the data."""
     of_bodies = [group for group in groups if group.kind.startswith(("joint_", "affine_", "grabbody"))]
     return list(dict.fromkeys(group.body for group in of_bodies if group.body is not None))
 
 
 def used_indices(groups: Sequence[Group], body: str) -> tuple[list[int], list[int]]:
-    """Return the DOF indices of a body that there are, and where the first value of each is."""
+    """Return the DOF indices of a body in the data, and the column of the first value of each."""
     places: dict[int, int] = {}
     for group in groups:
         if group.kind.startswith("joint_") and group.body == body and len(group.name.split()) > 2:

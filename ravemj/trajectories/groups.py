@@ -71,12 +71,12 @@ def shifted_name(name: str, steps: int) -> str | None:
 
 
 def is_position(group: Group) -> bool:
-    """Return whether the values are positions, and no derivatives or times."""
+    """Return whether the values are positions, not derivatives or times."""
     return any(group.kind == family[0] for family in FAMILIES)
 
 
 def derived_interpolation(interpolation: str, order: int) -> str:
-    """Return how the derivative of values changes that are interpolated so; empty where that is not known."""
+    """Return the interpolation of the derivative of values with this interpolation; empty if it is unknown."""
     if interpolation not in INTERPOLATIONS:
         return ""
     return INTERPOLATIONS[max(0, INTERPOLATIONS.index(interpolation) - order)]

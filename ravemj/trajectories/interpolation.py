@@ -1,6 +1,7 @@
 """Values between two waypoints: polynomials through their values and derivatives.
 
-What is known at the two ends determines a polynomial of odd degree (Hermite's). Those of even degree are the integrals
+Values and derivatives at the two ends determine a polynomial of odd degree (Hermite's). Those of even degree are the
+integrals
 of one for the derivatives, from the first waypoint on; they reach the second one if its values fit. A curve is an array
 of coefficients of the powers of the part of the way, from 0 at the first waypoint to 1 at the second, lowest first.
 """
@@ -93,7 +94,7 @@ def _through(known: Sequence[Ends], duration: float) -> Floats:
 
 @cache
 def _hermite(count: int) -> Floats:
-    """Return what makes coefficients from values and scaled derivatives at 0, then at 1."""
+    """Return the matrix that maps values and scaled derivatives at 0, then at 1, to coefficients."""
     conditions = np.zeros((2 * count, 2 * count))
     for order in range(count):
         conditions[order, order] = math.factorial(order)

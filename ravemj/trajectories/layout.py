@@ -43,7 +43,7 @@ def packed(groups: Sequence[Group]) -> list[Group]:
 
 
 def flaw(groups: Sequence[Group]) -> str | None:
-    """Return what is wrong with a layout: values in two groups or in none, empty groups, names used twice; or None."""
+    """Return the mistake in a layout (values in two groups or in none, empty groups, repeated names), or None."""
     end = 0
     for group in sorted(groups, key=lambda group: group.offset):
         if group.dof <= 0:
@@ -84,7 +84,7 @@ def find_compatible(groups: Sequence[Group], name: str, exact: bool = False) -> 
 
 
 def _likeness(words: list[str], wanted: list[str]) -> int:
-    """Return how much two names have in common; 0: they are of different kinds or bodies."""
+    """Return how similar two names are; 0: they are of different kinds or bodies."""
     if words[:1] != wanted[:1]:
         return 0
     if len(words) < 2 or len(wanted) < 2:
@@ -196,7 +196,7 @@ def merged(groups: Sequence[Group], others: Sequence[Group]) -> list[Group]:
 
 
 def _widened(group: Group, other: Group) -> bool:
-    """Add the values of another group to a group in place; return whether they are of the same thing."""
+    """Add the values of another group to a group in place; return whether both describe the same quantity."""
     of_joints = group.kind in JOINTS or group.kind in {"joint_torques", "grab"}
     if group.kind == "outputSignals":
         present = group.name.split()[1:]

@@ -51,10 +51,10 @@ class Waypoints:
         """Insert configurations, or write over those that are there.
 
         Args:
-            index: Before which waypoint.
+            index: The waypoint before which they go.
             numbers: The configurations, one behind the other.
-            groups: Their layout. What it lacks is, in waypoints that are there, left as it is; in new ones it is the
-                present value of other joints of the same group, else zero.
+            groups: Their layout. Where it lacks values, older waypoints keep theirs; new ones get the
+                present values of other joints of the same group, else zeros.
             overwrite: Whether to write over waypoints; what reaches beyond the last one is appended.
             find_body: Finds the bodies of the groups.
 
@@ -137,7 +137,7 @@ class Waypoints:
             find_body: Finds the bodies of the groups, whose circular joints go the short way round.
 
         Raises:
-            ArgumentError: there is no time in the layout, no waypoint, or not what the interpolation needs.
+            ArgumentError: the layout has no time, there is no waypoint, or the interpolation lacks derivatives.
         """
         column = self._timed()
         if not time >= -ROUNDING:
@@ -179,7 +179,7 @@ class Waypoints:
         return self.data[index - 1, group.columns], self.data[index, group.columns]
 
     def _unwound(self, group: Group, ends: Ends, find_body: FindBody) -> Ends:
-        """Return the ends with circular joints at the turn of the second that is next to the first."""
+        """Return both ends, with circular joints of the second moved by full turns next to the first."""
         first, second = ends
         body = find_body(group.body or "") if group.kind == JOINTS[0] else None
         if body is None:

@@ -19,10 +19,10 @@ _HEAD = """\
 
 `scripts/docs` makes this page from the reader's own tables; a test compares.
 
-*read*: the tag has OpenRAVE's effect. *left out*: OpenRAVE knows the tag, and ravemj ignores it for the reason given, with
-a warning (`ignored-tag`, `ignored-attribute`). OpenRAVE does not know what is in no table; ravemj skips it, with a warning
-(`unknown-tag`, `unknown-attribute`). The letter case of tags and attributes does not matter. `ravemj check FILE` lists
-what applies to a file.
+*read*: the tag has OpenRAVE's effect. *left out*: OpenRAVE knows the tag, and ravemj ignores it for the reason given,
+with a warning (`ignored-tag`, `ignored-attribute`). OpenRAVE does not know what is in no table; ravemj skips it, with
+a warning (`unknown-tag`, `unknown-attribute`). The letter case of tags and attributes does not matter.
+`ravemj check FILE` lists what applies to a file.
 """
 
 

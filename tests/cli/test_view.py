@@ -3,39 +3,18 @@
 import json
 import signal
 import socket
-import subprocess
-import sys
 import urllib.request
 
 import pytest
-from command_line import environment, heed_interrupts, ravemj_command
+from command_line import Served, ravemj_command
 from screens import NEEDS_A_SCREEN, Started
 from waiting import PATIENCE
 from websockets.frames import CloseCode
 from websockets.sync.client import connect
 
 
-class Page:
-    """The command with a page, under way."""
-
-    def __init__(self, folder, *options):
-        heed_interrupts()
-        command = [sys.executable, "-m", "ravemj", "view", *options, "env.xml"]
-        variables = environment(folder)
-        self.process = subprocess.Popen(command, cwd=folder, env=variables, stdout=-1, stderr=-1, text=True)
-
-    def __enter__(self):
-        self.url = self.process.stdout.readline().strip()
-        return self
-
-    def __exit__(self, *reason):
-        self.process.kill()
-        self.process.communicate()
-
-    def end(self, number):
-        """Send a signal; return the exit code and what else was printed."""
-        self.process.send_signal(number)
-        return self.process.wait(PATIENCE), *self.process.communicate()
+def served(folder, *options) -> Served:
+    return Served(folder, "view", *options, "env.xml")
 
 
 @pytest.mark.parametrize(
@@ -48,7 +27,7 @@ class Page:
     ids=["web", "without a display", "terminated"],
 )
 def test_one_address_is_printed_and_a_signal_ends_it(folder, options, number, end):
-    with Page(folder, *options) as page:
+    with served(folder, *options) as page:
         with urllib.request.urlopen(page.url, timeout=PATIENCE) as answer:
             assert b"<canvas" in answer.read()
         address = page.url.replace("http", "ws", 1) + "socket"
@@ -67,12 +46,12 @@ def test_the_port_is_the_one_that_is_asked_for_or_an_error(folder):
         assert (refused.returncode, refused.stdout) == (1, "")
         assert refused.stderr.startswith(f"ravemj: error: no page can be served at port {port} of 127.0.0.1: address")
         assert refused.stderr.count("\n") == 1
-    with Page(folder, "--web", "--port", port) as page:
+    with served(folder, "--web", "--port", port) as page:
         assert page.url.startswith(f"http://127.0.0.1:{port}/")
 
 
 def test_another_host_is_served_with_a_warning(folder):
-    with Page(folder, "--web", "--host", "0.0.0.0") as page:
+    with served(folder, "--web", "--host", "0.0.0.0") as page:
         port = page.url.split(":")[2].split("/")[0]
         token = page.url.split("/")[3]
         request = urllib.request.Request(f"http://127.0.0.1:{port}/{token}/", headers={"Host": "robots.example"})

@@ -2,17 +2,17 @@
 
 import re
 import shlex
+import signal
 import sys
 from pathlib import Path
 
 import pytest
 import tutorial
-from command_line import ravemj_command
+from command_line import Served, ravemj_command
 from conftest import REPOSITORY
 
 import ravemj
 import ravemj.compat.openravepy
-from ravemj.cli.parser import make_parser
 
 PAGES = [REPOSITORY / "README.md", REPOSITORY / "CONTRIBUTING.md", *sorted((REPOSITORY / "docs").rglob("*.md"))]
 
@@ -37,33 +37,53 @@ def test_python_runs(page, tmp_path, monkeypatch, capsys):
         assert (tmp_path / "swing.mp4").stat().st_size > 1000
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_commands_are_understood(page):
-    for block in [*blocks(page, "sh"), *blocks(page, "console")]:
-        for line in block.splitlines():
-            words = shlex.split(re.split(r" [|>] ", line)[0], comments=True)
-            if words[:1] == ["ravemj"]:
-                make_parser().parse_args(words[1:])
-            elif words and words[0].startswith("./"):
-                assert (REPOSITORY / words[0]).is_file()
+EXECUTED_BY = {
+    "./scripts/play": ".ci/bare",
+    "./scripts/test": ".ci/bare",
+    "pip install .": ".ci/wheel",
+    "ravemj alias --install": "tests/compat/test_sessions.py",  # which has an environment to spoil
+    "ravemj alias --remove": "tests/compat/test_sessions.py",
+    "python docs/examples/hanoi.py": "tests/project/test_examples.py",
+    "python docs/examples/hanoi.py towers.mp4": "tests/project/test_examples.py",
+}
+"""What executes the commands that are not executed here."""
+
+SEVERAL = {"README.md", "cli.md"}
+"""Pages whose commands do not need one another."""
 
 
-def commands_that_end():
-    """Return the commands of README and of the help, but for those that wait for a user or change this Python."""
-    shown = [*blocks(REPOSITORY / "README.md", "sh"), *blocks(REPOSITORY / "docs" / "cli.md", "console")]
-    commands = [shlex.split(re.split(r" [|>] ", line)[0], comments=True) for line in "".join(shown).splitlines()]
-    ending = (words for words in commands if words[0] == "ravemj" and words[1] not in {"view", "shell", "alias"})
-    return [words[1:] for words in ending if "-i" not in words]
+def commands(page: Path) -> list[str]:
+    """Return the commands of a page, without comments and what shells do with their output."""
+    lines = "".join(blocks(page, "(?:console|sh|bash)")).splitlines()
+    return [re.split(r" +#| [|>] ", line)[0].strip() for line in lines if line.strip()]
 
 
-@pytest.mark.parametrize("words", commands_that_end(), ids=" ".join)
-def test_commands_work(tmp_path, words):
+def sequences() -> list[object]:
+    """Return the commands to execute, those of one folder together, none of them twice."""
+    found: dict[tuple[str, ...], str] = {}
+    for page in PAGES:
+        shown = [] if page.stem in tutorial.PAGES else [line for line in commands(page) if line not in EXECUTED_BY]
+        for lines in [[line] for line in shown] if page.name in SEVERAL else [shown]:
+            found.setdefault(tuple(line for line in lines if (line,) not in found), page.name)
+    found.pop((), None)
+    slow = [pytest.mark.stress]  # pictures of all robots, which scripts/docs draws, too
+    return [
+        pytest.param(lines, id=" & ".join(lines), marks=slow if page == "gallery.md" else [])
+        for lines, page in found.items()
+    ]
+
+
+@pytest.mark.parametrize("lines", sequences())
+def test_commands_work(tmp_path, lines):
     (tmp_path / "models").symlink_to(REPOSITORY / "models")
+    for folder in ("docs/pictures", "docs/motions", "robots"):
+        (tmp_path / folder).mkdir(parents=True)
     for name, source in {
         "env.xml": "env.xml",
         "double-pendulum.xml": "double-pendulum.xml",
         "arm.xml": "puma560.xml",
         "robot.xml": "panda.xml",
+        "robots/arm.robot.xml": "panda.xml",
         "old.robot.xml": "panda.xml",
         "new.robot.xml": "panda.xml",
         "camera.json": "tutorial-camera.json",
@@ -72,9 +92,25 @@ def test_commands_work(tmp_path, words):
     (tmp_path / "swing.csv").write_text("time,Joint0,Joint1\n0,0,0\n0.2,1,-1\n")
     for script in ("myscript.py", "oldscript.py"):
         (tmp_path / script).write_text("import openravepy\nassert openravepy.Environment().Load('env.xml')\n")
-    expanded = [path for word in words for path in ([*tmp_path.glob(word)] if "*" in word else [word])]  # as shells do
-    done = ravemj_command(tmp_path, *expanded)
-    assert (done.returncode, done.stderr) == (0, "")
+    for line in lines:
+        program, *words = shlex.split(line)
+        assert program == "ravemj"
+        if words[0] == "view":
+            with Served(tmp_path, *words) as page:
+                assert page.end(signal.SIGINT) == (0, "", "")
+            continue
+        expanded = [
+            path for word in words for path in ([*tmp_path.glob(word)] if "*" in word else [word])
+        ]  # as shells do
+        done = ravemj_command(tmp_path, *expanded)
+        assert (done.returncode, done.stderr) == (0, ""), line
+
+
+@pytest.mark.parametrize(("command", "place"), EXECUTED_BY.items())
+def test_the_others_are_executed_elsewhere(command, place):
+    words = {"hanoi.py": "examples", "pip": "pip"}
+    text = (REPOSITORY / place).read_text()
+    assert next((word for part, word in words.items() if part in command), command.split()[-1].strip("./")) in text
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -56,31 +56,33 @@ def taught(name: str) -> str:
     return inspect.getdoc(thing) or ""
 
 
-def test_there_is_much_to_teach():
-    assert len(MEMBERS) > 700
-
-
-@pytest.mark.parametrize("name", MEMBERS)
-def test_docstrings_explain_arguments_and_answers(name):
-    member = MEMBERS[name]
+def unexplained(member: object) -> list[str]:
+    """Return what the docstring of a function leaves open; ruff checks its form."""
     doc = inspect.getdoc(member) or ""
-    summary = doc.partition("\n")[0]
-    assert summary.endswith((".", ":")), f"has no summary: {summary!r}"
-    assert len(summary) > 10
-    if isinstance(member, property):
-        return
     signature = inspect.signature(member)
-    for argument in signature.parameters.values():
-        if argument.name not in {"self", "cls"} and argument.kind not in {
-            argument.VAR_KEYWORD,
-            argument.VAR_POSITIONAL,
-        }:
-            assert re.search(rf"\b{argument.name}\b", doc), f"does not explain {argument.name}"
+    variadic = {inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL}
+    arguments = {name for name, argument in signature.parameters.items() if argument.kind not in variadic}
+    found = [name for name in sorted(arguments - {"self", "cls"}) if not re.search(rf"\b{name}\b", doc)]
     answer = str(signature.return_annotation)
-    if answer not in {"None", str(inspect.Signature.empty)}:
-        assert re.search(r"Returns?:|\breturns?\b", doc, re.IGNORECASE), "does not say what it returns"
-    if "ndarray" in answer and "float" in answer and "dict" not in answer:
-        assert re.search(SHAPED, doc), "does not say the shape of what it returns"
+    if answer not in {"None", str(inspect.Signature.empty)} and not re.search(r"\breturns?\b", doc, re.IGNORECASE):
+        found.append("what it returns")
+    if "ndarray" in answer and "float" in answer and "dict" not in answer and not re.search(SHAPED, doc):
+        found.append("the shape of what it returns")
+    return found
+
+
+def test_docstrings_explain_arguments_and_answers():
+    assert len(MEMBERS) > 700
+    functions = {name: member for name, member in MEMBERS.items() if not isinstance(member, property)}
+    open_ends = {name: unexplained(member) for name, member in functions.items()}
+    assert not {name: what for name, what in open_ends.items() if what}
+
+
+def test_a_docstring_that_leaves_something_open_is_found():
+    def move(distance: float) -> np.ndarray[int, np.dtype[np.float64]]:
+        """Move on."""
+
+    assert unexplained(move) == ["distance", "what it returns", "the shape of what it returns"]
 
 
 @pytest.fixture

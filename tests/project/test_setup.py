@@ -2,6 +2,7 @@
 
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -153,13 +154,13 @@ def test_test_runs_pytest_at_the_root(copy: Path, given: list[str], passed: list
     assert done.stdout.splitlines() == [str(copy), "-m", "pytest", *passed]
 
 
-def test_check_runs_all_three_though_the_first_fails(copy: Path):
+def test_check_runs_all_though_the_first_fails(copy: Path):
     make_program(copy / ".venv" / "bin" / "python", status=3)
     done = run(copy / "scripts/check", "ravemj/cli")
     assert done.returncode == 1
     lines = done.stdout.splitlines()
-    assert [lines[i + 1] for i, line in enumerate(lines) if line == "-m"] == ["ruff", "ruff", "pyright"]
-    assert lines.count("ravemj/cli") == 3
+    assert [lines[i + 1] for i, line in enumerate(lines) if line == "-m"] == ["ruff", "ruff", "ruff", "pyright"]
+    assert lines.count("ravemj/cli") == 4
 
 
 def test_exit_status_is_passed_on(copy: Path):
@@ -205,6 +206,11 @@ def test_what_drives_a_browser_is_installed_where_there_is_one(copy: Path, tmp_p
         make_program(programs / "chromium")
     done = run(copy / "scripts/test", PATH=str(programs), TMPDIR="/nowhere")
     assert (done.returncode, "cannot make a temporary folder" in done.stderr) == (int(there), there)
+
+
+def test_ci_tries_every_command_of_a_wheel():
+    program = runpy.run_path(str(REPOSITORY / ".ci" / "commands.py"))
+    assert {trial.__name__ for trial in program["trials"]()} >= {"play", "plan", "completion"}
 
 
 def test_all_takes_every_extra():

@@ -48,6 +48,7 @@ def pictures_are_those_of_the_page(name: str, folder: Path) -> None:
         assert np.abs(drawn - kept).mean() < limit, f"{picture} looks different now: run scripts/docs"
 
 
+@pytest.mark.stress
 @pytest.mark.filterwarnings("ignore")  # Jupyter's own
 def test_the_first_tutorial_runs_in_a_notebook(folder):
     blocks = tutorial.outputs(tutorial.notebook(PAGES["tutorial"]), folder)

@@ -17,7 +17,7 @@ import types
 from pathlib import Path
 
 import pytest
-from conftest import DATA, REPOSITORY
+from conftest import DATA, REPOSITORY, batches
 from waiting import PATIENCE
 
 INPUTS = DATA / "random"
@@ -28,7 +28,7 @@ MISTAKES = {
     r"GetLinkAccelerations(\[\])+$": "OpenRAVE leaves out what accelerates followers",
 }
 """Places where numbers of scripts may differ, and why; the same are left out of the API scripts."""
-PARTS = 4
+PARTS = 12
 """One part of each kind runs by default, all of them with ``-m stress``."""
 
 
@@ -76,10 +76,8 @@ def _program() -> types.ModuleType:
 ENVIRONMENT = {"PYTHONPATH": str(REPOSITORY), "PYTHONWARNINGS": "ignore"}
 
 
-@pytest.mark.parametrize(
-    ("kind", "part"),
-    [pytest.param(kind, part, marks=[pytest.mark.stress] if part else []) for kind in KINDS for part in range(PARTS)],
-)
+@pytest.mark.parametrize("part", batches(PARTS))
+@pytest.mark.parametrize("kind", KINDS)
 def test_only_those_on_the_list_differ(kind, part, tmp_path):
     names, found = differing(kind, (part,), tmp_path)
     reasons = listed()

@@ -1,4 +1,4 @@
-"""Does EGL work here? Asked without a trace: a failing libEGL is unloaded again.
+"""A check whether EGL works here. It leaves no trace: a libEGL that fails is unloaded.
 
 MuJoCo takes its OpenGL functions from the first platform library that it finds in the process. A libEGL that
 was loaded and does not work would therefore keep OSMesa from working too, and PyOpenGL, which mujoco.egl uses,

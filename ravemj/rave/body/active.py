@@ -48,7 +48,7 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
     """What ``SetAffineRotationQuatLimits`` took."""
 
     def SetActiveDOFs(self, dofindices: ArrayLike, affine: int = 0, rotationaxis: ArrayLike | None = None) -> None:
-        """Choose the DOFs that ``SetActiveDOFValues``, trajectories and planners are about.
+        """Choose the DOFs that ``SetActiveDOFValues``, trajectories and planners use.
 
         Args:
             dofindices: Joint DOFs, in the order in which their values will be given.
@@ -168,7 +168,7 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
             return np.concatenate([joints, self._affine_motion().rates(self._state.link_velocities()[0])])
 
     def SetActiveDOFVelocities(self, velocities: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits) -> None:
-        """Set the velocities of the active values; what is not active keeps its own.
+        """Set the velocities of the active values; the other DOFs keep theirs.
 
         Args:
             velocities: Those of the joints [rad/s or m/s], then those of the base's active parts.
@@ -230,7 +230,7 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         return affine_numbers(self.affine_kinds, self.active_choice.affine, self.active_choice.axis, name)
 
     def GetActiveConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
-        """Return what the active values are: the layout of the waypoints of trajectories for them.
+        """Return the layout of the active values, as trajectories of them have it.
 
         Args:
             interpolation: How they change between waypoints, for instance ``linear``.

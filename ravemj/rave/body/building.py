@@ -23,7 +23,7 @@ from ravemj.rave.trimesh import TriMesh, checked_mesh
 
 
 class Building(Structure):
-    """Makes the body anew; it must not be in an environment meanwhile."""
+    """Methods that make the body anew, while it is in no environment."""
 
     _internal = ("extracted",)
 
@@ -194,9 +194,9 @@ class Building(Structure):
             return UpdateFromInfoResult.Success
 
     def SetZeroConfiguration(self) -> None:
-        """Call the present configuration zero: all joint values become 0, and nothing moves.
+        """Make the present configuration the zero configuration: all joint values become 0, and nothing moves.
 
-        Limits keep their numbers, and so mean other places than before, as in OpenRAVE.
+        Limits keep their numbers, so they stand for other poses than before, as in OpenRAVE.
         """
         with self._simulation.lock:
             self._state.rezero()

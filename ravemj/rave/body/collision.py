@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 
 class BodyCollision(Structure, Interface):
-    """Collision of the body with itself, what takes part in it, how much room the body needs, and groups of shapes.
+    """Self-collision, enabled links, adjacent links, bounding boxes, and groups of shapes.
 
-    A group is a set of shapes, one for each link, that can stand for its own; see ``link.SetGroupGeometries``.
+    A group is a named set of shapes for each link, which can replace the link's own; see ``link.SetGroupGeometries``.
     """
 
     AdjacentOptions = AdjacentOptions

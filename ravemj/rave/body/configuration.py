@@ -30,8 +30,8 @@ _UNLIMITED = int(CheckLimitsAction.Nothing)  # looking up a member of an enum ta
 class Configuration(Limits):
     """Joint values, the poses of the body and its links, both as one vector with its specification, and velocities.
 
-    By velocities nothing moves, but accelerations and inverse dynamics depend on them. What is kept are the velocities
-    of the links; those of the DOFs are read off them, as in OpenRAVE. So set joint values first, then velocities.
+    Velocities move nothing, but accelerations and inverse dynamics depend on them. The body keeps the velocities of its
+    links and computes those of the DOFs from them, as OpenRAVE does. So set joint values first, then velocities.
     """
 
     def GetDOFValues(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
@@ -65,7 +65,7 @@ class Configuration(Limits):
     ) -> None:
         """Set joint values and place all links by them: forward kinematics.
 
-        It happens at once, without dynamics; viewers show it.
+        The body moves at once, without dynamics, and viewers show it.
 
         Args:
             values: Joint values [rad, for sliders m], as many as there are DOFs, or as there are indices. NaN leaves
@@ -153,7 +153,7 @@ class Configuration(Limits):
     def SetTransformWithDOFValues(
         self, transform: ArrayLike, values: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits
     ) -> None:
-        """Set the pose of the first link and the joint values in one go.
+        """Set the pose of the first link and the joint values at once.
 
         Args:
             transform: ``T_world_link0``, as ``SetTransform`` takes it.

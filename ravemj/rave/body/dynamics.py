@@ -16,9 +16,9 @@ from ravemj.rave.body.base import BodyPart
 class Dynamics(BodyPart):
     """Jacobians, Hessians, accelerations and inverse dynamics.
 
-    What starts with ``batch_`` takes arrays of joint values and leaves the body's own state as it is. Memory beside the
-    result stays small however many configurations there are. Where the result itself is too large, hand in parts of the
-    joint values, or an ``out`` that lies on disk (``numpy.memmap``).
+    Methods that start with ``batch_`` take arrays of joint values and leave the state of the body as it is. Besides the
+    result they need little memory, for any number of configurations. If the result itself is too large, hand in parts
+    of the joint values, or an ``out`` that lies on disk (``numpy.memmap``).
     """
 
     def GetCenterOfMass(self) -> Floats:
@@ -144,10 +144,10 @@ class Dynamics(BodyPart):
     def GetLinkAccelerations(
         self, dofaccelerations: "ArrayLike | None", externalaccelerations: "Mapping[int, ArrayLike] | None" = None
     ) -> Floats:
-        """Return how the links accelerate, at the present values and velocities. Gravity is not in it.
+        """Return the accelerations of the links at the present values and velocities, without gravity.
 
-        A link that no joint places goes on turning as it does: its origin accelerates by ``w x v``. Where OpenRAVE
-        errs, about joints that follow others, this is right.
+        A link that no joint places keeps its angular velocity: its origin accelerates by ``w x v``. OpenRAVE errs
+        about joints that follow others; ravemj does not.
 
         Args:
             dofaccelerations: Accelerations of the DOFs [rad/s^2, for sliders m/s^2], shape (dof,); further numbers do
@@ -192,12 +192,13 @@ class Dynamics(BodyPart):
         externalforcetorque: "Mapping[int, ArrayLike] | None" = None,
         returncomponents: bool = False,
     ) -> Floats | tuple[Floats, Floats, Floats]:
-        """Return the joint torques that accelerate the body as wanted.
+        """Return the joint torques that give the body the wanted accelerations.
 
-        At the present values and velocities, that of the base included, and against the environment's gravity; the
-        inertia of rotors and the friction of motors count. OpenRAVE
-        divides the forces of sliders by 2 pi, leaves out part of what joints carry that others follow, and refuses
-        spherical joints; this is right about all of them.
+        The torques are those at the present values and velocities, the base's included, and against the environment's
+        gravity; they include the inertia of rotors and the friction of motors.
+
+        OpenRAVE divides the forces of sliders by 2 pi, leaves out part of the load of joints that others follow, and
+        refuses spherical joints; ravemj computes all of them correctly.
 
         Args:
             dofaccelerations: Accelerations [rad/s^2, for sliders m/s^2], shape (dof,); further numbers do not count.
@@ -257,7 +258,7 @@ class Dynamics(BodyPart):
     def batch_link_transforms(self, values: ArrayLike, out: Floats | None = None) -> Floats:
         """Return the poses of all links for many joint values, several times faster than a loop.
 
-        Joint limits are not looked at, except that joints that follow others stop at theirs.
+        Joint limits do not count, except that joints that follow others stop at theirs.
 
         Args:
             values: Joint values [rad, for sliders m], shape (N, dof).

@@ -93,7 +93,7 @@ class Limits(BodyPart):
         self._set_axes("SetDOFJerkLimits", {"max_jerk": limits})
 
     def GetDOFHardVelocityLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the velocities that planners never exceed [rad/s or m/s], shape (dof,); 0 where nobody says.
+        """Return the velocities that planners never exceed [rad/s or m/s], shape (dof,); 0 if none is set.
 
         Args:
             indices: Which DOFs, in which order; left out: all.
@@ -109,7 +109,7 @@ class Limits(BodyPart):
         self._set_axes("SetDOFHardVelocityLimits", {"hard_max_velocity": limits})
 
     def GetDOFHardAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the accelerations that planners never exceed [rad/s^2 or m/s^2], shape (dof,); 0 where nobody says.
+        """Return the accelerations that planners never exceed [rad/s^2 or m/s^2], shape (dof,); 0 if none is set.
 
         Args:
             indices: Which DOFs, in which order; left out: all.
@@ -125,7 +125,7 @@ class Limits(BodyPart):
         self._set_axes("SetDOFHardAccelerationLimits", {"hard_max_acceleration": limits})
 
     def GetDOFHardJerkLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the jerks that planners never exceed [rad/s^3 or m/s^3], shape (dof,); 0 where nobody says.
+        """Return the jerks that planners never exceed [rad/s^3 or m/s^3], shape (dof,); 0 if none is set.
 
         Args:
             indices: Which DOFs, in which order; left out: all.

@@ -1,4 +1,4 @@
-"""State savers: change a body, and have it back as it was."""
+"""State savers, which bring a body back to its earlier state."""
 
 from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
@@ -74,7 +74,7 @@ class StateSaver(ApiObject):
         return self._body
 
     def Restore(self, body: "KinBody | None" = None) -> None:
-        """Bring the state back, as often as wanted.
+        """Restore the state; this can be done several times.
 
         Args:
             body: Another body of the same structure that should get the state; None: the body itself.
@@ -88,7 +88,7 @@ class StateSaver(ApiObject):
                 restore(target)
 
     def Release(self) -> None:
-        """Forget the state: nothing is restored any more."""
+        """Forget the state: the saver restores nothing any more."""
         self._restorers = []
 
     Close = Release

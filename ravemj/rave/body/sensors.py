@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Sensors(BodyPart):
-    """What a robot carries to measure with."""
+    """The sensors that a robot carries."""
 
     _devices: dict[str, Sensor]
     """The devices that were asked for, by the names of their places."""

@@ -308,7 +308,7 @@ class Structure(BodyPart):
         return self._id
 
     def SetId(self, id: str) -> None:  # OpenRAVE's name of the argument
-        """Give the body an id, for scripts that know bodies by one; names stay what tells bodies apart.
+        """Give the body an id, for scripts that use ids; the environment still identifies bodies by name.
 
         Args:
             id: The text.

@@ -76,7 +76,7 @@ class Controller(Interface):
         return int(self._moves_base)
 
     def IsDone(self) -> bool:
-        """Return whether the controller has done what it was told.
+        """Return whether the controller has finished its last command.
 
         Example:
             >>> while not robot.GetController().IsDone():
@@ -89,7 +89,7 @@ class Controller(Interface):
         return self._time
 
     def Reset(self, options: int = 0) -> None:
-        """Forget what the controller was told; the robot stays where it is, and the controller is done.
+        """Drop the present command; the robot stays where it is, and the controller is done.
 
         Args:
             options: OpenRAVE has no meaning for them.

@@ -66,7 +66,7 @@ class IdealController(Controller):
     _logs = False
 
     def Reset(self, options: int = 0) -> None:
-        """Forget what the controller was told; the robot stays where it is, and the controller is done.
+        """Drop the present command; the robot stays where it is, and the controller is done.
 
         Args:
             options: OpenRAVE has no meaning for them.
@@ -84,7 +84,7 @@ class IdealController(Controller):
         self._is_done = False
 
     def SetPath(self, traj: Trajectory | None) -> bool:
-        """Play a trajectory in simulation time, in place of what the controller was told before.
+        """Play a trajectory in simulation time, in place of the command before.
 
         The trajectory is copied. Joints that it does not name stay; one for another robot moves nothing.
 

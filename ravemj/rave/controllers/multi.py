@@ -90,7 +90,7 @@ class MultiController(Controller):
             part.controller.Reset(options)
 
     def SetPath(self, traj: Trajectory | None) -> bool:
-        """Play a trajectory: each controller its part of it; return True. See ``IdealController.SetPath``.
+        """Let each controller play its part of a trajectory; return True. See ``IdealController.SetPath``.
 
         Args:
             traj: The trajectory; it is copied.
@@ -111,7 +111,7 @@ class MultiController(Controller):
             part.controller.SimulationStep(timestep)
 
     def IsDone(self) -> bool:
-        """Return whether all controllers have done what they were told."""
+        """Return whether all controllers have finished their last command."""
         return all(part.controller.IsDone() for part in self._parts)
 
     def GetTime(self) -> float:

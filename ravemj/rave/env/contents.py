@@ -185,7 +185,7 @@ class Contents(EnvironmentPart):
     def Remove(self, interface: object) -> bool:
         """Take a body or robot out of the environment.
 
-        It stays usable as a body that is not added, and can be added again. What it held, and what held it, let go.
+        The body stays usable outside of an environment, and can be added again. All grabs by it and of it end.
 
         Args:
             interface: A body, a robot, a module, a sensor or a viewer.
@@ -374,7 +374,7 @@ class Contents(EnvironmentPart):
     GetLoadedProblems = GetModules
 
     def RegisterBodyCallback(self, callback: BodyCallback) -> BodyCallbackHandle:
-        """Have a function called when bodies come and go.
+        """Register a function that is called when bodies are added and removed.
 
         Args:
             callback: Takes the body, and 1 when it was added or 0 when it was removed.

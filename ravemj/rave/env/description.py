@@ -173,7 +173,7 @@ class Description(Simulating):
     def UpdateFromInfo(
         self, info: EnvironmentBaseInfo, updateMode: int = UpdateFromInfoMode.Exact
     ) -> tuple[list[KinBody], list[KinBody], list[KinBody]]:
-        """Become what an info describes: bodies are added, changed and removed.
+        """Change the environment into what an info describes: add, change and remove bodies.
 
         Args:
             info: The description.

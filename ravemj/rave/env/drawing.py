@@ -19,7 +19,7 @@ _LABEL_POINT = 4.0
 
 
 class Drawing(EnvironmentPart):
-    """Draws what is no body: points, lines, arrows, boxes, planes and triangles.
+    """Drawings beside the bodies: points, lines, arrows, boxes, planes and triangles.
 
     Colours are red, green and blue from 0 to 1, and alpha if there is a fourth number; where nothing is given they are
     OpenRAVE's pink (1, 0.5, 0.5). Without a viewer all calls check their arguments and return None, as in OpenRAVE;
