@@ -34,6 +34,7 @@ class End(Enum):
     time = "the time was used up"
     interrupted = "a callback interrupted"
     no_goal = "there is no goal"
+    stuck = "no step came nearer"
 
 
 @dataclass

@@ -6,6 +6,8 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
+from ravemj.geometry_functions.ik_types import IkParameterizationType
+from ravemj.geometry_functions.rotations import InterpolateQuatSlerp
 from ravemj.trajectories.conversion import FindBody, converted, nobody
 from ravemj.trajectories.extraction import time_column
 from ravemj.trajectories.groups import (
@@ -15,9 +17,20 @@ from ravemj.trajectories.groups import (
     JOINTS,
     Group,
     derived_interpolation,
+    ik_type,
     joint_indices,
 )
-from ravemj.trajectories.interpolation import DERIVATIVES, HELD, ROUNDING, Ends, curve, differentiated, held, value
+from ravemj.trajectories.interpolation import (
+    DERIVATIVES,
+    HELD,
+    ROUNDING,
+    Ends,
+    between,
+    curve,
+    differentiated,
+    held,
+    value,
+)
 from ravemj.trajectories.layout import copied, count, equal, find_shifted
 
 _ORDER = (
@@ -169,6 +182,8 @@ class Waypoints:
         for group in self.groups:
             if group.interpolation in HELD:
                 values = held(group.interpolation, time / duration, self._ends(group, index))
+            elif group.kind == IK[0] and group.interpolation == "linear":
+                values = _goal_between(ik_type(group), self._ends(group, index), time / duration)
             else:
                 way = self._curve(group, group.interpolation, index, duration, find_body)
                 values = value(way, time / duration)
@@ -192,7 +207,8 @@ class Waypoints:
     def _curve(self, group: Group, interpolation: str, index: int, duration: float, find_body: FindBody) -> Floats:
         """Return how a group changes on the way to a waypoint, by its derivatives, or as the derivative of another."""
         if group.kind == IK[0]:
-            raise UnsupportedError(f"sampling of '{group.name}'", "inverse kinematics (IK)")
+            what = f"'{interpolation}' interpolation of goals of inverse kinematics"
+            raise UnsupportedError(f"sampling of '{group.name}'", what)
         if interpolation not in DERIVATIVES:
             raise ArgumentError(f"group '{group.name}': there is no interpolation '{interpolation}'")
         derivatives = [self._ends(derivative, index) for derivative in self._derivatives(group, interpolation)]
@@ -218,3 +234,11 @@ class Waypoints:
                 break
             found.append(derivative)
         return found
+
+
+def _goal_between(kind: int, ends: Ends, part: float) -> Floats:
+    """Return a goal of inverse kinematics on the way to another; rotations turn the short way."""
+    values = between(ends, part)
+    if kind in {IkParameterizationType.Transform6D, IkParameterizationType.Rotation3D}:
+        values[:4] = InterpolateQuatSlerp(ends[0][:4], ends[1][:4], part)
+    return values

@@ -421,6 +421,27 @@ def test_execution_begins_with_the_next_step(env, robot):
     assert robot.GetController().IsDone()
 
 
+@pytest.mark.parametrize("turning", [ravemj.DOFAffine.RotationAxis, ravemj.DOFAffine.RotationQuat])
+def test_a_base_moves_with_its_joints_round_what_is_in_the_way(env, robot, turning):
+    affine = ravemj.DOFAffine.X | ravemj.DOFAffine.Y | turning
+    robot.SetActiveDOFs([0, 1], affine, [0, 0, 1])
+    robot.SetAffineTranslationLimits([-2, -2, -2], [2, 2, 2])
+    goal = robot.GetActiveDOFValues() + np.eye(len(robot.GetActiveDOFValues()))[2] * 1.3
+    helper = ravemj.interfaces.BaseManipulation(robot)
+    trajectory = helper.MoveActiveJoints(goal=goal, execute=False, outputtrajobj=True)
+    assert robot.GetTransform() == pytest.approx(np.eye(4))
+    spec = robot.GetActiveConfigurationSpecification()
+    post = env.GetKinBody("post")
+    most = 0.0
+    for time_s in np.linspace(0, trajectory.GetDuration(), 80):
+        robot.SetActiveDOFValues(trajectory.Sample(time_s, spec))
+        assert not env.CheckCollision(robot, post)
+        most = max(most, abs(robot.GetTransform()[1, 3]))
+    assert most > 0.05  # straight through the post is no way
+    assert robot.GetActiveDOFValues() == pytest.approx(goal)
+    assert robot.GetTransform()[:3, 3] == pytest.approx([1.3, 0, 0])
+
+
 def test_a_touching_start_is_jittered_and_left(env, robot):
     robot.SetDOFValues([0, 0.64])
     assert env.CheckCollision(robot)

@@ -135,9 +135,19 @@ def test_interpolations_that_are_not_there():
     trajectory = trajectory_of(spec_of(("joint_values arm 0", 1, "spline"), ("deltatime", 1)), [[0, 0], [1, 1]])
     with pytest.raises(ArgumentError, match="no interpolation 'spline'"):
         trajectory.Sample(0.5)
-    ik = trajectory_of(spec_of(("ikparam_values 1728053249", 7, "linear"), ("deltatime", 1)), [[0] * 8, [1] * 8])
-    with pytest.raises(NotImplementedError, match="IK"):
+    ik = trajectory_of(spec_of(("ikparam_values 1728053249", 7, "cubic"), ("deltatime", 1)), [[0] * 8, [1] * 8])
+    with pytest.raises(NotImplementedError, match="'cubic' interpolation of goals"):
         ik.Sample(0.5)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_goals_between_waypoints_turn_evenly_the_short_way(sign):
+    turned = sign * np.array([np.cos(0.5), 0, 0, np.sin(0.5)])  # one radian about z
+    rows = [[1, 0, 0, 0, 0, 0, 0, 0], [*turned, 1, 2, 3, 1]]
+    trajectory = trajectory_of(spec_of(("ikparam_values 1728053249", 7, "linear"), ("deltatime", 1)), rows)
+    sample = trajectory.Sample(0.25)
+    assert np.abs(sample[:4]) == pytest.approx([np.cos(0.125), 0, 0, np.sin(0.125)])
+    assert sample[4:7] == pytest.approx([0.25, 0.5, 0.75])
 
 
 def test_velocities_of_other_interpolations_are_no_derivatives():

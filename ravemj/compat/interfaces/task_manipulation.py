@@ -1,25 +1,33 @@
-"""Motions of fingers."""
+"""Motions of fingers, and of arms to grasps."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
+from collections.abc import Mapping, Sequence
 from types import TracebackType
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ravemj.compat.interfaces.helper import Helper, given
+from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules import task_module
+from ravemj.rave.modules.grasp_planning import GraspQuery
+from ravemj.rave.modules.task_manipulation import ToolConstraint
 from ravemj.rave.robot import Robot
+from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
 
 Answer = tuple[Floats | None, Trajectory | str | None]
+GraspAnswer = tuple[list[IkParameterization], int, float, Trajectory | str | None]
 
 
 class TaskManipulation(Helper):
-    """Opens and closes the gripper of the active manipulator.
+    """Opens and closes the gripper of the active manipulator, and moves its arm to grasps.
 
     Each method gives the robot's controller the motion, and returns before it is over; ``execute=False`` leaves the
     robot alone. It returns where the motion leads (with ``outputfinal=True``) and the motion (with
@@ -164,42 +172,118 @@ class TaskManipulation(Helper):
 
     def GraspPlanning(
         self,
-        graspindices: object = None,
-        grasps: object = None,
-        target: object = None,
+        graspindices: Mapping[str, int] | None = None,
+        grasps: ArrayLike | None = None,
+        target: KinBody | None = None,
         approachoffset: float = 0,
-        destposes: object = None,
-        seedgrasps: object = None,
-        seeddests: object = None,
-        seedik: object = None,
-        maxiter: object = None,
-        randomgrasps: object = None,
-        randomdests: object = None,
-        execute: object = None,
-        outputtraj: object = None,
-        grasptranslationstepmult: object = None,
-        graspfinestep: object = None,
-        outputtrajobj: object = None,
-        gmodel: object = None,
+        destposes: Sequence[ArrayLike] | None = None,
+        seedgrasps: int | None = None,
+        seeddests: int | None = None,
+        seedik: int | None = None,
+        maxiter: int | None = None,
+        randomgrasps: bool | None = None,
+        randomdests: bool | None = None,
+        execute: bool | None = None,
+        outputtraj: bool | None = None,
+        grasptranslationstepmult: float | None = None,
+        graspfinestep: float | None = None,
+        outputtrajobj: bool | None = None,
+        gmodel: Any = None,  # noqa: ANN401 - any object with a list of grasps
         paddedgeometryinfo: object = None,
-        steplength: object = None,
+        steplength: float | None = None,
         releasegil: bool = False,
-    ) -> None:
-        """Refuse to plan a grasp."""
-        raise UnsupportedError("interfaces.TaskManipulation.GraspPlanning", "planning of grasps")
+    ) -> GraspAnswer:
+        """Move the arm to one of given grasps, so that the hand can go straight on to it.
+
+        The gripper goes to the preshape of the grasp. Grasps count that the arm reaches without collisions, from where
+        the hand gets on to the target in a straight line, and from where it can take the target to one of
+        ``destposes``.
+
+        Args:
+            graspindices: The first column of what a grasp has: ``igrasptrans``, the pose of the tool in the target, 12
+                numbers by columns (``grasptrans_nocol`` counts more); ``igraspdir``, in the target, or
+                ``imanipulatordirection``, in the tool: where the hand comes from, None: the tool's direction;
+                ``igrasppreshape``, values of the gripper.
+            grasps: The grasps, shape (n, m).
+            target: What is grasped.
+            approachoffset: How far before the grasp the motion ends [m].
+            destposes: Poses for the target, 4x4 or 7 numbers each.
+            seedgrasps: How many grasps are goals of one plan; None: 20.
+            seeddests: How many poses are looked for, for each grasp; None: 5.
+            seedik: How many configurations of a grasp are goals; None: all.
+            maxiter: Iterations of the planner; None: 4000.
+            randomgrasps: Whether grasps are tried in a random order; None: they are.
+            randomdests: Whether poses are; None: they are.
+            execute: False leaves the robot alone.
+            outputtraj: Whether to return the motion's text.
+            grasptranslationstepmult: Not used.
+            graspfinestep: Not used.
+            outputtrajobj: Whether to return the motion.
+            gmodel: Has ``graspindices``, ``grasps`` and ``target``, for those that are not given.
+            paddedgeometryinfo: Not possible here.
+            steplength: Not used.
+            releasegil: Not used.
+
+        Returns:
+            Goals of the hand, as ``IkParameterization``, with which the target is at one of ``destposes``; the number
+            of the grasp; how long the planner took [s]; and the motion, None if it was not asked for.
+
+        Raises:
+            PlanningError: no grasp can be reached; its text says why.
+            ArgumentError: there are no grasps with poses, or the target is held.
+
+        Example:
+            >>> goals, index, seconds, trajectory = taskmanip.GraspPlanning(
+            ...     graspindices={"igrasptrans": 0}, grasps=grasps, target=box, approachoffset=0.05)
+        """
+        del grasptranslationstepmult, graspfinestep, steplength, releasegil
+        if paddedgeometryinfo is not None:
+            raise UnsupportedError("GraspPlanning with paddedgeometryinfo", "padding of models")
+        rows = np.atleast_2d(np.asarray(gmodel.grasps if grasps is None and gmodel else grasps, dtype=float))
+        body = checked_kind(target or getattr(gmodel, "target", None), KinBody, "GraspPlanning: target")
+        columns = graspindices or getattr(gmodel, "graspindices", {})
+        options = given(seed_grasps=seedgrasps, seed_places=seeddests, seed_ik=seedik, iterations=maxiter)
+        options |= given(random_grasps=randomgrasps, random_places=randomdests)
+        places = [checked_transform(one, "destposes") for one in (() if destposes is None else destposes)]
+        plan = self._task.plan_grasp(GraspQuery(body, rows, columns, approachoffset, places, **options))
+        return plan.goals, plan.number, plan.seconds, self._done(plan.traj, execute, outputtraj, outputtrajobj)
 
     def EvaluateConstraints(
         self,
-        freedoms: object,
-        configs: object,
-        targetframematrix: object = None,
-        targetframepose: object = None,
-        errorthresh: object = None,
-    ) -> None:
-        """Refuse to project configurations onto constraints of the tool."""
-        raise UnsupportedError(
-            "interfaces.TaskManipulation.EvaluateConstraints", "planning with constraints of the tool"
-        )
+        freedoms: ArrayLike,
+        configs: Sequence[ArrayLike],
+        targetframematrix: ArrayLike | None = None,
+        targetframepose: ArrayLike | None = None,
+        errorthresh: float | None = None,
+    ) -> tuple[NDArray[np.int_], Floats]:
+        """Project configurations onto a constraint of the tool.
+
+        The constraint is about ``T_task_world @ T_world_tool``, which should have no rotation and no translation along
+        some axes: with the inverse of the tool's present pose as frame, the tool keeps its place along these axes.
+
+        Args:
+            freedoms: For the rotations about x, y, z and the ways along them, 1 where the constraint holds and 0 where
+                the tool is free, shape (6,).
+            configs: Active values, those of the arm, shape (n, dof).
+            targetframematrix: ``T_task_world``, the frame whose axes count; None: the world.
+            targetframepose: The same as 7 numbers.
+            errorthresh: The error [m and rad] up to which the constraint counts as kept; None: 0.001.
+
+        Returns:
+            After how many steps each configuration keeps it, -1 for those that do not get there, shape (n,); and the
+            configurations then, shape (n, dof).
+
+        Raises:
+            ArgumentError: the active DOFs are not the joints of the arm.
+        """
+        frame = targetframematrix if targetframematrix is not None else targetframepose
+        T_task_world = np.eye(4) if frame is None else checked_transform(frame, "targetframematrix")
+        counted = checked_vector(freedoms, 6, "freedoms")
+        dof = self.robot.GetActiveDOF()
+        rows = [checked_vector(one, dof, "configs") for one in configs]
+        constraint = ToolConstraint(T_task_world, np.eye(4), counted, 1e-3 if errorthresh is None else errorthresh)
+        steps, found = self._task.evaluate_constraints(constraint, rows)
+        return np.array(steps, dtype=int), np.array(found).reshape(-1, dof)
 
     def SwitchModels(
         self,

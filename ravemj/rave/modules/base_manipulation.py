@@ -177,7 +177,7 @@ class BaseManipulation(Manipulation):
                 pose = T_world_tool.copy()
                 pose[:3, 3] += direction / length * (step * number)
                 is_free = number * step <= ignored
-                row = self._next(manip, pose, rows[-1], check=not is_free, jumps=number == 0)
+                row = self.next_solution(manip, pose, rows[-1], check=not is_free, jumps=number == 0)
                 if row is None:
                     break
                 if number == 0:
@@ -191,7 +191,9 @@ class BaseManipulation(Manipulation):
     def _arm_groups(self, manip: Manipulator) -> Any:  # noqa: ANN401 - groups
         return manip.GetArmConfigurationSpecification().GetGroups()
 
-    def _next(self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool, jumps: bool) -> Floats | None:
+    def next_solution(
+        self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool, jumps: bool
+    ) -> Floats | None:
         """Return the solution next to joint values, or None where there is none nearby without collisions."""
         self.robot.SetDOFValues(before, manip.GetArmIndices())
         options = IkFilterOptions.CheckEnvCollisions if check else IkFilterOptions.IgnoreSelfCollisions

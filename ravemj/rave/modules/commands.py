@@ -7,10 +7,12 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.geometry_functions import matrixFromPose
 from ravemj.rave.module import Command
 from ravemj.rave.modules.base_manipulation import HAND_SEARCH, BaseManipulation, SearchOptions
+from ravemj.rave.modules.grasp_planning import GraspQuery
 from ravemj.rave.modules.motions import Manipulation
-from ravemj.rave.modules.task_manipulation import TaskManipulation
+from ravemj.rave.modules.task_manipulation import TaskManipulation, ToolConstraint
 from ravemj.rave.modules.tokens import Reader, Tokens, flag, read_options, switch, text
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.specification import IkParameterization
@@ -163,6 +165,8 @@ class TaskCommands(_Commands[TaskManipulation]):
             "ReleaseFingers": self.release_fingers,
             "UnchuckFingers": self.release_fingers,
             "ReleaseActive": self.release_active,
+            "GraspPlanning": self.grasp_planning,
+            "EvaluateConstraints": self.evaluate_constraints,
             "SetRobot": self.set_robot,
         }
 
@@ -184,6 +188,40 @@ class TaskCommands(_Commands[TaskManipulation]):
         readers |= dict.fromkeys(("finestep", "translationstepmult"), Tokens.number)
         options = read_options(arguments, readers)
         return self._answer(self._manipulation.release_active(options.get("movingdir", np.zeros(dof))), options)
+
+    def grasp_planning(self, arguments: str) -> str:
+        """Moves the arm to one of given grasps."""
+        options = read_options(arguments, {**_GRASPS, **_OUTPUT})
+        target = self._manipulation.env.GetKinBody(options.get("target", ""))
+        if target is None:
+            raise PlanningError(f"there is no body '{options.get('target', '')}'")
+        indices = {name: options[name] for name in GRASP_COLUMNS if name in options}
+        places = [*options.get("posedests", ()), *options.get("matdests", ())]
+        named = {_QUERY[name]: value for name, value in options.items() if name in _QUERY}
+        plan = self._manipulation.plan_grasp(
+            GraspQuery(target, options.get("grasps", np.zeros((0, 0))), indices, places=places, **named)
+        )
+        goals = "".join(f"{goal} " for goal in plan.goals)
+        before = f"{len(plan.goals)} {goals}{plan.number} {plan.seconds!r} "
+        return reply(self._manipulation, plan.traj, options, before)
+
+    def evaluate_constraints(self, arguments: str) -> str:
+        """Projects configurations onto a constraint of the tool; tells after how many steps each is on it."""
+        dof = self._manipulation.robot.GetActiveDOF()
+        configurations: list[Floats] = []
+        readers: dict[str, Reader] = {name: Tokens.matrix for name in ("constraintmatrix", "constrainttaskmatrix")}
+        readers |= dict.fromkeys(("constraintpose", "constrainttaskpose"), _pose)
+        readers |= {"constraintfreedoms": lambda tokens: tokens.numbers(6), "constrainterrorthresh": Tokens.number}
+        readers |= {"config": lambda tokens: configurations.append(tokens.numbers(dof))}
+        options = read_options(arguments, readers)
+        frame, point = (
+            options.get(f"{name}matrix", options.get(f"{name}pose", np.eye(4)))
+            for name in ("constraint", "constrainttask")
+        )
+        freedoms, threshold = options.get("constraintfreedoms", np.ones(6)), options.get("constrainterrorthresh", 1e-3)
+        constraint = ToolConstraint(frame, point, freedoms, threshold)
+        steps, rows = self._manipulation.evaluate_constraints(constraint, configurations)
+        return " ".join(map(str, steps)) + " " + "".join(_numbers(row) for row in rows)
 
     def _options(self, arguments: str) -> dict[str, Any]:
         manip = self._manipulation.robot.GetActiveManipulator()
@@ -216,6 +254,19 @@ def _goals(dof: int) -> dict[str, Reader]:
     return {"goal": lambda tokens: [tokens.numbers(dof)], "goals": lambda tokens: tokens.rows(dof)}
 
 
+def _pose(tokens: Tokens) -> Floats:
+    return matrixFromPose(tokens.numbers(7))
+
+
+def _poses(tokens: Tokens) -> list[Floats]:
+    return [_pose(tokens) for _ in range(tokens.integer())]
+
+
+def _table(tokens: Tokens) -> Floats:
+    rows, width = tokens.integer(), tokens.integer()
+    return tokens.numbers(rows * width).reshape(rows, width)
+
+
 def _matrices(tokens: Tokens) -> list[Floats]:
     return [tokens.matrix() for _ in range(tokens.integer())]
 
@@ -227,3 +278,29 @@ def _hand(tokens: Tokens) -> tuple[Floats, list[int]]:
 
 def _numbers(values: Floats) -> str:
     return " ".join(repr(value) for value in values.tolist()) + " "
+
+
+GRASP_COLUMNS = (
+    *("igrasptrans", "grasptrans_nocol", "igraspdir", "imanipulatordirection", "igrasppreshape"),
+    *("igrasppos", "igrasproll", "igraspstandoff"),
+)
+"""Names of columns in a list of grasps; the last three are for programs that close the hand, and have no effect."""
+
+_QUERY = {
+    "approachoffset": "offset",
+    "seedgrasps": "seed_grasps",
+    "seeddests": "seed_places",
+    "seedik": "seed_ik",
+    "maxiter": "iterations",
+    "randomgrasps": "random_grasps",
+    "randomdests": "random_places",
+}
+"""Arguments of ``GraspPlanning``, and what they are in a ``GraspQuery``."""
+
+_GRASPS: Mapping[str, Reader] = {
+    **dict.fromkeys(GRASP_COLUMNS, Tokens.integer),
+    **dict.fromkeys(("seedgrasps", "seeddests", "seedik", "maxiter"), Tokens.integer),
+    **dict.fromkeys(("randomgrasps", "randomdests"), flag),
+    **dict.fromkeys(("approachoffset", "grasptranslationstepmult", "graspfinestep", "steplength"), Tokens.number),
+    **{"grasps": _table, "target": text, "posedests": _poses, "matdests": _matrices},
+}

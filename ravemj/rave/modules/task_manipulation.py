@@ -1,17 +1,26 @@
-"""Motions of fingers: the module ``TaskManipulation``."""
+"""Motions of fingers, and of arms to grasps: the module ``TaskManipulation``."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
+from ravemj.planning.projection import project
 from ravemj.rave.kinbody import KinBody
+from ravemj.rave.modules.base_manipulation import BaseManipulation
+from ravemj.rave.modules.grasp_planning import GraspPlan, GraspQuery, plan_grasp
 from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.planning.bodies import Bodies
+from ravemj.rave.planning.hand import hand_of
+from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from ravemj.rave.environment import Environment
 
 _STEP = 0.01
 """How far joints move between two tests [rad or m]."""
@@ -20,8 +29,68 @@ _CLOSE = 1e-6
 """How near [rad or m] to a contact joints stop."""
 
 
+_PROJECTION_STEPS = 40
+"""OpenRAVE's, for the projection of a configuration onto a constraint."""
+
+
+class ToolConstraint(NamedTuple):
+    """A constraint of the tool: ``T_task_world @ T_world_tool @ T_tool_point`` does not turn or move along some axes.
+
+    Attributes:
+        T_task_world: The frame whose axes count.
+        T_tool_point: The point of the tool that is constrained.
+        freedoms: 1 holds, 0 leaves free: rotations about x, y, z, and ways along them, shape (6,).
+        threshold: The error [m and rad] up to which it counts as kept.
+    """
+
+    T_task_world: Floats
+    T_tool_point: Floats
+    freedoms: Floats
+    threshold: float
+
+
 class TaskManipulation(Manipulation):
-    """Opens and closes grippers."""
+    """Opens and closes grippers, and moves arms to grasps."""
+
+    def __init__(self, env: "Environment") -> None:
+        super().__init__(env)
+        self._base = BaseManipulation(env)
+
+    def plan_grasp(self, query: GraspQuery) -> GraspPlan:
+        """Return a motion of the arm of the active manipulator to one of several grasps.
+
+        Args:
+            query: The grasps.
+
+        Raises:
+            PlanningError: none of them can be reached.
+        """
+        self._base.choose(self.robot.GetName())
+        self._base.planner = self.planner
+        return plan_grasp(self._base, query)
+
+    def evaluate_constraints(
+        self, constraint: ToolConstraint, configurations: Sequence[Floats]
+    ) -> tuple[list[int], list[Floats]]:
+        """Return after how many steps configurations of the arm keep a constraint (-1: never), and what they are then.
+
+        Args:
+            constraint: The constraint.
+            configurations: Active values, which should be those of the arm.
+
+        Raises:
+            ArgumentError: the active DOFs are not the joints of the arm.
+        """
+        params = PlannerParameters()
+        params.SetRobotActiveJoints(self.robot)
+        values = params.resolved()
+        hand = hand_of(values)
+        error = hand.to_constraint(constraint.T_task_world, constraint.T_tool_point, constraint.freedoms)
+        with hand.bodies.kept():
+            found = [
+                project(one, error, values.space(), constraint.threshold, _PROJECTION_STEPS) for one in configurations
+            ]
+        return [steps for steps, _ in found], [row for _, row in found]
 
     def close_fingers(
         self, directions: Floats | None = None, offsets: Floats | None = None, step: float = _STEP

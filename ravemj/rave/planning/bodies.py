@@ -12,13 +12,14 @@ from ravemj.engine.collision.moving import moving_test
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
 from ravemj.geometry_functions.affine import DOFAffine, affine_values, pose_with_values
+from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.planning.space import Coordinates, Space
 from ravemj.rave.body.affine import affine_numbers, default_kinds
 from ravemj.rave.collision import CollisionChecker
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.robot import Robot
 from ravemj.trajectories.extraction import rotation_columns
-from ravemj.trajectories.groups import AFFINE, JOINTS, Group, affine_parts, joint_indices
+from ravemj.trajectories.groups import AFFINE, IK, JOINTS, Group, affine_parts, ik_type, joint_indices
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -29,6 +30,9 @@ FREE, ENV_COLLISION, SELF_COLLISION, USER = 0, 1, 2, 0x8000
 
 _JERK = 50000.0
 """OpenRAVE's limit of the jerks of joints [rad/s^3 or m/s^3], where nothing else is said."""
+
+_UNLIMITED = {"lower": -np.inf, "upper": np.inf, "max_jerk": np.inf}
+"""Limits of goals of inverse kinematics; speeds have to be given."""
 
 _RESOLUTION = 0.02
 """Steps of values that have none [rad or m]: OpenRAVE's default."""
@@ -61,7 +65,7 @@ class Bodies:
 
     Args:
         env: Where the bodies are.
-        groups: Groups of joint values and poses; others are left out.
+        groups: Groups of joint values, of poses, and of goals of inverse kinematics, which move nothing.
 
     Raises:
         ArgumentError: there is no such body.
@@ -72,7 +76,8 @@ class Bodies:
         self._simulation = env.simulation
         self.lock = env.simulation.lock
         self._parts = [_part(env, group) for group in groups if group.kind in {JOINTS[0], AFFINE[0]}]
-        self._dof = max((part.columns.stop for part in self._parts), default=0)
+        self._goals = [group for group in groups if group.kind == IK[0]]
+        self._dof = max((one.columns.stop for one in (*self._parts, *self._goals)), default=0)
         self.bodies = list(dict.fromkeys(part.body for part in self._parts))
 
     def numbers(self, name: str) -> Floats:
@@ -80,6 +85,8 @@ class Bodies:
         result = np.zeros(self._dof)
         for part in self._parts:
             result[part.columns] = _numbers(part, name)
+        for group in self._goals:
+            result[group.columns] = _UNLIMITED.get(name, 0.0)
         return result
 
     def coordinates(self) -> Coordinates:
@@ -98,6 +105,10 @@ class Bodies:
             translation += [column for column in columns if column not in rotation]
             if kind == DOFAffine.RotationAxis:
                 circular[columns[-1]] = True
+        for group in self._goals:
+            if ik_type(group) == IkParameterizationType.Transform6D:
+                rotation += range(group.offset, group.offset + 4)
+                translation += range(group.offset + 4, group.offset + 7)
         return Coordinates(circular, tuple(translation), tuple(rotation))
 
     def described(self, group: Group, index: int) -> str:

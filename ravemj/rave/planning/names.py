@@ -10,6 +10,7 @@ from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
 from ravemj.planning.retiming import topp_ra
 from ravemj.rave.interface import checked_environment
+from ravemj.rave.planning.hand_planners import GraspGradient, WorkspaceTrajectoryTracker
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.path_planners import BasicRrt, BiRrt, ExplorationRrt, RaStar
 from ravemj.rave.planning.planner import Planner
@@ -31,15 +32,13 @@ PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
     "explorationrrt": ExplorationRrt,
     "ra*": RaStar,
     "rastar": RaStar,
+    "workspacetrajectorytracker": WorkspaceTrajectoryTracker,
+    "graspgradient": GraspGradient,
     **TRAJECTORY_PLANNERS,
 }
 """What plans, by names in lower case."""
 
-MISSING: Mapping[str, str] = {
-    "graspgradient": "planning of grasps",
-    "grasper": "planning of grasps",
-    "workspacetrajectorytracker": "tracking of motions of the tool",
-}
+MISSING: Mapping[str, str] = {"grasper": "planning of grasps"}
 """Names of OpenRAVE's own planners, in lower case, with what ravemj lacks to have them."""
 
 
@@ -48,7 +47,8 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
 
     Args:
         env: The environment.
-        name: In any letter case: ``birrt``, ``BasicRRT``, ``ExplorationRRT``, ``RAStar``; the retimers
+        name: In any letter case: ``birrt``, ``BasicRRT``, ``ExplorationRRT``, ``RAStar``,
+            ``WorkspaceTrajectoryTracker``, ``GraspGradient``; the retimers
             ``LinearTrajectoryRetimer``, ``ParabolicTrajectoryRetimer``, ``CubicTrajectoryRetimer``,
             ``QuinticTrajectoryRetimer``, and with the extra ``retiming`` ``ToppraTrajectoryRetimer``; the smoothers
             ``LinearSmoother``, ``shortcut_linear``, ``ParabolicSmoother``, ``CubicSmoother``, ``QuinticSmoother``;

@@ -48,7 +48,7 @@ class Tags(NamedTuple):
         vectors: By the names of ``VECTORS``.
         groups: What a configuration is, or None.
         postprocessing: Planner and parameters, or None.
-        others: The texts of all other elements, by their names.
+        others: What is in all other elements, by their names: text, or elements as text.
     """
 
     numbers: dict[str, float]
@@ -117,7 +117,7 @@ def _with(found: Tags, element: "Element", text: str) -> Tags:
         return found._replace(groups=groups_of(element))
     if name == _POSTPROCESSING:
         return found._replace(postprocessing=(element.attributes.get("planner", ""), _inner(element)))
-    return found._replace(others={**found.others, name: content})
+    return found._replace(others={**found.others, name: _inner(element) if element.children else content})
 
 
 def _inner(element: "Element") -> str:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ravemj.rave.planning.parameter_text import CHAIN
 from ravemj.rave.planning.planner import Planner
 from ravemj.rave.planning.retimers import RETIMERS, Retimer
 from ravemj.rave.planning.smoothers import SMOOTHERS, Smoother
@@ -35,6 +36,8 @@ def post_process(env: "Environment", values: Values, traj: Trajectory) -> Planne
     name, text = values.postprocessing
     if name and traj.GetNumWaypoints() == 1:
         name, text = "LinearTrajectoryRetimer", ""  # nothing to smooth
+    if (name, text) == CHAIN and len(values.coordinates().rotation) > 1:
+        name, text = "LinearSmoother", ""  # the other one of the chain knows no rotations in space
     numbers = {**values.numbers, "_nmaxiterations": 0.0, "_fsteplength": 0.0}
     while name:
         make = TRAJECTORY_PLANNERS.get(name.lower())

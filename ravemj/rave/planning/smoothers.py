@@ -86,8 +86,11 @@ class Smoother(Planner):
         tries = int(values.numbers["_nmaxiterations"]) or _TRIES
         limits, spec = values.limits(), ConfigurationSpecification.of(values.groups)
         coordinates = limits.coordinates
-        if not isinstance(profile, Linear) and (coordinates.translation or coordinates.rotation):
-            return self._failed("poses of bodies can be smoothed by the LinearSmoother only")
+        if isinstance(profile, Parabolic):
+            if len(coordinates.rotation) > 1:
+                return self._failed("rotations in space can be smoothed by the LinearSmoother only")
+        elif not isinstance(profile, Linear) and (coordinates.translation or coordinates.rotation):
+            return self._failed("poses of bodies can be smoothed by the LinearSmoother and the ParabolicSmoother only")
         short = shorten(edges, points, tries, random, self._proceed)
         if isinstance(profile, Parabolic):
             motion = faster(edges, lines(short, limits), limits, tries, random, self._proceed)

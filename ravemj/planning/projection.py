@@ -1,0 +1,103 @@
+"""Configurations that reduce an error: steps of damped least squares, down a gradient and onto a constraint."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.planning.edges import Edges
+from ravemj.planning.rrt import Budget, End, Search
+from ravemj.planning.space import Space
+
+Error = Callable[[Floats], tuple[Floats, Floats]]
+"""Returns what a configuration lacks, shape (k,), and how joint values reduce that: a Jacobian, shape (k, n)."""
+
+_DAMPING = 1e-8
+"""Of steps, beside a part of the squared error: it keeps them finite where the Jacobian has no full rank."""
+
+_STEP = 0.1
+"""How far [rad or m] one step of a descent goes at most."""
+
+_PATIENCE = 30
+"""A descent gives up after so many steps that did not come nearer than the best one before."""
+
+
+def damped_step(error: Floats, jacobian: Floats) -> Floats:
+    """Return a step that reduces an error (K. Levenberg and D. Marquardt), shape (n,)."""
+    damping = _DAMPING + 0.05 * float(error @ error)
+    return jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + damping * np.eye(len(error)), error)
+
+
+def project(values: Floats, error: Error, space: Space, threshold: float, most: int) -> tuple[int, Floats]:
+    """Return after how many steps a configuration has a small error, and it; -1 if it never has.
+
+    Args:
+        values: Where to begin, shape (n,).
+        error: What configurations lack.
+        space: Its limits are kept.
+        threshold: The norm of the error from which on it is small.
+        most: How many steps there are at most.
+    """
+    for step in range(most + 1):
+        lacking, jacobian = error(values)
+        if np.linalg.norm(lacking) <= threshold:
+            return step, values
+        values = space.clamp(values + damped_step(lacking, jacobian))
+    return -1, values
+
+
+def descend(
+    edges: Edges,
+    start: Floats,
+    errors: Sequence[Error],
+    tolerance: float,
+    budget: Budget,
+    random: np.random.Generator,
+    tries: int,
+) -> Search:
+    """Go down the gradient of one error after the other, each from the start, until one is small.
+
+    Where the way down is not allowed, the best one of some random steps is taken.
+
+    Args:
+        edges: Tests lines; the start is allowed.
+        start: Where to begin, shape (n,).
+        errors: What configurations lack of each goal.
+        tolerance: The norm of the error that is small enough.
+        budget: How long to go on.
+        random: Draws steps.
+        tries: How many of them are compared.
+    """
+    iteration, stopped = 0, budget.end(0)
+    for goal, error in enumerate(errors):
+        path, waited, best = [start], 0, np.inf
+        while stopped is None and waited < _PATIENCE:
+            lacking, jacobian = error(path[-1])
+            left = float(np.linalg.norm(lacking))
+            if left <= tolerance:
+                return Search(End.found, np.array(path), 0, goal, iteration, ())
+            waited = 0 if left < best else waited + 1
+            best = min(best, left)
+            down = _bounded(edges.space, path[-1], damped_step(lacking, jacobian))
+            steps = [down] if _comes_nearer(edges, path[-1], down, error, left) else []
+            steps = steps or _random_steps(edges, path[-1], random, tries)
+            if steps:
+                path.append(min(steps, key=lambda one: float(np.linalg.norm(error(one)[0]))))
+            iteration += 1
+            stopped = budget.end(iteration)
+    return Search(stopped or End.stuck, None, -1, -1, iteration, ())
+
+
+def _comes_nearer(edges: Edges, here: Floats, ahead: Floats, error: Error, left: float) -> bool:
+    return float(np.linalg.norm(error(ahead)[0])) < left and edges.line(here, edges.space.difference(ahead, here))
+
+
+def _random_steps(edges: Edges, here: Floats, random: np.random.Generator, tries: int) -> list[Floats]:
+    ends = [_bounded(edges.space, here, random.normal(0.0, _STEP, len(here))) for _ in range(tries)]
+    return [end for end in ends if edges.line(here, edges.space.difference(end, here))]
+
+
+def _bounded(space: Space, here: Floats, step: Floats) -> Floats:
+    """Return where a step leads that is not too long, and not beyond limits."""
+    far = float(np.linalg.norm(step))
+    return space.clamp(here + (step * (_STEP / far) if far > _STEP else step))

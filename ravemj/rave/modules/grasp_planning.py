@@ -1,0 +1,275 @@
+"""Motions of an arm to one of given grasps: ``GraspPlanning`` of the module ``TaskManipulation``."""
+
+import time
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.rave.enums import IkFilterOptions, SaveParameters
+from ravemj.rave.kinbody import KinBody
+from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.modules.base_manipulation import BaseManipulation, SearchOptions, solutions
+from ravemj.rave.planning.status import PlanningError
+from ravemj.rave.robot import Robot
+from ravemj.rave.specification import IkParameterization
+from ravemj.rave.trajectory import Trajectory
+
+_STEP = 0.01
+"""Distance [m] of the places on the way from the approach to the grasp that are tested."""
+
+_IN_LIMITS = 1e-3
+"""How far [rad or m] a value of a preshape may be beyond its limits, as in OpenRAVE."""
+
+_SAVED = SaveParameters.LinkTransformation | SaveParameters.LinkEnable
+
+
+@dataclass(frozen=True)
+class GraspQuery:
+    """A list of grasps, and how to choose from it.
+
+    Attributes:
+        target: What is grasped.
+        grasps: A grasp in each row, shape (n, m).
+        indices: The first column of what a grasp has, by OpenRAVE's names: ``igrasptrans`` (``T_target_tool``, 12
+            numbers by columns) or ``grasptrans_nocol``, which counts more; ``igraspdir`` (from where the hand comes, in
+            the target), ``imanipulatordirection`` (the same in the tool), ``igrasppreshape`` (values of the gripper).
+        offset: How far [m] before the grasp the motion ends.
+        places: Poses of the target where it should be put down; a grasp has to reach one of them.
+        seed_grasps: How many grasps that can be reached are goals of one plan.
+        seed_places: How many places are looked for, for each grasp.
+        seed_ik: How many configurations of a grasp are goals; 0: all.
+        iterations: How many iterations the planner has.
+        random_grasps: Whether the grasps come in a random order.
+        random_places: Whether the places do.
+    """
+
+    target: KinBody
+    grasps: Floats
+    indices: Mapping[str, int]
+    offset: float = 0.0
+    places: Sequence[Floats] = ()
+    seed_grasps: int = 20
+    seed_places: int = 5
+    seed_ik: int = 0
+    iterations: int = 4000
+    random_grasps: bool = True
+    random_places: bool = True
+
+
+class GraspPlan(NamedTuple):
+    """A motion to a grasp.
+
+    Attributes:
+        goals: Goals of the hand for the places, where it holds the target with this grasp.
+        number: Which grasp it is.
+        seconds: How long the planner took.
+        traj: The motion of the arm, and of the gripper where its values change.
+    """
+
+    goals: list[IkParameterization]
+    number: int
+    seconds: float
+    traj: Trajectory
+
+
+@dataclass
+class _Candidate:
+    """A grasp that can be reached.
+
+    Attributes:
+        index: Its number.
+        preshape: Values of the gripper.
+        rows: Values of the arm before the grasp.
+        goals: Goals of the hand for the places.
+    """
+
+    index: int
+    preshape: Floats
+    rows: list[Floats] = field(default_factory=lambda: [])
+    goals: list[IkParameterization] = field(default_factory=lambda: [])
+
+
+def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
+    """Return a motion of the arm to one of several grasps.
+
+    Args:
+        base: Plans for the robot.
+        query: The grasps.
+
+    Raises:
+        ArgumentError: the list has no poses, or the target is held already.
+        PlanningError: no grasp can be reached.
+    """
+    manip, robot = base.arm(), base.robot
+    if manip.IsGrabbing(query.target):
+        raise ArgumentError(f"manipulator '{manip.GetName()}' holds '{query.target.GetName()}' already")
+    if manip.GetIkSolver() is None:
+        raise PlanningError(f"manipulator '{manip.GetName()}' has no solver of inverse kinematics (IK)")
+    seconds, reachable, refused = 0.0, 0, "no grasp can be reached without collisions"
+    found = _Candidates(base, manip, query).all()
+    while batch := _first(found, max(1, query.seed_grasps)):
+        reachable += len(batch)
+        begin = time.perf_counter()
+        try:
+            with robot.CreateRobotStateSaver(SaveParameters.ActiveDOF):
+                traj, chosen = _planned(base, manip, batch, query.iterations)
+        except PlanningError as error:
+            refused = f"{reachable} grasps can be reached, and there is no way to them: {error}"
+            continue
+        finally:
+            seconds += time.perf_counter() - begin
+        return GraspPlan(chosen.goals, chosen.index, seconds, traj)
+    raise PlanningError(refused)
+
+
+def _first(found: Iterator[_Candidate], count: int) -> list[_Candidate]:
+    return [one for _, one in zip(range(count), found, strict=False)]
+
+
+def _planned(
+    base: BaseManipulation, manip: Manipulator, batch: Sequence[_Candidate], iterations: int
+) -> tuple[Trajectory, _Candidate]:
+    """Return a motion to one of the candidates, and which."""
+    robot = base.robot
+    gripper = manip.GetGripperIndices()
+    changed = np.array([one.preshape != robot.GetDOFValues(gripper) for one in batch]).any(axis=0)
+    robot.SetActiveDOFs([*manip.GetArmIndices().tolist(), *gripper[changed].tolist()])
+    owners = [one for one in batch for _ in one.rows]
+    goals = [np.append(row, one.preshape[changed]) for one in batch for row in one.rows]
+    traj = base.move_active_joints(goals, SearchOptions(tries=1, iterations=iterations, jitter=0.03))
+    last = traj.GetWaypoint(-1, robot.GetActiveConfigurationSpecification())
+    return traj, owners[int(np.argmin([np.abs(goal - last).max() for goal in goals]))]
+
+
+class _Candidates:
+    """Finds out which grasps can be reached."""
+
+    def __init__(self, base: BaseManipulation, manip: Manipulator, query: GraspQuery) -> None:
+        self._base, self._manip, self._query = base, manip, query
+        self._random = np.random.default_rng(0)
+        names = [name for name in ("grasptrans_nocol", "igrasptrans") if query.indices.get(name, -1) >= 0]
+        if not names:
+            raise ArgumentError("graspindices: should have 'igrasptrans' or 'grasptrans_nocol', the pose of the tool")
+        self._pose = names[0]
+
+    def all(self) -> Iterator[_Candidate]:
+        """Return the grasps that can be reached, one after the other. Everything is where it was in between."""
+        count, query = len(self._query.grasps), self._query
+        for index in self._random.permutation(count).tolist() if query.random_grasps else range(count):
+            with _kept(self._base.robot, query.target):
+                candidate = self._candidate(index)
+            if candidate is not None:
+                yield candidate
+
+    def _numbers(self, index: int, name: str, count: int) -> Floats | None:
+        """Return what a grasp has under a name, or None."""
+        start = self._query.indices.get(name, -1)
+        row = self._query.grasps[index]
+        if start < 0:
+            return None
+        if start + count > len(row):
+            raise ArgumentError(f"graspindices: '{name}' is {start}, and grasps have {len(row)} numbers")
+        return row[start : start + count]
+
+    def _candidate(self, index: int) -> _Candidate | None:
+        """Return a grasp if it can be reached. The robot and the target are moved."""
+        query, manip = self._query, self._manip
+        gripper = manip.GetGripperIndices()
+        given = self._numbers(index, "igrasppreshape", len(gripper))
+        preshape = self._base.robot.GetDOFValues(gripper) if given is None else given
+        if len(gripper):
+            lower, upper = self._base.robot.GetDOFLimits(gripper)
+            if (preshape < lower - _IN_LIMITS).any() or (preshape > upper + _IN_LIMITS).any():
+                return None
+            preshape = np.clip(preshape, lower, upper)
+            self._base.robot.SetDOFValues(preshape, gripper)
+        T_target_tool = np.eye(4)
+        numbers = self._numbers(index, self._pose, 12)
+        assert numbers is not None, "the name is one of those that are there"
+        T_target_tool[:3] = numbers.reshape(4, 3).T
+        T_world_tool = query.target.GetTransform() @ T_target_tool
+        found = _Candidate(index, preshape)
+        found.rows = self._approaches(T_world_tool, self._direction(index, T_world_tool))
+        if found.rows and query.places:
+            found.goals = self._goals(T_target_tool)
+        return found if found.rows and (found.goals or not query.places) else None
+
+    def _direction(self, index: int, T_world_tool: Floats) -> Floats:
+        """Return where the hand goes in the last piece of its way, a unit vector in the world."""
+        in_target = self._numbers(index, "igraspdir", 3)
+        if in_target is not None:
+            direction = self._query.target.GetTransform()[:3, :3] @ in_target
+        else:
+            in_tool = self._numbers(index, "imanipulatordirection", 3)
+            in_tool = self._manip.GetLocalToolDirection() if in_tool is None else in_tool
+            direction = T_world_tool[:3, :3] @ in_tool
+        return direction / (np.linalg.norm(direction) or 1.0)
+
+    def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
+        """Return the values of the arm before a grasp, from where it gets there in a straight line."""
+        start = T_world_tool.copy()
+        start[:3, 3] -= self._query.offset * direction
+        rows: list[Floats] = []
+        for row in solutions(self._manip, _goal(start), IkFilterOptions.CheckEnvCollisions):
+            if self._gets_there(row, start, direction):
+                rows.append(row)
+            if len(rows) == self._query.seed_ik > 0:
+                break
+        return rows
+
+    def _gets_there(self, row: Floats, start: Floats, direction: Floats) -> bool:
+        count = int(np.ceil(self._query.offset / _STEP))
+        enabled = self._query.target.GetLinkEnableStates()
+        self._query.target.Enable(False)  # it is touched on the way
+        try:
+            for number in range(1, count + 1):
+                pose = start.copy()
+                pose[:3, 3] += direction * (self._query.offset * number / count)
+                after = self._base.next_solution(self._manip, pose, row, check=True, jumps=False)
+                if after is None:
+                    return False
+                row = after
+        finally:
+            self._query.target.SetLinkEnableStates(enabled)
+        return True
+
+    def _goals(self, T_target_tool: Floats) -> list[IkParameterization]:
+        """Return goals of the hand for places where the target can be put down with a grasp."""
+        query, found = self._query, list[IkParameterization]()
+        count = len(query.places)
+        for place in self._random.permutation(count).tolist() if query.random_places else range(count):
+            T_world_target = query.places[place]
+            goal = _goal(T_world_target @ T_target_tool)
+            if self._is_free(T_world_target) and self._is_reached(goal):
+                found.append(goal)
+            if len(found) == query.seed_places > 0:
+                break
+        return found
+
+    def _is_free(self, T_world_target: Floats) -> bool:
+        """Return whether nothing but the robot is in the way of the target at a place."""
+        with _kept(self._base.robot, self._query.target):
+            self._base.robot.Enable(False)
+            self._query.target.SetTransform(T_world_target)
+            return not self._base.env.CheckCollision(self._query.target)
+
+    def _is_reached(self, goal: IkParameterization) -> bool:
+        with _kept(self._base.robot, self._query.target):
+            self._query.target.Enable(False)
+            return len(solutions(self._manip, goal, IkFilterOptions.CheckEnvCollisions)) > 0
+
+
+def _goal(T_world_tool: Floats) -> IkParameterization:
+    return IkParameterization(T_world_tool, IkParameterization.Type.Transform6D)
+
+
+@contextmanager
+def _kept(robot: Robot, target: KinBody) -> Generator[None]:
+    """Have the robot and the target as they were afterwards."""
+    with robot.CreateRobotStateSaver(_SAVED), target.CreateKinBodyStateSaver(_SAVED):
+        yield

@@ -1,0 +1,98 @@
+"""The hand of a problem's robot: what it lacks of a pose or of a constraint, as functions of configurations."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
+from ravemj.ik.residuals import rotation_between
+from ravemj.planning.projection import Error
+from ravemj.rave.manipulator import Manipulator
+from ravemj.rave.planning.bodies import Bodies
+from ravemj.rave.planning.values import Values
+from ravemj.rave.robot import Robot
+from ravemj.trajectories.groups import joint_indices
+
+
+@dataclass(frozen=True)
+class Hand:
+    """The active manipulator of the robot that a problem is about.
+
+    Attributes:
+        manip: The manipulator.
+        bodies: What moves.
+        columns: Where the joints of ``manip.GetArmIndices()`` are in a configuration.
+        dof: How many values a configuration has.
+    """
+
+    manip: Manipulator
+    bodies: Bodies
+    columns: Sequence[int]
+    dof: int
+
+    def motion(self, values: Floats) -> tuple[Floats, Floats]:
+        """Return where the tool is and how it moves. The robot goes there.
+
+        Args:
+            values: A configuration, shape (n,).
+
+        Returns:
+            ``T_world_tool``, shape (4, 4), and the velocities of its origin and the angular ones in world axes for
+            each value, shape (6, n).
+        """
+        self.bodies.move(values)
+        jacobian = np.zeros((6, self.dof))
+        jacobian[:3, self.columns] = self.manip.CalculateJacobian()
+        jacobian[3:, self.columns] = self.manip.CalculateAngularVelocityJacobian()
+        return self.manip.GetTransform(), jacobian
+
+    def to_pose(self, T_world_goal: Floats) -> Error:
+        """Return what configurations lack of a pose of the tool: the way [m] and the rotation vector [rad]."""
+
+        def lacking(values: Floats) -> tuple[Floats, Floats]:
+            T_world_tool, jacobian = self.motion(values)
+            way = T_world_goal[:3, 3] - T_world_tool[:3, 3]
+            return np.append(way, rotation_between(T_world_tool[:3, :3], T_world_goal)), jacobian
+
+        return lacking
+
+    def to_constraint(self, T_task_world: Floats, T_tool_point: Floats, freedoms: Floats) -> Error:
+        """Return what configurations lack of a constraint.
+
+        ``T_task_world @ T_world_tool @ T_tool_point`` should have no rotation and translation along some axes.
+
+        Args:
+            T_task_world: The frame whose axes count.
+            T_tool_point: The point of the tool that is constrained.
+            freedoms: How much the rotations about x, y, z and the ways along them count; 0 leaves one free.
+        """
+        rotation = T_task_world[:3, :3]
+
+        def lacking(values: Floats) -> tuple[Floats, Floats]:
+            T_world_tool, jacobian = self.motion(values)
+            found = T_task_world @ T_world_tool @ T_tool_point
+            arm = T_world_tool[:3, :3] @ T_tool_point[:3, 3]
+            moves = jacobian[:3] - np.cross(arm, jacobian[3:], axisb=0, axisc=0)
+            error = np.append(rotation_between(found[:3, :3], np.eye(4)), -found[:3, 3])
+            return freedoms * error, freedoms[:, None] * np.vstack([rotation @ jacobian[3:], rotation @ moves])
+
+        return lacking
+
+
+def hand_of(values: Values) -> Hand:
+    """Return the hand of a problem's robot.
+
+    Raises:
+        ArgumentError: what moves is not just the joints of the arm of a robot's active manipulator.
+    """
+    robots = [] if values.bodies is None else values.bodies.bodies
+    manip = robots[0].GetActiveManipulator() if len(robots) == 1 and isinstance(robots[0], Robot) else None
+    if manip is None or values.bodies is None:
+        raise ArgumentError("the hand of one robot should move, and it should have an active manipulator")
+    dofs = [dof for group in values.groups for dof in joint_indices(group)]
+    arm = manip.GetArmIndices().tolist()
+    if sorted(dofs) != sorted(arm):
+        raise ArgumentError(f"the DOFs are {dofs}, and should be those of the arm of '{manip.GetName()}': {arm}")
+    return Hand(manip, values.bodies, [dofs.index(dof) for dof in arm], len(dofs))

@@ -1,0 +1,230 @@
+"""Planners of motions of the hand: along a given trajectory, and to one of several grasps."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import ClassVar
+
+import numpy as np
+
+from ravemj.core.transforms import Floats, pose_of
+from ravemj.errors import ArgumentError
+from ravemj.geometry_functions import matrixFromPose, matrixFromPoses
+from ravemj.planning.edges import Edges
+from ravemj.planning.projection import descend
+from ravemj.planning.rrt import Budget, End, Search
+from ravemj.planning.tracking import track
+from ravemj.rave.enums import PlannerStatusCode
+from ravemj.rave.planning.hand import Hand, hand_of
+from ravemj.rave.planning.parameter_text import CHAIN
+from ravemj.rave.planning.path_planners import PathPlanner
+from ravemj.rave.planning.planner import Planner
+from ravemj.rave.planning.processing import post_process
+from ravemj.rave.planning.retimers import flag
+from ravemj.rave.planning.status import PlannerStatus
+from ravemj.rave.planning.values import Values
+from ravemj.rave.specification import ConfigurationSpecification, IkParameterization
+from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories import extraction
+from ravemj.trajectories.groups import AFFINE
+
+_LARGEST_JUMP = 0.5
+"""How far a joint may move [rad or m] between two goals that follow each other."""
+
+_REACHED = 1e-6
+"""How near [m and rad] the hand has to be to a grasp."""
+
+
+class WorkspaceTrajectoryTracker(Planner):
+    """``WorkspaceTrajectoryTracker``: the hand follows a trajectory of its own, the joints without jumps.
+
+    The goals are those of the trajectory in steps of ``_fsteplength`` [s]. The motion begins where the robot is if that
+    reaches the first goal and can be continued, else at another solution. Smoothers would leave its way, so the result
+    has times of the ``LinearTrajectoryRetimer`` unless the parameters name another one.
+    """
+
+    _defaults: ClassVar[Mapping[str, str]] = {
+        "maxdeviationangle": "0.47123889803846897",
+        "maintaintiming": "0",
+        "greedysearch": "0",
+        "ignorefirstcollision": "0",
+        "minimumcompletetime": "1e30",
+    }
+
+    def _prepare(self, values: Values) -> PlannerStatus | None:
+        try:
+            hand = hand_of(values)
+            goals = self._goals(values, hand)[1]
+        except ArgumentError as error:
+            return self._failed(error.message)
+        if hand.manip.GetIkSolver() is None:
+            return self._failed(f"manipulator '{hand.manip.GetName()}' has no solver of inverse kinematics (IK)")
+        return None if goals else self._failed("the trajectory of the hand has no waypoints")
+
+    def _goals(self, values: Values, hand: Hand) -> tuple[Floats, list[IkParameterization]]:
+        """Return the times and goals of the trajectory of the hand."""
+        text = values.tags.get("workspacetrajectory", "")
+        if not text:
+            raise ArgumentError("there is no trajectory of the hand; give it as <workspacetrajectory>")
+        traj = Trajectory(self._env, "").deserialize(text)
+        if not traj.GetNumWaypoints():
+            return np.zeros(0), []
+        step = values.numbers["_fsteplength"]
+        count = int(np.ceil(traj.GetDuration() / step - 1e-9)) if step > 0 else 0
+        times = np.minimum(np.arange(count + 1) * step, traj.GetDuration())
+        return times, [_goal(traj, time, hand) for time in times.tolist()]
+
+    def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
+        """Follow the trajectory of the hand."""
+        problem = self._prepare(values)
+        if problem is not None:
+            return problem
+        hand = hand_of(values)
+        times, goals = self._goals(values, hand)
+        budget = Budget(len(goals), values.numbers["_nmaxplanningtime"] / 1000, self._proceed)
+        ended: list[End] = []
+
+        def solve(number: int, near: Floats) -> Sequence[Floats]:
+            stopped = budget.end(number)
+            if stopped is not None:
+                ended.append(stopped)
+                return []
+            return self._solutions(values, hand, goals[number], near, check=self._is_checked(values, times[number]))
+
+        with hand.bodies.kept():
+            start = values.configurations("_vinitialconfig")[0]
+            path = track(values.space(), len(goals), start, solve, self._connection(values, hand, times))
+        reached = float(times[len(path) - 1]) if len(path) else 0.0
+        if len(path) < len(goals) and reached < values.tag("minimumcompletetime", 1e30):
+            why = ended[0].value if ended else "no solution of inverse kinematics (IK) continues the motion"
+            status = self._failed(f"the hand gets to {reached:.6g} s of {times[-1]:.6g} s: {why}")
+            status.jointValues = path[-1] if len(path) else start
+            status.statusCode = PlannerStatusCode.Interrupted if End.interrupted in ended else status.statusCode
+            return status
+        return self._timed(values, traj, path, times[: len(path)])
+
+    def _is_checked(self, values: Values, time: float) -> bool:
+        """Return whether collisions count at a time."""
+        return time >= values.tag("ignorefirstcollision", 0.0)
+
+    def _solutions(
+        self, values: Values, hand: Hand, goal: IkParameterization, near: Floats, *, check: bool
+    ) -> list[Floats]:
+        """Return the configurations that reach a goal, the nearest first; only that one in a greedy search."""
+        hand.bodies.move(near)
+        found: list[Floats] = []
+        for row in hand.manip.FindIKSolutions(goal, 0):
+            configuration = np.zeros(hand.dof)
+            configuration[hand.columns] = row
+            found.append(near + values.space().difference(configuration, near))
+        if check:
+            found = list(filter(values.allowed(), found))
+        found.sort(key=lambda one: values.space().distance(one, near))
+        return found[:1] if flag(values, "greedysearch") else found
+
+    def _connection(self, values: Values, hand: Hand, times: Floats) -> Callable[[int, Floats, Floats], bool]:
+        """Return whether a straight line leads from one configuration to the next, and the hand does not swing out."""
+        edges, bend = Edges(values.space(), values.allowed()), values.tag("maxdeviationangle", 0.15 * np.pi)
+        fastest = values.limits().velocity if flag(values, "maintaintiming") else np.full(hand.dof, np.inf)
+
+        def connects(number: int, before: Floats, after: Floats) -> bool:
+            step = edges.space.difference(after, before)
+            elapsed = times[number] - times[number - 1]
+            if np.abs(step).max() > _LARGEST_JUMP or (np.abs(step) > fastest * elapsed * (1 + 1e-9)).any():
+                return False
+            turned = [hand.motion(one)[0][:3, :3] for one in (before, before + step / 2, after)]
+            if max(_angle(turned[0], turned[1]), _angle(turned[1], turned[2])) > bend:
+                return False
+            return not self._is_checked(values, times[number]) or edges.line(before, step)
+
+        return connects
+
+    def _timed(self, values: Values, traj: Trajectory, path: Floats, times: Floats) -> PlannerStatus:
+        """Fill a trajectory with a path, and give it times."""
+        spec = ConfigurationSpecification.of(values.groups)
+        keeps = flag(values, "maintaintiming")
+        if keeps or values.postprocessing == CHAIN:
+            values = values.copied()
+            values.postprocessing = "LinearTrajectoryRetimer", "<hastimestamps>1</hastimestamps>" if keeps else ""
+        column = spec.AddDeltaTimeGroup()
+        rows = np.zeros((len(path), spec.GetDOF()))
+        for group in values.groups:
+            rows[:, group.columns] = path[:, group.columns]
+        rows[:, column] = np.diff(times, prepend=0.0)
+        traj.Init(spec)
+        traj.Insert(0, rows.ravel())
+        problem = post_process(self._env, values, traj)
+        return problem or self._solved(f"the hand follows {len(path)} goals to {times[-1]:.6g} s")
+
+
+def _goal(traj: Trajectory, time: float, hand: Hand) -> IkParameterization:
+    """Return where a trajectory of the hand is at a time."""
+    spec, row = traj.GetConfigurationSpecification(), traj.Sample(time) if len(traj) > 1 else traj.GetWaypoint(0)
+    goal = spec.ExtractIkParameterization(row)
+    if goal is not None:
+        return goal
+    if not any(group.kind == AFFINE[0] for group in spec.GetGroups()):
+        raise ArgumentError(
+            "the trajectory of the hand has neither poses (affine_transform) nor goals (ikparam_values)"
+        )
+    pose = extraction.pose(spec.GetGroups(), row, None, pose_of(hand.manip.GetTransform()))
+    assert pose is not None, "there is such a group"
+    return IkParameterization(matrixFromPose(pose.numbers()), IkParameterization.Type.Transform6D)
+
+
+def _angle(one: Floats, other: Floats) -> float:
+    """Return the angle between two rotations [rad]."""
+    return float(np.arccos(np.clip((np.trace(one.T @ other) - 1) / 2, -1.0, 1.0)))
+
+
+class GraspGradient(PathPlanner):
+    """``GraspGradient``: the hand goes down the gradient of its distance to grasps, the nearest grasp first.
+
+    ``<target>`` names the body; ``<grasps>`` is the number of grasps, and ``T_target_tool`` as 7 numbers for each.
+    """
+
+    _defaults: ClassVar[Mapping[str, str]] = {"graspdistthresh": "1.4", "numgradsamples": "5", "visgraspthresh": "0"}
+
+    def _needs_goal(self, values: Values) -> bool:
+        return False
+
+    def _prepare(self, values: Values) -> PlannerStatus | None:
+        try:
+            hand_of(values)
+            self._grasps(values)
+        except ArgumentError as error:
+            return self._failed(error.message)
+        return super()._prepare(values)
+
+    def _grasps(self, values: Values) -> list[Floats]:
+        """Return the poses of the tool in the world that are grasps."""
+        name = values.tags.get("target", "")
+        target = self._env.GetKinBody(name)
+        if target is None:
+            raise ArgumentError(f"<target>: there is no body '{name}'")
+        try:
+            count, *numbers = [float(word) for word in values.tags.get("grasps", "0").split()]
+        except ValueError:
+            count, numbers = 0.0, [0.0]
+        if count < 1 or len(numbers) != 7 * count or not np.isfinite(numbers).all():
+            raise ArgumentError("<grasps>: should be the number of grasps and 7 numbers for each, a pose in the target")
+        T_world_target = target.GetTransform()
+        return [T_world_target @ T_target_tool for T_target_tool in matrixFromPoses(np.reshape(numbers, (-1, 7)))]
+
+    def _search(
+        self,
+        edges: Edges,
+        starts: Sequence[Floats],
+        goals: Sequence[Floats],
+        budget: Budget,
+        random: np.random.Generator,
+        values: Values,
+    ) -> Search:
+        del goals
+        hand = hand_of(values)
+        errors = [hand.to_pose(grasp) for grasp in self._grasps(values)]
+        far = [float(np.linalg.norm(error(starts[0])[0])) for error in errors]
+        order: list[int] = np.argsort(far).tolist()
+        near = [place for place in order if far[place] <= values.tag("graspdistthresh", 1.4)]
+        tries = int(values.tag("numgradsamples", 5))
+        found = descend(edges, starts[0], [errors[place] for place in near], _REACHED, budget, random, tries)
+        return replace(found, goal=near[found.goal] if found.path is not None else -1)
