@@ -438,7 +438,7 @@ def test_an_environment_goes_through_json(env, robot):
     other.Destroy()
 
 
-def test_grippers_are_kept_and_no_bodies_are_connected(robot):
+def test_grippers_are_kept(robot):
     info = ravemj.GripperInfo(_name="two fingers", _gripperJointNames=["j1"])
     assert robot.AddGripperInfo(info)
     with pytest.raises(ravemj.openrave_exception):
@@ -446,9 +446,6 @@ def test_grippers_are_kept_and_no_bodies_are_connected(robot):
     assert robot.ExtractInfo().SerializeJSON()["gripperInfos"][0]["gripperJointNames"] == ["j1"]
     assert robot.RemoveGripperInfo("two fingers")
     assert robot.GetGripperInfos() == []
-    with pytest.raises(NotImplementedError):
-        robot.AddConnectedBody(ravemj.ConnectedBodyInfo())
-    assert robot.GetConnectedBodies() == []
 
 
 def test_the_nearest_points():
