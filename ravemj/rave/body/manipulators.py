@@ -42,8 +42,9 @@ class Manipulators(BodyPart):
         """
         arms = self._state.scene.manipulators
         if len(self._manipulators) != len(arms):  # they are made once, as links are
-            robot = cast("Robot", self)
-            self._manipulators = tuple(Manipulator(robot, self._state, index) for index in range(len(arms)))
+            robot, known = cast("Robot", self), self._manipulators[: len(arms)]
+            new = (Manipulator(robot, self._state, index) for index in range(len(known), len(arms)))
+            self._manipulators = (*known, *new)
         if manipname is None:
             return list(self._manipulators)
         return [one for one, arm in zip(self._manipulators, arms, strict=True) if arm.name == manipname]
@@ -141,7 +142,8 @@ class Manipulators(BodyPart):
         Returns:
             Whether it was there.
         """
-        if manip not in self.GetManipulators():
+        arms = self.GetManipulators()
+        if manip not in arms:
             return False
         with self._simulation.lock:
             name, active = manip.GetName(), self.GetActiveManipulator()
@@ -150,6 +152,10 @@ class Manipulators(BodyPart):
             self.ik_solvers.pop(name, None)
             kept = tuple(arm for arm in self._state.scene.manipulators if arm.name != name)
             self._state.edit(manipulators=kept)
+            place = arms.index(manip)
+            self._manipulators = tuple(arm for index, arm in enumerate(arms) if index != place)
+            for arm in arms:
+                arm.moved_up(place)
         return True
 
     @also_named(manip="manipname")
