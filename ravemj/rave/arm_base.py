@@ -8,11 +8,15 @@ import numpy as np
 from ravemj.core.api_object import ApiObject
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import RavemjError
+from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model import scene
 
 if TYPE_CHECKING:
     from ravemj.rave.robot import Robot
+
+
+_GONE = 1 << 30
+"""The place of a manipulator that was removed; no robot has so many."""
 
 
 class Tool(NamedTuple):
@@ -34,6 +38,8 @@ class Tool(NamedTuple):
 class ArmPart(ApiObject):
     """Part of the API of a manipulator, about one topic; ``Manipulator`` joins the parts."""
 
+    _internal = ("moved_up",)
+
     def __init__(self, robot: "Robot", state: BodyState, index: int) -> None:
         self._robot = robot
         self._state = state
@@ -42,7 +48,16 @@ class ArmPart(ApiObject):
 
     @property
     def _scene(self) -> scene.Manipulator:
-        return self._state.scene.manipulators[self._index]
+        try:
+            return self._state.scene.manipulators[self._index]
+        except IndexError:
+            message = f"'{self._robot.GetName()}' does not have this manipulator any more"
+            raise RavemjError(message, ErrorCode.InvalidState) from None
+
+    def moved_up(self, removed: int) -> None:
+        """Take note that the manipulator at a place was removed, which may be this one."""
+        if self._index >= removed:
+            self._index = _GONE if self._index == removed else self._index - 1
 
     def GetName(self) -> str:
         """Return the manipulator's name."""
@@ -81,5 +96,5 @@ class ArmPart(ApiObject):
     def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Manipulator
         with self._state.simulation.lock:
             arms = list(self._state.scene.manipulators)
-            arms[self._index] = replace(arms[self._index], **changes)
+            arms[self._index] = replace(self._scene, **changes)
             self._state.edit(manipulators=tuple(arms))

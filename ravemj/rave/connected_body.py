@@ -1,33 +1,154 @@
 """Bodies that can be connected to a robot."""
 
-from typing import NoReturn
+# The fields of infos have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+from copy import deepcopy
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ravemj.core.api_object import ApiObject
-from ravemj.errors import UnsupportedError
+from ravemj.core.arrays import checked_transform
+from ravemj.core.transforms import Floats, pose_of
+from ravemj.errors import ErrorCode, RavemjError
+from ravemj.model import hashes
+from ravemj.rave.infos import ConnectedBodyInfo, GripperInfo
 
-CONNECTED = "connected bodies"
+if TYPE_CHECKING:
+    from ravemj.rave.attached_sensor import AttachedSensor
+    from ravemj.rave.joint import Joint
+    from ravemj.rave.link import Link
+    from ravemj.rave.manipulator import Manipulator
+    from ravemj.rave.robot import Robot
 
 
 class ConnectedBody(ApiObject):
-    """A body that is connected to a robot; ravemj has none yet."""
+    """A body that can be connected to a link of a robot; ``robot.AddConnectedBody`` makes it.
 
-    def __init__(self, *args: object, **kwargs: object) -> None:
-        raise UnsupportedError("ConnectedBody", CONNECTED)
+    While it is active and the robot is in an environment, its links, joints, manipulators, sensors and grippers are
+    the robot's, called like the body, an underscore, and their own name.
 
+    Args:
+        robot: The robot.
+        info: Its description.
+    """
 
-def _refuse(name: str) -> object:
-    def refuse(self: object, *arguments: object) -> NoReturn:
-        raise UnsupportedError(f"ConnectedBody.{name}", CONNECTED)
+    def __init__(self, robot: "Robot", info: ConnectedBodyInfo) -> None:
+        self._robot = robot
+        self._info = deepcopy(info)
 
-    refuse.__name__ = name
-    refuse.__doc__ = "Refuse to return anything: ravemj connects no bodies yet, and raises ``UnsupportedError``."
-    return refuse
+    def GetName(self) -> str:
+        """Return its name."""
+        return self._info._name or ""
 
+    def GetId(self) -> str:
+        """Return the id of its description; empty without one."""
+        return self._info._id or ""
 
-for _name in (
-    *("CanProvideManipulator", "GetId", "GetInfo", "GetInfoHash", "GetName", "GetRelativeTransform"),
-    *("GetRelativeTransformPose", "GetResolvedAttachedSensors", "GetResolvedGripperInfos", "GetResolvedJoints"),
-    *("GetResolvedLinks", "GetResolvedManipulators", "GetTransform", "GetTransformPose", "IsActive", "SetActive"),
-    *("SetLinkEnable", "SetLinkVisible"),
-):
-    setattr(ConnectedBody, _name, _refuse(_name))
+    def GetInfo(self) -> ConnectedBodyInfo:
+        """Return the description, a copy."""
+        return deepcopy(self._info)
+
+    def GetInfoHash(self) -> str:
+        """Return a text that is the same for descriptions that say the same: 32 hexadecimal digits."""
+        return hashes.of_text(repr(self._info.SerializeJSON()))
+
+    def IsActive(self) -> int:
+        """Return whether it is connected when the robot is added: 1, or 0 for no, -1 for undecided."""
+        return self._info._bIsActive
+
+    def SetActive(self, active: int) -> bool:
+        """Set whether it is connected when the robot is added.
+
+        Args:
+            active: 1 or True, 0 or False, or -1 for undecided, which counts as no.
+
+        Returns:
+            Whether that is new.
+
+        Raises:
+            openrave_exception: it is, and the robot is in an environment (``InvalidState``).
+        """
+        if int(active) == self.IsActive():
+            return False
+        if self._robot.simulation_state.index:
+            message = f"SetActive: '{self._robot.GetName()}' is in an environment; remove it first"
+            raise RavemjError(message, ErrorCode.InvalidState)
+        self._info._bIsActive = int(active)
+        return True
+
+    def GetTransform(self) -> Floats:
+        """Return the pose in the world, shape (4, 4).
+
+        Raises:
+            openrave_exception: the robot has no link of the name that the description gives.
+        """
+        link = self._robot.GetLink(self._info._linkname or "")
+        if link is None:
+            raise RavemjError(f"'{self._robot.GetName()}' has no link '{self._info._linkname}'", ErrorCode.InvalidState)
+        return link.GetTransform() @ self.GetRelativeTransform()
+
+    def GetTransformPose(self) -> Floats:
+        """Return the pose in the world as [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return pose_of(self.GetTransform()).numbers()
+
+    def GetRelativeTransform(self) -> Floats:
+        """Return ``T_link_body``, shape (4, 4)."""
+        return np.array(checked_transform(self._info._trelative, "ConnectedBodyInfo._trelative"))
+
+    def GetRelativeTransformPose(self) -> Floats:
+        """Return ``T_link_body`` as [w, x, y, z, tx, ty, tz], shape (7,)."""
+        return pose_of(self.GetRelativeTransform()).numbers()
+
+    def GetResolvedLinks(self) -> "list[Link | None]":
+        """Return its links on the robot; None for each while it is not connected."""
+        return [self._robot.GetLink(self._resolved(one._name)) for one in self._info._linkInfos]
+
+    def GetResolvedJoints(self) -> "list[Joint | None]":
+        """Return its joints on the robot; None for each while it is not connected."""
+        return [self._robot.GetJoint(self._resolved(one._name)) for one in self._info._jointInfos]
+
+    def GetResolvedManipulators(self) -> "list[Manipulator | None]":
+        """Return its manipulators on the robot; None for each while it is not connected."""
+        return [self._robot.GetManipulator(self._resolved(one._name)) for one in self._info._manipulatorInfos]
+
+    def GetResolvedAttachedSensors(self) -> "list[AttachedSensor | None]":
+        """Return its sensors on the robot; None for each while it is not connected."""
+        return [self._robot.GetAttachedSensor(self._resolved(one._name)) for one in self._info._attachedSensorInfos]
+
+    def GetResolvedGripperInfos(self) -> list[GripperInfo | None]:
+        """Return the descriptions of its grippers on the robot; None for each while it is not connected."""
+        return [self._robot.GetGripperInfo(self._resolved(one._name)) for one in self._info._gripperInfos]
+
+    def CanProvideManipulator(self, resolvedManipulatorName: str) -> bool:
+        """Return whether the robot has a manipulator of that name from it while it is connected.
+
+        Args:
+            resolvedManipulatorName: The name, with that of the body before it.
+        """
+        return resolvedManipulatorName in {self._resolved(one._name) for one in self._info._manipulatorInfos}
+
+    def SetLinkEnable(self, enable: bool) -> None:
+        """Let its links collide or not, while it is connected.
+
+        Args:
+            enable: Whether they do.
+        """
+        for link in filter(None, self.GetResolvedLinks()):
+            link.Enable(enable)
+
+    def SetLinkVisible(self, visible: bool) -> None:
+        """Show or hide its links, while it is connected.
+
+        Args:
+            visible: Whether they show.
+        """
+        for link in filter(None, self.GetResolvedLinks()):
+            link.SetVisible(visible)
+
+    def _resolved(self, name: str | None) -> str:
+        return f"{self.GetName()}_{name}"
+
+    def __repr__(self) -> str:
+        return f"{self._robot!r}.GetConnectedBody({self.GetName()!r})"

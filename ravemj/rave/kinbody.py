@@ -56,7 +56,7 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
     SaveParameters = SaveParameters
 
     _interface_type = InterfaceType.kinbody
-    _internal = ("default_saved", "restorers", "set_following")
+    _internal = ("connect", "default_saved", "disconnect", "restorers", "set_following")
     default_saved = int(SaveParameters.LinkTransformation | SaveParameters.LinkEnable)
 
     def __init__(self, env: "Environment", state: BodyState) -> None:
@@ -108,6 +108,12 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
         with self._simulation.lock:
             self._env.Remove(self)
             self._state.rebuild(empty_body(self._state.scene))
+
+    def connect(self) -> None:
+        """Make active connected bodies parts of a robot; the environment calls this before it adds the body."""
+
+    def disconnect(self) -> None:
+        """Take the parts of connected bodies away; the environment calls this after it removed the body."""
 
     SetJointValues = Configuration.SetDOFValues
     GetBodyTransformations = Configuration.GetLinkTransformations

@@ -192,9 +192,11 @@ class Manipulator(ArmEnd, ArmRedundancy):
         return isinstance(other, Manipulator) and self._state is other._state and self._index == other._index
 
     def __hash__(self) -> int:
-        return hash((id(self._state), "manipulator", self._index))
+        return hash((id(self._state), "manipulator"))  # without the place, which changes when others are removed
 
     def __repr__(self) -> str:
+        if self not in self._robot.GetManipulators():
+            return f"<manipulator that {self._robot!r} does not have any more>"
         return f"{self._robot!r}.GetManipulator({self.GetName()!r})"
 
     def __str__(self) -> str:

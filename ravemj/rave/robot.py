@@ -21,9 +21,11 @@ from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.model.mimic import Equations
 from ravemj.rave.body.active import ActiveChoice, ActiveDofs
 from ravemj.rave.body.affine import default_kinds
+from ravemj.rave.body.connected import Connected
 from ravemj.rave.body.manipulators import Manipulators
 from ravemj.rave.body.saving import Restorer, StateSaver
 from ravemj.rave.body.sensors import Sensors
+from ravemj.rave.connected_body import ConnectedBody
 from ravemj.rave.controllers import Controller, IdealController
 from ravemj.rave.enums import InterfaceType, SaveParameters
 from ravemj.rave.iksolver import IkSolver
@@ -35,6 +37,7 @@ from ravemj.rave.infos import (
     ManipulatorInfo,
     RobotBaseInfo,
 )
+from ravemj.rave.infos.connecting import only_parts_of
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
@@ -53,7 +56,7 @@ POLL = 1e-3
 """How often [s] ``WaitForController`` looks."""
 
 
-class Robot(ActiveDofs, Manipulators, Sensors, KinBody):
+class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
     """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
 
     DOFAffine = DOFAffine
@@ -292,14 +295,19 @@ class Robot(ActiveDofs, Manipulators, Sensors, KinBody):
 
         Args:
             options: What to take, ``ExtractInfoOptions``.
+
+        Returns:
+            A ``RobotBaseInfo``; connected bodies stand in it by themselves, active or not.
         """
         body = self._state.scene
-        return RobotBaseInfo(
+        info = RobotBaseInfo(
             **self.extracted(options),
             _vManipInfos=[ManipulatorInfo.of(body, arm) for arm in body.manipulators],
             _vAttachedSensorInfos=[AttachedSensorInfo.of(body, sensor) for sensor in body.sensors],
             _vGripperInfos=self.GetGripperInfos(),
+            _vConnectedBodyInfos=[connected.GetInfo() for connected in self._connected],
         )
+        return info if self._own_parts is None else only_parts_of(info, self._own_parts)
 
     def Clone(self, ref: KinBody, cloningoptions: int = 0) -> None:
         """Become like another body, as ``KinBody.Clone`` does; a robot's active DOFs, arm and solvers are copied, too.
@@ -317,6 +325,8 @@ class Robot(ActiveDofs, Manipulators, Sensors, KinBody):
         self.active_choice = other.active_choice
         self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
         self.quaternion_limits = other.quaternion_limits.copy()
+        self._connected = tuple(ConnectedBody(self, body.GetInfo()) for body in other._connected)
+        self._own_parts = other._own_parts
         self._active_manipulator = other._active_manipulator
         self.ik_solvers = {name: solver.copy_for(self) for name, solver in other.ik_solvers.items()}
 

@@ -161,7 +161,7 @@ class DescribedSensor(Interface):
         Raises:
             openrave_exception: it is of another kind.
         """
-        if checked_kind(ref, DescribedSensor, "Clone: ref").GetXMLId().lower() != self.GetXMLId().lower():
+        if checked_kind(ref, DescribedSensor, "Clone: ref", "a Sensor").GetXMLId().lower() != self.GetXMLId().lower():
             raise ArgumentError(f"Clone: ref is a '{ref.GetXMLId()}', and this is a '{self.GetXMLId()}'")
         super().Clone(ref, cloningoptions)
         with self._env.simulation.lock:

@@ -282,16 +282,15 @@ class Trajectory(Interface):
         return self.SamplePoints2D(times, spec)
 
     def Clone(self, ref: "Trajectory", cloningoptions: int = 0) -> None:
-        """Take over the specification, the waypoints and the description of another trajectory.
+        """Take over the specification, the waypoints, the description and the data of users from another trajectory.
 
         Args:
             ref: The other trajectory.
             cloningoptions: Not used.
         """
-        del cloningoptions
+        super().Clone(ref, cloningoptions)
         known = ref._waypoints
         self._waypoints = None if known is None else Waypoints(known.groups, known.data)
-        self.SetDescription(ref.GetDescription())
 
     def Swap(self, traj: "Trajectory") -> None:
         """Exchange specification and waypoints with another trajectory.

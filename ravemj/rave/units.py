@@ -3,6 +3,7 @@
 ravemj computes in metres, kilograms, radians and seconds; the units here convert numbers of scripts.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeVar
 
@@ -253,6 +254,10 @@ class UnitInfo(ApiObject):
     angleUnit: AngleUnit = AngleUnit.rad
     timeStampUnit: TimeStampUnit = TimeStampUnit.us
 
+    def __post_init__(self) -> None:
+        if isinstance(self.lengthUnit, UnitInfo):  # the argument is one to copy, as in OpenRAVE
+            vars(self).update(vars(self.lengthUnit))
+
     _kinds: ClassVar[dict[str, type[NamedInt]]] = {
         "lengthUnit": LengthUnit,
         "massUnit": MassUnit,
@@ -271,6 +276,7 @@ class UnitInfo(ApiObject):
         Args:
             obj: What ``SerializeJSON`` returns, or a part of it.
         """
+        checked_kind(obj, Mapping, "UnitInfo.DeserializeJSON: obj", "a dict")
         for name, kind in self._kinds.items():
             if name in obj:
                 setattr(self, name, _read(kind, obj[name], getattr(self, name)))  # pyright: ignore[reportArgumentType]

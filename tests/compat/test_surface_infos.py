@@ -149,6 +149,9 @@ def test_units():
     units = ravemj.UnitInfo()
     units.DeserializeJSON({"lengthUnit": "mm"})
     assert (units.lengthUnit, units.SerializeJSON()["massUnit"]) == (ravemj.LengthUnit.mm, "kg")
+    assert ravemj.UnitInfo(units) == units
+    with pytest.raises(ravemj.openrave_exception, match="a dict"):
+        units.DeserializeJSON(None)
 
 
 def test_units_other_than_those_of_length_stay(env):
@@ -159,6 +162,11 @@ def test_units_other_than_those_of_length_stay(env):
         env.SetUnit("mm", 1)
     with pytest.raises(NotImplementedError):
         env.SetUnitInfo(ravemj.UnitInfo(massUnit=ravemj.MassUnit.g))
+    for wrong in ("x", ravemj.UnitInfo(lengthUnit=77)):
+        with pytest.raises(ravemj.openrave_exception):
+            env.SetUnitInfo(wrong)
+    with pytest.raises(ravemj.openrave_exception):
+        env.SetUnit("m", "x")
     assert env.GetUnitInfo() == ravemj.UnitInfo(lengthUnit=ravemj.LengthUnit.mm)
 
 
@@ -438,7 +446,7 @@ def test_an_environment_goes_through_json(env, robot):
     other.Destroy()
 
 
-def test_grippers_are_kept_and_no_bodies_are_connected(robot):
+def test_grippers_are_kept(robot):
     info = ravemj.GripperInfo(_name="two fingers", _gripperJointNames=["j1"])
     assert robot.AddGripperInfo(info)
     with pytest.raises(ravemj.openrave_exception):
@@ -446,9 +454,6 @@ def test_grippers_are_kept_and_no_bodies_are_connected(robot):
     assert robot.ExtractInfo().SerializeJSON()["gripperInfos"][0]["gripperJointNames"] == ["j1"]
     assert robot.RemoveGripperInfo("two fingers")
     assert robot.GetGripperInfos() == []
-    with pytest.raises(NotImplementedError):
-        robot.AddConnectedBody(ravemj.ConnectedBodyInfo())
-    assert robot.GetConnectedBodies() == []
 
 
 def test_the_nearest_points():

@@ -274,6 +274,22 @@ class TestManipulators:
         assert robot.GetActiveManipulator() is None
         assert [one.GetName() for one in robot.GetManipulators()] == ["short"]
 
+    def test_arms_stay_themselves_when_others_go(self, robot):
+        hand = robot.GetManipulator("hand")
+        info = hand.GetInfo()
+        info._name = "other"
+        other = robot.AddManipulator(info)
+        assert robot.GetManipulators() == [hand, other]
+        assert robot.RemoveManipulator(hand)
+        assert other.GetName() == "other"
+        assert robot.GetManipulators() == [other]
+        for call in (hand.GetTransform, hand.GetName, lambda: hand.SetLocalToolTransform(np.eye(4))):
+            with pytest.raises(ravemj.openrave_exception, match="any more"):
+                call()
+        assert "any more" in repr(hand)
+        assert robot.GetManipulators() == [other]
+        assert not robot.RemoveManipulator(hand)
+
     def test_what_is_refused_changes_nothing(self, robot):
         info = robot.GetManipulator("hand").GetInfo()
         with pytest.raises(ravemj.ArgumentError, match="already"):

@@ -404,6 +404,8 @@ def test_clones_and_swaps():
     assert first.GetConfigurationSpecification().GetDOF() == 1
     clone.Clone(ravemj.RaveCreateTrajectory(ENV, ""))
     assert clone.GetConfigurationSpecification().GetDOF() == 0
+    with pytest.raises(ravemj.openrave_exception, match="Clone: ref"):
+        clone.Clone(None)
 
 
 def test_names_and_data_of_users():

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_transform
 from ravemj.core.transforms import Floats, Pose
 from ravemj.errors import ErrorCode, RavemjError
@@ -163,6 +164,7 @@ class Building(Structure):
             >>> copy.InitFromKinBodyInfo(body.ExtractInfo())
             True
         """
+        checked_kind(info, KinBodyInfo, "InitFromKinBodyInfo: info")
         T_world_link0 = info.transform()
         self._rebuild(body_of(info, self._state.scene))
         self._uri, self._id = info._uri, info._id

@@ -1,18 +1,17 @@
 """The manipulators of a robot, which one is active, and the descriptions of its grippers."""
 
-from typing import TYPE_CHECKING, NoReturn, cast
+from typing import TYPE_CHECKING, cast
 
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import also_named, checked_kind
-from ravemj.errors import ArgumentError, Diagnostics, ErrorCode, RavemjError, UnsupportedError, send_warnings
+from ravemj.errors import ArgumentError, Diagnostics, ErrorCode, RavemjError, send_warnings
 from ravemj.geometry_functions.ik_types import IkParameterizationType
 from ravemj.model import hashes
 from ravemj.model.manipulators import check_reach, freeze_manipulator
 from ravemj.rave.arm_ik import IkBatch
 from ravemj.rave.body.base import BodyPart
-from ravemj.rave.connected_body import CONNECTED, ConnectedBody
-from ravemj.rave.infos import ConnectedBodyInfo, GripperInfo, ManipulatorInfo
+from ravemj.rave.infos import GripperInfo, ManipulatorInfo
 from ravemj.rave.manipulator import Manipulator
 
 if TYPE_CHECKING:
@@ -43,8 +42,9 @@ class Manipulators(BodyPart):
         """
         arms = self._state.scene.manipulators
         if len(self._manipulators) != len(arms):  # they are made once, as links are
-            robot = cast("Robot", self)
-            self._manipulators = tuple(Manipulator(robot, self._state, index) for index in range(len(arms)))
+            robot, known = cast("Robot", self), self._manipulators[: len(arms)]
+            new = (Manipulator(robot, self._state, index) for index in range(len(known), len(arms)))
+            self._manipulators = (*known, *new)
         if manipname is None:
             return list(self._manipulators)
         return [one for one, arm in zip(self._manipulators, arms, strict=True) if arm.name == manipname]
@@ -142,7 +142,8 @@ class Manipulators(BodyPart):
         Returns:
             Whether it was there.
         """
-        if manip not in self.GetManipulators():
+        arms = self.GetManipulators()
+        if manip not in arms:
             return False
         with self._simulation.lock:
             name, active = manip.GetName(), self.GetActiveManipulator()
@@ -151,6 +152,10 @@ class Manipulators(BodyPart):
             self.ik_solvers.pop(name, None)
             kept = tuple(arm for arm in self._state.scene.manipulators if arm.name != name)
             self._state.edit(manipulators=kept)
+            place = arms.index(manip)
+            self._manipulators = tuple(arm for index, arm in enumerate(arms) if index != place)
+            for arm in arms:
+                arm.moved_up(place)
         return True
 
     @also_named(manip="manipname")
@@ -224,51 +229,3 @@ class Manipulators(BodyPart):
         gone = self.GetGripperInfo(name)
         self._grippers = tuple(info for info in self._grippers if info is not gone)
         return gone is not None
-
-    def GetConnectedBodies(self) -> list[ConnectedBody]:
-        """Return the connected bodies: none."""
-        return []
-
-    def GetConnectedBody(self, bodyname: str) -> None:
-        """Return the connected body of a name: None.
-
-        Args:
-            bodyname: The name.
-        """
-
-    def GetConnectedBodyActiveStates(self) -> list[int]:
-        """Return for each connected body whether it is active: an empty list."""
-        return []
-
-    def SetConnectedBodyActiveStates(self, activestates: list[int]) -> None:
-        """Accept no states, since there are no connected bodies.
-
-        Args:
-            activestates: An empty list.
-
-        Raises:
-            UnsupportedError: it has members.
-        """
-        if len(activestates):
-            raise UnsupportedError("SetConnectedBodyActiveStates", CONNECTED)
-
-    def AddConnectedBody(self, connectedbodyinfo: ConnectedBodyInfo, removeduplicate: bool = False) -> NoReturn:
-        """Refuse to connect a body, and to return it.
-
-        Args:
-            connectedbodyinfo: Its description.
-            removeduplicate: Whether it replaces one of the same name.
-
-        Raises:
-            UnsupportedError: always; ``InitFromRobotInfo`` makes a robot of all its links and joints.
-        """
-        raise UnsupportedError("AddConnectedBody", CONNECTED)
-
-    def RemoveConnectedBody(self, connectedbody: ConnectedBody) -> bool:
-        """Return False: no body is connected.
-
-        Args:
-            connectedbody: The body.
-        """
-        del connectedbody
-        return False

@@ -64,10 +64,11 @@ class Contents(EnvironmentPart):
         for sensor in self._sensors:
             sensor.hide()
         self._sensors.clear()
-        gone = [self.wrap(state) for state in self._simulation.bodies] if self._body_callbacks else []
+        gone = [self.wrap(state) for state in self._simulation.bodies]
         self._simulation.clear()
         self._kept_objects.clear()
         for body in gone:
+            body.disconnect()
             self._tell_of_body(body, 0)
 
     def _tell_of_body(self, body: KinBody, action: int) -> None:
@@ -130,7 +131,12 @@ class Contents(EnvironmentPart):
                 self._simulation.rename(state, self._simulation.free_name(state.scene.name))
             elif not body.GetName():
                 raise RavemjError("Add: the body has no name; give it one with SetName", ErrorCode.Failed)
-            self._simulation.insert(state)
+            body.connect()
+            try:
+                self._simulation.insert(state)
+            except RavemjError:
+                body.disconnect()
+                raise
             self._kept_objects[state] = body
         self._tell_of_body(body, 1)
         for viewer in self._viewers:
@@ -211,6 +217,7 @@ class Contents(EnvironmentPart):
             interface.forget_sensors()
         was_there = self._simulation.remove(state)
         if was_there:
+            interface.disconnect()
             self._tell_of_body(interface, 0)
         return was_there
 

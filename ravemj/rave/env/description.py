@@ -127,7 +127,7 @@ class Description(Simulating):
         """
         unit = GetLengthUnitFromString(unitname, LengthUnit.m)
         metres = GetLengthUnitConversionScale(unit, LengthUnit.m)
-        if not np.isclose(unitmult, metres):
+        if not isinstance(unitmult, int | float) or not np.isclose(unitmult, metres):  # as users give it
             raise ArgumentError(f"SetUnit: unitmult is {unitmult}, and '{unitname}' is {metres:g} m long")
         self._units.lengthUnit = unit
 
@@ -148,6 +148,8 @@ class Description(Simulating):
             UnsupportedError: another unit than kilograms, radians and seconds.
         """
         checked_kind(unitInfo, UnitInfo, "SetUnitInfo: unitInfo")
+        if unitInfo.lengthUnit not in set(LengthUnit):
+            raise ArgumentError(f"SetUnitInfo: {unitInfo.lengthUnit!r} is no LengthUnit")
         usual = UnitInfo()
         if replace(unitInfo, lengthUnit=usual.lengthUnit, timeStampUnit=usual.timeStampUnit) != usual:
             raise UnsupportedError(f"SetUnitInfo({unitInfo})", OTHER_UNITS)
@@ -252,7 +254,7 @@ class Description(Simulating):
         del atts, uri
         info = (
             EnvironmentBaseInfo()
-            if "gravity" in envInfo
+            if "gravity" in checked_kind(envInfo, Mapping, "LoadJSON: envInfo", "a dict")
             else EnvironmentBaseInfo(_gravity=self.GetPhysicsEngine().GetGravity())
         )
         self._read_json(info, envInfo)
