@@ -23,6 +23,7 @@ from ravemj.core.transforms import (
 )
 from ravemj.model.scene import Joint, KinBody
 
+_X = (1.0, 0.0, 0.0)
 ROUNDING = 1e-12
 """A measured joint value [rad or m] below this is rounding of the poses, not a displacement."""
 
@@ -93,6 +94,14 @@ def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
         first = joint.axes[0]
         directions[1] = rotate(wxyz_from_axis_angle(first.direction, values[0] - first.reference), directions[1])
     return directions
+
+
+def moving_direction(joint: Joint, axis: int) -> Vec3:
+    """Return the direction in the parent that a joint slides along or turns about; a ball has none.
+
+    A spherical joint that follows others has one value, the first of its rotation vector (random-xml-41, -102).
+    """
+    return _X if joint.kind == "spherical" else joint.axes[axis].direction
 
 
 def reported_anchor(joint: Joint) -> Vec3:

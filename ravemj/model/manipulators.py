@@ -27,9 +27,10 @@ class ManipulatorBuilder:
 
 def freeze_manipulator(built: ManipulatorBuilder, body: scene.KinBody, diagnostics: Diagnostics) -> scene.Manipulator:
     """Find the links and joints that a manipulator names."""
-    names = [link.name for link in body.links]
-    base = names.index(built.base) if built.base in names else None
-    effector = names.index(built.effector) if built.effector in names else None
+    base, effector = (
+        next((index for index, link in enumerate(body.links) if name and link.name == name), None)
+        for name in (built.base, built.effector)
+    )
     arm = () if base is None or effector is None else _arm_dofs(body, base, effector)
     gripper = _gripper(built, body, arm, diagnostics)
     return scene.Manipulator(

@@ -155,6 +155,52 @@ def test_json_files(tmp_path):  # name-11
     assert not other.Load(tmp_path / "none.json")
 
 
+FOLLOWER = """<Robot name="r"><KinBody>
+  <Body name="a"/>
+  <Body name="b"><Translation>.5 0 0</Translation><RotationAxis>0 1 2 40</RotationAxis></Body>
+  <Body name="c"><offsetfrom>b</offsetfrom><Translation>.1 .2 0</Translation><RotationAxis>3 1 0 70</RotationAxis>
+    <Mass type="custom"><total>2</total><com>.3 0 .1</com></Mass></Body>
+  <Joint name="one" type="slider"><Body>a</Body><Body>b</Body><axis>0 1 1</axis></Joint>
+  <Joint name="two" type="{kind}" mimic_pos="2*one-1" mimic_vel="|one 2"><Body>{first}</Body><Body>{second}</Body>
+    <offsetfrom>b</offsetfrom><anchor>.1 .1 .3</anchor>{axis}<limits>{limits}</limits></Joint>
+</KinBody></Robot>"""
+
+
+@pytest.mark.parametrize(("first", "second"), [("b", "c"), ("c", "b")])
+def test_a_spherical_joint_follows_about_x_of_its_parent(first, second):
+    """random-xml-41, and random-xml-102 with the second Body as parent: a hinge there, whose axis is exchanged twice."""
+    found = []
+    x = f"<axis>{-1 if first == 'c' else 1} 0 0</axis>"
+    for kind, axis, limits in [("spherical", "", "-9 9 " * 3), ("hinge", x, "-9 9")]:
+        env = ravemj.Environment()
+        env.StopSimulation()
+        assert env.LoadData(FOLLOWER.format(kind=kind, first=first, second=second, axis=axis, limits=limits))
+        robot = env.GetRobot("r")
+        loaded = [link.GetTransform() for link in robot.GetLinks()]
+        robot.SetDOFValues([0.7])
+        place = robot.GetLinks()[2].GetTransform()
+        rates = robot.ComputeJacobianTranslation(2, place[:3, 3]), robot.ComputeJacobianAxisAngle(2)
+        robot.SetDOFVelocities([0.4])
+        torque, many = robot.ComputeInverseDynamics([0.3]), robot.batch_link_transforms([[0.2], [0.7]])
+        found.append([loaded, place, *rates, torque, many, robot.GetPassiveJoints()[0].GetValues()[:1]])
+        assert env.model.neq == 1
+    assert robot.GetPassiveJoints()[0].GetValues() == pytest.approx([0.4])
+    np.testing.assert_allclose(found[0][-2][1][2], found[0][1], atol=1e-9)
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-9)
+
+
+def test_a_link_without_a_name_is_no_base_that_is_missing():
+    """random-xml-36: OpenRAVE refuses the robot at the first arm, and comes to no link of the third."""
+    arms = "".join(f'<Manipulator name="{i}"><base>b</base><effector>b</effector></Manipulator>' for i in range(3))
+    arms = arms.replace("<effector>b</effector>", "<effector>a</effector>", 1)
+    env = ravemj.Environment()
+    text = """<Robot name="r"><KinBody><Body name="a"/><Body/><Body name="b"/>
+      <Joint name="j"><Body>a</Body><Body>b</Body><axis>0 0 1</axis></Joint></KinBody>{}</Robot>"""
+    assert not env.LoadData(text.format(arms))
+    assert env.GetRobot("r").GetManipulator("2").GetBase() is None
+
+
 def test_a_body_without_a_name_is_refused():  # gap-18, random-api-82
     env, _ = chain()
     for text in ("<KinBody/>", '<Environment><KinBody><Body name="x"/></KinBody></Environment>'):

@@ -12,6 +12,7 @@ import numpy as np
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.dynamics import Tree, first_values
 from ravemj.engine.kinematics import BodyKinematics
+from ravemj.model.joints import moving_direction
 from ravemj.model.scene import Joint
 
 ROOT = -1
@@ -81,7 +82,7 @@ class Chain:
                 source = ("dof", kinematics.first_dofs[index] + axis)
             elif any(mimic.joint == index for mimic in kinematics.mimic.joints):
                 source = ("mimic", index)
-            kind = "spherical" if joint.kind == "spherical" else "slider" if joint.slides(axis) else "hinge"
+            kind = "spherical" if joint.is_ball else "slider" if joint.slides(axis) else "hinge"
             frame, reference = T_step_parent @ T_parent_frame, joint.axes[axis].reference
             step = self._append(Step(kind, step, frame, source, reference, self._coordinate_of_qpos[qpos], joint.child))
             T_step_parent = inverse(T_parent_frame)
@@ -165,8 +166,8 @@ def _axis_frame(joint: Joint, axis: int) -> Floats:
     """Return the frame of a joint's axis in its parent link: at the anchor, with z along the axis, shape (4, 4)."""
     frame = np.eye(4)
     frame[:3, 3] = joint.anchor
-    if joint.kind != "spherical":
-        z = np.array(joint.axes[axis].direction)
+    if not joint.is_ball:
+        z = np.array(moving_direction(joint, axis))
         x = np.cross(z, np.eye(3)[np.abs(z).argmin()])
         x /= np.linalg.norm(x)
         frame[:3, :3] = np.column_stack((x, np.cross(z, x), z))

@@ -276,7 +276,8 @@ class BodyKinematics:
                 measured_values(joint, self.link_pose(joint.parent).inverse() @ self.link_pose(joint.child))
             )
         place = self._mimic_qpos.get(len(self.first_dofs) + index)
-        return np.array(self._passive_values[index] if place is None else [self.qpos[place]])
+        values = self._passive_values[index]
+        return np.array(values if place is None else [self.qpos[place], *values[1:]])
 
     def set_qpos(self, qpos: Floats, *, inner_only: bool) -> None:
         """Take over MuJoCo's configuration from a model in which time moved the body.

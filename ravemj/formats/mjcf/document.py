@@ -11,7 +11,7 @@ from ravemj.formats.mjcf.excludes import WeldGroups, excluded_pairs
 from ravemj.formats.mjcf.geoms import GeomWriter
 from ravemj.formats.mjcf.inertia import inertia_attributes, is_rounding, legal_inertial
 from ravemj.formats.mjcf.lines import Attribute, Lines, pose_attributes
-from ravemj.model.joints import relative_pose
+from ravemj.model.joints import moving_direction, relative_pose
 from ravemj.model.scene import Axis, Joint, KinBody, Link, Mesh, Scene, View
 from ravemj.model.shape_bodies import MASSLESS
 
@@ -273,7 +273,7 @@ class _Writer:
 
     def _write_joint(self, joint: Joint, names: tuple[str, ...]) -> None:
         position = joint.T_parent_child.inverse().apply(joint.anchor)
-        if joint.kind == "spherical" and names:
+        if joint.is_ball and names:
             self.bodies.element("joint", joint.source, name=names[0], type="ball", pos=position)
             return
         for index, (name, axis) in enumerate(zip(names, joint.axes, strict=False)):
@@ -283,7 +283,7 @@ class _Writer:
                 name=name,
                 type="slide" if joint.slides(index) else "hinge",
                 pos=position,
-                axis=rotate(conjugate(joint.T_parent_child.wxyz), axis.direction),
+                axis=rotate(conjugate(joint.T_parent_child.wxyz), moving_direction(joint, index)),
                 **_range(axis),
                 ref=axis.reference or None,
                 armature=axis.armature if self.options.actuators and axis.armature else None,
@@ -291,7 +291,7 @@ class _Writer:
             )
 
     def _write_actuators(self, joint: Joint, names: tuple[str, ...], kind: Actuators) -> None:
-        if joint.kind == "spherical" and names:
+        if joint.is_ball and names:
             message = f"joint '{joint.name}' is spherical, and gets no actuator"
             self.diagnostics.warn("no-actuator", message, joint.source)
             return

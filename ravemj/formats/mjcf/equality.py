@@ -48,8 +48,8 @@ class EqualityWriter:
                 continue
             expression = _without_welds(equation, joints, names)
             moving = leaders(expression)
-            if any(joints[index].kind == "spherical" for index in moving) or joint.kind == "spherical":
-                self._drop(joint, "has to do with a spherical joint")
+            if any(joints[index].is_ball for index in moving):
+                self._drop(joint, "follows a spherical joint")
             elif len(moving) <= 1:
                 self._write_polynomial(joint, joint_names[0], expression, joints, names)
             else:

@@ -209,6 +209,11 @@ class Joint(Record):
         return self.mimic.expression.within(self.axes[0].lower, self.axes[0].upper)
 
     @property
+    def is_ball(self) -> bool:
+        """True for a spherical joint with three free values; one that follows others turns about x of its parent."""
+        return self.kind == "spherical" and self.equation is None
+
+    @property
     def static(self) -> bool:
         """True for a weld: a joint whose limits leave no room."""
         return all(axis.lower >= axis.upper and not axis.circular for axis in self.axes)
