@@ -3,17 +3,21 @@
 import io
 import os
 import zipfile
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Literal
 from urllib.parse import quote
 from xml.sax.saxutils import escape
 
 from ravemj.core.output import AnyPath, added_files, new_file
-from ravemj.errors import Diagnostics, Source
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.formats.collada import read_text
 from ravemj.formats.collada import writer as collada
+from ravemj.formats.collada.external import ExternalBody, find_external
 from ravemj.formats.openrave_xml import writer as openrave_xml
 from ravemj.formats.openrave_xml.geom_writer import FOLDER, MeshFormat
-from ravemj.model.scene import Scene, View
+from ravemj.model.comparison import compare
+from ravemj.model.scene import KinBody, Scene, View
 
 ModelFormat = Literal["collada", "openrave"]
 
@@ -23,7 +27,12 @@ _NO_TIME = (1980, 1, 1, 0, 0, 0)  # the first that zip archives know, so that on
 
 
 def save(
-    path: AnyPath, scene: Scene, diagnostics: Diagnostics, kind: ModelFormat = "collada", meshes: MeshFormat = "stl"
+    path: AnyPath,
+    scene: Scene,
+    diagnostics: Diagnostics,
+    kind: ModelFormat = "collada",
+    meshes: MeshFormat = "stl",
+    external: Mapping[str, ExternalBody] | None = None,
 ) -> None:
     """Write a scene to a file.
 
@@ -33,6 +42,7 @@ def save(
         diagnostics: Takes a warning for everything that the format cannot say.
         kind: The format.
         meshes: The kind of the files in the folder ``meshes`` beside an OpenRAVE XML file.
+        external: Bodies that COLLADA refers to in other files; see ``external_bodies``.
 
     Raises:
         OutputError: It cannot be written, or a name in it cannot.
@@ -43,11 +53,59 @@ def save(
     if scene.view not in (None, View()):
         message = "background and camera are left out: COLLADA has no place for them"
         diagnostics.warn("not-written", message, Source(os.fspath(path)), "OpenRAVE XML keeps them")
-    content = collada.write(scene, diagnostics).encode()
+    content = collada.write(scene, diagnostics, external).encode()
     if os.fspath(path).lower().endswith(_ARCHIVE_SUFFIX):
         content = _archive(f"{Path(path).stem}.dae", content)
     with new_file(path) as file:
         file.write_bytes(content)
+
+
+def external_bodies(
+    path: AnyPath, scene: Scene, names: Collection[str], diagnostics: Diagnostics
+) -> dict[str, ExternalBody]:
+    """Return the bodies that a COLLADA file can refer to in the files that they were read from.
+
+    Args:
+        path: The file that is going to be written.
+        scene: Its bodies; a reference has to give one as it is now.
+        names: Names of those that are asked for.
+        diagnostics: Takes a warning for each of them that cannot be had by a reference.
+    """
+    asked = [(number, body) for number, body in enumerate(scene.bodies) if body.name in names]
+    found = {body.name: _external(path, body, number, diagnostics) for number, body in asked}
+    return {name: external for name, external in found.items() if external is not None}
+
+
+def _external(path: AnyPath, body: KinBody, number: int, diagnostics: Diagnostics) -> ExternalBody | None:
+    """Return a reference to a body in its file; None, with a warning, where reading it gives another body."""
+    try:
+        reference = find_external(body, number, os.fspath(path))
+        for root in body.links[:1]:
+            there = _referred(path, body, reference)
+            T_world_file = root.T_world_link @ there.links[0].T_world_link.inverse()
+            reference = reference._replace(T_world_file=T_world_file)
+        differences = compare(Scene((body,)), Scene((_referred(path, body, reference),)))
+        if not differences:
+            return reference
+        problem = f"{differences[0].part}: {differences[0].quantity} differs"
+    except SourceError as error:
+        problem = error.message
+    message = f"no reference gives '{body.name}' as it is now: {problem}"
+    diagnostics.warn("not-referred", message, body.source, "it stands in the new file itself")
+    return None
+
+
+def _referred(path: AnyPath, body: KinBody, reference: ExternalBody) -> KinBody:
+    """Return what a reader makes of a reference to a body.
+
+    Raises:
+        SourceError: It makes nothing of it.
+    """
+    document = collada.write(Scene((body,)), Diagnostics(), {body.name: reference})
+    found = read_text(document.encode(), os.fspath(path), Diagnostics(), []).bodies
+    if not found:
+        raise SourceError("the reference leads nowhere", body.source)
+    return found[0].freeze(Diagnostics())
 
 
 def _save_openrave_xml(path: Path, document: openrave_xml.Document) -> None:

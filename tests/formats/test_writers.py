@@ -292,11 +292,6 @@ class TestSave:
         for body in ravemj.load(tmp_path / name).GetBodies():
             assert all(not link.GetGeometries() and link.GetMass() == 1e-10 for link in body.GetLinks())
 
-    def test_external_references_are_written_in_full(self, env, tmp_path):
-        with pytest.warns(ravemj.RavemjWarning, match="stand in the file itself"):
-            env.Save(tmp_path / "a.dae", atts={"externalref": "*"})
-        assert ravemj.load(tmp_path / "a.dae").GetRobots()[0].GetDOF() == 2
-
     def test_archive(self, env, tmp_path):
         env.Save(tmp_path / "a b.zae")
         assert zipfile.ZipFile(tmp_path / "a b.zae").namelist() == ["a b.dae", "manifest.xml"]
@@ -333,6 +328,94 @@ class TestSave:
         with pytest.raises(ravemj.openrave_exception, match=words):
             env.Save(str(tmp_path / "a.dae"), *arguments)
         assert list(tmp_path.iterdir()) == []
+
+
+class TestExternalReferences:
+    """Bodies in the files that they were read from."""
+
+    @pytest.fixture
+    def world(self, tmp_path):
+        """Two arms of one file, one of which holds a box of an archive."""
+        (tmp_path / "parts" / "a b").mkdir(parents=True)
+        arm = tmp_path / "parts" / "arm.dae"
+        arm.write_bytes((MODELS / "scara.dae").read_bytes())
+        box = ravemj.Environment()
+        box.LoadData(
+            '<KinBody name="box"><Body name="b"><Geom type="box"><extents>1 2 3</extents></Geom></Body></KinBody>'
+        )
+        box.Save(tmp_path / "parts" / "a b" / "box.zae")
+        env = ravemj.Environment()
+        for path in (arm, arm, tmp_path / "parts" / "a b" / "box.zae"):
+            env.Load(str(path))
+        first, second, held = env.GetBodies()
+        second.SetTransform(ravemj.matrixFromAxisAngle([0.3, -0.2, 1.1]) @ ravemj.matrixFromPose([1, 0, 0, 0, 1, 2, 3]))
+        first.SetDOFValues([0.1, -0.2, 0.03, 0.4])
+        second.Grab(held, second.GetLinks()[-1])
+        second.SetDOFValues([-0.3, 0.2, 0.01, 0.5])
+        return env
+
+    @pytest.mark.parametrize("name", ["scene.dae", "scene.zae"])
+    def test_give_the_world_as_it_stands(self, world, tmp_path, name):
+        scene = snapshots(world)
+        world.Save(tmp_path / name, atts={"externalref": "*", "skipwrite": "geometry physics"})
+        other = ravemj.load(tmp_path / name)
+        assert compare(scene, snapshots(other)) == []
+        assert len(other.GetBodies()[1].GetGrabbed()) == 1
+        assert other.GetBodies()[1].GetURI() == f"file:{tmp_path / 'parts' / 'arm.dae'}"
+        other.Save(tmp_path / f"second-{name}", atts={"externalref": "*"})
+        contents = [document_in(tmp_path / file) for file in (name, f"second-{name}")]
+        assert contents[0] == contents[1]
+        assert "<p>" not in contents[0]
+        assert 'url="parts/a%20b/box.zae#' in contents[0]
+
+    def test_follow_their_file(self, world, tmp_path):
+        world.Save(tmp_path / "scene.dae", atts={"externalref": "*"})
+        arm = tmp_path / "parts" / "arm.dae"
+        arm.write_text(arm.read_text().replace("<mass>", "<mass>1", 1))
+        first, second = (ravemj.load(path).GetBodies()[0].GetMass() for path in (MODELS / "scara.dae", arm))
+        assert first != second
+        assert ravemj.load(tmp_path / "scene.dae").GetBodies()[0].GetMass() == second
+
+    def test_are_written_only_for_those_that_are_named(self, world, tmp_path):
+        one, other, box = (body.GetName() for body in world.GetBodies())
+        world.Save(tmp_path / "scene.dae", atts={"externalref": f"{box} {other}"})
+        text = (tmp_path / "scene.dae").read_text()
+        assert [f'"body{number}_origin"' in text for number in range(3)] == [False, True, True]
+        assert compare(snapshots(world), read_file(tmp_path / "scene.dae").scene) == []
+        with pytest.raises(ravemj.openrave_exception, match=f"names 'nobody'; saved are {one}"):
+            world.Save(tmp_path / "scene.dae", atts={"externalref": "nobody"})
+
+    @pytest.mark.parametrize(
+        ("change", "words"),
+        [
+            (lambda body, folder: body.GetLinks()[1].SetMass(7.0), "link '.*': mass differs"),
+            (lambda body, folder: body.GetLinks()[1].Enable(False), "enabled differs"),
+            (lambda body, folder: body.SetDOFLimits([-1] * 4, [1] * 4), "lower differs"),
+            (lambda body, folder: (folder / "parts" / "arm.dae").unlink(), "is gone"),
+            (lambda body, folder: (folder / "parts" / "arm.dae").write_text("<COLLADA/>"), "no such body"),
+        ],
+    )
+    def test_that_would_give_another_body_are_not_written(self, world, tmp_path, change, words):
+        change(world.GetBodies()[0], tmp_path)
+        with pytest.warns(ravemj.RavemjWarning, match=words):
+            world.Save(tmp_path / "scene.dae", atts={"externalref": world.GetBodies()[0].GetName()})
+        assert compare(snapshots(world), read_file(tmp_path / "scene.dae").scene) == []
+
+    def test_of_bodies_that_come_from_no_collada(self, env, tmp_path):
+        with pytest.warns(ravemj.RavemjWarning, match="comes from no COLLADA file"):
+            env.Save(tmp_path / "a.dae", atts={"externalref": "*"})
+        assert ravemj.load(tmp_path / "a.dae").GetRobots()[0].GetDOF() == 2
+
+    def test_to_the_file_that_is_replaced(self, world, tmp_path):
+        with pytest.warns(ravemj.RavemjWarning, match="going to be replaced"):
+            world.Save(tmp_path / "parts" / "arm.dae", atts={"externalref": "*"})
+        assert compare(snapshots(world), read_file(tmp_path / "parts" / "arm.dae").scene) == []
+
+
+def document_in(path: Path) -> str:
+    if path.suffix == ".zae":
+        return zipfile.ZipFile(path).read(f"{path.stem}.dae").decode()
+    return path.read_text()
 
 
 class TestTrouble:

@@ -97,8 +97,14 @@ def _system_body(scene: SceneContext, instance: Element, wanted: str) -> BodyBui
     if wanted and not parts.has(wanted) and wanted != instance.get("sid"):
         return None
     is_robot = interface_kind(instance, *parts.systems) != "kinbody"
-    body = BodyBuilder(is_robot, scene.library.source(instance))
+    body = BodyBuilder(is_robot, scene.library.source(_origin(scene.library, instance, parts.systems)))
     return _filled(scene, body, instance, parts)
+
+
+def _origin(library: Library, instance: Element, systems: list[Element]) -> Element:
+    """Return the system of another file that an instance refers to, else the instance."""
+    here = library.document_of(instance)
+    return next((system for system in systems if library.document_of(system) is not here), instance)
 
 
 def _model_body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | None:
@@ -133,7 +139,7 @@ def _filled(scene: SceneContext, body: BodyBuilder, instance: Element, parts: _S
         {element: body.links[index] for element, index in links.items()},
         {element: body.joints[index] for element, index in joints.items()},
     )
-    for system in parts.systems:
+    for system in reversed(parts.systems):  # what refers to a system has the last word
         read_supplement(system, scene.references, body, links, joints, values)
         attached.read(system, body)
     chosen = [value for index, joint in enumerate(body.joints) if joint.active for value in values[index]]

@@ -51,7 +51,8 @@ def read_supplement(
     """
     for technique in own_techniques(system):
         body.name = _text(child(technique, "name")) or body.name
-        body.joined_links_adjacent = words(child(technique, "joined_links_adjacent"))[:1] != ["false"]
+        if words(child(technique, "joined_links_adjacent"))[:1] == ["false"]:
+            body.joined_links_adjacent = False
         order, names = _listed(references, technique, "joint", joints)
         if sorted(order) == list(range(len(body.joints))):
             _name_joints(body, order, names)

@@ -5,8 +5,11 @@ and kinematics, joints stand at 0 and are moved by bound values, masses are rigi
 say goes into extras of our own (``supplement``), which other programs skip.
 """
 
+from collections.abc import Mapping
+
 from ravemj.errors import Diagnostics
 from ravemj.formats.collada.body_writer import BodyWriter
+from ravemj.formats.collada.external import ExternalBody, write_reference
 from ravemj.formats.collada.geometry_writer import GeometryWriter
 from ravemj.formats.collada.sections import Sections
 from ravemj.formats.xml_text import XmlText
@@ -18,12 +21,13 @@ _NO_TIME = "1970-01-01T00:00:00Z"
 """The standard asks for a time; one that passes would make two files of one scene differ."""
 
 
-def write(scene: Scene, diagnostics: Diagnostics) -> str:
+def write(scene: Scene, diagnostics: Diagnostics, external: Mapping[str, ExternalBody] | None = None) -> str:
     """Write a scene.
 
     Args:
         scene: What to write; its view has no place in a COLLADA file.
         diagnostics: Takes a warning for everything that the format cannot say.
+        external: By name, the bodies that are written as references to other files.
 
     Raises:
         OutputError: A name or a number cannot be written.
@@ -31,7 +35,11 @@ def write(scene: Scene, diagnostics: Diagnostics) -> str:
     geometry = GeometryWriter(diagnostics)
     sections = Sections(geometry)
     for number, body in enumerate(scene.bodies):
-        BodyWriter(sections, diagnostics, body, number).write()
+        found = None if external is None else external.get(body.name)
+        if found is None:
+            BodyWriter(sections, diagnostics, body, number).write()
+        else:
+            write_reference(sections, body, number, found)
     out = XmlText()
     with out.inside("COLLADA", xmlns=NAMESPACE, version="1.5.0"):
         _write_asset(out)

@@ -2,7 +2,7 @@
 
 import os
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -47,10 +47,9 @@ _PARTS: dict[str, Callable[[KinBody], KinBody]] = {
     "manipulators": lambda body: replace(body, manipulators=()),
 }
 _NO_EFFECT = {
-    "externalref": "references to the files that bodies come from are not written; the bodies stand in the file itself",
-    "forcewrite": "there are no references to other files, beside which something could be written",
-    "ignoreexternaluri": "there are no references to other files",
-    "openravescheme": "there are no references to other files",
+    "forcewrite": "a body that its file does not give as it is now stands in the file itself, with everything",
+    "ignoreexternaluri": "a body stands in the file itself where 'externalref' does not name it",
+    "openravescheme": "references are relative to the file",
     "reusesimilar": "each body is written by itself",
 }
 """OpenRAVE's options that change nothing about what is read again."""
@@ -84,7 +83,9 @@ class Saving(JsonFiles):
                   ``sensors``, ``manipulators``, ``readable``;
                 * ``format``: ``openrave`` for OpenRAVE XML, with meshes in the folder ``meshes`` beside the file;
                   ``collada`` and ``json``;
-                * ``externalref`` and what OpenRAVE has beside it: a warning, since bodies stand in the file itself;
+                * ``externalref``: names of bodies, or ``*`` for all. In COLLADA they become references to the COLLADA
+                  files that they were read from, with their poses, their values and what they hold. A body that is
+                  otherwise not as its file says stands in the new file itself, with a warning (``not-referred``);
                 * ``meshes``: the kind of these, ``stl`` or ``obj``.
 
         Raises:
@@ -97,7 +98,7 @@ class Saving(JsonFiles):
             >>> env.Save("scene.dae")
             >>> env.Save("robot.zae", env.SelectionOptions.Body, env.GetRobots()[0].GetName())
         """
-        from ravemj.formats.writers import save  # noqa: PLC0415 - slow to import, and rarely wanted
+        from ravemj.formats.writers import external_bodies, save  # noqa: PLC0415 - slow to import, and rarely wanted
 
         checked_kind(filename, (str, os.PathLike), "Save: filename", "a path")
         path = os.fspath(filename)
@@ -111,7 +112,7 @@ class Saving(JsonFiles):
             bodies = [snapshot(body) for body in self._simulation.bodies]
             view, gravity = self._simulation.view, self._simulation.gravity
         bodies = _chosen(bodies, options, [value for name, value in given if name == "target"])
-        names = {body.name for body in bodies}
+        names = [body.name for body in bodies]
         if named.get("format") == "json" or ("format" not in named and is_json(path)):
             self._save_json(path, names, skipped)
             return
@@ -119,18 +120,14 @@ class Saving(JsonFiles):
         if self._metre != 1 and kind == "collada":
             raise UnsupportedError("Save", "COLLADA files of environments in other units than metres; JSON has a unit")
         bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
+        diagnostics = Diagnostics()
+        references = _external_names(given, names) if kind == "collada" else set[str]()
+        external = external_bodies(path, Scene(tuple(bodies)), references, diagnostics)
         for part in skipped:
-            bodies = [_PARTS[part](body) for body in bodies]
+            bodies = [body if body.name in external else _PARTS[part](body) for body in bodies]
         is_lone_body = len(bodies) == 1 and view == View()
         scene = Scene(tuple(bodies), None if is_lone_body else view, None if gravity == DEFAULT_GRAVITY else gravity)
-        diagnostics = Diagnostics()
-        save(
-            path,
-            scene,
-            diagnostics,
-            kind,
-            cast("MeshFormat", named.get("meshes", "stl")),
-        )
+        save(path, scene, diagnostics, kind, cast("MeshFormat", named.get("meshes", "stl")), external)
         send_warnings(diagnostics)
 
     def WriteToMemory(
@@ -172,17 +169,30 @@ def _checked(atts: SaveArguments | None) -> list[tuple[str, str]]:
             diagnostics = Diagnostics()
             diagnostics.warn("ignored-option", f"Save: '{name}' has no effect: {_NO_EFFECT[name]}", FROM_SCRIPT)
             send_warnings(diagnostics)
-        elif name != "target":
+        elif name not in ("target", "externalref"):
             _check_words(name, value)
     return pairs
 
 
 def _check_words(name: str, value: str) -> None:
     if name not in _VALUES:
-        raise ArgumentError(f"Save: atts: nothing reads '{name}'; there are target, {', '.join(_VALUES)}")
+        raise ArgumentError(f"Save: atts: nothing reads '{name}'; there are target, externalref, {', '.join(_VALUES)}")
     for word in value.split():
         if word not in _VALUES[name]:
             raise ArgumentError(f"Save: atts: {name} is '{value}'; known are {', '.join(_VALUES[name])}")
+
+
+def _external_names(given: Sequence[tuple[str, str]], names: Collection[str]) -> set[str]:
+    """Return the names of the bodies that references are asked for.
+
+    Raises:
+        ArgumentError: No body of a name is saved.
+    """
+    asked = {word for name, value in given if name == "externalref" for word in value.split()}
+    missing = sorted(asked - {"*", *names})
+    if missing:
+        raise ArgumentError(f"Save: atts: externalref names '{missing[0]}'; saved are {', '.join(names) or 'none'}")
+    return set(names) if "*" in asked else asked
 
 
 def _chosen(bodies: Sequence[KinBody], options: int, targets: Sequence[str]) -> list[KinBody]:

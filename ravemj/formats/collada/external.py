@@ -1,0 +1,273 @@
+"""Bodies in other COLLADA files, to which a document refers: how those files name the parts."""
+
+import os
+from collections.abc import Iterator
+from typing import NamedTuple
+from urllib.parse import quote
+
+from ravemj.core.transforms import Pose
+from ravemj.errors import Diagnostics, Source, SourceError
+from ravemj.formats import settled
+from ravemj.formats.collada.axis import AxisReader
+from ravemj.formats.collada.bindings import AxisBinding, Bindings, ModelBinding, read_bindings
+from ravemj.formats.collada.geometry_writer import write_pose
+from ravemj.formats.collada.library import ARCHIVE_SUFFIX, Library
+from ravemj.formats.collada.references import References
+from ravemj.formats.collada.sections import Sections
+from ravemj.formats.collada.supplement import PROFILE
+from ravemj.formats.collada.visual import Node, expand
+from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children, local_name
+from ravemj.model.scene import KinBody
+
+_MODEL_PARTS = {"instance_kinematics_model", "instance_joint"}
+"""Instances that a path of names has to go through, since one element may be in several of them."""
+_TOP = "external_node"
+"""What the outermost nodes are called, with a number: unlike the nodes in them, so that a path leads to one node."""
+
+
+class _BoundAxis(NamedTuple):
+    """An axis that the file binds to a node.
+
+    Attributes:
+        path: Where it is in the articulated system.
+        target: The transform in the node.
+        joint: Where the joint comes from.
+        place: Which axis of the joint it is.
+        unit: The number by which a written value has to be multiplied [rad or m].
+    """
+
+    path: str
+    target: str
+    joint: Source
+    place: int
+    unit: float
+
+
+class _RigidBodies(NamedTuple):
+    """The instance of a physics model: its URL, its parent node, and pairs of rigid bodies and nodes."""
+
+    url: str
+    parent: str | None
+    bodies: tuple[tuple[str, str], ...]
+
+
+class ExternalBody(NamedTuple):
+    """A body in another file.
+
+    Attributes:
+        uri: The file, relative to the one that refers to it.
+        suffix: What the ids of its nodes get, since a document may show several copies of them.
+        system: The id of its articulated system.
+        nodes: The ids of the outermost nodes that show it.
+        models: For each kinematics model its path in the articulated system, and the path of the node that shows it.
+        axes: Its axes.
+        links: For each link where it comes from, and its path in the articulated system.
+        physics: What gives it masses.
+        T_world_file: What the file's poses have to be moved by.
+    """
+
+    uri: str
+    suffix: str
+    system: str
+    nodes: tuple[str, ...]
+    models: tuple[tuple[str, str], ...]
+    axes: tuple[_BoundAxis, ...]
+    links: dict[Source, str]
+    physics: tuple[_RigidBodies, ...]
+    T_world_file: Pose = Pose()
+
+
+def find_external(body: KinBody, number: int, target: str) -> ExternalBody:
+    """Return how the COLLADA file that a body was read from names its parts.
+
+    Args:
+        body: The body.
+        number: Its number in the document that will refer to it.
+        target: Where that document will lie.
+
+    Raises:
+        SourceError: It comes from no COLLADA file or from the one that will be replaced, or its file is gone or lacks
+            names.
+    """
+    file, line = body.source.file, body.source.line
+    archive, inside, _ = file.partition(f"{ARCHIVE_SUFFIX}/")
+    path = archive + ARCHIVE_SUFFIX if inside else file
+    if not path.lower().endswith((".dae", ARCHIVE_SUFFIX)):
+        raise SourceError("it comes from no COLLADA file", body.source)
+    if not os.path.isfile(path):
+        raise SourceError("the file that it comes from is gone", body.source)
+    if os.path.realpath(path) == os.path.realpath(target):
+        raise SourceError("it comes from the file that is going to be replaced", body.source)
+    library = Library(Diagnostics(), [], None)
+    document = library.open_file(path)
+    if document.path != file:
+        raise SourceError("it comes from a file inside of an archive", body.source)
+    uri = quote(os.path.relpath(path, os.path.dirname(target) or ".").replace(os.sep, "/"))
+    return _Finder(library, document, uri, f".body{number}").find(line)
+
+
+class _Finder:
+    """Finds the parts of a body in the file that has it."""
+
+    def __init__(self, library: Library, document: ColladaDocument, uri: str, suffix: str) -> None:
+        self._library = library
+        self._uri = uri
+        self._suffix = suffix
+        self._document = document
+        self._references = References(library)
+        self._scene = child(document.root, "scene")
+        visual = child(self._scene, "instance_visual_scene")
+        shown = None if visual is None else library.follow(visual)
+        self._root = None if shown is None else expand(library, shown)
+
+    def find(self, line: int) -> ExternalBody:
+        """Return the body whose instance or articulated system stands in a line.
+
+        Raises:
+            SourceError: There is none, or it lacks names.
+        """
+        for kinematics in children(self._scene, "instance_kinematics_scene"):
+            scene = self._library.follow(kinematics)
+            for instance in children(scene, "instance_articulated_system"):
+                system = self._library.follow(instance)
+                if scene is not None and system is not None and line in (instance.sourceline, system.sourceline):
+                    bindings = read_bindings(self._library, self._references, kinematics, scene, self._root)
+                    return self._described(instance, system, bindings)
+        raise SourceError("the file has no such body any more", Source(self._document.path, line))
+
+    def _described(self, instance: Element, system: Element, bindings: Bindings) -> ExternalBody:
+        models = [binding for binding in bindings.models if binding.owner is instance]
+        axes = [binding for binding in bindings.axes if binding.owner is instance and binding.node is not None]
+        shown = [binding.node for binding in models] + [binding.node for binding in axes if binding.node is not None]
+        tops = list(dict.fromkeys(_top(node) for node in shown))
+        return ExternalBody(
+            self._uri,
+            self._suffix,
+            self._name(system, "id"),
+            tuple(self._name(top.element, "id") for top in tops),
+            tuple((self._name(one.instance, "sid"), self._path(one.node, tops)) for one in models),
+            tuple(self._axis(one, one.node, tops) for one in axes if one.node is not None),
+            dict(self._links(models)),
+            tuple(self._physics(tops)),
+        )
+
+    def _name(self, element: Element, attribute: str) -> str:
+        name = element.get(attribute)
+        if not name:
+            raise self._library.error(f"the element has no {attribute} by which to refer to it", element)
+        return name
+
+    def _path(self, node: Node, tops: list[Node]) -> str:
+        """Return the names of the nodes from an outermost one, which is called by its place, to a node."""
+        around = [*node.around()][:-2]  # without the outermost one and the scene
+        named = [(one.element.get("sid"), one.element.get("id")) for one in reversed(around)]
+        names = [sid or f"{identity}{self._suffix}" for sid, identity in named if sid or identity]
+        return "/".join((f"{_TOP}{tops.index(_top(node))}", *names))
+
+    def _axis(self, binding: AxisBinding, node: Node, tops: list[Node]) -> _BoundAxis:
+        joint = binding.axis.getparent()
+        if joint is None:
+            raise self._library.error("an axis belongs to a joint", binding.axis)
+        through = [item for item in binding.through if local_name(item) in _MODEL_PARTS]
+        parts = through if any(local_name(item) == "instance_joint" for item in through) else [*through, joint]
+        axes = [*children(joint, "revolute", "prismatic")]
+        place = axes.index(binding.axis)
+        sids = [sid for item in children(node.element, "rotate", "translate") if (sid := item.get("sid"))]
+        return _BoundAxis(
+            "/".join(self._name(item, "sid") for item in (*parts, binding.axis)),
+            "/".join((self._path(node, tops), *sids[place : place + 1])),
+            self._library.source(joint),
+            place,
+            AxisReader(self._library, self._references).value(binding.axis, 1.0),
+        )
+
+    def _links(self, models: list[ModelBinding]) -> Iterator[tuple[Source, str]]:
+        for binding in models:
+            model = self._library.follow(binding.instance)
+            for link in () if model is None else model.iter("{*}link"):
+                if link.get("sid"):
+                    yield self._library.source(link), f"{binding.instance.get('sid')}/{link.get('sid')}"
+
+    def _physics(self, tops: list[Node]) -> Iterator[_RigidBodies]:
+        for physics in children(self._scene, "instance_physics_scene"):
+            for instance in children(self._library.follow(physics), "instance_physics_model"):
+                rigid = [
+                    (body.get("body") or "", target)
+                    for body in children(instance, "instance_rigid_body")
+                    if self._is_in(target := (body.get("target") or "").removeprefix("#"), tops)
+                ]
+                url, parent = instance.get("url") or "", (instance.get("parent") or "").removeprefix("#")
+                if rigid:
+                    url = f"{self._uri}{url}" if url.startswith("#") else url
+                    yield _RigidBodies(url, parent or None, tuple(rigid))
+
+    def _is_in(self, name: str, tops: list[Node]) -> bool:
+        node = None if self._root is None else self._root.find(name)
+        return node is not None and _top(node) in tops
+
+
+def _top(node: Node) -> Node:
+    """Return the outermost node around one, below the scene."""
+    return [*node.around()][-2]
+
+
+def write_reference(sections: Sections, body: KinBody, number: int, external: ExternalBody) -> None:
+    """Write a body as a reference to another file: its name, pose and values, and what it holds.
+
+    Args:
+        sections: The libraries of the document.
+        body: The body.
+        number: Its number in the document.
+        external: How the other file names its parts.
+    """
+    name = f"body{number}"
+    out = sections.nodes
+    with out.inside("node", id=f"{name}_external", name=body.name):
+        write_pose(out, settled.pose(external.T_world_file))
+        for place, node in enumerate(external.nodes):
+            with out.inside("instance_node", url=f"{external.uri}#{node}", sid=f"{_TOP}{place}"):
+                out.element("extra", type="idsuffix", name=external.suffix)
+    out = sections.systems
+    with out.inside("articulated_system", id=f"{name}_motion"):
+        with out.inside("motion"):
+            out.element("instance_articulated_system", url=f"{external.uri}#{external.system}", sid=f"{name}_origin")
+            out.element("technique_common")
+        with out.inside("extra", type=PROFILE), out.inside("technique", profile=PROFILE):
+            out.element("name", body.name)
+            for grab in body.grabs:
+                paths = [
+                    f"{name}_origin/{external.links[body.links[link].source]}" for link in (grab.link, *grab.ignored)
+                ]
+                ignored = " ".join(paths[1:]) or None
+                with out.inside("grabbed", body=grab.body, link=paths[0], ignored=ignored):
+                    write_pose(out, settled.pose(grab.T_link_body))
+    _write_bindings(sections, body, name, external)
+    out = sections.physics_scene
+    for physics in external.physics:
+        parent = None if physics.parent is None else f"#{physics.parent}{external.suffix}"
+        with out.inside("instance_physics_model", url=physics.url, parent=parent):
+            for rigid, target in physics.bodies:
+                out.element("instance_rigid_body", body=rigid, target=f"#{target}{external.suffix}")
+
+
+def _write_bindings(sections: Sections, body: KinBody, name: str, external: ExternalBody) -> None:
+    """Write the instance in the kinematics scene, and bind its models and axes to nodes and values."""
+    scope, paths = f"{name}_scene", [path for path, _ in external.models] + [axis.path for axis in external.axes]
+    out = sections.kinematics_scene
+    with out.inside("instance_articulated_system", url=f"#{name}_motion", sid=scope, name=body.name):
+        for place, path in enumerate(paths):
+            with out.inside("newparam", sid=f"{scope}_{place}"):
+                out.element("SIDREF", f"{scope}/{name}_origin/{path}")
+    out = sections.bindings
+    for place, (_, node) in enumerate(external.models):
+        with out.inside("bind_kinematics_model", node=f"{name}_external/{node}"):
+            out.element("param", f"{scope}_{place}")
+    joints = {joint.source: joint for joint in body.joints}
+    for place, axis in enumerate(external.axes, len(external.models)):
+        joint = joints.get(axis.joint)
+        value = 0.0 if joint is None or axis.place >= len(joint.axes) else joint.axes[axis.place].value
+        with out.inside("bind_joint_axis", target=f"{name}_external/{axis.target}"):
+            with out.inside("axis"):
+                out.element("param", f"{scope}_{place}")
+            with out.inside("value"):
+                out.element("float", settled.number(value / axis.unit))
