@@ -1,12 +1,13 @@
 """Simulation time, and the thread that lets it pass."""
 
 import logging
+import math
 import threading
 import time
 import weakref
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from threading import Event, Lock, RLock, Thread
-from typing import NamedTuple
 
 _LOG = logging.getLogger("ravemj")
 
@@ -45,9 +46,8 @@ class Clock:
         self.is_allowed = True
         self._lock = lock
         self._step = step
-        self._timestep, self._realtime = DEFAULT_STEP, True
+        self._rhythm = _Rhythm(lock, Event(), DEFAULT_STEP, 1.0)
         self._thread: Thread | None = None
-        self._ending = Event()
         self._starting = Lock()
 
     def step(self, timestep: float) -> None:
@@ -60,9 +60,8 @@ class Clock:
         """Let time pass by itself from now on, unless it was stopped."""
         with self._starting:
             if self.is_allowed and self._thread is None:
-                self._ending = Event()
-                rhythm = _Rhythm(self._lock, self._ending, self._timestep, self._realtime)
-                arguments = (weakref.ref(self), rhythm)
+                self._rhythm = replace(self._rhythm, ending=Event())
+                arguments = (weakref.ref(self), self._rhythm)
                 self._thread = Thread(target=_run, args=arguments, name="simulation time", daemon=True)
                 self._thread.start()
 
@@ -74,8 +73,32 @@ class Clock:
             realtime: Whether a second of simulation takes a second; else steps follow one another at once.
         """
         self.stop()
-        self._timestep, self._realtime, self.is_allowed = timestep, realtime, True
+        self._rhythm = replace(self._rhythm, timestep=timestep, pace=1.0 if realtime else math.inf)
+        self.resume()
+
+    def resume(self) -> None:
+        """Let time pass again after ``stop``, in the steps and at the pace from before."""
+        self.is_allowed = True
         self.wake()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether time passes by itself now; asking does not wake it."""
+        return self._thread is not None
+
+    @property
+    def timestep(self) -> float:
+        """Length of the steps with which time passes by itself [s]."""
+        return self._rhythm.timestep
+
+    @property
+    def pace(self) -> float:
+        """Seconds of simulation that are wanted in a second: 1 is real time, inf as many as can be computed."""
+        return self._rhythm.pace
+
+    @pace.setter
+    def pace(self, pace: float) -> None:
+        self._rhythm.pace = pace
 
     def stop(self, *, wait: bool = True) -> None:
         """Let time stand still.
@@ -85,7 +108,7 @@ class Clock:
         """
         with self._starting:
             self.is_allowed = False
-            self._ending.set()
+            self._rhythm.ending.set()
             thread, self._thread = self._thread, None
         if wait and thread is not None and thread is not threading.current_thread():
             thread.join()
@@ -97,29 +120,30 @@ class Clock:
                 self._thread = None
 
     def __del__(self) -> None:
-        self._ending.set()
+        self._rhythm.ending.set()
 
 
-class _Rhythm(NamedTuple):
+@dataclass
+class _Rhythm:
     """What the thread knows without the clock.
 
     Attributes:
         lock: Held during each step.
         ending: Set when the thread should end.
         timestep: Length of the steps [s].
-        realtime: Whether to wait between them.
+        pace: Seconds of simulation in a second; inf: no step waits.
     """
 
     lock: RLock
     ending: Event
     timestep: float
-    realtime: bool
+    pace: float
 
 
 def _run(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> None:
     """Step a clock until it is stopped or gone."""
-    due = time.monotonic() + rhythm.timestep
-    while not rhythm.ending.wait(max(due - time.monotonic(), PAUSE) if rhythm.realtime else PAUSE):
+    due = time.monotonic() + rhythm.timestep / rhythm.pace
+    while not rhythm.ending.wait(max(due - time.monotonic(), PAUSE)):
         while not rhythm.lock.acquire(timeout=POLL):
             if rhythm.ending.is_set():
                 return
@@ -137,4 +161,4 @@ def _run(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> None:
         finally:
             present = None
             rhythm.lock.release()
-        due = max(due + rhythm.timestep, time.monotonic() - BEHIND)
+        due = max(due + rhythm.timestep / rhythm.pace, time.monotonic() - BEHIND)

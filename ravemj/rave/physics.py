@@ -249,6 +249,7 @@ class PhysicsEngine(Interface):
         """Start to be the environment's engine."""
         self._is_attached = True
         self._env.simulation.set_gravity(self._gravity)
+        self._env.simulation.physics = self.dynamics
 
     def detach(self) -> None:
         """Stop being the environment's engine."""

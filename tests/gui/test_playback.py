@@ -271,7 +271,7 @@ def test_scripts_and_the_viewer_share_the_playback(viewer):
 
 
 def test_the_motions_controls_are_there_while_there_is_a_motion(panel, viewer, env, robot):
-    always = ["picture", "video", "camera", "view", "display", "help", "joints"]
+    always = ["picture", "video", "camera", "view", "display", "tree", "help", "pull", "joints"]
     assert panel.names == always
     viewer.play(SWING)
     assert panel.names == ["back", "play", "forward", "seek", "speed", *always]
@@ -280,7 +280,7 @@ def test_the_motions_controls_are_there_while_there_is_a_motion(panel, viewer, e
     viewer.play(ravemj.Motion([0.0], [[1.0, 0.0]]))  # a single pose has nothing to go through
     assert panel.names == always
     env.Remove(robot)
-    assert panel.names == always[:-1]
+    assert panel.names == always[:-2]
 
 
 def test_the_mouse_plays_pauses_steps_and_changes_the_speed(panel, viewer):
@@ -573,7 +573,7 @@ def test_many_joints_scroll():
         bottom = mark.y + mark.height
     assert tops[0] == pytest.approx(104)
     assert bottom == pytest.approx(104 + 22 * len(seen))  # the mark shows which part is seen
-    assert all(len(text) <= 26 for *_, text in panel.layout.panels())
+    assert all(len(part.text) <= 26 for part in panel.layout.panels())
 
 
 def test_long_names_are_cut_so_that_they_differ():

@@ -6,6 +6,7 @@ from test_interaction import FROM_FRONT, Hand
 
 import ravemj
 from ravemj.formats.shipped import model_path
+from ravemj.gui.interaction import Move, Operate, Press, Release, Wheel
 
 PULL = {"ctrl": True, "shift": True}
 
@@ -102,3 +103,83 @@ def test_beside_bodies_and_in_camera_mode_nothing_is_pulled(env):
     assert hand.view is not before, "Shift translates the view"
     hand.in_interaction().drag((5, 5), (60, 60), **PULL)
     assert not env.GetRobots()[0].GetDOFValues().any()
+
+
+# --- other configurations, redundant arms, the button
+
+
+def test_the_other_branches_show_as_ghosts_while_a_hand_is_pulled(arm):
+    robot = arm.env.GetRobots()[0]
+    robot.SetDOFValues([0.1, -0.5, -1.2, 0.3, 0.6, 0.2])
+    flange = robot.GetLinks()[6]
+    x, y = arm.at(flange.GetTransform()[:3, 3])
+    at = next(
+        (x + i, y + j)
+        for i in range(-60, 61, 4)
+        for j in range(-60, 61, 4)
+        if (arm.lines((x + i, y + j)), arm.gui.hover)[1] is not None and arm.gui.hover.link == 6
+    )
+    held = np.linalg.inv(flange.GetTransform()) @ [*arm.gui.hover.position, 1]
+    arm.gui.handle(Press(*at, **PULL))
+    arm.gui.handle(Move(at[0] + 20, at[1]))
+    joints = arm.gui.overlay().primitives.points.corners[:, 0]
+    assert len(joints) > 0
+    assert len(joints) % 7 == 0  # six joints and the tool
+    shoulder = robot.GetJoints()[0].GetAnchor()
+    for ghost in joints.reshape(-1, 7, 3):
+        np.testing.assert_allclose(ghost[-1], (flange.GetTransform() @ held)[:3], atol=1e-6)
+        np.testing.assert_allclose(ghost[0], shoulder, atol=1e-9)
+        assert np.abs(ghost - joints[:7]).max() == 0 or np.abs(ghost - joints[:7]).max() > 0.01
+    arm.gui.handle(Release(*at))
+    assert not len(arm.gui.overlay().primitives.points.corners)
+
+
+def test_the_wheel_moves_a_redundant_arm_while_its_hand_stays():
+    env = ravemj.load(model_path("panda"))
+    robot = env.GetRobots()[0]
+    robot.SetDOFValues([0.1, -0.5, 0.2, -1.8, 0.1, 1.6, 0.7], range(7))
+    grip = robot.GetLink("hand")
+    place = grip.GetTransform()[:3, 3]
+    camera = ravemj.transformLookat(lookat=place, camerapos=place + np.array([1.5, 1.0, 0.3]), cameraup=[0, 0, -1])
+    hand = Hand(env, camera).in_interaction()
+    at = hand.at(place)
+    hand.gui.handle(Press(*at, **PULL))
+    hand.gui.handle(Move(at[0] + 10, at[1]))
+    assert hand.selection.link == grip.GetIndex()
+    values, T_world_hand = robot.GetDOFValues(), grip.GetTransform()
+    view = hand.view
+    for _ in range(3):
+        hand.gui.handle(Wheel(1))
+    np.testing.assert_allclose(grip.GetTransform(), T_world_hand, atol=1e-6)
+    assert robot.GetDOFValues()[6] - values[6] > 0.05
+    hand.gui.handle(Wheel(-3))
+    np.testing.assert_allclose(robot.GetDOFValues(), values, atol=0.02)
+    assert hand.view == view
+    hand.gui.handle(Release(at[0] + 10, at[1]))
+    hand.gui.handle(Wheel(1))
+    np.testing.assert_allclose(robot.GetDOFValues(), values, atol=0.02)  # nothing is held any more
+
+
+def test_the_wheel_leaves_an_arm_without_free_joints_where_it_is(arm):
+    robot = arm.env.GetRobots()[0]
+    point, _ = surface(arm, robot)
+    arm.gui.handle(Press(*arm.at(point), **PULL))
+    arm.gui.handle(Move(*arm.at(point + 0.03 * arm.view.camera.rotation[:, 0])))
+    before = robot.GetDOFValues()
+    arm.gui.handle(Wheel(5))
+    np.testing.assert_array_equal(robot.GetDOFValues(), before)
+
+
+def test_with_the_button_a_plain_drag_pulls(arm):
+    robot = arm.env.GetRobots()[0]
+    point, link = surface(arm, robot)
+    before, base = link.GetTransform(), robot.GetTransform()
+    arm.gui.handle(Operate("pull"))
+    target = point + 0.05 * arm.view.camera.rotation[:, 0]
+    arm.drag(arm.at(point), arm.at((point + target) / 2), arm.at(target))
+    assert np.linalg.norm(link.GetTransform()[:3, 3] - before[:3, 3]) > 0.02
+    np.testing.assert_array_equal(robot.GetTransform(), base)
+    arm.gui.handle(Operate("pull"))
+    after = robot.GetDOFValues()
+    arm.drag(arm.at(target), arm.at(point))
+    np.testing.assert_array_equal(robot.GetDOFValues(), after)

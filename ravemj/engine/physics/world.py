@@ -17,6 +17,7 @@ from ravemj.engine.collision.resting import tested_pairs
 from ravemj.engine.model_part import ModelPart
 from ravemj.engine.physics.body import PhysicalBody
 from ravemj.engine.physics.loads import Loads
+from ravemj.engine.physics.spring import Spring
 from ravemj.engine.simulation import BodyState, Compiled, Simulation
 from ravemj.errors import Diagnostics
 from ravemj.formats.mjcf import Mjcf, Options
@@ -33,11 +34,13 @@ class Physics:
 
     Attributes:
         self_collisions: Whether links of one body collide with one another.
+        spring: What someone pulls with, or None.
     """
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self.self_collisions = True
+        self.spring: Spring | None = None
         self._loads: dict[BodyState, Loads] = {}
         self._bodies: dict[BodyState, PhysicalBody] = {}
         self._made_of: list[object] = []
@@ -70,8 +73,12 @@ class Physics:
         data.qfrc_applied[:], data.xfrc_applied[:] = 0.0, 0.0
         for body in self._bodies.values():
             self.loads(body.state).apply(body)
-        applied = data.qfrc_applied.copy()
+        applied, pushed = data.qfrc_applied.copy(), data.xfrc_applied.copy()
+        spring = self.spring
+        pulled = None if spring is None else self._bodies.get(spring.state)
         for _ in range(count):
+            if spring is not None and pulled is not None:
+                spring.act(pulled, pushed)
             self._drive(applied)
             mujoco.mj_step(model, data)
         if not (np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()):
@@ -180,15 +187,38 @@ class Physics:
             Each of shape (contacts, 3), in the world.
         """
         body_id = self._body_id(state, link)
-        points, forces, wrench = [np.zeros((0, 3))], [np.zeros((0, 3))], np.zeros(6)
-        for index, contact in enumerate(() if body_id is None else self._data.contact):
-            sides = [int(self._model.geom_bodyid[geom]) for geom in contact.geom]
-            if body_id in sides and contact.efc_address >= 0:
+        touches = [] if body_id is None else self._touches()
+        points = [point for sides, point, _ in touches if body_id in sides]
+        forces = [push if sides[1] == body_id else -push for sides, _, push in touches if body_id in sides]
+        return np.array(points).reshape(-1, 3), np.array(forces).reshape(-1, 3)
+
+    def contacts(self) -> tuple[Floats, Floats]:
+        """Return the points of all contacts of the last step [m], and the force at each [N].
+
+        Returns:
+            Each of shape (contacts, 3), in the world; the force is that on the body that can move, and on either of
+            two that can.
+        """
+        touches, fixed = self._touches(), self._model.body_weldid == 0
+        points = [point for _, point, _ in touches]
+        forces = [-push if fixed[sides[1]] else push for sides, _, push in touches]
+        return np.array(points).reshape(-1, 3), np.array(forces).reshape(-1, 3)
+
+    def mean_weight(self) -> float:
+        """Return the mean weight of the links that can move [N]; 0 where none can or nothing falls."""
+        masses = self._model.body_mass[self._model.body_weldid > 0]
+        return float(np.linalg.norm(self._simulation.gravity)) * float(masses.mean()) if len(masses) else 0.0
+
+    def _touches(self) -> list[tuple[tuple[int, int], Floats, Floats]]:
+        """Return for each contact its two bodies, its point [m], and the force on the second body [N]."""
+        found: list[tuple[tuple[int, int], Floats, Floats]] = []
+        wrench = np.zeros(6)
+        for index, contact in enumerate(self._data.contact):
+            if contact.efc_address >= 0:
                 mujoco.mj_contactForce(self._model, self._data, index, wrench)
-                push = contact.frame.reshape(3, 3).T @ wrench[:3]  # on the second geom
-                points.append(contact.pos[None].copy())
-                forces.append((push if sides[1] == body_id else -push)[None])
-        return np.concatenate(points), np.concatenate(forces)
+                first, second = self._model.geom_bodyid[contact.geom].tolist()
+                found.append(((first, second), contact.pos.copy(), contact.frame.reshape(3, 3).T @ wrench[:3]))
+        return found
 
     def _body_id(self, state: BodyState, link: int) -> int | None:
         """Return MuJoCo's index of a link, with the forces on it computed; None if no step has seen it."""

@@ -10,7 +10,9 @@ from ravemj.model.drawing import Drawings
 from ravemj.model.scene import KinBody, View
 
 if TYPE_CHECKING:
+    from ravemj.engine.clock import Clock
     from ravemj.engine.collision.world import CollisionWorld
+    from ravemj.engine.physics import Physics
     from ravemj.engine.simulation.world_model import WorldModel
 
 DEFAULT_GRAVITY: Vec3 = (0.0, 0.0, -9.797930195020351)
@@ -32,6 +34,8 @@ class Simulation:
         changed: Bodies that moved or were described anew since the model was last brought up to date.
         collision_stamp: Grows when what may collide with what changes: links are enabled, bodies are held.
         drawings: What scripts draw beside the bodies; needs no lock.
+        clock: Simulation time; None where nobody lets it pass.
+        physics: What moves the bodies in that time; None where they stay where they are put.
     """
 
     def __init__(self) -> None:
@@ -43,6 +47,8 @@ class Simulation:
         self.gravity = DEFAULT_GRAVITY
         self.changed: set[BodyState] = set()
         self.collision_stamp = 0
+        self.clock: Clock | None = None
+        self.physics: Physics | None = None
         self._places: list[BodyState | None] = []
         self._by_name: dict[str, BodyState] = {}
         self._world: WorldModel | None = None

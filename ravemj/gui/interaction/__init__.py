@@ -9,8 +9,9 @@
     interaction.overlay().lines
 """
 
+from ravemj.gui.interaction.control import Control
 from ravemj.gui.interaction.control_layout import ControlLayout
-from ravemj.gui.interaction.controls import Control, Controls, Request
+from ravemj.gui.interaction.controls import Controls, Request
 from ravemj.gui.interaction.core import Interaction
 from ravemj.gui.interaction.events import (
     Button,

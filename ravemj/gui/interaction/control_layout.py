@@ -1,13 +1,15 @@
 """Where a window has the controls, and how it draws them: as rectangles and text.
 
-The motion's are in a slim row at the bottom, between the wheels; it is there only while there is a motion. The others
+The motion's are in a slim row at the bottom, between the wheels, and those of simulation time in another one; each is
+there only while there is something to control. The others
 are a column of small buttons under those of the modes, and the joints' sliders unfold beside it.
 """
 
 from dataclasses import replace
+from itertools import accumulate
 from typing import NamedTuple
 
-from ravemj.gui.interaction.controls import Control
+from ravemj.gui.interaction.control import Control
 from ravemj.gui.interaction.mode_buttons import Panel, Rect
 
 _MARGIN, _GAP = 8.0, 4.0
@@ -19,12 +21,12 @@ _WHEEL = 150.0
 """What the wheel and the row below it take at the right."""
 
 _BAR, _ICON = 26.0, 28.0
-_CLOCK, _SPEED = 110.0, 44.0
+_CLOCK, _SPEED, _PASSED = 110.0, 44.0, 130.0
 _SHORTEST_TRACK = 80.0
 _JOINT_ROW, _NAME, _TRACK, _VALUE = 22.0, 180.0, 104.0, 84.0
 _LONGEST_NAME = 26
 _TABLE = _NAME + _TRACK + _VALUE
-_KNOB = 8.0
+_KNOB, _SCROLL_BAR = 8.0, 4.0
 _LOWEST_VIEW = 420.0
 """Height of a view from which on there is room for the column."""
 
@@ -45,42 +47,46 @@ class ControlLayout(NamedTuple):
     Attributes:
         places: Where each control is; sliders have their track there. Those that do not fit are left out.
         backs: What lies under several of them, and catches what misses them.
-        first_joint: Which of the joints' sliders is the first that is seen.
-        last_joint: The greatest number that this can be.
+        first_row: Which of the joints' sliders, or of the rows of the tree, is the first that is seen.
+        last_row: The greatest number that this can be.
     """
 
     places: dict[Control, Rect]
     backs: tuple[Rect, ...]
-    first_joint: int
-    last_joint: int
+    first_row: int
+    last_row: int
 
     @classmethod
-    def of(cls, controls: tuple[Control, ...], size: tuple[int, int], first_joint: int = 0) -> "ControlLayout":
+    def of(cls, controls: tuple[Control, ...], size: tuple[int, int], first_row: int = 0) -> "ControlLayout":
         """Lay controls out.
 
         Args:
             controls: The controls.
             size: Width and height of the view [points].
-            first_joint: Which of the joints' sliders should be the first one.
+            first_row: Which of the joints' sliders, or of the rows of the tree, should be the first one.
         """
-        playing, others, menu, joints, joint_tools = (
+        playing, time, others, menu, joints, joint_tools, tree = (
             [control for control in controls if control.group == group]
-            for group in ("playing", "tools", "menu", "joints", "joint tools")
+            for group in ("playing", "time", "tools", "menu", "joints", "joint tools", "tree")
         )
-        places = _bar(playing, size)
-        backs = [_around(places)] if places else []
+        motion = _bar(playing, size)
+        time_row = _time_bar(time, size, row=1 if motion else 0)
+        backs = [_around(row) for row in (motion, time_row) if row]
+        places = motion | time_row
         if size[1] < _LOWEST_VIEW:
             return cls(places, tuple(backs), 0, 0)
         column = _column(others, size)
         left = min((rect.x for rect in column.values()), default=float(size[0])) - _MARGIN
         places |= column | _menu(menu, left)
         fitting = int((size[1] - _COLUMN_TOP - 2 * _MARGIN - _BAR) / _JOINT_ROW) - bool(joint_tools)
-        last = max(len(joints) - fitting, 0)
-        first = min(max(first_joint, 0), last)
+        rows = joints or tree
+        last = max(len(rows) - fitting, 0)
+        first = min(max(first_row, 0), last)
         table = Rect(left - _TABLE, _COLUMN_TOP, _TABLE, _JOINT_ROW)
-        shown = joints[first : first + fitting]
-        for row, joint in enumerate(shown):
-            places[joint] = Rect(table.x + _NAME, table.y + row * _JOINT_ROW, _TRACK, _JOINT_ROW)
+        shown = rows[first : first + fitting]
+        for number, row in enumerate(shown):
+            x, width = (table.x + _NAME, _TRACK) if row.is_slider else (table.x + _SCROLL_BAR, _TABLE - _SCROLL_BAR)
+            places[row] = Rect(x, table.y + number * _JOINT_ROW, width, _JOINT_ROW)
         for column, tool in enumerate(joint_tools):
             width = _TABLE / len(joint_tools)
             y = table.y + len(shown) * _JOINT_ROW
@@ -109,24 +115,26 @@ class ControlLayout(NamedTuple):
     def panels(self) -> tuple[Panel, ...]:
         """Return what to draw."""
         drawn = [Panel(back, _BACK) for back in self.backs]
-        if self.last_joint:
+        if self.last_row:
             drawn.append(self._scroll_bar(self.backs[-1]))
         names = shortened([control.label for control in self.places if control.group == "joints"])
         for control, rect in self.places.items():
             if control.is_slider:
                 drawn += _slider(control, rect, names.get(control.label, ""))
-            elif control.group == "playing":
+            elif control.group in {"playing", "time"}:
                 drawn += _icon(control, rect)
+            elif control.group == "tree":
+                drawn.append(Panel(rect, _ON if control.is_on else _CLEAR, control.text, is_left=True))
             else:
                 colour = _BACK if not control.is_on else _RECORDING if control.name == "video" else _ON
                 drawn.append(Panel(rect, colour, control.text))
         return tuple(drawn)
 
     def _scroll_bar(self, table: Rect) -> Panel:
-        """Return a mark that shows which part of the joints is seen."""
-        shown = sum(control.group == "joints" for control in self.places)
-        part = table.height / (shown + self.last_joint)
-        return Panel(Rect(table.x, table.y + self.first_joint * part, 4, shown * part), _GROOVE)
+        """Return a mark that shows which part of the rows is seen."""
+        shown = sum(control.group in {"joints", "tree"} for control in self.places)
+        part = table.height / (shown + self.last_row)
+        return Panel(Rect(table.x, table.y + self.first_row * part, _SCROLL_BAR, shown * part), _GROOVE)
 
 
 def _bar(playing: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
@@ -143,6 +151,16 @@ def _bar(playing: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
     if not is_wide:
         return icons | {replace(seek, text=""): track}
     return icons | {seek: track, speed: Rect(_LEFT + room - _SPEED, y, _SPEED, _BAR)}
+
+
+def _time_bar(time: list[Control], size: tuple[int, int], row: int) -> dict[Control, Rect]:
+    """Return the places of the controls of simulation time, so many rows above the bottom one."""
+    widths = (_ICON, _ICON, _PASSED, _SPEED)
+    if not time or size[0] - _LEFT - _RIGHT < sum(widths):
+        return {}
+    y = size[1] - _MARGIN - _BAR - row * (_BAR + _GAP)
+    lefts = accumulate(widths[:-1], initial=_LEFT)
+    return {part: Rect(x, y, width, _BAR) for part, x, width in zip(time, lefts, widths, strict=True)}
 
 
 def _around(places: dict[Control, Rect]) -> Rect:
@@ -200,13 +218,13 @@ def _slider(control: Control, rect: Rect, name: str) -> list[Panel]:
 
 
 def _icon(control: Control, rect: Rect) -> list[Panel]:
-    """Return the picture of a button: a triangle for playing, bars for a pause, both for a step."""
+    """Return the text of a control, else its picture: a triangle for playing, bars for a pause, both for a step."""
     x, y = rect.x + rect.width / 2, rect.y + rect.height / 2
-    if control.name == "speed":
+    if control.text:
         return [Panel(rect, _CLEAR, control.text)]
-    if control.name == "play" and control.is_on:
+    if control.name in {"play", "run"} and control.is_on:
         parts = [Rect(x - 5, y - 6, 4, 12), Rect(x + 1, y - 6, 4, 12)]
-    elif control.name == "play":
+    elif control.name in {"play", "run"}:
         parts = [Rect(x - 5, y - 6 + row, 11 - 2 * abs(row - 5.5), 1) for row in range(12)]
     else:
         side = -1 if control.name == "back" else 1

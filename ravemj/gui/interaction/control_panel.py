@@ -16,7 +16,7 @@ class ControlPanel:
     """
 
     def __init__(self, controls: Controls, *, is_drawn: bool = True) -> None:
-        """Begin with the first joints.
+        """Begin with the first rows.
 
         Args:
             controls: What there is to press and to slide.
@@ -24,11 +24,12 @@ class ControlPanel:
         """
         self.controls = controls
         self._is_drawn = is_drawn
-        self._first_joint = 0.0
+        self._first_row = 0.0
 
     def layout(self, size: tuple[int, int]) -> ControlLayout:
         """Return where everything is now on a view of some size [points]."""
-        return ControlLayout.of(self.controls.all() if self._is_drawn else (), size, round(self._first_joint))
+        controls = (*self.controls.all(), *self.controls.rows()) if self._is_drawn else ()
+        return ControlLayout.of(controls, size, round(self._first_row))
 
     def press(self, press: Press, layout: ControlLayout) -> Callable[[float, float], None] | None:
         """Press a button, or take hold of a slider: what is returned lets it follow the pointer."""
@@ -48,7 +49,7 @@ class ControlPanel:
 
     def scroll(self, layout: ControlLayout, steps: float) -> None:
         """Show others of the sliders that have no room all at once."""
-        self._first_joint = min(max(self._first_joint - steps, 0.0), layout.last_joint)
+        self._first_row = min(max(self._first_row - steps, 0.0), layout.last_row)
 
     def key(self, name: str) -> None:
         """Do what a key is for."""

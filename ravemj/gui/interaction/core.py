@@ -25,6 +25,9 @@ from ravemj.gui.interaction.picking import Hit
 from ravemj.gui.interaction.playback import Playback
 from ravemj.gui.interaction.selection import OnSelect, Selection, Selector, point_line
 from ravemj.gui.interaction.shortcuts import sections
+from ravemj.gui.interaction.simulation_time import SimulationTime
+from ravemj.gui.interaction.time_controls import TimeControls
+from ravemj.gui.interaction.tree import names_of
 from ravemj.gui.interaction.viewpoint import View
 from ravemj.model.drawing import NOTHING, Primitives, merge
 
@@ -52,7 +55,8 @@ class Interaction:
         self._navigation = Navigation(View(camera, 0.0, size), self._scene_sphere)
         notices = Notices()
         self._selector = Selector(simulation, notices, on_select)
-        self.controls = Controls(self._selector, self._navigation, Playback(simulation), notices, Display())
+        time = TimeControls(Playback(simulation), SimulationTime(simulation, notices))
+        self.controls = Controls(self._selector, self._navigation, time, notices, Display())
         self._hand = Hand(self._selector, self._navigation, self.controls)
         self._changes = 0
         self._hovered = False
@@ -113,6 +117,10 @@ class Interaction:
             self._navigation.set_home()
             self._changes += 1
 
+    def let_go(self) -> None:
+        """End what is being dragged, as when the window or the page is gone. Needs no lock."""
+        self._hand.let_go()
+
     def handle(self, event: Event) -> None:
         """Do what an event asks for. The simulation is locked meanwhile."""
         with self._simulation.lock:
@@ -166,7 +174,7 @@ class Interaction:
             tools = mode_buttons.panels(self.view.size, chosen) if hand.has_tools else ()
             mark = self._mark(hit)
             takes_link = mark is None and hit is not None and self.mode is Mode.INTERACTION
-            parts = [self._selector.primitives(), mark or NOTHING]
+            parts = [self._selector.primitives(), self._hand.primitives(), mark or NOTHING]
             labels = tuple(Label(point, text) for point, text in self._simulation.drawings.texts())
             if shown:
                 sphere = self._scene_sphere()
@@ -182,9 +190,11 @@ class Interaction:
                 controls=self.controls.all(),
                 labels=labels,
                 help=sections() if self.controls.unfolded == "help" else (),
+                tree=self.controls.tree(),
+                chosen=names_of(self._selector.selection),
                 style=Style(
                     *(name in shown for name in ("collision", "hulls", "transparent", "wireframe")),
-                    lit=self._body_id(hit) if takes_link and hit is not None else -1,
+                    lit=self._lit(hit if takes_link else None),
                 ),
                 cursor="move" if mark is not None else "pointer" if takes_link else hand.cursor(),
             )
@@ -194,8 +204,10 @@ class Interaction:
         at = self._hand.free_pointer()
         return None if at is None or self.mode is Mode.CAMERA else self._selector.mark(self.view, at, hit)
 
-    def _body_id(self, hit: Hit) -> int:
-        return int(self._simulation.compiled().part(hit.body).body_ids[hit.link])
+    def _lit(self, hit: Hit | None) -> int:
+        """Return MuJoCo's index of the link to be lit: that under the pointer, else what the tree has selected."""
+        part = hit or (self._selector.selection if self.controls.unfolded == "tree" else None)
+        return -1 if part is None else int(self._simulation.compiled().part(part.body).body_ids[part.link])
 
     def _pointed_at(self, hit: Hit | None) -> list[str]:
         """Return the text about what is under the pointer, else about the point that was clicked on."""

@@ -16,6 +16,9 @@ from ravemj.model.scene import Inertial
 _FRAME, _AXIS, _CONTACT = 0.08, 0.12, 0.012
 """Lengths of the axes of frames and joints and the radius of contacts, in radii of the scene."""
 
+_FORCE, _LONGEST_FORCE = 0.15, 1.0
+"""Length of an arrow for the mean weight of a link, and the greatest one, in radii of the scene."""
+
 _SMALLEST_MASS = 1e-9
 """Mass below which a link has no inertia to be shown [kg]."""
 
@@ -26,6 +29,7 @@ _NOW = np.array([0.2, 0.1, 0.0, 1.0])
 _MASS = np.array([0.75, 0.1, 0.75, 1.0])
 _INERTIA = np.array([0.75, 0.1, 0.75, 0.3])
 _CONTACTS = np.array([0.95, 0.1, 0.1, 1.0])
+_PUSH = np.array([0.95, 0.75, 0.05, 1.0])
 _WIDTH = 2.5
 _ARC_STEP = np.radians(6)
 
@@ -130,7 +134,10 @@ _SPHERE, _FACETS = _sphere()
 
 
 def _contacts(simulation: Simulation, radius: float) -> list[Primitives]:
-    """Return a sphere where shapes of different bodies are deepest in each other."""
+    """Return a sphere where shapes of different bodies are deepest in each other; with physics, the forces as well."""
+    physics = simulation.physics
+    if physics is not None:
+        return _forces(*physics.contacts(), physics.mean_weight(), radius)
     from ravemj.engine.collision.world import cross  # noqa: PLC0415 - slow to import
 
     world = simulation.collisions()
@@ -140,9 +147,23 @@ def _contacts(simulation: Simulation, radius: float) -> list[Primitives]:
         if earlier:
             pairs = world.make_pairs(*cross(world.geoms_of_body(body), np.concatenate(earlier)))
             points += [world.shapes.contact(*geoms).position for geoms in world.hits(pairs)]
-    if not points:
-        return []
-    return [drawing.spheres(np.array(points), _CONTACT * radius, np.tile(_CONTACTS, (len(points), 1)))]
+    return _points(np.array(points).reshape(-1, 3), radius)
+
+
+def _points(points: Floats, radius: float) -> list[Primitives]:
+    return [drawing.spheres(points, _CONTACT * radius, np.tile(_CONTACTS, (len(points), 1)))] if len(points) else []
+
+
+def _forces(points: Floats, forces: Floats, weight: float, radius: float) -> list[Primitives]:
+    """Return the contacts of physics, each with an arrow along its force, as long as it is large."""
+    sizes = np.linalg.norm(forces, axis=1)
+    unit = weight or float(sizes.max(initial=0.0))
+    arrows: list[Primitives] = []
+    for point, force, size in zip(points, forces, sizes, strict=True):
+        if size > 0:
+            length = radius * min(_FORCE * size / unit, _LONGEST_FORCE)
+            arrows.append(drawing.arrow(point, point + length / size * force, 0.3 * _CONTACT * radius, _PUSH))
+    return [*_points(points, radius), *arrows]
 
 
 def _centers(body: BodyState) -> Floats:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from ravemj.engine.simulation import Simulation
 from ravemj.gui.interaction import mode_buttons
@@ -30,6 +31,13 @@ from ravemj.gui.interaction.picking import Hit, pick
 from ravemj.gui.interaction.selection import Selector
 from ravemj.gui.interaction.shortcuts import KEYS
 from ravemj.gui.interaction.viewpoint import View
+from ravemj.model.drawing import NOTHING, Primitives
+
+if TYPE_CHECKING:
+    from ravemj.gui.interaction.pulling import Pulling
+    from ravemj.gui.interaction.reaching import Reach
+
+WITHOUT_PHYSICS = "A right drag pulls links while physics runs: env.SetPhysicsEngine('mujoco')"
 
 _CLICK = 4.0
 """Farthest way of the pointer [points] between press and release of a click."""
@@ -82,6 +90,8 @@ class Hand:
         self._keys: set[str] = set()
         self._press: Press | None = None
         self._follow: _Follow | None = None
+        self._pulling: Pulling | None = None
+        self._reach: Reach | None = None
         self._steers = False
 
     @property
@@ -103,8 +113,17 @@ class Hand:
         return self.layout.covers(self.pointer) or self.hit() is not None
 
     def let_go(self) -> None:
-        """End what is being dragged."""
-        self._press = self._follow = None
+        """End what is being dragged; the simulation need not be locked."""
+        self._press = self._follow = self._reach = None
+        if self._pulling is not None:
+            self._pulling.end()
+            self._pulling = None
+
+    def primitives(self) -> Primitives:
+        """Return the spring that pulls, or the other configurations of an arm that is pulled."""
+        if self._pulling is not None:
+            return self._pulling.primitives()
+        return NOTHING if self._reach is None else self._reach.ghosts()
 
     def free_pointer(self) -> tuple[float, float] | None:
         """Return where the pointer is on the view; None while a button is held, and over controls."""
@@ -133,7 +152,7 @@ class Hand:
                 return False
             case Move() | Release() if self._press is not None or (self._follow is not None and not self._steers):
                 return False
-            case Wheel() if self.layout.covers(self.pointer):
+            case Wheel() if self._reach is not None or self.layout.covers(self.pointer):
                 return False
             case Key(name, True) if name.lower() in KEYS:
                 return self._controls.steer(KEYS[name.lower()])
@@ -150,7 +169,8 @@ class Hand:
         if self._tool_at(press) is not None:
             return False
         centres = press.button is Button.LEFT and "s" in self._keys
-        return press.touch or centres or self.mode is Mode.INTERACTION
+        pulls = press.button is Button.RIGHT
+        return press.touch or centres or pulls or self.mode is Mode.INTERACTION
 
     def _tool_at(self, press: Press) -> Tool | None:
         return mode_buttons.tool_at(self.view.size, press.x, press.y) if self.has_tools else None
@@ -188,7 +208,7 @@ class Hand:
 
     def _on_press(self, press: Press) -> None:
         self.buttons.add(press.button)
-        self._press = self._follow = None
+        self.let_go()
         self.pointer = press.x, press.y
         self._steers = not self.needs_bodies(press)
         tool = self._tool_at(press)
@@ -200,6 +220,8 @@ class Hand:
             self._press = press
         elif press.button is Button.LEFT and "s" in self._keys:
             self._centre(press)
+        elif press.button is Button.RIGHT:
+            self._follow = self._pull(press)
         elif self.mode is Mode.CAMERA:
             self._move_camera(press)
         elif press.button is Button.LEFT:
@@ -216,14 +238,17 @@ class Hand:
     def _on_release(self, release: Release) -> None:
         self._on_move(release.x, release.y)
         self.buttons.discard(release.button)
-        press, self._press, self._follow = self._press, None, None
+        press = self._press
+        self.let_go()
         if press is not None and press.button is release.button:
             self._selector.click(self.view, press)
             if press.touch and self._selector.selection is not None:
                 self._set_mode(Mode.INTERACTION)  # what has appeared can be dragged
 
     def _on_wheel(self, steps: float) -> None:
-        if self.layout.covers(self.pointer):
+        if self._reach is not None:
+            self._reach.sweep(steps)
+        elif self.layout.covers(self.pointer):
             self.panel.scroll(self.layout, steps)
         elif self.mode is Mode.CAMERA:
             self.view = self._navigation.focused().zoomed(math.log(_STEP) * steps)
@@ -241,11 +266,12 @@ class Hand:
     def _on_leave(self) -> None:
         self.buttons.clear()
         self._keys.clear()
-        self._press = self._follow = self.pointer = None
+        self.pointer = None
+        self.let_go()
 
     def _set_mode(self, mode: Mode) -> None:
         self.mode = mode
-        self._press = self._follow = None
+        self.let_go()
 
     def _press_tool(self, tool: Tool, press: Press) -> None:
         """Press a button, or hold one of the wheels."""
@@ -292,8 +318,9 @@ class Hand:
 
     def _hold(self, press: Press) -> _Follow | None:
         """Take hold of the cube or the cylinder where the button went down; fingers turn the view elsewhere."""
-        if self.mode is Mode.INTERACTION and press.ctrl and press.shift:
-            return self._reach(press)
+        pulls = (press.ctrl and press.shift) or self._controls.pulls
+        if self.mode is Mode.INTERACTION and pulls:
+            return self._hold_link(press)
         follow = self._selector.hold(self.view, press) if self.mode is Mode.INTERACTION else None
         selection = self._selector.selection
         if follow is not None and selection is not None:
@@ -301,11 +328,24 @@ class Hand:
             return lambda x, y: follow(self.view.ray(x, y))
         return self._steered(press, self._navigation.focused().turned) if press.touch else None
 
-    def _reach(self, press: Press) -> _Follow | None:
+    def _hold_link(self, press: Press) -> _Follow | None:
         """Take hold of a link, so that its arm comes along."""
-        held = self._selector.reach(self.view, press)
-        if held is None:
+        self._reach = reach = self._selector.reach(self.view, press)
+        if reach is None:
             return None
-        body, follow = held
-        self._controls.take(body)
+        self._controls.take(reach.body)
+        return lambda x, y: reach.follow(self.view.ray(x, y))
+
+    def _pull(self, press: Press) -> _Follow | None:
+        """Pull the link where the button went down with a force."""
+        hit = pick(self._simulation, self.view.ray(press.x, press.y))
+        if hit is None:
+            return None
+        if self._simulation.physics is None:
+            self._controls.notices.say(WITHOUT_PHYSICS)
+            return None
+        from ravemj.gui.interaction.pulling import Pulling  # noqa: PLC0415 - slow to import
+
+        self._pulling = Pulling(self._simulation, hit)
+        follow = self._pulling.follow(self.view.camera.rotation[:, 2])
         return lambda x, y: follow(self.view.ray(x, y))

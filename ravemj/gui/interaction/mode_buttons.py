@@ -38,11 +38,13 @@ class Panel(NamedTuple):
         rect: Where.
         rgba: Its colour, in 0..1; with no opacity, only the text is drawn.
         text: What stands in its middle, in white.
+        is_left: Whether the text stands at its left edge.
     """
 
     rect: Rect
     rgba: _Rgba
     text: str = ""
+    is_left: bool = False
 
 
 class Tool(Enum):

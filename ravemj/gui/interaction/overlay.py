@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.style import AS_IT_IS, Style
-from ravemj.gui.interaction.controls import Control
+from ravemj.gui.interaction.control import Control
 from ravemj.gui.interaction.mode_buttons import Panel
 from ravemj.gui.interaction.shortcuts import Section
+from ravemj.gui.interaction.tree import Node
 from ravemj.gui.interaction.viewpoint import View
 from ravemj.model.drawing import Primitives
 
@@ -33,6 +34,8 @@ class Overlay(NamedTuple):
         controls: What the buttons and sliders beside the tutorial's are, as plain data.
         labels: Texts in the world.
         help: What can be done, while that is unfolded.
+        tree: The bodies, links and joints, while they are unfolded.
+        chosen: Names of what of the tree is selected.
         style: How the bodies are drawn.
         cursor: How the pointer looks: ``default``, ``grab`` for a view that can be turned, ``pointer`` for a button or
             something to click on, ``move`` for something to drag.
@@ -44,6 +47,8 @@ class Overlay(NamedTuple):
     controls: tuple[Control, ...] = ()
     labels: tuple[Label, ...] = ()
     help: tuple[Section, ...] = ()
+    tree: tuple[Node, ...] = ()
+    chosen: tuple[str, ...] = ()
     style: Style = AS_IT_IS
     cursor: str = "default"
 

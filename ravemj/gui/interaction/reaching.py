@@ -4,52 +4,119 @@ import numpy as np
 
 from ravemj.core.transforms import Floats, Pose, inverse
 from ravemj.engine.simulation import BodyState
-from ravemj.gui.interaction.dragging import Follow, in_plane
+from ravemj.gui.interaction.dragging import in_plane
 from ravemj.gui.interaction.viewpoint import Ray
 from ravemj.ik.arms import chain_of
-from ravemj.ik.numeric import NumericSolver
+from ravemj.ik.self_motion import null_space
+from ravemj.ik.solver import make_solver
+from ravemj.ik.tasks import Task
+from ravemj.model import drawing
 from ravemj.model.chains import joint_dofs
+from ravemj.model.drawing import NOTHING, Primitives
 from ravemj.model.manipulators import chain
 from ravemj.model.scene import KinBody, Manipulator
 
 _TURNING = 0.03
 """How much turning by 1 rad counts beside a distance as long as the arm: where both cannot be, the point is reached."""
 
+_WEIGHTS = np.array([1.0, 1.0, 1.0, _TURNING, _TURNING, _TURNING])
+_SWEEP = 0.08
+"""How far a step of the wheel moves the joints of a redundant arm, in joint space [rad]."""
 
-def reach(body: BodyState, link: int, point: Floats, normal: Floats) -> Follow:
-    """Let a point of a link follow the pointer in a plane, by the joints above it, as far as their limits go.
+_SAME = 0.05
+"""Configurations whose joints all differ by less [rad or m] are the same to the eye."""
+
+_GHOST = np.array([0.35, 0.45, 0.75, 0.55])
+_WIDTH = 4.0
+
+
+class Reach:
+    """A link that is held at a point, and follows the pointer with the joints above it, as far as their limits go.
 
     The link keeps its orientation where the joints can do that, too. Goals out of reach are come as near to as can be.
 
-    Args:
+    Attributes:
         body: The body.
-        link: Index of the link.
-        point: What the pointer holds, in the world [m], shape (3,).
-        normal: Normal of the plane, unit vector, shape (3,).
-
-    Raises:
-        ValueError: no joints move the link, or one of them follows others or is spherical; the message says so.
     """
-    T_start = body.link_transform(link)
-    base = _root_of(body.scene, link)
-    arm = _arm_to(body.scene, base, link, (point - T_start[:3, 3]) @ T_start[:3, :3])
-    solver = NumericSolver(chain_of(body.scene, arm))
-    dofs = list(arm.arm_dofs)
-    T_start[:3, 3] = point
-    weights = np.array([1.0, 1.0, 1.0, _TURNING, _TURNING, _TURNING])
 
-    def follow(pointer: Ray) -> None:
-        goal = in_plane(pointer, point, normal)
-        if goal is None:
-            return
-        T_world_tool = T_start.copy()
-        T_world_tool[:3, 3] = goal
-        T_base_tool = inverse(body.link_transform(base)) @ T_world_tool
-        values = body.kinematics.values()
-        values[dofs] = solver.nearest(T_base_tool, values[dofs], weights).values
-        body.set_values(values)
+    def __init__(self, body: BodyState, link: int, point: Floats, normal: Floats) -> None:
+        """Take hold of a link.
 
-    return follow
+        Args:
+            body: The body.
+            link: Index of the link.
+            point: What the pointer holds, in the world [m], shape (3,).
+            normal: Normal of the plane of the pointer, unit vector, shape (3,).
+
+        Raises:
+            ValueError: no joints move the link, or one of them follows others or is spherical; the message says so.
+        """
+        self.body = body
+        self._point, self._normal = point, normal
+        self._T_world_goal = body.link_transform(link)
+        place = (point - self._T_world_goal[:3, 3]) @ self._T_world_goal[:3, :3]
+        self._T_world_goal[:3, 3] = point
+        self._base = _root_of(body.scene, link)
+        arm = _arm_to(body.scene, self._base, link, place)
+        self._solver = make_solver(chain_of(body.scene, arm), Task.TRANSFORM)
+        self._dofs = list(arm.arm_dofs)
+
+    @property
+    def _values(self) -> Floats:
+        return self.body.kinematics.values()[self._dofs]
+
+    def follow(self, ray: Ray) -> None:
+        """Come to where the pointer's ray meets the plane."""
+        goal = in_plane(ray, self._point, self._normal)
+        if goal is not None:
+            self._T_world_goal[:3, 3] = goal
+            self._come_near(self._values)
+
+    def _come_near(self, start: Floats) -> None:
+        """Come as near to the goal as joint values do that lead down from a start."""
+        T_base_goal = inverse(self.body.link_transform(self._base)) @ self._T_world_goal
+        values = self.body.kinematics.values()
+        values[self._dofs] = self._solver.numeric.nearest(T_base_goal, start, _WEIGHTS).values
+        self.body.set_values(values)
+
+    def sweep(self, steps: float) -> None:
+        """Let a redundant arm move while its link stays; nothing happens where no joint is free.
+
+        Args:
+            steps: How far the joints move, in steps of the wheel.
+        """
+        values = self._values
+        basis = null_space(self._solver.chain, values)
+        free = self._solver.free[0] if self._solver.free else int(np.argmax(np.linalg.norm(basis, axis=1)))
+        along = basis @ basis[free]  # the self-motion that moves the free joint most
+        size = float(np.linalg.norm(along))
+        if size > 0:
+            self._come_near(values + _SWEEP * steps / size * along)
+
+    def ghosts(self) -> Primitives:
+        """Return the other configurations that bring the link to where it is: lines from joint to joint.
+
+        They are those of the closed form, with the free joints as they are; none where there is no closed form.
+        """
+        solver, values = self._solver, self._values
+        if solver.closed is None:
+            return NOTHING
+        T_base_tool = solver.chain.forward(values)
+        free = values[list(solver.free)][None] if solver.free else None
+        rows = solver.solve(T_base_tool[None], free=free).of(0)
+        others = rows[np.abs(rows - values).max(axis=1, initial=0.0) > _SAME]
+        if not len(others):
+            return NOTHING
+        joints = solver.chain.placed_axes(others)[1].transpose(1, 0, 2)  # row, joint, xyz
+        tools = np.broadcast_to(T_base_tool[:3, 3], (len(others), 1, 3))
+        arms = [_ghost(points) for points in np.concatenate([joints, tools], axis=1)]
+        return drawing.merge(arms).placed(self.body.link_transform(self._base))
+
+
+def _ghost(points: Floats) -> Primitives:
+    """Return a figure of an arm in some configuration."""
+    colours = np.tile(_GHOST, (len(points), 1))
+    return drawing.merge([drawing.line_strip(points, _WIDTH, colours), drawing.points(points, 2 * _WIDTH, colours)])
 
 
 def _arm_to(body: KinBody, base: int, link: int, place: Floats) -> Manipulator:

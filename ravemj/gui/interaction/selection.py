@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from ravemj.gui.interaction.notices import Notices
 from ravemj.gui.interaction.picking import Hit, pick, visible_box
 from ravemj.gui.interaction.viewpoint import Ray, View
 from ravemj.model.drawing import NOTHING, Primitives
+
+if TYPE_CHECKING:
+    from ravemj.gui.interaction.reaching import Reach
 
 OnSelect = Callable[[Hit, Ray], bool]
 """Asked before something is selected; False keeps it unselected."""
@@ -75,7 +79,7 @@ class Selector:
             if self._handle_at(ray, hit) is not None:
                 self._resize()
             elif hit is not None:
-                self._select_joint(hit, ray)
+                self._select_joint(hit, ray, driving_dof(hit.body.scene, hit.link))
         elif self._handle_at(ray, hit) is None:
             self._select_body(hit, ray, is_on_cube=self._grip_at(view, press, hit) is not None)
 
@@ -87,8 +91,35 @@ class Selector:
         else:
             self.selection = self._selection(hit) if self._may_select(hit, ray) else None
 
-    def _select_joint(self, hit: Hit, ray: Ray) -> None:
-        dof = driving_dof(hit.body.scene, hit.link)
+    def choose(self, view: View, body: BodyState, link: int) -> None:
+        """Select a body by one of its links; nothing, where this link is selected already."""
+        self.changes += 1
+        old = self.selection
+        is_again = old is not None and old.dof is None and old.body is body and old.link == link
+        hit, ray = self._aimed(view, body, link)
+        self.selection = self._selection(hit) if not is_again and self._may_select(hit, ray) else None
+
+    def choose_joint(self, view: View, body: BodyState, number: int) -> None:
+        """Select a joint by its number among all joints; the next of its axes, where it is selected already."""
+        self.changes += 1
+        joint = body.scene.all_joints[number]
+        is_active = number < len(body.scene.joints) and not joint.static
+        dof = body.kinematics.first_dofs[number] if is_active else driving_dof(body.scene, joint.child)
+        self._select_joint(*self._aimed(view, body, joint.child), dof)
+
+    def _aimed(self, view: View, body: BodyState, link: int) -> tuple[Hit, Ray]:
+        """Return a point of a link that is seen, with the ray to it; where it is hidden, the middle of the link."""
+        box = visible_box(body, [link], np.eye(4))
+        center = body.link_transform(link)[:3, 3] if box is None else box.center
+        way = center - view.camera.position
+        distance = float(np.linalg.norm(way))
+        direction = way / distance if distance > 0 else view.camera.rotation[:, 2]
+        ray = Ray(view.camera.position, direction)
+        hit = pick(self.simulation, ray)
+        is_seen = hit is not None and hit.body is body and hit.link == link
+        return hit if hit is not None and is_seen else Hit(body, link, center, -direction, distance), ray
+
+    def _select_joint(self, hit: Hit, ray: Ray, dof: int | None) -> None:
         if dof is None:
             self.selection = None
             self._notices.say(f"No joint moves {hit.body.scene.links[hit.link].name}")
@@ -136,22 +167,22 @@ class Selector:
             return None
         return dragging.move_joint(selection.body, selection.dof, handle, point, ray)
 
-    def reach(self, view: View, press: Press) -> tuple[BodyState, dragging.Follow] | None:
+    def reach(self, view: View, press: Press) -> "Reach | None":
         """Take hold of the link where the button went down, so that the joints above it come along; None if none do."""
         ray = view.ray(press.x, press.y)
         hit = pick(self.simulation, ray)
         if hit is None or not hit.body.index:
             return None
-        from ravemj.gui.interaction.reaching import reach  # noqa: PLC0415 - slow to import
+        from ravemj.gui.interaction.reaching import Reach  # noqa: PLC0415 - slow to import
 
         try:
-            follow = reach(hit.body, hit.link, hit.position, view.camera.rotation[:, 2])
+            reach = Reach(hit.body, hit.link, hit.position, view.camera.rotation[:, 2])
         except ValueError as error:
             self._notices.say(str(error))
             return None
         self.selection = self._selection(hit)
         self.changes += 1
-        return hit.body, follow
+        return reach
 
     def mark(self, view: View, at: tuple[float, float], hit: Hit | None) -> Primitives | None:
         """Return a figure on what a drag would take at a point of the screen; None where there is nothing to take.

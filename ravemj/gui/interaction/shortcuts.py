@@ -40,7 +40,7 @@ DISPLAY = (
     Shortcut("frames", ("l",), "Link frames", "show the frames of the links: x red, y green, z blue"),
     Shortcut("axes", ("j",), "Joint axes", "show the axes of the joints, and the range between their limits"),
     Shortcut("masses", ("i", "m"), "Masses", "show centres of mass, and inertia as ellipsoids of even density"),
-    Shortcut("contacts", ("c",), "Contacts", "show points where shapes touch"),
+    Shortcut("contacts", ("c",), "Contacts", "show points where shapes touch, and with physics the forces there"),
     Shortcut("transparent", ("t",), "Transparent", "look through the bodies"),
     Shortcut("wireframe", ("w",), "Wireframe", "show edges only"),
     Shortcut("names", ("n",), "Names", "show the names of the links"),
@@ -49,10 +49,14 @@ DISPLAY = (
 
 OTHERS = (
     Shortcut("help", ("f1", "h", "?"), "?", "show this help, or hide it"),
+    Shortcut("tree", ("b",), "", "show the tree of bodies, links and joints, or hide it"),
+    Shortcut("pull", ("p",), "", "let a left drag on a link pull the joints above it, or the cube again"),
     Shortcut("reload", ("r",), "", "read the model again (in ravemj view)"),
-    Shortcut("play", (" ",), "", "play a motion, or pause it"),
+    Shortcut("play", (" ",), "", "play a motion, or pause it; without one, let simulation time pass, or stop it"),
     Shortcut("back", ("arrowleft",), "", "one frame of a motion back"),
-    Shortcut("forward", ("arrowright",), "", "one frame of a motion forward"),
+    Shortcut("forward", ("arrowright",), "", "one frame of a motion forward; without one, one step of simulation time"),
+    Shortcut("slower", ("-",), "", "play the motion slower; without one, let simulation time pass slower"),
+    Shortcut("faster", ("+", "="), "", "play the motion faster; without one, let simulation time pass faster"),
 )
 """What has a key, and is in no menu."""
 
@@ -79,6 +83,9 @@ GESTURES = {
             "Esc, or the two buttons on the right: red arrow for interaction, camera",
         ),
         Gesture("centre on a surface point; later turns are about it", "S + left click"),
+        Gesture(
+            "pull a link with a force, while physics runs", "right drag: a spring leads from the link to the pointer"
+        ),
     ),
     "Camera mode": (
         Gesture("turn", "left drag, or the wheels RotX and RotY"),
@@ -96,11 +103,13 @@ GESTURES = {
         Gesture("turn the joint, or slide it", "drag its cylinder"),
         Gesture("change the size of the cylinder", "Ctrl + left click on it"),
         Gesture(
-            "pull a link, with the joints above it", "Ctrl + Shift + left drag: it follows in the plane of the view"
+            "pull a link, with the joints above it",
+            "Ctrl + Shift + left drag, or left drag with the button Pull: it follows in the plane of the view",
         ),
+        Gesture("move a redundant arm while its link stays", "mouse wheel, while the link is pulled"),
     ),
 }
-"""The gestures of the tutorial, and one more."""
+"""The gestures of the tutorial, and more."""
 
 _KEY_NAMES = {"home": "Home", " ": "Space", "arrowleft": "Left", "arrowright": "Right", "f1": "F1"}
 

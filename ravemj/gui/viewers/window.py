@@ -165,6 +165,7 @@ class WindowViewer(Viewer):
     def turn(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
         """Do what was asked for, and draw if anything has changed; return False once the window should close."""
         if self._closing.is_set() or window.is_broken or window.is_closed:
+            self.interaction.let_go()
             return False
         for _ in range(self._requests.qsize()):
             self._requests.get()(window)

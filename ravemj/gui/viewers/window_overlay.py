@@ -90,6 +90,9 @@ class OverlayPainter:
             self._rectangle(panel.rect, panel.rgba)
         if panel.text:
             x, y, width, height = panel.rect
+            if panel.is_left:
+                self._line(panel.text, x + _PADDING, y + (height - _LINE) / 2, _WHITE)
+                return
             self._text(panel.text, x + width / 2, y + height / 2, _WHITE)
 
     def _paint_help(self, overlay: Overlay) -> None:

@@ -30,7 +30,7 @@ class Simulating(Contents):
 
     def __init__(self) -> None:
         super().__init__()
-        self._clock = Clock(self._simulation.lock, self._advance)
+        self._clock = self._simulation.clock = Clock(self._simulation.lock, self._advance)
         self._engine = PhysicsEngine(self._environment, "GenericPhysicsEngine", DEFAULT_GRAVITY)
         self._engine.attach()
         self._published: list[State] = []

@@ -84,6 +84,7 @@ class Client:
         self._link = Link()
         self._sharpness = Sharpness()
         self._overlay: Overlay | None = None
+        self._tree: object = None
         self._free_at = time.monotonic()
         self._sees_bodies = False
         self._has_moved = False
@@ -251,7 +252,9 @@ class Client:
         text = {"lines": overlay.lines, "mode": mode, "title": style.title, "crisp": self._is_crisp}
         text["cursor"] = overlay.cursor
         over = {"controls": controls, "help": overlay.help, "labels": overlay.labels_on(self.interaction.drawn_view)}
-        connection.send(json.dumps({**text, **over}))
+        news = None if overlay.tree is self._tree else overlay.tree  # it may be long
+        tree, self._tree = {"tree": news, "chosen": overlay.chosen}, overlay.tree
+        connection.send(json.dumps({**text, **over, **tree}))
         if self._is_crisp:
             connection.send(encoding.resting(picture, is_exact=link.is_good))
         else:

@@ -31,6 +31,8 @@ _FILES = {
     "page.js": "text/javascript",
     "controls.css": "text/css",
     "controls.js": "text/javascript",
+    "tree.css": "text/css",
+    "tree.js": "text/javascript",
 }
 _SOCKET = "socket"
 _TOKEN = re.compile(r"[A-Za-z0-9_-]{8,64}")

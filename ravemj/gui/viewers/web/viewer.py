@@ -182,7 +182,9 @@ class WebViewer(Viewer):
     def dismiss(self, connection: ServerConnection) -> None:
         """Forget a page that has left, in the thread that drew for it."""
         with self._lock:
-            self._clients.pop(connection, None)
+            client = self._clients.pop(connection, None)
+        if client is not None:
+            client.interaction.let_go()
         self._renderer.close()
 
 

@@ -3,13 +3,15 @@
 
 const QUIET = 400;  // after so long without a touch [ms], a slider shows what the other side says
 const PLAYING = ["back", "play", "forward", "seek", "speed"];
-const HOMES = { playing: "motion", tools: "tools", menu: "menu", joints: "joints", "joint tools": "joint-tools" };
+const UNFOLD = ["joints", "view", "display", "tree", "help"];
+const HOMES = { playing: "motion", time: "time", tools: "tools", menu: "menu", joints: "joints", "joint tools": "joint-tools" };
 const ICONS = {
   back: "M6 5h2.4v14H6zM19 5v14L9.5 12z",
   forward: "M15.6 5H18v14h-2.4zM5 5v14l9.5-7z",
   play: "M7 4.5v15l12-7.5z",
   pause: "M6.5 5h3.8v14H6.5zM13.7 5h3.8v14h-3.8z",
 };
+[ICONS.run, ICONS.step] = [ICONS.play, ICONS.forward];
 const shown = new Map();  // the elements of the controls by their names
 
 function showControls(controls) {
@@ -25,6 +27,7 @@ function showControls(controls) {
     update(shown.get(control.name), control);
   }
   motion.hidden = !names.has("seek");
+  document.getElementById("time").hidden = !names.has("run");
   for (const group of ["joints", "menu"]) {
     document.getElementById(group).hidden = !controls.some((control) => control.group === group);
   }
@@ -32,7 +35,7 @@ function showControls(controls) {
 }
 
 function make({ name, group, lower, upper }) {
-  const made = lower < upper ? makeSlider(name) : makeButton(name);
+  const made = lower < upper ? makeSlider(name) : name === "clock" ? makeText(name) : makeButton(name);
   const order = (element) => PLAYING.indexOf(element.dataset.name);
   const home = document.getElementById(HOMES[group]);
   const next = group === "playing" ? [...home.children].find((other) => order(other) > order(made.row)) : null;
@@ -45,6 +48,12 @@ function makeButton(name) {
   row.type = "button";
   row.dataset.name = name;
   row.addEventListener("click", () => send({ type: "operate", name, value: 0 }));
+  return { row };
+}
+
+function makeText(name) {
+  const row = document.createElement("output");
+  row.dataset.name = name;
   return { row };
 }
 
@@ -88,12 +97,13 @@ function update(made, control) {
     return;
   }
   const { row } = made;
-  const icon = ICONS[control.name === "play" && control.is_on ? "pause" : control.name];
-  const label = control.name === "speed" ? `${control.label} ${control.text}` : control.label;
+  const isRunning = ["play", "run"].includes(control.name) && control.is_on;
+  const icon = ICONS[isRunning ? "pause" : control.name];
+  const label = ["speed", "pace"].includes(control.name) ? `${control.label} ${control.text}` : control.label;
   row.title = label;
   row.setAttribute("aria-label", label);
   row.dataset.on = control.is_on === true;
-  if (["joints", "view", "display", "help"].includes(control.name)) row.setAttribute("aria-expanded", control.is_on);
+  if (UNFOLD.includes(control.name)) row.setAttribute("aria-expanded", control.is_on);
   if (!icon) row.textContent = control.text;
   else if (row.dataset.icon !== icon) {
     row.dataset.icon = icon;
@@ -124,14 +134,14 @@ function showHelp(sections) {
 }
 document.getElementById("help").addEventListener("click", () => send({ type: "operate", name: "help", value: 0 }));
 
-// --- keys of the view, while there is a motion
+// --- keys of the view, while there is a motion, or simulation time
 
-const KEYS = { " ": "play", ArrowLeft: "back", ArrowRight: "forward" };
+const KEYS = { " ": ["play", "run"], ArrowLeft: ["back"], ArrowRight: ["forward", "step"] };
 document.getElementById("view").addEventListener("keydown", (event) => {
-  const name = KEYS[event.key];
-  if (!name || !shown.has(name) || event.ctrlKey || event.altKey || event.metaKey) return;
+  const name = (KEYS[event.key] || []).find((one) => shown.has(one));
+  if (!name || event.ctrlKey || event.altKey || event.metaKey) return;
   event.preventDefault();
-  if (!event.repeat || name !== "play") send({ type: "operate", name, value: 0 });
+  if (!event.repeat || !["play", "run"].includes(name)) send({ type: "operate", name, value: 0 });
 });
 
 // --- what only a browser can do

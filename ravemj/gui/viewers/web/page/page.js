@@ -85,6 +85,7 @@ function write(over) {
   view.style.cursor = pressed && over.cursor === "grab" ? "" : over.cursor;
   showControls(over.controls);
   showHelp(over.help);
+  showTree(over.tree, over.chosen);
   label(over.labels);
   document.title = over.title;
   Object.assign(document.body.dataset, { mode: over.mode, crisp: over.crisp });
@@ -163,7 +164,7 @@ view.addEventListener("wheel", (event) => {
   event.preventDefault();
 }, { passive: false });
 
-const known = /^(Escape|[a-z0-9?]|Home|F1)$/i;  // Space and arrows are for what has the focus
+const known = /^(Escape|[a-z0-9?=+-]|Home|F1)$/i;  // Space and arrows are for what has the focus
 window.addEventListener("keydown", (event) => {
   const isTyping = event.target.matches("input:not([type=range])") && event.key !== "Escape";
   if (!known.test(event.key) || isTyping || event.ctrlKey || event.altKey || event.metaKey) return;
