@@ -20,7 +20,7 @@ from ravemj.rave.plugins import (
     RaveGetLoadedInterfaces,
 )
 from ravemj.rave.samplers import RaveCreateSpaceSampler
-from ravemj.rave.sensors import RaveCreateSensor
+from ravemj.rave.sensors import RaveCreateSensor, Sensor
 from ravemj.rave.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -148,7 +148,7 @@ def RaveCreateInterface(env: "Environment", type: InterfaceType, name: str) -> A
 
 
 def RaveClone(ref: Interface, cloningoptions: int = 0, cloneenv: "Environment | None" = None) -> Any:  # noqa: ANN401 - of the same kind
-    """Return a copy of a body, a trajectory, a collision checker or a physics engine, which is not added.
+    """Return a copy of a body, a sensor, a trajectory, a collision checker or a physics engine, which is not added.
 
     Args:
         ref: What to copy.
@@ -184,4 +184,8 @@ def RaveClone(ref: Interface, cloningoptions: int = 0, cloneenv: "Environment | 
         assert body is not None
         body.Clone(ref, cloningoptions)
         return body
-    raise UnsupportedError(f"RaveClone of a {type(ref).__name__}", "copies of what is neither body nor trajectory")
+    if isinstance(ref, Sensor):
+        sensor = Sensor(env, ref.description)
+        sensor.Clone(ref, cloningoptions)
+        return sensor
+    raise UnsupportedError(f"RaveClone of a {type(ref).__name__}", "copies of such objects")

@@ -298,12 +298,28 @@ class Robot(ActiveDofs, Manipulators, Sensors, KinBody):
             _vGripperInfos=self.GetGripperInfos(),
         )
 
+    def Clone(self, ref: KinBody, cloningoptions: int = 0) -> None:
+        """Become like another body, with the sensors of a robot as they are; see ``KinBody.Clone``.
+
+        Args:
+            ref: The body to copy; what it holds is not copied.
+            cloningoptions: OpenRAVE's; ignored.
+
+        Raises:
+            openrave_exception: this robot is in an environment.
+        """
+        super().Clone(ref, cloningoptions)
+        self.forget_sensors()
+        if isinstance(ref, Robot):
+            self.take_sensors(ref)
+
     def take_choices(self, other: "Robot") -> None:
-        """Take over the active DOFs, the active manipulator and the solvers of another robot like this."""
+        """Take over active DOFs and manipulator, solvers and the state of the sensors of another robot like this."""
         self.active_choice = other.active_choice
         self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
         self._active_manipulator = other._active_manipulator
         self.ik_solvers = {name: solver.copy_for(self) for name, solver in other.ik_solvers.items()}
+        self.take_sensors(other)
 
     def restorers(self, options: int) -> list[Restorer]:
         """Return what gives this robot, or one like it, its present state back."""

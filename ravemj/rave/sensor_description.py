@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
@@ -29,7 +30,7 @@ class DescribedSensor(Interface):
     """
 
     _interface_type = InterfaceType.sensor
-    _internal = ("attached", "description", "device")
+    _internal = ("attached", "description", "device", "take_state")
 
     def __init__(
         self, env: "Environment", description: scene.AttachedSensor, attached: "AttachedSensor | None"
@@ -67,6 +68,9 @@ class DescribedSensor(Interface):
 
     def _take_over(self) -> None:
         """Begin anew with another device."""
+
+    def take_state(self, other: "DescribedSensor") -> None:
+        """Go on like another sensor of the same kind."""
 
     def _problem(self) -> str | None:
         """Return why the sensor cannot measure, or None."""
@@ -126,6 +130,23 @@ class DescribedSensor(Interface):
         self._check_loose("SetTransform", "attached.SetRelativeTransform moves it on its link")
         self._edit(T_link_sensor=pose_of(checked_transform(transform, "SetTransform: transform")))
         self._moved()
+
+    @also_named(reference="ref")
+    def Clone(self, ref: "DescribedSensor", cloningoptions: int = 0) -> None:
+        """Become like another sensor, where it is now: its kind, its geometry, its noise, and whether it is on.
+
+        Args:
+            ref: The sensor to copy.
+            cloningoptions: OpenRAVE's; ignored.
+
+        Raises:
+            openrave_exception: a robot carries this sensor.
+        """
+        del cloningoptions
+        other = checked_kind(ref, DescribedSensor, "Clone: ref", "a sensor")
+        self._check_loose("Clone", "its robot says what it is")
+        self._own = replace(other.description, link=None, T_link_sensor=pose_of(other.GetTransform()))
+        self.take_state(other)
 
     def SetSensorGeometry(self, geometry: SensorGeometry) -> bool:
         """Give the sensor another resolution, range or calibration; it begins to measure anew.
