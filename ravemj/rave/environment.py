@@ -20,6 +20,7 @@ from ravemj.rave.env.viewing import Viewing
 from ravemj.rave.interface import checked_environment
 from ravemj.rave.logs import RaveGetDebugLevel, RaveSetDebugLevel
 from ravemj.rave.robot import Robot
+from ravemj.rave.sensors import Sensor
 
 if TYPE_CHECKING:
     import mujoco
@@ -126,12 +127,12 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
     def CloneSelf(self, options: int | str = CloningOptions.Bodies, clonedEnvName: Any = None) -> "Environment":  # noqa: ANN401 - either order
         """Return a new environment with copies of the bodies, in the same state.
 
-        Robots keep their active DOFs and manipulators, and hold what they held. Simulation time stands still in the
-        copy until ``StartSimulation``.
+        Robots keep their active DOFs and manipulators, hold what they held, and their sensors stay on or off.
+        Simulation time stands still in the copy until ``StartSimulation``.
 
         Args:
-            options: What to copy, a ``CloningOptions``: bodies only with ``Bodies``; gravity and the view are, whatever
-                it says.
+            options: What to copy, a ``CloningOptions``: bodies only with ``Bodies``, sensors that no robot carries only
+                with ``Sensors``; gravity and the view are, whatever it says.
             clonedEnvName: The new environment's name; OpenRAVE has it before the options, which is understood too.
 
         Example:
@@ -148,7 +149,7 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
     def Clone(
         self, reference: "Environment", options: int | str = CloningOptions.Bodies, clonedEnvName: str | None = None
     ) -> None:
-        """Replace the bodies of this environment by copies of those of another.
+        """Replace the bodies and sensors of this environment by copies of those of another.
 
         Args:
             reference: The environment to copy; nothing happens where it is this one.
@@ -164,11 +165,15 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
         if source is self._simulation:
             return
         with both_locks(source, self._simulation):
-            self._kept_objects.clear()
+            self._remove_all()
             for original, copy in self._simulation.copy(source, bodies=bool(options & CloningOptions.Bodies)).items():
                 body, other = self.wrap(copy), reference.wrap(original)
                 if isinstance(body, Robot) and isinstance(other, Robot):
                     body.take_choices(other)
+            for sensor in reference._sensors if options & CloningOptions.Sensors else ():
+                loose = Sensor(self, sensor.description)
+                loose.Clone(sensor)
+                self.AddSensor(loose)
 
     def Reset(self) -> None:
         """Remove all bodies and sensors."""

@@ -1,5 +1,6 @@
 """The data of sensors: what the engine and renderers measure at a place, in OpenRAVE's classes."""
 
+import copy
 import math
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
@@ -70,6 +71,12 @@ class Instrument:
         self.scanned: tuple[Scan, CollisionWorld] | None = None
         self._velocity: Floats | None = None
         self._acceleration = np.zeros(3)
+
+    def take_over(self, other: "Instrument") -> None:
+        """Go on like another instrument of the same device: with its noise, its turn and its velocity."""
+        self._deviation, self._random = other._deviation, copy.deepcopy(other._random)
+        self.spin_angle = other.spin_angle
+        self._velocity, self._acceleration = other._velocity, other._acceleration
 
     def set_noise(self, deviation: float, seed: int | None) -> None:
         """Add normally distributed noise to what is measured from now on."""

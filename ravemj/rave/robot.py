@@ -310,18 +310,24 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         return info if self._own_parts is None else only_parts_of(info, self._own_parts)
 
     def Clone(self, ref: KinBody, cloningoptions: int = 0) -> None:
-        """Become like another body, as ``KinBody.Clone`` does; a robot's active DOFs, arm and solvers are copied, too.
+        """Become like another body, as ``KinBody.Clone`` does; a robot's choices and sensors are copied, too.
+
+        Choices are its active DOFs, its active manipulator and its solvers.
 
         Args:
             ref: The body to copy; what it holds is not copied.
             cloningoptions: OpenRAVE's; ignored.
+
+        Raises:
+            openrave_exception: this robot is in an environment.
         """
         super().Clone(ref, cloningoptions)
+        self.forget_sensors()
         if isinstance(ref, Robot):
             self.take_choices(ref)
 
     def take_choices(self, other: "Robot") -> None:
-        """Take over the active DOFs, the active manipulator and the solvers of another robot like this."""
+        """Take over active DOFs and manipulator, solvers and the state of the sensors of another robot like this."""
         self.active_choice = other.active_choice
         self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
         self.quaternion_limits = other.quaternion_limits.copy()
@@ -329,6 +335,7 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         self._own_parts = other._own_parts
         self._active_manipulator = other._active_manipulator
         self.ik_solvers = {name: solver.copy_for(self) for name, solver in other.ik_solvers.items()}
+        self.take_sensors(other)
 
     def restorers(self, options: int) -> list[Restorer]:
         """Return what gives this robot, or one like it, its present state back."""

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from ravemj.core.arguments import checked_kind
+from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, pose_of
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError, UnsupportedError
@@ -30,7 +30,7 @@ class DescribedSensor(Interface):
     """
 
     _interface_type = InterfaceType.sensor
-    _internal = ("attached", "description", "device")
+    _internal = ("attached", "description", "device", "take_state")
 
     def __init__(
         self, env: "Environment", description: scene.AttachedSensor, attached: "AttachedSensor | None"
@@ -68,6 +68,9 @@ class DescribedSensor(Interface):
 
     def _take_over(self) -> None:
         """Begin anew with another device."""
+
+    def take_state(self, other: "DescribedSensor") -> None:
+        """Go on like another sensor of the same kind."""
 
     def _problem(self) -> str | None:
         """Return why the sensor cannot measure, or None."""
@@ -151,24 +154,29 @@ class DescribedSensor(Interface):
             self._take_over()
         return True
 
+    @also_named(reference="ref")
     def Clone(self, ref: "DescribedSensor", cloningoptions: int = 0) -> None:
-        """Take over geometry, description and data of users from another sensor of this kind; its pose, if on no robot.
+        """Take over what another sensor of this kind is: its geometry, its noise, on or off, and data of users.
+
+        A sensor that no robot carries takes over the name and the pose, too.
 
         Args:
             ref: The other sensor.
-            cloningoptions: Not used.
+            cloningoptions: OpenRAVE's; ignored.
 
         Raises:
             openrave_exception: it is of another kind.
         """
-        if checked_kind(ref, DescribedSensor, "Clone: ref", "a Sensor").GetXMLId().lower() != self.GetXMLId().lower():
-            raise ArgumentError(f"Clone: ref is a '{ref.GetXMLId()}', and this is a '{self.GetXMLId()}'")
-        super().Clone(ref, cloningoptions)
+        other = checked_kind(ref, DescribedSensor, "Clone: ref", "a Sensor")
+        if other.GetXMLId().lower() != self.GetXMLId().lower():
+            raise ArgumentError(f"Clone: ref is a '{other.GetXMLId()}', and this is a '{self.GetXMLId()}'")
+        super().Clone(other, cloningoptions)
         with self._env.simulation.lock:
-            self._edit(device=ref.description.device)
             if self.attached is None:
-                self.SetTransform(ref.GetTransform())
-            self._take_over()
+                self._own = replace(other.description, link=None, T_link_sensor=pose_of(other.GetTransform()))
+            else:
+                self._edit(device=other.description.device)
+            self.take_state(other)
 
     def GetSensorGeometry(self, type: SensorType | None = None) -> SensorGeometry | None:  # OpenRAVE's name
         """Return what is fixed about the sensor, a copy; None where it has no geometry of this kind.

@@ -112,7 +112,7 @@ class Sensor(DescribedSensor):
     OdometrySensorData = OdometrySensorData
     TactileSensorData = TactileSensorData
 
-    _internal = ("advance", "hide")
+    _internal = ("advance", "hide", "take_state")
 
     def __init__(
         self, env: "Environment", description: scene.AttachedSensor, attached: "AttachedSensor | None" = None
@@ -293,6 +293,15 @@ class Sensor(DescribedSensor):
         if not (math.isfinite(deviation) and deviation >= 0):
             raise ArgumentError(f"set_noise: deviation is {deviation}, and should be a number from 0")
         self._instrument.set_noise(float(deviation), seed)
+
+    def take_state(self, other: DescribedSensor) -> None:
+        """Go on like another sensor of the same kind: with its noise, on or off, and drawn or not."""
+        assert isinstance(other, Sensor)
+        self._restart()
+        self._instrument.take_over(other._instrument)
+        self._switched, self._until_next = dict(other._switched), other._until_next
+        self._switched[SensorCommand.PowerOn] &= self._problem() is None
+        self._show_shape(anew=True)
 
     def hide(self) -> None:
         """Switch the sensor and its drawings off: it is taken away."""

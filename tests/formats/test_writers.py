@@ -552,6 +552,33 @@ class TestJson:
         np.testing.assert_allclose(robot.GetDOFValues(), [0.3, 0.4], atol=1e-12)
         assert env.files[-1] == str(tmp_path / "a.json")
 
+    @pytest.mark.parametrize("read", ["ReadRobotURI", "ReadKinBodyURI", "ReadInterfaceURI"])
+    def test_a_body_is_read_without_being_added(self, env, robot, tmp_path, read):
+        robot.SetDOFValues([0.3, 0.4])
+        env.Save(tmp_path / "a.json", atts=robot.GetName())
+        other = ravemj.Environment()
+        body = getattr(other, read)(str(tmp_path / "a.json"))
+        assert body.IsRobot()
+        assert other.GetBodies() == []
+        assert body.GetURI() == f"file:{tmp_path / 'a.json'}"
+        other.Add(body)
+        np.testing.assert_allclose(body.GetDOFValues(), [0.3, 0.4], atol=1e-12)
+        np.testing.assert_allclose(body.GetLinkTransformations(), robot.GetLinkTransformations(), atol=1e-9)
+
+    def test_a_body_becomes_a_robot_or_another_body(self, env, robot, tmp_path):
+        env.LoadData('<KinBody name="k"><Body name="a"/></KinBody>')
+        env.Save(tmp_path / "k.json", env.SelectionOptions.Body, "k")
+        assert env.ReadRobotURI(str(tmp_path / "k.json")).IsRobot()
+        env.Remove(robot)
+        assert env.ReadRobotURI(robot, str(tmp_path / "k.json")) is robot
+        assert (robot.GetName(), len(robot.GetLinks()), robot.IsRobot()) == ("k", 1, True)
+
+    @pytest.mark.parametrize("content", ['{"bodies": []}', '{"bodies": [{"name": 7}]}', "[", None])
+    def test_no_body_is_read_from_broken_files(self, env, tmp_path, content):
+        if content is not None:
+            (tmp_path / "a.json").write_text(content)
+        assert env.ReadKinBodyURI(str(tmp_path / "a.json")) is None
+
     def test_what_json_cannot_say(self, env, tmp_path):
         env.LoadData('<KinBody name="k" makejoinedlinksadjacent="0"><Body name="a"/></KinBody>')
         with pytest.warns(ravemj.RavemjWarning, match="not-written"):

@@ -7,7 +7,7 @@ import pytest
 from waiting import await_that
 
 import ravemj
-from ravemj import Sensor
+from ravemj import Robot, Sensor
 
 PowerOn = Sensor.ConfigureCommand.PowerOn
 RenderDataOn = Sensor.ConfigureCommand.RenderDataOn
@@ -573,3 +573,74 @@ def test_sensors_are_saved(tmp_path, suffix):
     read.DeserializeJSON(info.SerializeJSON())
     assert read._sensorgeometry == info._sensorgeometry
     assert read._sensorgeometry.spin_speed == -2
+
+
+class TestCopies:
+    """Copies of environments and robots measure as the originals do."""
+
+    @pytest.fixture
+    def devices(self, env):
+        laser, camera = (env.GetRobot("eye").GetAttachedSensor(name).GetSensor() for name in ("laser", "camera"))
+        laser.Configure(PowerOn)
+        laser.set_noise(0.01, seed=1)
+        camera.Configure(RenderGeometryOn)
+        loose = ravemj.RaveCreateSensor(env, "BaseSpinningLaser2D")
+        loose.SetName("door")
+        loose.SetTransform([1, 0, 0, 0, 0.5, 0, 0.3])
+        env.Add(loose)
+        loose.Configure(PowerOn)
+        return laser, camera, loose
+
+    @staticmethod
+    def states(sensor):
+        commands = Sensor.ConfigureCommand
+        checks = commands.PowerCheck, commands.RenderDataCheck, commands.RenderGeometryCheck
+        return [sensor.Configure(command) for command in checks]
+
+    def test_of_an_environment(self, env, devices):
+        options = ravemj.CloningOptions.Bodies | ravemj.CloningOptions.Sensors
+        copy = env.CloneSelf(options)
+        names = ["eye:camera", "eye:laser", "door"]
+        assert [sensor.GetName() for sensor in copy.GetSensors()] == names
+        for name in names:
+            assert self.states(copy.GetSensor(name)) == self.states(env.GetSensor(name))
+        np.testing.assert_allclose(copy.GetSensor("door").GetTransform(), devices[2].GetTransform(), atol=1e-12)
+        first, second = (one.GetSensor("eye:laser").GetSensorData().ranges for one in (env, copy))
+        np.testing.assert_array_equal(first, second)
+        drawn = len(env.simulation.drawings.primitives())
+        assert len(copy.simulation.drawings.primitives()) == drawn > 0
+        copy.GetSensor("eye:laser").Configure(Sensor.ConfigureCommand.PowerOff)
+        assert self.states(devices[0])[0] == 1
+        copy.Clone(env, options)
+        assert [sensor.GetName() for sensor in copy.GetSensors()] == names
+        assert len(copy.simulation.drawings.primitives()) == drawn
+        copy.Clone(env)
+        assert [sensor.GetName() for sensor in copy.GetSensors()] == names[:2]
+
+    def test_of_a_robot(self, env, devices):
+        twin = ravemj.RaveClone(env.GetRobot("eye"), 0)
+        assert self.states(twin.GetAttachedSensor("laser").GetSensor()) == [1, 0, 0]
+        assert self.states(twin.GetAttachedSensor("camera").GetSensor()) == [0, 0, 1]
+        twin.SetName("twin")
+        env.Add(twin)
+        assert env.GetSensor("twin:laser").GetSensorData().ranges.shape == (315, 3)
+
+    def test_of_a_sensor(self, env, devices):
+        _, _, loose = devices
+        other = ravemj.RaveClone(loose)
+        assert (other.GetName(), self.states(other)) == ("door", [1, 0, 0])
+        other.SetTransform(np.eye(4))
+        assert loose.GetTransform()[0, 3] == 0.5
+        taken = ravemj.RaveClone(devices[0])
+        np.testing.assert_allclose(taken.GetTransform(), devices[0].GetTransform())
+        with pytest.raises(ravemj.openrave_exception, match="on a robot"):
+            devices[0].Clone(loose)
+
+    def test_of_a_sensor_that_needs_its_link(self, env):
+        info = Robot.AttachedSensorInfo(_name="imu", _linkname="base", _sensorname="BaseIMU")
+        imu = env.GetRobot("eye").AddAttachedSensor(info).GetSensor()
+        imu.Configure(PowerOn)
+        taken = ravemj.RaveClone(imu)
+        assert self.states(taken)[0] == 0
+        with pytest.raises(ravemj.openrave_exception, match="is off"):
+            taken.GetSensorData()

@@ -19,7 +19,7 @@ class Sensors(BodyPart):
 
     _devices: dict[str, Sensor]
     """The devices that were asked for, by the names of their places."""
-    _internal = ("device", "forget_sensors", "step_sensors")
+    _internal = ("device", "forget_sensors", "step_sensors", "take_sensors")
 
     def GetAttachedSensors(self) -> list[AttachedSensor]:
         """Return the sensors on the robot's links, in the order of the file."""
@@ -106,6 +106,15 @@ class Sensors(BodyPart):
                 sensor = attached.GetSensor()
                 if sensor is not None:
                     sensor.advance(timestep, stamp)
+
+    def take_sensors(self, other: "Sensors") -> None:
+        """Let the devices go on like those of another robot of the same description; see ``Sensor.take_state``."""
+        self.forget_sensors()
+        for name, device in other._devices.items():
+            attached = self.GetAttachedSensor(name)
+            sensor = None if attached is None else attached.GetSensor()
+            if sensor is not None:
+                sensor.take_state(device)
 
     def forget_sensors(self, name: str | None = None) -> None:
         """Switch a device off and forget it, with what is drawn of it; None: all."""

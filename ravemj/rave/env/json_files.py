@@ -4,16 +4,20 @@
 # pyright: reportPrivateUsage=false
 
 import json
-from collections.abc import Callable, Collection, Iterable, Sequence
+import os
+from collections.abc import Callable, Collection, Generator, Iterable, Sequence
+from contextlib import contextmanager
 from typing import Any, cast
 
 import numpy as np
 
 from ravemj.core.output import new_file
 from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError, send_warnings
-from ravemj.model.scene import KinBody, View
+from ravemj.model import scene
+from ravemj.model.scene import View
 from ravemj.rave.env.description import Description
-from ravemj.rave.infos import KinBodyInfo
+from ravemj.rave.infos import EnvironmentBaseInfo, KinBodyInfo
+from ravemj.rave.kinbody import KinBody
 
 SUFFIX = ".json"
 
@@ -66,22 +70,64 @@ class JsonFiles(Description):
         Raises:
             SourceError: The file is missing or broken; what was read before is there.
         """
+        self._check_alive()
+        content = self._content(path)
+        with _placed_errors(path):
+            self.LoadJSON(content)
+
+    def _read_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
+        """Return the first body of a file, which is not added.
+
+        Args:
+            path: The file.
+            into: A body to make anew, or None.
+            is_robot: Whether it becomes a robot, whatever the file calls it.
+
+        Raises:
+            SourceError: The file is missing or broken, or has no body.
+        """
+        content = self._content(path)
+        info = EnvironmentBaseInfo()
+        with _placed_errors(path):
+            info.DeserializeJSON(content)
+            if not info._vBodyInfos:
+                raise SourceError("there is no body in it", Source(path))
+            first = info._vBodyInfos[0]
+            first._uri = f"file:{os.path.abspath(path)}"
+            first._isRobot = into.IsRobot() if into is not None else first._isRobot or is_robot
+            body = self._new_body(is_robot=first._isRobot) if into is None else into
+            body.InitFromKinBodyInfo(first)
+        return body
+
+    def _content(self, path: str) -> dict[str, Any]:
+        """Return what a file holds, and note that it was read.
+
+        Raises:
+            SourceError: The file is missing or broken.
+        """
         from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
 
-        self._check_alive()
         found = find(path)
         if found is None:
             raise SourceError("there is no such file", Source(path), "check the path, or set OPENRAVE_DATA")
         content = _parsed(found)
         self._files[found] = None
-        try:
-            self.LoadJSON(content)
-        except RavemjError as error:
-            raise SourceError(str(error), Source(found)) from error
-        except (ArithmeticError, RecursionError) as error:
-            raise SourceError("a number in the file is too large to compute with", Source(found)) from error
-        except (TypeError, ValueError, LookupError) as error:  # values of wrong kinds, in any of a hundred places
-            raise SourceError(f"a value in the file is of a wrong kind: {error}", Source(found)) from error
+        return content
+
+
+@contextmanager
+def _placed_errors(path: str) -> Generator[None]:
+    """Let errors about values name the file that they stand in."""
+    try:
+        yield
+    except SourceError:
+        raise
+    except RavemjError as error:
+        raise SourceError(str(error), Source(path)) from error
+    except (ArithmeticError, RecursionError) as error:
+        raise SourceError("a number in the file is too large to compute with", Source(path)) from error
+    except (TypeError, ValueError, LookupError) as error:  # values of wrong kinds, in any of a hundred places
+        raise SourceError(f"a value in the file is of a wrong kind: {error}", Source(path)) from error
 
 
 def _parsed(path: str) -> dict[str, Any]:
@@ -106,7 +152,7 @@ def _parsed(path: str) -> dict[str, Any]:
     return cast("dict[str, Any]", content)
 
 
-def _warn_of_losses(diagnostics: Diagnostics, path: str, bodies: Iterable[KinBody]) -> None:
+def _warn_of_losses(diagnostics: Diagnostics, path: str, bodies: Iterable[scene.KinBody]) -> None:
     """Warn of what OpenRAVE's JSON cannot say of bodies."""
     for body in bodies:
         if not body.joined_links_adjacent:

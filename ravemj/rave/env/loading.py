@@ -86,10 +86,7 @@ class Loading(JsonFiles):
     LoadURI = Load
 
     def _try_json(self, path: str, given: Attributes) -> bool:
-        diagnostics = Diagnostics()
-        for name in given:
-            diagnostics.warn("unknown-attribute", f"nothing reads '{name}' for a JSON file", Source(path))
-        send_warnings(diagnostics)
+        _warn_of_attributes(path, given)
         try:
             self._load_json(path)
         except SourceError as error:
@@ -187,7 +184,7 @@ class Loading(JsonFiles):
             >>> env.Add(mug)
         """
         into, filename, given = _read_arguments("ReadKinBodyURI", arguments, named)
-        return self._read(self._read_file(filename, given), into, is_robot=False)
+        return self._read_uri(filename, given, into, is_robot=False)
 
     ReadKinBodyXMLFile = ReadKinBodyURI
 
@@ -204,7 +201,7 @@ class Loading(JsonFiles):
         A body that the file does not call a robot becomes one.
         """
         into, filename, given = _read_arguments("ReadRobotURI", arguments, named)
-        robot = self._read(self._read_file(filename, given), into, is_robot=True)
+        robot = self._read_uri(filename, given, into, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLFile = ReadRobotURI
@@ -216,6 +213,17 @@ class Loading(JsonFiles):
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLData = ReadRobotData
+
+    def _read_uri(self, filename: Text, given: Attributes, into: KinBody | None, *, is_robot: bool) -> KinBody | None:
+        path = os.fsdecode(filename)
+        if not is_json(path):
+            return self._read(self._read_file(path, given), into, is_robot=is_robot)
+        _warn_of_attributes(path, given)
+        try:
+            return self._read_json(path, into, is_robot=is_robot)
+        except SourceError as error:
+            _LOG.error("%s", error)
+            return None
 
     def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
         """Make a body of what was read, that is not added; the first one counts."""
@@ -284,8 +292,7 @@ class Loading(JsonFiles):
         Returns:
             The robot or body; None, with the reason in the log, if there is none in the file.
         """
-        reading = self._read_file(filename, _checked_attributes(atts, "ReadInterfaceURI"))
-        return self._read(reading, None, is_robot=False)
+        return self._read_uri(filename, _checked_attributes(atts, "ReadInterfaceURI"), None, is_robot=False)
 
     ReadInterfaceXMLFile = ReadInterfaceURI
 
@@ -298,6 +305,14 @@ class Loading(JsonFiles):
     def files(self) -> tuple[str, ...]:
         """Paths of all files that were read: models, what they include, and meshes."""
         return tuple(self._files)
+
+
+def _warn_of_attributes(path: str, given: Attributes) -> None:
+    """Warn of attributes for a JSON file, which has a name for everything already."""
+    diagnostics = Diagnostics()
+    for name in given:
+        diagnostics.warn("unknown-attribute", f"nothing reads '{name}' for a JSON file", Source(path))
+    send_warnings(diagnostics)
 
 
 def _read_arguments(
