@@ -62,7 +62,7 @@ class Interface(UserData, ReadableInterface):
         self._annotations.description = str(description)
 
     def Clone(self, ref: Any, cloningoptions: int = 0) -> None:  # noqa: ANN401 - another object of its class
-        """Refuse to become like another object; bodies and trajectories do.
+        """Refuse to copy another object; bodies and trajectories can.
 
         Args:
             ref: The other object.
