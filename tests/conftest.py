@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -21,9 +22,10 @@ settings.register_profile("patient", deadline=None, suppress_health_check=[Healt
 settings.load_profile("patient")
 
 
-def batches(count: int, usual: int = 1) -> list[object]:
-    """Return the numbers of the batches of a long test: the first ones always run, the others with ``-m stress``."""
-    return [pytest.param(number, marks=[] if number < usual else [pytest.mark.stress]) for number in range(count)]
+def one_in(count: int, values: Sequence[object]) -> list[object]:
+    """Return the parameters of a long test: one in so many runs always, the others run with ``-m stress``."""
+    marks = [pytest.mark.stress]
+    return [pytest.param(value, marks=marks if place % count else []) for place, value in enumerate(values)]
 
 
 @pytest.fixture

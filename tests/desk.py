@@ -58,7 +58,7 @@ class Desk:
         await_that(lambda: self.picture().shape == (size[1], size[0], 3), "the window has another size")
         self.env = ravemj.load(self.folder / model)
         self.robot = self.env.GetRobots()[0]
-        self.core = Interaction(self.env._simulation, Camera(np.asarray(camera)), size)
+        self.core = Interaction(self.env.simulation, Camera(np.asarray(camera)), size)
         self.core.look_from(Camera(np.asarray(camera)), DISTANCE)
         self.move(5, size[1] // 2)
         return self

@@ -13,15 +13,15 @@ from ravemj.cli.parser import make_parser
 _HEAD = """\
 # The command line
 
-Made by `scripts/docs` from what `ravemj COMMAND --help` says; a test compares.
+`scripts/docs` makes this page from the output of `ravemj COMMAND --help`; a test compares.
 
-Results go to standard output, everything else to standard error; what their encoding lacks is written in ASCII. Exit
-codes: 0 done; 1 the input is bad, or the output cannot be written; 2 the command was not understood; 128 + n ended by
-signal n, as 130 by Ctrl-C and 143 by SIGTERM. What is wrong with a model is one line with file and line number;
-`--strict` takes warnings for errors.
+Commands write results to standard output and everything else to standard error, in ASCII where an encoding lacks
+characters. Exit codes: 0 done; 1 the input is bad, or the output cannot be written; 2 the command was not understood;
+128 + n a signal ended the command, as 130 for Ctrl-C and 143 for SIGTERM. Each mistake in a model is one line with file
+and line number; `--strict` treats warnings as errors.
 
 Files and folders that commands write appear whole or not at all. Until they are whole they are called
-`.ravemj-….tmp`; what a process that was killed leaves of them, the next that writes into the folder removes.
+`.ravemj-….tmp`. If a process is killed, the next one that writes into the folder removes what it left.
 
 | command | |
 |---|---|

@@ -89,7 +89,7 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
 
     @also_named(reference="ref")
     def Clone(self, ref: "KinBody", cloningoptions: int = 0) -> None:
-        """Become like another body, which may be in another environment: links, joints, name and configuration.
+        """Copy another body, which may be in another environment: its links, joints, name and configuration.
 
         Args:
             ref: The body to copy; what it holds is not copied.

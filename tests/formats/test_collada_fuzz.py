@@ -8,7 +8,7 @@ import zipfile
 from contextlib import suppress
 
 import pytest
-from conftest import DATA, batches
+from conftest import DATA, one_in
 from fuzzing import NUMBERS
 from lxml import etree
 from waiting import time_limit
@@ -108,7 +108,7 @@ def meaning(data: bytes, deep: bool = False) -> tuple[int, str, list[str]]:
         return links, PLACE.sub("", text), [str(finding) for finding in reading.diagnostics]
 
 
-@pytest.mark.parametrize("batch", batches(BATCHES))
+@pytest.mark.parametrize("batch", one_in(BATCHES, range(BATCHES)))
 def test_documents(batch, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("RAVEMJ_CACHE", "off")

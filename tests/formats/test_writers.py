@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from agreement import CORPUS
-from conftest import MODELS, REPOSITORY
+from conftest import MODELS, REPOSITORY, one_in
 from hypothesis import given
 from round_trips import NAMES, check_round_trip, contents
 from strategies import Taste, examples, scene_node, scenes, xml
@@ -66,7 +66,7 @@ def test_inputs_survive(kind, name, tmp_path, monkeypatch):
 @pytest.mark.corpus
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="there are no published models in ../shared/corpus")
 @pytest.mark.parametrize("kind", NAMES)
-@pytest.mark.parametrize("name", corpus())
+@pytest.mark.parametrize("name", one_in(4, corpus()))
 def test_published_models_survive(kind, name, tmp_path, monkeypatch):
     monkeypatch.setenv("OPENRAVE_DATA", str(CORPUS / "models" / "rdiankov+openrave" / "src"))
     reading = read_file(CORPUS / "models" / name)

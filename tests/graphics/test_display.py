@@ -29,7 +29,7 @@ def arm():
 
 def shown(env, name, radius=1.0):
     with env:
-        return figures(env._simulation, frozenset([name]), radius)
+        return figures(env.simulation, frozenset([name]), radius)
 
 
 def test_frames_are_at_the_links_with_their_axes_in_red_green_blue(arm):
@@ -83,7 +83,7 @@ def test_contacts_are_where_things_touch(arm):
 
 
 def test_names_are_at_the_links(arm):
-    labels = {label.text: label.point for label in names(arm._simulation)}
+    labels = {label.text: label.point for label in names(arm.simulation)}
     np.testing.assert_allclose(labels["base"], [1, 2, 3.05], atol=1e-12)
     assert set(labels) == {"base", "upper"}
 

@@ -18,7 +18,7 @@ START, WAY = (100, 100), (150, 130)
 
 @pytest.fixture
 def gui(env) -> Interaction:
-    gui = Interaction(env._simulation, Camera(FROM_FRONT), SIZE)
+    gui = Interaction(env.simulation, Camera(FROM_FRONT), SIZE)
     gui.look_from(Camera(FROM_FRONT), 1.0)
     return gui
 
@@ -90,7 +90,7 @@ def test_a_body_that_the_script_moves_while_the_user_drags_it_follows_the_pointe
 
     inside = at([0.01, 0, -0.3])
     do(gui, Key("escape"), Press(*inside), Release(*inside))
-    cube = Cube.around(robot._state)
+    cube = Cube.around(robot.simulation_state)
     held = at(cube.T_world_cube[:3, 3])
     T = robot.GetTransform()
     do(gui, Press(*held), Move(held[0] + 30, held[1]))

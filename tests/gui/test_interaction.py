@@ -42,7 +42,7 @@ class Hand:
 
     def __init__(self, env, T_world_camera=FROM_FRONT, **more):
         self.env = env
-        self.gui = Interaction(env._simulation, Camera(T_world_camera), SIZE, **more)
+        self.gui = Interaction(env.simulation, Camera(T_world_camera), SIZE, **more)
 
     @property
     def view(self) -> View:
@@ -312,7 +312,7 @@ def test_rays_meet_shapes(kind):
         body.InitFromGeometries([info])
     body.SetName("one")
     env.Add(body)
-    hit = pick(env._simulation, View(Camera(FROM_FRONT), 1.0, SIZE).ray(400, 300))
+    hit = pick(env.simulation, View(Camera(FROM_FRONT), 1.0, SIZE).ray(400, 300))
     assert hit.body.scene.name == "one"
     np.testing.assert_allclose(hit.position, [0.1, 0, 0], atol=1e-7)
     np.testing.assert_allclose(hit.normal, [1, 0, 0], atol=1e-7)
@@ -321,9 +321,9 @@ def test_rays_meet_shapes(kind):
 
 def test_what_is_invisible_is_not_picked(boxes):
     ray = View(Camera(FROM_FRONT), 1.0, SIZE).ray(*Hand(boxes).at([0, 0.3, 0]))
-    assert pick(boxes._simulation, ray).body.scene.name == "right"
+    assert pick(boxes.simulation, ray).body.scene.name == "right"
     boxes.GetKinBody("right").GetLinks()[0].SetVisible(False)
-    assert pick(boxes._simulation, ray) is None
+    assert pick(boxes.simulation, ray) is None
 
 
 # --- selecting bodies
@@ -376,7 +376,7 @@ def test_callbacks_are_asked_before_something_is_selected(boxes):
 def test_the_cube_is_around_what_is_seen(boxes):
     body = boxes.GetKinBody("left")
     body.SetTransform([math.cos(0.4), math.sin(0.4), 0, 0, 1, 2, 3])
-    cube = Cube.around(body._state)
+    cube = Cube.around(body.simulation_state)
     np.testing.assert_allclose(cube.T_world_cube, body.GetTransform(), atol=1e-12)
     np.testing.assert_allclose(cube.half, [0.115, 0.065, 0.165], atol=1e-9)
     assert np.abs(cube.primitives().placed(np.linalg.inv(cube.T_world_cube)).triangles.corners).max() == pytest.approx(
@@ -469,7 +469,7 @@ def test_ctrl_and_a_click_select_the_parent_joint(hand, robot):
         hand.click(hand.at([0.01, 0, z]), ctrl=True)
         robot.SetDOFValues([0, math.pi / 4])
         assert hand.lines()[1:] == lines
-    handle = JointHandle.at(robot._state, 1)
+    handle = JointHandle.at(robot.simulation_state, 1)
     np.testing.assert_allclose(handle.center, robot.GetJoints()[1].GetAnchor(), atol=1e-12)
     np.testing.assert_allclose(handle.axis, robot.GetJoints()[1].GetAxis(), atol=1e-12)
 
@@ -489,7 +489,7 @@ def test_dragging_the_cylinder_turns_the_joint(env, robot, T_camera, angles):
     link = robot.GetLinks()[2].GetTransform()
     hand.click(hand.at((link @ [0.15, 0, 0, 1])[:3]), ctrl=True)
     assert hand.selection.dof == 1
-    handle = JointHandle.at(robot._state, 1)
+    handle = JointHandle.at(robot.simulation_state, 1)
     ray = hand.view.ray(*hand.at(handle.center + 0.02 * handle.T_world_handle[:3, 0]))
     held = handle.hit(ray)
     stops = [(about(handle.center, handle.axis, angle) @ [*held, 1])[:3] for angle in angles]
@@ -503,7 +503,7 @@ def test_ctrl_and_a_click_on_the_cylinder_change_its_size(hand, robot):
     for _ in range(5):
         hand.gui.handle(Leave())
         widths.append(np.ptp(hand.gui.overlay().primitives.triangles.corners[..., 2]))
-        hand.click(hand.at(JointHandle.at(robot._state, 1).center), ctrl=True)
+        hand.click(hand.at(JointHandle.at(robot.simulation_state, 1).center), ctrl=True)
     np.testing.assert_allclose(np.array(widths) / widths[0], [1, 2, 4, 0.5, 1])
     assert hand.selection.dof == 1
 
@@ -515,7 +515,7 @@ def test_joint_limits_hold_and_the_pointer_takes_the_joint_up_again():
     hand = Hand(env).in_interaction()
     hand.click(hand.at([0.05, 0.2, 0]), ctrl=True)
     assert hand.lines()[1:] == ("Robot Sliding", "Joint Slide, DOF 0: 0.000 m")
-    handle = JointHandle.at(slider._state, 0)
+    handle = JointHandle.at(slider.simulation_state, 0)
     held = handle.hit(hand.view.ray(*hand.at(handle.center)))
     hand.gui.handle(Press(*hand.at(held)))
     for way, expected in ((0.1, 0.1), (0.5, 0.25), (0.2, 0.2), (-0.5, -0.05)):
@@ -524,7 +524,9 @@ def test_joint_limits_hold_and_the_pointer_takes_the_joint_up_again():
         follower = slider.GetLink("Follower").GetTransform()
         assert follower[2, 3] == pytest.approx(0.3 + 2 * expected), "mimic joints follow"
     assert hand.lines()[-1] == "Joint Slide, DOF 0: -0.050 m"
-    np.testing.assert_allclose(JointHandle.at(slider._state, 0).center - handle.center, [0, -0.05, 0], atol=1e-12)
+    np.testing.assert_allclose(
+        JointHandle.at(slider.simulation_state, 0).center - handle.center, [0, -0.05, 0], atol=1e-12
+    )
 
 
 SLIDING = """<Robot name="Sliding"><KinBody>
@@ -558,7 +560,7 @@ def test_what_a_robot_holds_follows_the_joint(env, robot):
     T_link_box = np.linalg.inv(robot.GetLinks()[2].GetTransform()) @ box.GetTransform()
     hand = Hand(env).in_interaction()
     hand.click(hand.at([0.01, 0, -0.3]), ctrl=True)
-    handle = JointHandle.at(robot._state, 1)
+    handle = JointHandle.at(robot.simulation_state, 1)
     held = handle.hit(hand.view.ray(*hand.at(handle.center + np.array([0, 0.02, 0]))))
     hand.drag(hand.at(held), hand.at((about(handle.center, handle.axis, 0.6) @ [*held, 1])[:3]))
     assert robot.GetDOFValues()[1] == pytest.approx(0.6)
@@ -577,7 +579,9 @@ def test_each_click_takes_the_next_axis_of_a_joint_with_several():
     for axis in (0, 1, 0):
         hand.click(hand.at([0.02, 0.25, 0]), ctrl=True)
         assert hand.lines()[-1] == f"Joint Wrist, axis {axis}, DOF {axis}: 0.000 rad, 0.0 deg"
-        np.testing.assert_allclose(JointHandle.at(robot._state, axis).axis, robot.GetJoints()[0].GetAxis(axis))
+        np.testing.assert_allclose(
+            JointHandle.at(robot.simulation_state, axis).axis, robot.GetJoints()[0].GetAxis(axis)
+        )
 
 
 # --- fingers, and buttons of the shell's own
@@ -592,10 +596,10 @@ def test_one_finger_turns_the_view_and_a_tap_selects(hand, robot):
     hand.click((5, 5), touch=True)
     assert (hand.selection, hand.gui.mode) == (None, Mode.CAMERA)
     hand.click(hand.at([0, 0, -0.3]), touch=True)
-    assert hand.selection.body is robot._state
+    assert hand.selection.body is robot.simulation_state
     assert hand.gui.mode is Mode.INTERACTION
     before = hand.view
-    cube = Cube.around(robot._state)
+    cube = Cube.around(robot.simulation_state)
     hand.drag(hand.at(cube.T_world_cube[:3, 3]), hand.at(cube.T_world_cube[:3, 3] + [0, 0.1, 0]), touch=True)
     assert hand.view is before
     assert np.linalg.norm(robot.GetTransform()[:3, 3]) > 0.05

@@ -281,7 +281,7 @@ def test_gestures_move_what_the_script_reads(env, viewer):
         page.settled()
         assert page.overlay["lines"][1:] == ["Robot Pendulum", "Joint Joint1, DOF 1: 0.000 rad, 0.0 deg"]
         assert page.overlay["mode"] == "interaction"
-        handle = JointHandle.at(robot._state, 1)
+        handle = JointHandle.at(robot.simulation_state, 1)
         top = handle.center[0] + handle.height / 2
         stops = [[top, 0.02 * math.cos(angle), handle.center[2] + 0.02 * math.sin(angle)] for angle in (0, 0.4, 0.8)]
         page.drag(*map(at, stops))
@@ -621,7 +621,7 @@ def test_a_script_a_hand_and_an_onlooker_share_one_environment(env, viewer, pict
         page.escape()
         page.drag(at([0.01, 0, -0.3]), at([0.01, 0, -0.3]), ctrl=True)
         await_that(lambda: viewer.GetSelectedJoint() is not None)
-        x, y = at(JointHandle.at(robot._state, 1).center)
+        x, y = at(JointHandle.at(robot.simulation_state, 1).center)
         page.mouse("press", (x + 5, y), button="left", ctrl=False, shift=False, touch=False)
         lookers = [threading.Thread(target=look, args=[one]) for one in (page, onlooker)]
         for looker in lookers:

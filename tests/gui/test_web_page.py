@@ -154,7 +154,7 @@ class TestInteractionMode:
         for again in (arm, (300, 100)):  # on the object, and on nothing
             desk.click(arm)
             await_that(lambda: desk.viewer.GetSelectedBody() == desk.robot, "no cube")
-            cube = Cube.around(desk.robot._state)
+            cube = Cube.around(desk.robot.simulation_state)
             x, y = desk.at((cube.T_world_cube @ [*cube.half, 1])[:3])
             around = slice(y - 3, y + 4), slice(x - 3, x + 4)
             await_that(lambda around=around: np.ptp(desk.picture()[around], axis=2).max() > 60, "the cube is not seen")
@@ -167,7 +167,7 @@ class TestInteractionMode:
     def test_dragging_a_face_moves_the_body(self, desk):
         desk.escape()
         desk.click(desk.at(desk.point(2, 0.15, 0, 0)))
-        cube = Cube.around(desk.other_robot._state)
+        cube = Cube.around(desk.other_robot.simulation_state)
         start = desk.at((cube.T_world_cube @ [0.3 * cube.half[0], 0.3 * cube.half[1], cube.half[2], 1])[:3])
         desk.drag(start, (start[0] + 30, start[1]), (start[0] + 50, start[1] + 20))
         way = (desk.other_robot.GetTransform() - np.linalg.inv(cube.T_world_cube))[:3, 3]
@@ -179,7 +179,7 @@ class TestInteractionMode:
     def test_dragging_an_edge_turns_the_body(self, desk):
         desk.escape()
         desk.click(desk.at(desk.point(2, 0.15, 0, 0)))
-        cube = Cube.around(desk.other_robot._state)
+        cube = Cube.around(desk.other_robot.simulation_state)
         start = desk.at((cube.T_world_cube @ [0.1 * cube.half[0], cube.half[1], cube.half[2], 1])[:3])
         desk.drag(start, (start[0] - 20, start[1] + 10), (start[0] - 40, start[1] + 15))
         turned = desk.other_robot.GetTransform()[:3, :3]
@@ -192,7 +192,7 @@ class TestInteractionMode:
         desk.click(desk.at(desk.point(2, 0.15, 0, 0)), keys=["Control"])
         await_that(lambda: desk.viewer.GetSelectedJoint() == desk.robot.GetJoints()[1], "no joint")
         assert desk.viewer.GetSelectedLink().GetName() == "Arm1"
-        handle = JointHandle.at(desk.other_robot._state, 1)
+        handle = JointHandle.at(desk.other_robot.simulation_state, 1)
         grip = handle.hit(desk.core.view.ray(*desk.at(handle.center + 0.02 * handle.T_world_handle[:3, 1])))
         start = desk.at(grip)
         desk.press(start)
@@ -217,7 +217,7 @@ class TestInteractionMode:
             desk.await_picture()
             picture = desk.picture()[CLEAR]
             areas.append(int(((picture[..., 0] > picture[..., 2] + 60) & (picture[..., 1] > 40)).sum()))
-            desk.click(desk.at(JointHandle.at(desk.robot._state, 1).center), keys=["Control"])
+            desk.click(desk.at(JointHandle.at(desk.robot.simulation_state, 1).center), keys=["Control"])
         assert areas[0] < areas[1] < areas[2]
 
     @pytest.mark.parametrize("own_desk", [(sliding, {})], indirect=True)
@@ -225,7 +225,7 @@ class TestInteractionMode:
         own_desk.escape()
         own_desk.click(own_desk.at([0.05, 0.2, 0]), keys=["Control"])
         await_that(lambda: own_desk.lines[1:] == ["Robot Sliding", "Joint Slide, DOF 0: 0.000 m"], f"{own_desk.lines}")
-        handle = JointHandle.at(own_desk.other_robot._state, 0)
+        handle = JointHandle.at(own_desk.other_robot.simulation_state, 0)
         grip = handle.hit(own_desk.core.view.ray(*own_desk.at(handle.center)))
         for way, expected in ((0.05, 0.05), (0.2, 0.15)):
             own_desk.drag(
@@ -347,7 +347,7 @@ class TestTouch:
         desk.touched(self.press(arm), Release(*arm))
         await_that(lambda: desk.viewer.GetSelectedBody() == desk.robot, "no cube")
         await_that(lambda: desk.page.get_attribute("body", "data-mode") == "interaction", "another mode")
-        cube = Cube.around(desk.other_robot._state)
+        cube = Cube.around(desk.other_robot.simulation_state)
         start = desk.at((cube.T_world_cube @ [0.3 * cube.half[0], 0.3 * cube.half[1], cube.half[2], 1])[:3])
         end = start[0] + 40, start[1] + 20
         desk.touch([start], [(start[0] + 20, start[1])], [end])
@@ -524,7 +524,7 @@ class TestTrouble:
         own_desk.escape()
         own_desk.click(own_desk.at(own_desk.point(2, 0.15, 0, 0)), keys=["Control"])
         await_that(lambda: own_desk.viewer.GetSelectedJoint() is not None, "no joint")
-        x, y = own_desk.at(JointHandle.at(own_desk.robot._state, 1).center)
+        x, y = own_desk.at(JointHandle.at(own_desk.robot.simulation_state, 1).center)
         own_desk.page.mouse.move(x + 4, y)
         own_desk.page.mouse.down()
         own_desk.page.mouse.move(x, y + 10)

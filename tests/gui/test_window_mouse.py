@@ -218,7 +218,7 @@ def test_escape_and_the_two_buttons_switch_modes(desk):
 
 def cube_is_seen(desk) -> bool:
     """Whether the nearest corner of the cube around the robot is green."""
-    cube = Cube.around(desk.robot._state)
+    cube = Cube.around(desk.robot.simulation_state)
     corners = [(cube.T_world_cube @ [*(cube.half * (2 * np.array(signs) - 1)), 1])[:3] for signs in np.ndindex(2, 2, 2)]
     eye = desk.core.view.camera.position
     x, y = desk.at(min(corners, key=lambda corner: np.linalg.norm(corner - eye)))
@@ -251,7 +251,7 @@ def test_left_click_selects_and_a_second_one_hides_the_cube(desk):
 
 def test_dragging_a_face_translates(desk):
     select_robot(desk)
-    cube = Cube.around(desk.robot._state)
+    cube = Cube.around(desk.robot.simulation_state)
     held = (cube.T_world_cube @ [0.3 * cube.half[0], 0.3 * cube.half[1], cube.half[2], 1])[:3]
     before, old = desk.robot.GetTransform(), desk.on_link(2)
     x, y = desk.at(held)
@@ -275,7 +275,7 @@ def test_dragging_a_face_translates(desk):
 @pytest.mark.parametrize("edge", [(0.2, 1, 1), (1, 0.2, 1), (1, 1, 0.2)])
 def test_dragging_an_edge_rotates_about_its_axis_through_the_centre(desk, edge):
     select_robot(desk)
-    cube = Cube.around(desk.robot._state)
+    cube = Cube.around(desk.robot.simulation_state)
     axis = edge.index(0.2)
     signs = np.sign(cube.T_world_cube[:3, :3].T @ (desk.core.view.camera.position - cube.T_world_cube[:3, 3]))
     held = (cube.T_world_cube @ [*(cube.half * signs * edge), 1])[:3]
@@ -310,7 +310,7 @@ def test_ctrl_and_left_click_select_the_parent_joint(desk):
     assert orange_pixels(desk) == 0
     select_joint(desk)
     await_that(lambda: orange_pixels(desk) > 100, "the cylinder is not seen")
-    handle = JointHandle.at(desk.robot._state, 1)
+    handle = JointHandle.at(desk.robot.simulation_state, 1)
     np.testing.assert_allclose(desk.array("robot.GetJoints()[1].GetAnchor()"), handle.center, atol=1e-9)
     rows, columns = np.nonzero(is_orange(desk.picture()[90:440, 60:580]))
     assert np.hypot(*(np.array(desk.at(handle.center)) - (columns.mean() + 60, rows.mean() + 90))) < 6
@@ -322,7 +322,7 @@ def test_ctrl_and_left_click_select_the_parent_joint(desk):
 
 def test_dragging_the_cylinder_turns_the_joint_and_the_text_is_live(desk):
     select_joint(desk)
-    handle = JointHandle.at(desk.robot._state, 1)
+    handle = JointHandle.at(desk.robot.simulation_state, 1)
     grip = handle.hit(desk.core.view.ray(*desk.at(handle.center + 0.02 * handle.T_world_handle[:3, 1])))
     x, y = desk.at(grip)
     desk.press((x, y))
@@ -347,7 +347,7 @@ def test_ctrl_and_left_click_on_the_cylinder_change_its_size(desk):
     await_that(lambda: orange_pixels(desk) > 100, "the cylinder is not seen")
     areas = [orange_pixels(desk)]
     for size in SIZES[1:]:
-        desk.click(desk.at(JointHandle.at(desk.robot._state, 1).center), keys=["ctrl"])
+        desk.click(desk.at(JointHandle.at(desk.robot.simulation_state, 1).center), keys=["ctrl"])
         await_that(lambda size=size: desk.ask("viewer.interaction.selection.size") == str(SIZES.index(size)), "no size")
         desk.settled_picture()
         areas.append(orange_pixels(desk))
@@ -361,7 +361,7 @@ def test_limits_hold_followers_follow_and_sliders_are_in_metres(process):
     desk.escape()
     desk.click(desk.at([0.05, 0.2, 0]), keys=["ctrl"])
     await_that(lambda: desk.ask("viewer.GetSelectedJoint().GetName()") == "Slide", "the slider is not selected")
-    handle = JointHandle.at(desk.robot._state, 0)
+    handle = JointHandle.at(desk.robot.simulation_state, 0)
     held = handle.hit(desk.core.view.ray(*desk.at(handle.center)))
     desk.press(desk.at(held))
     for way, expected in ((0.1, 0.1), (0.3, 0.25), (0.2, 0.2), (-0.3, -0.05)):
@@ -380,7 +380,7 @@ def test_what_is_held_follows_the_joint(desk):
     desk.await_colour(box.GetTransform()[:3, 3], "green")
     select_joint(desk)
     T_link_box = np.linalg.inv(desk.robot.GetLinks()[2].GetTransform()) @ box.GetTransform()
-    handle = JointHandle.at(desk.robot._state, 1)
+    handle = JointHandle.at(desk.robot.simulation_state, 1)
     grip = handle.hit(desk.core.view.ray(*desk.at(handle.center + 0.02 * handle.T_world_handle[:3, 1])))
     x, y = desk.at(grip)
     desk.drag((x, y), (x + 10, y + 5), (x + 15, y + 20))

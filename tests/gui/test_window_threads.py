@@ -127,7 +127,7 @@ def drag_about(display, window, moves) -> None:
         return round(x), round(y)
 
     display.tool(*place, *map(str, at(box.GetTransform()[:3, 3])), "click", "1")
-    cube = Cube.around(box._state)
+    cube = Cube.around(box.simulation_state)
     x, y = at((cube.T_world_cube @ [cube.half[0], 0, 0, 1])[:3])  # the middle of a face
     display.tool(*place, str(x), str(y), "mousedown", "1")
     for count in range(moves):

@@ -143,7 +143,7 @@ def drag_begun(desk):
     desk.escape()
     desk.click(desk.at(desk.on_link(2)))
     await_that(lambda: desk.ask("viewer.GetSelectedBody().GetName()") == "Pendulum", "the robot is not selected")
-    cube = Cube.around(desk.robot._state)
+    cube = Cube.around(desk.robot.simulation_state)
     x, y = desk.at((cube.T_world_cube @ [0.3 * cube.half[0], 0.3 * cube.half[1], cube.half[2], 1])[:3])
     desk.press((x, y))
     desk.move(x + 30, y)

@@ -224,4 +224,4 @@ def test_files_of_a_published_project_are_there():
     for name in ["LICENSE", "CONTRIBUTING.md", "CHANGELOG.md", "ravemj/py.typed"]:
         assert (REPOSITORY / name).is_file(), name
     assert "Apache License" in (REPOSITORY / "LICENSE").read_text()
-    assert f"## [{ravemj.__version__}]" in (REPOSITORY / "CHANGELOG.md").read_text()
+    assert f"\n## {ravemj.__version__} (" in (REPOSITORY / "CHANGELOG.md").read_text()

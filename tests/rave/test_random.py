@@ -17,7 +17,7 @@ import types
 from pathlib import Path
 
 import pytest
-from conftest import DATA, REPOSITORY, batches
+from conftest import DATA, REPOSITORY, one_in
 from waiting import PATIENCE
 
 INPUTS = DATA / "random"
@@ -76,7 +76,7 @@ def _program() -> types.ModuleType:
 ENVIRONMENT = {"PYTHONPATH": str(REPOSITORY), "PYTHONWARNINGS": "ignore"}
 
 
-@pytest.mark.parametrize("part", batches(PARTS))
+@pytest.mark.parametrize("part", one_in(PARTS, range(PARTS)))
 @pytest.mark.parametrize("kind", KINDS)
 def test_only_those_on_the_list_differ(kind, part, tmp_path):
     names, found = differing(kind, (part,), tmp_path)

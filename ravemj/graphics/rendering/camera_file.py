@@ -1,4 +1,4 @@
-"""Cameras in files: what ``--camera view.json`` reads and a saved view writes."""
+"""Cameras in files, as ``--camera view.json`` reads them."""
 
 import json
 from pathlib import Path

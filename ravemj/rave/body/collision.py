@@ -40,8 +40,8 @@ class BodyCollision(Structure, Interface):
     ) -> bool:
         """Return whether links of the body collide with each other or with what it holds.
 
-        Links are left out that a joint connects, that the file calls ``<adjacent>``, or that touched when the body was
-        added.
+        Pairs of links do not count if a joint connects them, if the file calls them ``<adjacent>``, or if they touched
+        when the body was added.
 
         Args:
             report: Filled with what is found.

@@ -234,7 +234,7 @@ class Configuration(Limits):
         return self._state.stamp
 
     def GetConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
-        """Return what the numbers of the body's configuration are: its joint values, then its pose.
+        """Return the specification of the body's configuration: its joint values, then its pose.
 
         Args:
             interpolation: How they change between waypoints, for instance ``linear``.

@@ -95,7 +95,7 @@ class IdealController(Controller):
             True.
 
         Raises:
-            openrave_exception: it is None, has no points, or no times. What is played goes on then.
+            openrave_exception: it is None, has no points, or no times. The path before goes on then.
 
         Example:
             >>> robot.GetController().SetPath(trajectory)

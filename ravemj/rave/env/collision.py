@@ -78,8 +78,8 @@ class Collision(Contents):
           lists.
         - ``(ray)``, ``(ray, body)``: a ray against all, or against one body. The length of its direction is its range.
 
-        A body takes part with all that it holds, and is not tested against that. Disabled bodies and links never
-        collide. Collisions of a body with itself are for ``body.CheckSelfCollision``.
+        A body is tested together with what it holds, but not against it. Disabled bodies and links never collide.
+        ``body.CheckSelfCollision`` tests a body against itself.
 
         Args:
             arguments: One of these forms; by name they are ``body``, ``link``, ``body1``, ``body2``, ``link1``,

@@ -53,9 +53,8 @@ class Loading(JsonFiles):
                 working folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
             atts: Attributes as of a ``<Robot>``: ``name`` in place of the body's, ``prefix`` before the names of its
                 parts, ``skipgeometry`` ("1": without shapes), ``scalegeometry`` ("2" or "2 3 4"; lengths times that,
-                but sizes of boxes, spheres and cylinders of XML as they are). They act where a robot, a kinbody, a
-                COLLADA file or a mesh is loaded, and not on what stands in an ``<Environment>``. What is left out is
-                a warning.
+                but sizes of boxes, spheres and cylinders of XML as they are). They act on a robot, a kinbody, a
+                COLLADA file or a mesh, and not on what stands in an ``<Environment>``. Ignored attributes are warnings.
 
         Returns:
             False where OpenRAVE's ``Load`` is False: the file is missing or broken, refers to what is not there, or

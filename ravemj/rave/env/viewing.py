@@ -127,8 +127,8 @@ class Viewing(EnvironmentPart):
         """Return a viewer, or None where there is none.
 
         Args:
-            name: None or empty: the first one. Else the first of those that ``SetViewer`` or ``RaveCreateViewer`` was
-                given this name for.
+            name: None or empty: the first one. Else the first one that ``SetViewer`` or ``RaveCreateViewer`` made by
+                this name.
 
         Example:
             >>> viewer = env.GetViewer()
