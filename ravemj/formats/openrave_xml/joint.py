@@ -55,6 +55,9 @@ class _JointReader:
         if link is None:
             known = ", ".join(link.name for link in self.body.links) or "none"
             raise SourceError(f"there is no Body '{name}' before this joint", element.source, f"there are: {known}")
+        if len(self.links) > 1:
+            message = f"the joint names a third Body, '{name}', which OpenRAVE takes for the second"
+            self.context.diagnostics.warn("third-body", message, element.source, "name two")
         self.links = [*self.links[:1], link]
 
     def read_frame(self, element: Element) -> None:
