@@ -281,7 +281,9 @@ class TestWhatMeansTheSame:
         split = choices.integer(0, len(parts) - 1)
         kinds = [one_of(choices, ["mimicgeom", "sphere", "box"]) for _ in range(2)]
         first, then = (f'<Mass type="{kind}"><density>{number(choices, 1, 9)!r}</density></Mass>' for kind in kinds)
-        pieces = [absolute(index, pose, part) for index, (pose, part) in enumerate(zip(placed(parts), parts, strict=True))]
+        pieces = [
+            absolute(index, pose, part) for index, (pose, part) in enumerate(zip(placed(parts), parts, strict=True))
+        ]
         bare = [piece[: piece.index("<Mass")] + "</Body>" for piece in pieces]
         masses = [first] * split + [then] * (len(parts) - split)
         own = [piece.replace("</Body>", f"{mass}</Body>") for piece, mass in zip(bare, masses, strict=True)]
