@@ -261,7 +261,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
             kind=kind,
             links=(first, second),
             T_first_second=T_scope_first.inverse() @ T_scope_second,
-            anchor=T_first_frame.apply(ZERO if kind == "slider" else reader.anchor),  # OpenRAVE drops a slider's
+            anchor=T_first_frame.apply(ZERO if kind == "slider" else reader.anchor),  # dropped, as in random-xml-0
             axes=axes,
             enabled=not is_false(element.attributes.get("enable", "true")),
             equations=_equations(element, context),
