@@ -310,7 +310,7 @@ def _directed(joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, pla
         T_parent_child = T_parent_child.inverse()
         anchor = T_parent_child.apply(anchor)
         axes = tuple(replace(axis, direction=scale(rotate(T_parent_child.wxyz, axis.direction), -1.0)) for axis in axes)
-        if joint.kind == "slider":  # OpenRAVE reports the anchor of the written poses, not that of the value 0
+        if joint.kind == "slider":  # reported is the anchor of the written poses, not of the value 0 (random-xml-104)
             anchor = add(anchor, scale(axes[0].direction, axes[0].reference))
     return scene.Joint(
         name=joint.name,

@@ -60,7 +60,7 @@ def test_what_openrave_swallows_is_found_where_it_is(folder):
     ]:
         assert finding in found
     hints = {(finding.source.line, finding.code): finding.hint for finding in check(folder / "robot.xml")}
-    assert hints[2, "unknown-tag"] == "<Body> belongs in a <KinBody>"
+    assert hints[2, "unknown-tag"] == "<Body> belongs in <KinBody>"
     assert hints[5, "openrave-bug"] == "write <density>"
     assert hints[6, "unknown-tag"] == "did you mean 'extents'?"
     assert "OPENRAVE_DATA" in hints[8, "missing-file"]
@@ -129,7 +129,7 @@ def test_json_has_stable_keys_and_where_a_file_was_included(folder):
         "unknown-tag",
         "warning",
     )
-    assert first["hint"] == "<Body> belongs in a <KinBody>"
+    assert first["hint"] == "<Body> belongs in <KinBody>"
     assert first["included_from"] == {"file": "env.xml", "line": 2, "included_from": None}
     assert sum(entry["line"] == 2 and entry["code"] == "unknown-tag" for entry in found) == 1, "once for both models"
     assert found[-1]["code"] == "fatal"

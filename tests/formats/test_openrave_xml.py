@@ -491,7 +491,20 @@ class TestIncludes:
         assert str(finding).endswith(f"(included from {outer}:2)")
 
 
+THREE = "<Body name='a'/><Body name='b'/><Body name='c'/>"
+THREE_NAMES = "<Body>a</Body><Body>b</Body><Body>c</Body>"
+
+
 class TestFindings:
+    def test_none_for_numbers_with_an_enormous_sum(self, read_text):
+        reading = read_text('<KinBody name="b"><Body name="a"/><Translation>9e307 9e307 0</Translation></KinBody>')
+        assert codes(reading) == []
+
+    def test_unread_files_are_named(self, write):
+        inner = write('<KinBody name="b"/>\n<KinBody name="c"/>', "two.xml")
+        (finding,) = read(write('<Environment><KinBody file="two.xml"/></Environment>')).diagnostics
+        assert str(finding).startswith(f"{inner}:2: warning[unread]: ")
+
     @pytest.mark.parametrize(
         ("content", "code", "words"),
         [
@@ -507,6 +520,8 @@ class TestFindings:
             ("<adjacent>a b</adjacent>", "unknown-body", "two Bodies"),
             ("<Body name='a'><Geom type='teapot'/></Body>", "unsupported-geometry", "teapot"),
             ("<Body name='a'><Mass type='heavy'/></Body>", "unknown-type", "heavy"),
+            (f"{THREE}<Joint name='j'>{THREE_NAMES}<axis>0 0 1</axis></Joint>", "third-body", "'c'"),
+            ("</KinBody><KinBody name='z'>", "unread", "behind the end of <KinBody>"),
         ],
     )
     def test_are_reported_with_their_place(self, read_text, content, code, words):

@@ -168,7 +168,7 @@ FOLLOWER = """<Robot name="r"><KinBody>
 
 @pytest.mark.parametrize(("first", "second"), [("b", "c"), ("c", "b")])
 def test_a_spherical_joint_follows_about_x_of_its_parent(first, second):
-    """random-xml-41, and random-xml-102 with the second Body as parent: a hinge there, whose axis is exchanged twice."""
+    """random-xml-41, and random-xml-102, where the second Body is the parent; as a hinge about that x."""
     found = []
     x = f"<axis>{-1 if first == 'c' else 1} 0 0</axis>"
     for kind, axis, limits in [("spherical", "", "-9 9 " * 3), ("hinge", x, "-9 9")]:

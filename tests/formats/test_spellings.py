@@ -6,6 +6,7 @@ in just that.
 
 import math
 from dataclasses import dataclass, replace
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -142,6 +143,26 @@ def nested(parts: list[Part], moved: Pose, split: int) -> str:
     return f"{links}<KinBody>{scope}{''.join(inner)}</KinBody>{joints}"
 
 
+def disguised(choices: Choices, xml: str) -> str:
+    """Return elements in other letters, their children in another order, and a comment in the middle of their text."""
+    root = ElementTree.fromstring(f"<KinBody>{xml}</KinBody>")
+    for element in [*root.iter()][1:]:
+        bodies = iter(element.findall("Body"))  # the first and the second of a joint
+        mixed = sorted(element, key=lambda _: choices.integer(0, 9))
+        element[:] = [next(bodies) if child.tag == "Body" else child for child in mixed]
+        head, space, tail = (element.text or "").partition(" ")
+        if space:
+            comment = ElementTree.Comment("1 2 3")
+            element.text, comment.tail = head + space, tail
+            element.append(comment)
+    letters = one_of(choices, [str.upper, str.lower, str.swapcase])
+    for element in root.iter():
+        if isinstance(element.tag, str):
+            element.tag = letters(element.tag)
+            element.attrib = {letters(name): value for name, value in element.attrib.items()}
+    return "".join(ElementTree.tostring(child, encoding="unicode") for child in root)
+
+
 def body(xml: str):
     reading = read_text(xml, "test")
     assert reading.failure is None
@@ -244,6 +265,32 @@ class TestWhatMeansTheSame:
             custom = custom.replace(written, f'<Mass type="custom">{numbers}</Mass>', 1)
         found, wanted = (body(f'<KinBody name="k">{xml}</KinBody>') for xml in (boxes, custom))
         assert_same(found, wanted, atol=1e-6)  # OpenRAVE reads totals in single precision
+
+    @given(choices())
+    @examples(60)
+    def test_other_letters_another_order_and_comments(self, choices):
+        xml = flat(draw_parts(choices), absolutely=chance(choices, 50))
+        plain, found = (body(f'<KinBody name="k">{text}</KinBody>') for text in (xml, disguised(choices, xml)))
+        assert_same(found, plain, atol=0)
+
+    @given(choices())
+    @examples(60)
+    def test_a_mass_of_the_kinbody_and_one_of_each_body(self, choices):
+        """The default counts for the Bodies behind it, until another one, and in no other KinBody."""
+        parts = draw_parts(choices)
+        split = choices.integer(0, len(parts) - 1)
+        kinds = [one_of(choices, ["mimicgeom", "sphere", "box"]) for _ in range(2)]
+        first, then = (f'<Mass type="{kind}"><density>{number(choices, 1, 9)!r}</density></Mass>' for kind in kinds)
+        pieces = [
+            absolute(index, pose, part) for index, (pose, part) in enumerate(zip(placed(parts), parts, strict=True))
+        ]
+        bare = [piece[: piece.index("<Mass")] + "</Body>" for piece in pieces]
+        masses = [first] * split + [then] * (len(parts) - split)
+        own = [piece.replace("</Body>", f"{mass}</Body>") for piece, mass in zip(bare, masses, strict=True)]
+        other = '<KinBody><Mass type="sphere"><density>100</density></Mass></KinBody>'
+        default = "".join([other, first, *bare[:split], other, then, *bare[split:]])
+        found, wanted = (body(f'<KinBody name="k">{xml}</KinBody>') for xml in (default, "".join(own)))
+        assert_same(found, wanted, atol=0)
 
     @given(choices=choices())
     @examples(60)

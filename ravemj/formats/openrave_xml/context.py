@@ -9,7 +9,7 @@ from ravemj.errors import Diagnostics, Source, SourceError
 from ravemj.formats.collada import SUFFIXES as COLLADA_SUFFIXES
 from ravemj.formats.meshes import MeshPart
 from ravemj.formats.openrave_xml.tags import Tag, Target
-from ravemj.formats.openrave_xml.tree import Element, parse_file
+from ravemj.formats.openrave_xml.tree import Document, Element, parse_file
 from ravemj.formats.parameters import with_parameter
 from ravemj.model.scene import Parameters
 
@@ -128,7 +128,14 @@ class Context:
             return None
         if document.error is not None:
             self.diagnostics.error("broken-file", document.error.message, document.error.source)
+        self.check_end(document)
         return document.root
+
+    def check_end(self, document: Document) -> None:
+        """Warn of what stands behind the root element."""
+        if document.unread is not None:
+            message = f"what stands behind the end of <{document.root.spelled}> is not read, as in OpenRAVE"
+            self.diagnostics.warn("unread", message, document.unread, "put it all into one <Environment>")
 
     def find(self, name: str, source: Source, *folders: str) -> str | None:
         """Look a file up in some folders, beside the file that names it, then in those of ``OPENRAVE_DATA``.
@@ -241,7 +248,7 @@ _HOMES = {
 def _belongs(element: Element) -> str:
     """Return a hint for an element that stands in the wrong place, or nothing."""
     home = _HOMES.get(element.tag)
-    return "" if home is None else f"<{element.spelled}> belongs in a <{home}>"
+    return "" if home is None else f"<{element.spelled}> belongs in <{home}>"
 
 
 def did_you_mean(name: str, known: Collection[str]) -> str:

@@ -95,6 +95,7 @@ def _read(path: str, parsed_file: Callable[[str], Document], given: Attributes) 
     try:
         parsed = parsed_file(path)
         failure = parsed.error
+        context.check_end(parsed)
         document.read(with_given(parsed.root, given, context))
     except SourceError as error:
         failure = error

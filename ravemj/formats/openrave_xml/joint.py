@@ -55,6 +55,9 @@ class _JointReader:
         if link is None:
             known = ", ".join(link.name for link in self.body.links) or "none"
             raise SourceError(f"there is no Body '{name}' before this joint", element.source, f"there are: {known}")
+        if len(self.links) > 1:
+            message = f"the joint names a third Body, '{name}', which OpenRAVE takes for the second"
+            self.context.diagnostics.warn("third-body", message, element.source, "name two")
         self.links = [*self.links[:1], link]
 
     def read_frame(self, element: Element) -> None:
@@ -258,7 +261,7 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
             kind=kind,
             links=(first, second),
             T_first_second=T_scope_first.inverse() @ T_scope_second,
-            anchor=T_first_frame.apply(ZERO if kind == "slider" else reader.anchor),  # OpenRAVE drops a slider's
+            anchor=T_first_frame.apply(ZERO if kind == "slider" else reader.anchor),  # dropped, as in random-xml-0
             axes=axes,
             enabled=not is_false(element.attributes.get("enable", "true")),
             equations=_equations(element, context),

@@ -44,10 +44,12 @@ class Document(NamedTuple):
     Attributes:
         root: The root element.
         error: What ended the parsing before the root's end tag, or None.
+        unread: Where something stands behind that tag, or None.
     """
 
     root: Element
     error: SourceError | None
+    unread: Source | None
 
 
 def parse_file(path: str, included_from: Source | None = None) -> Document:
@@ -86,7 +88,9 @@ def parse(content: bytes, path: str, included_from: Source | None = None) -> Doc
     error = parser.parse(content)
     if parser.root is None:
         raise error or SourceError("there is no element in it", Source(path, 0, included_from))
-    return Document(parser.root, None if parser.root.complete else error)
+    if error is not None and parser.root.complete:
+        return Document(parser.root, None, error.source)
+    return Document(parser.root, error, None)
 
 
 def os_reason(error: OSError) -> str:

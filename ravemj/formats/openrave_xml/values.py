@@ -81,6 +81,8 @@ def numbers(element: Element, count: int, diagnostics: Diagnostics, before: Sequ
         return plain
     values, rest = leading_numbers(element.text)
     found = len(values)
+    if found == count and not rest:  # numbers whose sum is too large for ``_plain_numbers``
+        return values
     if found < count and rest:
         values.append(0.0)
     kept = [*before[len(values) :], *[0.0] * count]
