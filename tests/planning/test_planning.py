@@ -8,7 +8,7 @@ import pytest
 from ravemj.planning.edges import Edges, bisection_order, length, path_is_allowed
 from ravemj.planning.jitter import nearby
 from ravemj.planning.ramp_shortcuts import faster, lines
-from ravemj.planning.ramps import fit_ramps, shortest_ramps
+from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.retiming.jerk_limited import JerkLimited
 from ravemj.planning.retiming.linear import Linear
@@ -274,3 +274,20 @@ def test_jitter_stays_near_and_gives_up():
     assert np.abs(moved - touching).max() <= 0.1
     assert nearby(space(), touching, round_a_wall, 1000, 0.0, random) is None
     assert nearby(space(), np.zeros(2), round_a_wall, 100, 0.1, random) is None
+
+
+@pytest.mark.parametrize("longer", [0.9, 1.0, 1.3, 3.0])
+def test_ramps_from_rest_to_rest_are_those_of_the_general_formulas(longer):
+    random, found = np.random.default_rng(7), []
+    for _ in range(50):
+        steps, rest = random.uniform(-2, 2, 5) * (random.random(5) > 0.2), np.zeros(5)
+        bounds = random.uniform(0.1, 3, 5), random.uniform(0.1, 8, 5)
+        duration = longer * float(shortest_ramps(steps, rest, rest, *bounds).max())
+        general, short = fit_ramps(steps, rest, rest, duration, *bounds), fit_from_rest(steps, duration, *bounds)
+        found.append(short is not None)
+        assert (general is None) == (short is None)
+        if general is not None and short is not None:
+            times = np.linspace(0, duration, 7)
+            for one, other in zip(general.states(times), short.states(times), strict=True):
+                assert one == pytest.approx(other, abs=1e-8)
+    assert all(found) == (longer >= 1)
