@@ -7,6 +7,8 @@ import subprocess
 import sys
 import threading
 import time
+import tracemalloc
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from waiting import PATIENCE
 import ravemj
 from ravemj import Planner, PlannerStatus, planningutils
 from ravemj.engine.collision.moving import moving_test
+from ravemj.planning import rrt
 
 ARM = """<Environment><Robot name="arm"><KinBody>
 <Body name="base"><Geom type="box"><extents>0.1 0.1 0.05</extents></Geom></Body>
@@ -187,9 +190,46 @@ def test_a_failure_for_want_of_time_or_iterations_says_so(robot):
     params = parameters(robot, iterations=20)
     params.add_constraint(lambda values: abs(values[0]) > 0.1)  # a wall
     assert "the iterations were used up after 20 iterations" in planned(robot, params)[0].description
-    params.SetMaxIterations(10**9)
-    params.SetMaxPlanningTime(50)
-    assert "the time was used up" in planned(robot, params)[0].description
+
+
+@pytest.mark.parametrize("name", ["birrt", "BasicRRT", "RAStar"])
+def test_a_time_limit_ends_a_search_within_one_iteration(robot, monkeypatch, name):
+    """Each test of a configuration takes a second of a pretended clock."""
+    passed = [0.0]
+    now = time.monotonic()
+    monkeypatch.setattr(rrt, "time", SimpleNamespace(monotonic=lambda: now + passed[0]))
+
+    def wall(values):
+        passed[0] += 1
+        return abs(values[0]) > 0.1
+
+    params = parameters(robot, iterations=10**9)
+    params.add_constraint(wall)
+    params.SetMaxPlanningTime(300_000)
+    status, _ = planned(robot, params, name)
+    assert "the time was used up" in status.description
+    assert 300 < passed[0] < 1500
+
+
+@pytest.mark.parametrize("name", ["birrt", "BasicRRT", "ExplorationRRT", "RAStar"])
+def test_the_memory_of_a_failing_search_is_bounded_by_what_it_did(robot, name):
+    """Nothing is set aside for a thousand million iterations; a configuration takes less than a kilobyte."""
+    params = parameters(robot, iterations=10**9)
+    params.SetExtraParameters("<expectedsize>1000000</expectedsize>")
+    params.add_constraint(lambda values: abs(values[0]) > 0.1)
+    planner = ravemj.RaveCreatePlanner(robot.GetEnv(), name)
+    planner.InitPlan(robot, params)
+    interrupt = ravemj.PlannerAction.Interrupt
+    handle = planner.RegisterPlanCallback(lambda progress: interrupt if progress._iteration >= 150 else None)
+    trajectory = ravemj.RaveCreateTrajectory(robot.GetEnv(), "")
+    tracemalloc.start()
+    planner.PlanPath(trajectory)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    handle.Close()
+    size = sum(tree.count for tree in planner.search.trees)
+    assert size < 150 * 10  # lines of one iteration: no configuration is farther than the space is wide
+    assert most < 1_000_000 + 1000 * size
 
 
 def test_callbacks_interrupt(robot):
