@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from ravemj.core.transforms import Vec3
 from ravemj.engine.simulation.body import BodyState
+from ravemj.engine.simulation.published import Published
 from ravemj.errors import Diagnostics, ErrorCode, RavemjError, send_warnings
 from ravemj.model.drawing import Drawings
 from ravemj.model.scene import KinBody, View
@@ -32,11 +33,13 @@ class Simulation:
         changed: Bodies that moved or were described anew since the model was last brought up to date.
         collision_stamp: Grows when what may collide with what changes: links are enabled, bodies are held.
         drawings: What scripts draw beside the bodies; needs no lock.
+        published: What viewers show while the lock is held; needs none.
     """
 
     def __init__(self) -> None:
         self.lock = RLock()
         self.drawings = Drawings()
+        self.published = Published()
         self.view = View()
         self.diagnostics = Diagnostics()
         self.version = 0
@@ -202,6 +205,12 @@ class Simulation:
                 world.take(self.changed)
                 self.changed.clear()
             return world
+
+    def publish(self) -> None:
+        """Let viewers that wait for the lock show where the bodies are; the caller holds it."""
+        if self.published.is_wanted:
+            world = self.compiled()
+            self.published.put(world.model, world.data)
 
     def compile(self) -> "WorldModel":
         """Return the model of the present bodies, which may be elsewhere than the bodies are.
