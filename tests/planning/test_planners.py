@@ -112,6 +112,23 @@ def test_what_cannot_be_planned_says_why(robot, start, goal, words):
     assert robot.GetDOFValues() == pytest.approx(start)
 
 
+@pytest.mark.parametrize("tag", ["resolution", "velocitylimit", "lowerlimit", "jerklimit"])
+@pytest.mark.parametrize("numbers", [[0.5], [0.5, 0.5, 0.5]])
+def test_limits_and_resolutions_of_the_wrong_length_are_named(robot, tag, numbers):
+    params = parameters(robot)
+    params.SetExtraParameters(f"<_vconfig{tag}>{' '.join(map(str, numbers))}</_vconfig{tag}>")
+    status, _ = planned(robot, params)
+    assert (status, status.description) == (0, f"_vconfig{tag}: is {numbers}, and should be 2 numbers")
+
+
+def test_numbers_that_are_none_and_robots_without_active_joints_are_named(robot):
+    params = parameters(robot)
+    params.SetConfigVelocityLimit([np.nan, 1])
+    assert "_vconfigvelocitylimit: is [nan, 1.0]" in planned(robot, params)[0].description
+    robot.SetActiveDOFs([])
+    assert planned(robot, parameters(robot))[0].description.startswith("nothing moves")
+
+
 def test_parameters_that_make_no_sense_are_named(env, robot):
     for name, tag in (("BasicRRT", "goalbias"), ("ExplorationRRT", "expectedsize")):
         params = parameters(robot)
