@@ -129,6 +129,8 @@ def test_the_hand_stops_before_what_is_in_its_way(robot):
 def test_what_cannot_be_followed_says_why(robot):
     way = way_of_hand(robot)
     assert followed(robot, way_of_hand(robot, far=3.0))[0].description.startswith("the hand gets to ")
+    for step in ("0", "-1", "1e-9"):
+        assert "_fsteplength: is " in followed(robot, way, f"<_fsteplength>{step}</_fsteplength>")[0].description
     robot.SetActiveDOFs([0, 1])
     assert "should be those of the arm" in followed(robot, way)[0].description
     robot.SetActiveDOFs(range(6))
@@ -273,6 +275,8 @@ def test_grasps_that_are_refused_say_why(robot, target):
         helper.GraspPlanning({}, listed(touching), target)
     with pytest.raises(ravemj.openrave_exception, match="'igrasptrans' is 5, and grasps have 12 numbers"):
         helper.GraspPlanning({"igrasptrans": 5}, listed(touching), target)
+    with pytest.raises(ravemj.openrave_exception, match=r"'igrasptrans' of grasp 0 is .*nan.* should be finite"):
+        helper.GraspPlanning({"igrasptrans": 0}, listed(touching) * np.nan, target)
     with pytest.raises(ravemj.openrave_exception, match="target: is None"):
         helper.GraspPlanning({"igrasptrans": 0}, listed(touching), None)
     robot.Grab(target)

@@ -445,9 +445,9 @@ def test_modules_take_commands(env, robot):
     assert module.SendCommand("moveactivejoints goals 2 -0.9 0.3 -0.8 0.3 jitter 0.01") == ""
     assert module.SendCommand("MoveActiveJoints goal 0 0 execute 0 jitter 0") is None
     assert module.SendCommand("JitterActive execute 0 outputfinal").split() == ["-1.2", "0.2"]
-    for wrong in ("MoveActiveJoints goal 1", "MoveActiveJoints nosuch 1", "MoveActiveJoints goal a b"):
+    for wrong in ("goal 1", "nosuch 1", "goal a b", "goal nan 0", "maxiter nan", "maxiter inf", "goals 9999999999 1"):
         with pytest.raises(ravemj.openrave_exception) as caught:
-            module.SendCommand(wrong)
+            module.SendCommand(f"MoveActiveJoints {wrong}")
         assert caught.value.GetCode() == "InvalidArguments"
     env.Remove(robot)
     with pytest.raises(ravemj.openrave_exception, match="there is no robot"):
@@ -476,6 +476,22 @@ def test_execution_begins_with_the_next_step(env, robot):
     with pytest.raises(ravemj.PlanningError, match="goal: it collides"):
         helper.MoveActiveJoints(goal=[0, 0])
     assert robot.GetController().IsDone()
+
+
+@pytest.mark.parametrize(
+    ("direction", "step"), [([np.nan, 1], 0.01), ([1, np.inf], 0.01), ([1, 1], 0), ([1, 1], np.nan)]
+)
+def test_fingers_that_would_move_for_ever_are_refused(robot, direction, step):
+    helper = ravemj.interfaces.TaskManipulation(robot)
+    with pytest.raises(ravemj.openrave_exception, match="finite directions, and a step above 0"):
+        helper.ReleaseActive(direction, execute=False, finestep=step)
+
+
+@pytest.mark.parametrize(("hand", "divisions"), [([np.nan], 10), ([0.5], 0)])
+def test_joints_without_a_place_to_go_are_refused(robot, hand, divisions):
+    robot.SetActiveDOFs([0])
+    with pytest.raises(ravemj.openrave_exception, match="should be finite numbers in 1 at least"):
+        ravemj.interfaces.BaseManipulation(robot).MoveUnsyncJoints(hand, [1], maxdivision=divisions, execute=False)
 
 
 @pytest.mark.parametrize("turning", [ravemj.DOFAffine.RotationAxis, ravemj.DOFAffine.RotationQuat])

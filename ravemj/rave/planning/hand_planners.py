@@ -30,6 +30,9 @@ from ravemj.trajectories.groups import AFFINE
 _LARGEST_JUMP = 0.5
 """How far a joint may move [rad or m] between two goals that follow each other."""
 
+_MOST_GOALS = 100_000
+"""Of one trajectory of the hand: each takes half a millisecond."""
+
 _REACHED = 1e-6
 """How near [m and rad] the hand has to be to a grasp."""
 
@@ -69,7 +72,9 @@ class WorkspaceTrajectoryTracker(Planner):
         if not traj.GetNumWaypoints():
             return np.zeros(0), []
         step = values.numbers["_fsteplength"]
-        count = int(np.ceil(traj.GetDuration() / step - 1e-9)) if step > 0 else 0
+        if not step * _MOST_GOALS > traj.GetDuration():
+            raise ArgumentError(f"_fsteplength: is {step:g} s for {traj.GetDuration():g} s, and should be more")
+        count = int(np.ceil(traj.GetDuration() / step - 1e-9))
         times = np.minimum(np.arange(count + 1) * step, traj.GetDuration())
         return times, [_goal(traj, time, hand) for time in times.tolist()]
 
