@@ -164,10 +164,11 @@ def test_distances_are_weighted_and_angles_go_the_short_way_round():
     assert one.outside(np.array([9.0, 1.1])) == 1
 
 
-def test_shortcuts_are_allowed_and_shorter_and_keep_the_ends():
+@pytest.mark.parametrize("seed", range(20))
+def test_shortcuts_are_allowed_and_shorter_and_keep_the_ends(seed):
     edges = Edges(space(), round_a_wall)
     detour = np.array([[-1, 0], [-1, 1.9], [1.9, 1.9], [1.9, -1.9], [1, -1.9], [1, 0]], dtype=float)
-    short = shorten(edges, detour, 200, np.random.default_rng(0))
+    short = shorten(edges, detour, 100, np.random.default_rng(seed))
     assert path_is_allowed(edges, short)
     assert (short[0].tolist(), short[-1].tolist()) == (detour[0].tolist(), detour[-1].tolist())
     assert length(space(), short) < 0.6 * length(space(), detour)
