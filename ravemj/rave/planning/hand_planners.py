@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from ravemj.core.transforms import Floats, pose_of
-from ravemj.errors import ArgumentError
+from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import matrixFromPose, matrixFromPoses
 from ravemj.planning.edges import Edges
 from ravemj.planning.projection import descend
@@ -57,7 +57,7 @@ class WorkspaceTrajectoryTracker(Planner):
         try:
             hand = hand_of(values)
             goals = self._goals(values, hand)[1]
-        except ArgumentError as error:
+        except RavemjError as error:
             return self._failed(error.message)
         if hand.manip.GetIkSolver() is None:
             return self._failed(f"manipulator '{hand.manip.GetName()}' has no solver of inverse kinematics (IK)")
@@ -99,7 +99,7 @@ class WorkspaceTrajectoryTracker(Planner):
             start = values.configurations("_vinitialconfig")[0]
             path = track(values.space(), len(goals), start, solve, self._connection(values, hand, times))
         reached = float(times[len(path) - 1]) if len(path) else 0.0
-        if len(path) < len(goals) and reached < values.tag("minimumcompletetime", 1e30):
+        if len(path) < len(goals) and not (len(path) and reached >= values.tag("minimumcompletetime", 1e30)):
             why = ended[0].value if ended else "no solution of inverse kinematics (IK) continues the motion"
             status = self._failed(f"the hand gets to {reached:.6g} s of {times[-1]:.6g} s: {why}")
             status.jointValues = path[-1] if len(path) else start
