@@ -92,7 +92,7 @@ class SimulationRenderer:
             renderer = self._current(form)
             finer = self._finer(form)
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
-            self._kept.shown = shown, style
+            self._kept.shown, self._kept.published = (shown, style), self._simulation.published.number
         if finer == 1:
             return renderer.render(self._kept.data, camera, background, shown, style)
         picture = renderer.render(self._kept.data, camera.enlarged(finer), background, shown.widened(finer), style)
@@ -133,6 +133,8 @@ class SimulationRenderer:
     def render_again(self, camera: Camera, background: ArrayLike, form: Format) -> Frame | None:
         """Draw what this thread drew last from elsewhere, without the simulation, which others may have locked.
 
+        Bodies are where they were then, or where they were published since.
+
         Args:
             camera: Where the picture is taken from.
             background: Colour where nothing is: red, green, blue from 0 to 1.
@@ -143,6 +145,10 @@ class SimulationRenderer:
         """
         if getattr(self._kept, "key", None) is None:
             return None
+        published = self._simulation.published
+        if self._kept.published != published.number:
+            self._kept.published = published.number
+            published.copy_to(self._kept.data, self._kept.model)
         self._kept.renderer.resize(form.width, form.height, form.samples)
         return self._kept.renderer.render(self._kept.data, camera, background, *self._kept.shown)
 
@@ -156,7 +162,7 @@ class SimulationRenderer:
         if getattr(self._kept, "key", None) != key:
             self.close()
             model = self._simulation.compiled().model
-            self._kept.data = mujoco.MjData(model)
+            self._kept.model, self._kept.data = model, mujoco.MjData(model)
             size = form.width, form.height
             self._kept.renderer = open_renderer(model, *size, shadows=form.shadows, samples=form.samples)
             self._kept.key = (self._simulation.version, form.shadows)

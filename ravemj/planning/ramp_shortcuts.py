@@ -12,7 +12,7 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.edges import Edges, bisection_order
-from ravemj.planning.ramps import Ramps, fit_ramps, shortest_ramps
+from ravemj.planning.ramps import Ramps, fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.retiming.segments import Limits
 
 _WORTH = 1e-3
@@ -68,7 +68,7 @@ def lines(points: Floats, limits: Limits) -> list[Piece]:
         speed = np.array([(limits.velocity[moving] / way).min()])
         acceleration = np.array([(limits.acceleration[moving] / way).min()])
         duration = float(shortest_ramps(one, rest, rest, speed, acceleration)[0])
-        along = fit_ramps(one, rest, rest, duration, speed, acceleration) if np.isfinite(duration) else None
+        along = fit_from_rest(one, duration, speed, acceleration) if np.isfinite(duration) else None
         if along is None:
             raise ValueError("a joint moves whose velocity or acceleration limit is 0")
         motion += _pieces(along, lambda numbers, step=step: numbers * step, start)

@@ -90,6 +90,32 @@ def _one_way(steps: Floats, start: Floats, end: Floats, speed: Floats, accelerat
         return np.where(possible, np.where(peak <= speed, triangle, ramps + cruise), np.inf)
 
 
+def fit_from_rest(steps: Floats, duration: float, speed: Floats, acceleration: Floats) -> Ramps | None:
+    """Return what ``fit_ramps`` does for motions from rest to rest, in a third of its time.
+
+    Args:
+        steps: How far [rad or m], shape (n,).
+        duration: The time [s], above 0.
+        speed: Greatest speeds, shape (n,).
+        acceleration: Greatest accelerations, shape (n,).
+    """
+    first = last = np.full(len(steps), duration / 2)
+    rate = steps * (4 / duration**2)
+    way = np.abs(steps)
+    too_fast = way > speed * (duration / 2 * (1 + _ROUNDING))
+    if too_fast.any():
+        cruise = way[too_fast] / speed[too_fast]  # the time that the whole way takes at the greatest speed
+        if (cruise >= duration).any():
+            return None
+        last = first.copy()
+        last[too_fast] = cruise
+        first[too_fast] = duration - cruise
+        rate[too_fast] = np.copysign(speed[too_fast] / first[too_fast], steps[too_fast])
+    if (np.abs(rate) > acceleration * (1 + _ROUNDING)).any():
+        return None
+    return Ramps(duration, np.zeros(len(steps)), rate, first, last)
+
+
 def fit_ramps(
     steps: Floats, start: Floats, end: Floats, duration: float, speed: Floats, acceleration: Floats
 ) -> Ramps | None:

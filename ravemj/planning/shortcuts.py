@@ -7,8 +7,8 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.planning.edges import Edges
 
-_WORTH = 1e-3
-"""A shortcut has to save this part of what it replaces."""
+_WORTH = 3e-3
+"""A shortcut has to save this part of the whole path: testing lines is what takes time."""
 
 
 def shorten(
@@ -20,7 +20,8 @@ def shorten(
 ) -> Floats:
     """Return a path that is nowhere longer, from the same start to the same goal.
 
-    Two random places of the path are connected by a straight line, if it is allowed and shorter.
+    Straight lines between points of the path take the place of detours; then two random places at a time are connected
+    by one, if it is allowed and shorter.
 
     Args:
         edges: Tests lines.
@@ -33,7 +34,7 @@ def shorten(
         Shape (k, n).
     """
     space = edges.space
-    path = list(_without_straight_corners(edges, points))
+    path = list(_without_detours(edges, points))
     for attempt in range(tries):
         if len(path) < 3 or not proceed(attempt):
             break
@@ -48,20 +49,25 @@ def shorten(
         end = _place(path[second], steps[second], lengths[second], high - (ends[second] - lengths[second]))
         step = space.difference(end, start)
         straight = float(np.linalg.norm(space.weights * step))
-        if straight < (high - low) * (1 - _WORTH) and edges.line(start, step):
+        # What is left of both lines is tested, too: in steps from its own ends, which are not those of the whole lines.
+        if high - low - straight > _WORTH * ends[-1] and all(
+            edges.line(one, space.difference(other, one))
+            for one, other in ((start, end), (path[first], start), (end, path[second + 1]))
+        ):
             path[first + 1 : second + 1] = [start, end]
-    return _without_straight_corners(edges, np.array(path))
+    return _without_detours(edges, np.array(path))
 
 
 def _place(start: Floats, step: Floats, length: float, along: float) -> Floats:
     return start + step * (along / length if length > 0 else 0.0)
 
 
-def _without_straight_corners(edges: Edges, path: Floats) -> Floats:
-    """Return the path without corners that a line to the next one but one makes needless."""
-    space, kept = edges.space, [0]
-    for index in range(1, len(path) - 1):
-        before, after = path[kept[-1]], path[index + 1]
-        if not edges.line(before, space.difference(after, before)):
-            kept.append(index)
-    return path[[*kept, len(path) - 1]] if len(path) > 1 else path
+def _without_detours(edges: Edges, path: Floats) -> Floats:
+    """Return a path that goes from each of its points straight to the last one that a line reaches."""
+    kept, last = [0], len(path) - 1
+    while kept[-1] < last:
+        start = path[kept[-1]]
+        farther = range(last, kept[-1] + 1, -1)
+        reached = (end for end in farther if edges.line(start, edges.space.difference(path[end], start)))
+        kept.append(next(reached, kept[-1] + 1))
+    return path[kept]

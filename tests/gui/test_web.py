@@ -447,6 +447,34 @@ def test_the_view_moves_while_the_script_has_the_environment_and_says_so(env, vi
         assert LOCKED not in page.overlay["lines"]
 
 
+def test_a_motion_is_shown_while_the_script_has_the_environment_and_no_search_of_a_planner_is(env, viewer):
+    """Steps of time are shown, and what the script publishes; not what moves in between."""
+    robot = env.GetRobots()[0]
+    env.StopSimulation()
+    with Page(viewer) as page:
+        before = page.settled().astype(int)
+        with env:
+            await_that(lambda: env.simulation.published.is_wanted)
+            values = robot.GetDOFValues()
+            robot.SetDOFValues(values + 0.8)
+            for amount in (90, -90):  # the view has to be drawn again
+                page.send(type="use", tool="RotY", amount=amount)
+                again = page.settled()
+            assert np.abs(again.astype(int) - before).max() < 10
+            robot.SetDOFValues(values)
+            trajectory = ravemj.RaveCreateTrajectory(env, "")
+            trajectory.Init(robot.GetActiveConfigurationSpecification("linear"))
+            trajectory.Insert(0, [*values, *(values + 0.8)])
+            ravemj.planningutils.RetimeActiveDOFTrajectory(trajectory, robot)
+            robot.GetController().SetPath(trajectory)
+            env.StepSimulation(trajectory.GetDuration() / 2)
+            env.StepSimulation(trajectory.GetDuration() / 2)
+            await_that(lambda: np.abs(page.settled() - before).max() > 50)
+            robot.SetDOFValues(values)
+            env.UpdatePublishedBodies()
+            await_that(lambda: np.abs(page.settled() - before).max() < 10)
+
+
 def test_a_page_that_comes_while_the_script_has_the_environment_keeps_nobody_waiting(env, viewer):
     with env, Page(viewer), time_limit():
         await_that(lambda: viewer._clients)

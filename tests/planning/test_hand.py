@@ -54,7 +54,7 @@ def poses_of_hand(robot, far):
     return poses
 
 
-def way_of_hand(robot, *, seconds=1.0, far=0.12, affine=False):
+def way_of_hand(robot, *, seconds=1.0, far=0.12, above=0.0, affine=False):
     """Return a trajectory of the tool through these poses, as goals or as poses of any body."""
     if affine:
         spec = ravemj.RaveGetAffineConfigurationSpecification(39, None, "linear")
@@ -65,6 +65,7 @@ def way_of_hand(robot, *, seconds=1.0, far=0.12, affine=False):
     trajectory.Init(spec)
     for number, pose in enumerate(poses_of_hand(robot, far)):
         wxyz, position = np.split(ravemj.poseFromMatrix(pose), [4])
+        position[2] += above
         numbers = [*position, *wxyz] if affine else [*wxyz, *position]
         trajectory.Insert(number, [*numbers, seconds / 2 if number else 0.0], spec)
     return trajectory
@@ -129,6 +130,15 @@ def test_the_hand_stops_before_what_is_in_its_way(robot):
 def test_what_cannot_be_followed_says_why(robot):
     way = way_of_hand(robot)
     assert followed(robot, way_of_hand(robot, far=3.0))[0].description.startswith("the hand gets to ")
+    nowhere = "<_fsteplength>0.02</_fsteplength><minimumcompletetime>0</minimumcompletetime>"
+    assert "gets to 0 s of" in followed(robot, way_of_hand(robot, above=3.0), nowhere)[0].description
+    for junk in ("", "junk", "<trajectory/>"):
+        params = Planner.PlannerParameters()
+        params.SetRobotActiveJoints(robot)
+        params.SetExtraParameters(f"<workspacetrajectory>{junk}</workspacetrajectory>")
+        assert not ravemj.RaveCreatePlanner(robot.GetEnv(), "workspacetrajectorytracker").InitPlan(robot, params)
+    for step in ("0", "-1", "1e-9"):
+        assert "_fsteplength: is " in followed(robot, way, f"<_fsteplength>{step}</_fsteplength>")[0].description
     robot.SetActiveDOFs([0, 1])
     assert "should be those of the arm" in followed(robot, way)[0].description
     robot.SetActiveDOFs(range(6))
@@ -273,6 +283,8 @@ def test_grasps_that_are_refused_say_why(robot, target):
         helper.GraspPlanning({}, listed(touching), target)
     with pytest.raises(ravemj.openrave_exception, match="'igrasptrans' is 5, and grasps have 12 numbers"):
         helper.GraspPlanning({"igrasptrans": 5}, listed(touching), target)
+    with pytest.raises(ravemj.openrave_exception, match=r"'igrasptrans' of grasp 0 is .*nan.* should be finite"):
+        helper.GraspPlanning({"igrasptrans": 0}, listed(touching) * np.nan, target)
     with pytest.raises(ravemj.openrave_exception, match="target: is None"):
         helper.GraspPlanning({"igrasptrans": 0}, listed(touching), None)
     robot.Grab(target)

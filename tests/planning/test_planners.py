@@ -7,6 +7,8 @@ import subprocess
 import sys
 import threading
 import time
+import tracemalloc
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from waiting import PATIENCE
 import ravemj
 from ravemj import Planner, PlannerStatus, planningutils
 from ravemj.engine.collision.moving import moving_test
+from ravemj.planning import rrt
 
 ARM = """<Environment><Robot name="arm"><KinBody>
 <Body name="base"><Geom type="box"><extents>0.1 0.1 0.05</extents></Geom></Body>
@@ -109,6 +112,23 @@ def test_what_cannot_be_planned_says_why(robot, start, goal, words):
     assert robot.GetDOFValues() == pytest.approx(start)
 
 
+@pytest.mark.parametrize("tag", ["resolution", "velocitylimit", "lowerlimit", "jerklimit"])
+@pytest.mark.parametrize("numbers", [[0.5], [0.5, 0.5, 0.5]])
+def test_limits_and_resolutions_of_the_wrong_length_are_named(robot, tag, numbers):
+    params = parameters(robot)
+    params.SetExtraParameters(f"<_vconfig{tag}>{' '.join(map(str, numbers))}</_vconfig{tag}>")
+    status, _ = planned(robot, params)
+    assert (status, status.description) == (0, f"_vconfig{tag}: is {numbers}, and should be 2 numbers")
+
+
+def test_numbers_that_are_none_and_robots_without_active_joints_are_named(robot):
+    params = parameters(robot)
+    params.SetConfigVelocityLimit([np.nan, 1])
+    assert "_vconfigvelocitylimit: is [nan, 1.0]" in planned(robot, params)[0].description
+    robot.SetActiveDOFs([])
+    assert planned(robot, parameters(robot))[0].description.startswith("nothing moves")
+
+
 def test_parameters_that_make_no_sense_are_named(env, robot):
     for name, tag in (("BasicRRT", "goalbias"), ("ExplorationRRT", "expectedsize")):
         params = parameters(robot)
@@ -187,9 +207,46 @@ def test_a_failure_for_want_of_time_or_iterations_says_so(robot):
     params = parameters(robot, iterations=20)
     params.add_constraint(lambda values: abs(values[0]) > 0.1)  # a wall
     assert "the iterations were used up after 20 iterations" in planned(robot, params)[0].description
-    params.SetMaxIterations(10**9)
-    params.SetMaxPlanningTime(50)
-    assert "the time was used up" in planned(robot, params)[0].description
+
+
+@pytest.mark.parametrize("name", ["birrt", "BasicRRT", "RAStar"])
+def test_a_time_limit_ends_a_search_within_one_iteration(robot, monkeypatch, name):
+    """Each test of a configuration takes a second of a pretended clock."""
+    passed = [0.0]
+    now = time.monotonic()
+    monkeypatch.setattr(rrt, "time", SimpleNamespace(monotonic=lambda: now + passed[0]))
+
+    def wall(values):
+        passed[0] += 1
+        return abs(values[0]) > 0.1
+
+    params = parameters(robot, iterations=10**9)
+    params.add_constraint(wall)
+    params.SetMaxPlanningTime(300_000)
+    status, _ = planned(robot, params, name)
+    assert "the time was used up" in status.description
+    assert 300 < passed[0] < 1500
+
+
+@pytest.mark.parametrize("name", ["birrt", "BasicRRT", "ExplorationRRT", "RAStar"])
+def test_the_memory_of_a_failing_search_is_bounded_by_what_it_did(robot, name):
+    """Nothing is set aside for a thousand million iterations; a configuration takes less than a kilobyte."""
+    params = parameters(robot, iterations=10**9)
+    params.SetExtraParameters("<expectedsize>1000000</expectedsize>")
+    params.add_constraint(lambda values: abs(values[0]) > 0.1)
+    planner = ravemj.RaveCreatePlanner(robot.GetEnv(), name)
+    planner.InitPlan(robot, params)
+    interrupt = ravemj.PlannerAction.Interrupt
+    handle = planner.RegisterPlanCallback(lambda progress: interrupt if progress._iteration >= 150 else None)
+    trajectory = ravemj.RaveCreateTrajectory(robot.GetEnv(), "")
+    tracemalloc.start()
+    planner.PlanPath(trajectory)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    handle.Close()
+    size = sum(tree.count for tree in planner.search.trees)
+    assert size < 150 * 10  # lines of one iteration: no configuration is farther than the space is wide
+    assert most < 1_000_000 + 1000 * size
 
 
 def test_callbacks_interrupt(robot):
@@ -388,9 +445,9 @@ def test_modules_take_commands(env, robot):
     assert module.SendCommand("moveactivejoints goals 2 -0.9 0.3 -0.8 0.3 jitter 0.01") == ""
     assert module.SendCommand("MoveActiveJoints goal 0 0 execute 0 jitter 0") is None
     assert module.SendCommand("JitterActive execute 0 outputfinal").split() == ["-1.2", "0.2"]
-    for wrong in ("MoveActiveJoints goal 1", "MoveActiveJoints nosuch 1", "MoveActiveJoints goal a b"):
+    for wrong in ("goal 1", "nosuch 1", "goal a b", "goal nan 0", "maxiter nan", "maxiter inf", "goals 9999999999 1"):
         with pytest.raises(ravemj.openrave_exception) as caught:
-            module.SendCommand(wrong)
+            module.SendCommand(f"MoveActiveJoints {wrong}")
         assert caught.value.GetCode() == "InvalidArguments"
     env.Remove(robot)
     with pytest.raises(ravemj.openrave_exception, match="there is no robot"):
@@ -419,6 +476,22 @@ def test_execution_begins_with_the_next_step(env, robot):
     with pytest.raises(ravemj.PlanningError, match="goal: it collides"):
         helper.MoveActiveJoints(goal=[0, 0])
     assert robot.GetController().IsDone()
+
+
+@pytest.mark.parametrize(
+    ("direction", "step"), [([np.nan, 1], 0.01), ([1, np.inf], 0.01), ([1, 1], 0), ([1, 1], np.nan)]
+)
+def test_fingers_that_would_move_for_ever_are_refused(robot, direction, step):
+    helper = ravemj.interfaces.TaskManipulation(robot)
+    with pytest.raises(ravemj.openrave_exception, match="finite directions, and a step above 0"):
+        helper.ReleaseActive(direction, execute=False, finestep=step)
+
+
+@pytest.mark.parametrize(("hand", "divisions"), [([np.nan], 10), ([0.5], 0)])
+def test_joints_without_a_place_to_go_are_refused(robot, hand, divisions):
+    robot.SetActiveDOFs([0])
+    with pytest.raises(ravemj.openrave_exception, match="should be finite numbers in 1 at least"):
+        ravemj.interfaces.BaseManipulation(robot).MoveUnsyncJoints(hand, [1], maxdivision=divisions, execute=False)
 
 
 @pytest.mark.parametrize("turning", [ravemj.DOFAffine.RotationAxis, ravemj.DOFAffine.RotationQuat])

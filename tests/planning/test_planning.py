@@ -8,7 +8,7 @@ import pytest
 from ravemj.planning.edges import Edges, bisection_order, length, path_is_allowed
 from ravemj.planning.jitter import nearby
 from ravemj.planning.ramp_shortcuts import faster, lines
-from ravemj.planning.ramps import fit_ramps, shortest_ramps
+from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.retiming.jerk_limited import JerkLimited
 from ravemj.planning.retiming.linear import Linear
@@ -164,10 +164,11 @@ def test_distances_are_weighted_and_angles_go_the_short_way_round():
     assert one.outside(np.array([9.0, 1.1])) == 1
 
 
-def test_shortcuts_are_allowed_and_shorter_and_keep_the_ends():
+@pytest.mark.parametrize("seed", range(20))
+def test_shortcuts_are_allowed_and_shorter_and_keep_the_ends(seed):
     edges = Edges(space(), round_a_wall)
     detour = np.array([[-1, 0], [-1, 1.9], [1.9, 1.9], [1.9, -1.9], [1, -1.9], [1, 0]], dtype=float)
-    short = shorten(edges, detour, 200, np.random.default_rng(0))
+    short = shorten(edges, detour, 100, np.random.default_rng(seed))
     assert path_is_allowed(edges, short)
     assert (short[0].tolist(), short[-1].tolist()) == (detour[0].tolist(), detour[-1].tolist())
     assert length(space(), short) < 0.6 * length(space(), detour)
@@ -274,3 +275,20 @@ def test_jitter_stays_near_and_gives_up():
     assert np.abs(moved - touching).max() <= 0.1
     assert nearby(space(), touching, round_a_wall, 1000, 0.0, random) is None
     assert nearby(space(), np.zeros(2), round_a_wall, 100, 0.1, random) is None
+
+
+@pytest.mark.parametrize("longer", [0.9, 1.0, 1.3, 3.0])
+def test_ramps_from_rest_to_rest_are_those_of_the_general_formulas(longer):
+    random, found = np.random.default_rng(7), []
+    for _ in range(50):
+        steps, rest = random.uniform(-2, 2, 5) * (random.random(5) > 0.2), np.zeros(5)
+        bounds = random.uniform(0.1, 3, 5), random.uniform(0.1, 8, 5)
+        duration = longer * float(shortest_ramps(steps, rest, rest, *bounds).max())
+        general, short = fit_ramps(steps, rest, rest, duration, *bounds), fit_from_rest(steps, duration, *bounds)
+        found.append(short is not None)
+        assert (general is None) == (short is None)
+        if general is not None and short is not None:
+            times = np.linspace(0, duration, 7)
+            for one, other in zip(general.states(times), short.states(times), strict=True):
+                assert one == pytest.approx(other, abs=1e-8)
+    assert all(found) == (longer >= 1)

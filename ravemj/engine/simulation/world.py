@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from ravemj.core.transforms import Vec3
 from ravemj.engine.simulation.body import BodyState
+from ravemj.engine.simulation.published import Published
 from ravemj.errors import Diagnostics, ErrorCode, RavemjError, send_warnings
 from ravemj.model.drawing import Drawings
 from ravemj.model.scene import KinBody, View
@@ -36,11 +37,13 @@ class Simulation:
         drawings: What scripts draw beside the bodies; needs no lock.
         clock: Simulation time; None where nobody lets it pass.
         physics: What moves the bodies in that time; None where they stay where they are put.
+        published: What viewers show while the lock is held; needs none.
     """
 
     def __init__(self) -> None:
         self.lock = RLock()
         self.drawings = Drawings()
+        self.published = Published()
         self.view = View()
         self.diagnostics = Diagnostics()
         self.version = 0
@@ -208,6 +211,12 @@ class Simulation:
                 world.take(self.changed)
                 self.changed.clear()
             return world
+
+    def publish(self) -> None:
+        """Let viewers that wait for the lock show where the bodies are; the caller holds it."""
+        if self.published.is_wanted:
+            world = self.compiled()
+            self.published.put(world.model, world.data)
 
     def compile(self) -> "WorldModel":
         """Return the model of the present bodies, which may be elsewhere than the bodies are.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ravemj.planning.ramps import fit_ramps, shortest_ramps
+from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
 from ravemj.planning.retiming.segments import Limits, Rows, Segment
 
 _SAME_TIME = 1e-10
@@ -44,8 +44,11 @@ class Parabolic:
         if duration <= 0:
             rest = np.zeros_like(segment.step)[None]
             return Rows(np.zeros(1), (rest, rest))
-        ends = segment.start_velocity, segment.end_velocity
-        ramps = fit_ramps(segment.step, *ends, duration, limits.velocity, limits.acceleration)
+        bounds = duration, limits.velocity, limits.acceleration
+        if segment.is_from_rest_to_rest:
+            ramps = fit_from_rest(segment.step, *bounds)
+        else:
+            ramps = fit_ramps(segment.step, segment.start_velocity, segment.end_velocity, *bounds)
         if ramps is None:
             return None
         times = ramps.changes(_SAME_TIME) if self._with_changes else np.array([duration])

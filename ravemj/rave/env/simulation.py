@@ -117,7 +117,10 @@ class Simulating(Contents):
         return self._engine
 
     def UpdatePublishedBodies(self, timeout: float = 0.0) -> None:
-        """Publish the state of the bodies for ``GetPublishedBodies``. Viewers show every change at once anyway.
+        """Publish the state of the bodies for ``GetPublishedBodies``.
+
+        Viewers show every change at once. While a script has the environment, pages show what is published, by this or
+        by a step of simulation time.
 
         Args:
             timeout: Without meaning.
@@ -125,6 +128,7 @@ class Simulating(Contents):
         del timeout
         with self._simulation.lock:
             self._published = [_state(self.wrap(state)) for state in self._simulation.bodies]
+            self._simulation.publish()
 
     def GetPublishedBodies(self, timeout: float = 0.0) -> list[State]:
         """Return the published state of all bodies.
@@ -193,6 +197,7 @@ class Simulating(Contents):
                 body.step_sensors(timestep, stamp)
         for sensor in tuple(self._sensors):
             sensor.advance(timestep, stamp)
+        self._simulation.publish()
 
 
 def _checked_step(timestep: float, name: str, least: float = 0.0) -> float:

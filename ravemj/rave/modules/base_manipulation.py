@@ -222,6 +222,9 @@ class BaseManipulation(Manipulation):
             PlanningError: there is none.
         """
         robot = self.robot
+        if not np.isfinite(hand).all() or divisions < 1:
+            message = f"jointvalues are {hand.tolist()} in {divisions} divisions"
+            raise ArgumentError(f"{message}, and should be finite numbers in 1 at least")
         params = PlannerParameters()
         params.SetRobotActiveJoints(robot)
         values, before = params.resolved(), robot.GetDOFValues(indices)

@@ -174,7 +174,10 @@ class _Candidates:
             return None
         if start + count > len(row):
             raise ArgumentError(f"graspindices: '{name}' is {start}, and grasps have {len(row)} numbers")
-        return row[start : start + count]
+        numbers = row[start : start + count]
+        if not np.isfinite(numbers).all():
+            raise ArgumentError(f"grasps: '{name}' of grasp {index} is {numbers.tolist()}, and should be finite")
+        return numbers
 
     def _candidate(self, index: int) -> _Candidate | None:
         """Return a grasp if it can be reached. The robot and the target are moved."""

@@ -160,6 +160,9 @@ class TaskManipulation(Manipulation):
 
     def _until_contact(self, dofs: Sequence[int], directions: Floats, step: float) -> Floats:
         """Return how far joints get, each until what it moves meets something that it did not touch from the start."""
+        if not (np.isfinite(directions).all() and np.isfinite(step) and step > 0):
+            wanted = "finite directions, and a step above 0"
+            raise ArgumentError(f"movingdir is {directions.tolist()} with steps of {step:g}, and should be {wanted}")
         robot, sides = self.robot, np.sign(directions)
         bodies = Bodies(self.env, robot.GetConfigurationSpecificationIndices(dofs).GetGroups())
         lower, upper = robot.GetDOFLimits(dofs)

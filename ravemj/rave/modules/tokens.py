@@ -43,7 +43,7 @@ class Tokens:
     def integer(self) -> int:
         """Return the next token as a whole number."""
         number = self.number()
-        if number != int(number):
+        if not number.is_integer():
             raise ArgumentError(f"{number:g} should be a whole number")
         return int(number)
 

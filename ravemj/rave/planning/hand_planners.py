@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from ravemj.core.transforms import Floats, pose_of
-from ravemj.errors import ArgumentError
+from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import matrixFromPose, matrixFromPoses
 from ravemj.planning.edges import Edges
 from ravemj.planning.projection import descend
@@ -29,6 +29,9 @@ from ravemj.trajectories.groups import AFFINE
 
 _LARGEST_JUMP = 0.5
 """How far a joint may move [rad or m] between two goals that follow each other."""
+
+_MOST_GOALS = 100_000
+"""Of one trajectory of the hand: each takes half a millisecond."""
 
 _REACHED = 1e-6
 """How near [m and rad] the hand has to be to a grasp."""
@@ -54,7 +57,7 @@ class WorkspaceTrajectoryTracker(Planner):
         try:
             hand = hand_of(values)
             goals = self._goals(values, hand)[1]
-        except ArgumentError as error:
+        except RavemjError as error:
             return self._failed(error.message)
         if hand.manip.GetIkSolver() is None:
             return self._failed(f"manipulator '{hand.manip.GetName()}' has no solver of inverse kinematics (IK)")
@@ -69,7 +72,9 @@ class WorkspaceTrajectoryTracker(Planner):
         if not traj.GetNumWaypoints():
             return np.zeros(0), []
         step = values.numbers["_fsteplength"]
-        count = int(np.ceil(traj.GetDuration() / step - 1e-9)) if step > 0 else 0
+        if not step * _MOST_GOALS > traj.GetDuration():
+            raise ArgumentError(f"_fsteplength: is {step:g} s for {traj.GetDuration():g} s, and should be more")
+        count = int(np.ceil(traj.GetDuration() / step - 1e-9))
         times = np.minimum(np.arange(count + 1) * step, traj.GetDuration())
         return times, [_goal(traj, time, hand) for time in times.tolist()]
 
@@ -94,7 +99,7 @@ class WorkspaceTrajectoryTracker(Planner):
             start = values.configurations("_vinitialconfig")[0]
             path = track(values.space(), len(goals), start, solve, self._connection(values, hand, times))
         reached = float(times[len(path) - 1]) if len(path) else 0.0
-        if len(path) < len(goals) and reached < values.tag("minimumcompletetime", 1e30):
+        if len(path) < len(goals) and not (len(path) and reached >= values.tag("minimumcompletetime", 1e30)):
             why = ended[0].value if ended else "no solution of inverse kinematics (IK) continues the motion"
             status = self._failed(f"the hand gets to {reached:.6g} s of {times[-1]:.6g} s: {why}")
             status.jointValues = path[-1] if len(path) else start

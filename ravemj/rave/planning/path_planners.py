@@ -47,12 +47,12 @@ class PathPlanner(Planner):
         return self._search_made
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
-        if values.bodies is None:
-            return self._failed("nothing moves; call SetRobotActiveJoints(robot) of the parameters")
         try:
+            values.check()
             starts, goals = self._starts_and_goals(values)
         except ArgumentError as error:
-            return self._failed(str(error))
+            return self._failed(error.message)
+        assert values.bodies is not None, "something moves"
         endless = np.flatnonzero(~np.isfinite(values.space().lower) | ~np.isfinite(values.space().upper))
         if len(endless):
             return self._failed(f"{_described(values, int(endless[0]))} has no limits, and should have some")

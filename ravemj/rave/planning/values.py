@@ -116,6 +116,20 @@ class Values:
                 raise ArgumentError(f"{name} limits: are {len(numbers)}, and there are {dof} values")
         return Limits(self.coordinates(), *found)
 
+    def check(self) -> None:
+        """Check that something moves, and that each value has its limits and its resolution.
+
+        Raises:
+            ArgumentError: it does not.
+        """
+        dof = count(self.groups)
+        if not dof or self.bodies is None:
+            raise ArgumentError("nothing moves; call SetRobotActiveJoints(robot) of the parameters")
+        for name, numbers in self.vectors.items():
+            is_limit = name.startswith("_vconfig") and (name != "_vconfigjerklimit" or len(numbers))
+            if is_limit and (numbers.shape != (dof,) or np.isnan(numbers).any()):
+                raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be {dof} numbers")
+
     def configurations(self, name: str) -> Floats:
         """Return starts or goals, one in each row.
 

@@ -145,6 +145,7 @@ class Client:
         """Do what the page said; return a picture if one is due."""
         now = time.monotonic()
         self._sees_bodies = self._simulation.lock.acquire(timeout=_PERIOD)
+        self._simulation.published.is_wanted = not self._sees_bodies
         if not self._sees_bodies:  # who holds it may wait for this thread to end
             return self._picture_of_view(style, now)
         try:
@@ -192,9 +193,9 @@ class Client:
         return self._renderer.render_again(self.interaction.drawn_view.camera, style.background, self._form(level))
 
     def _view(self, style: PageStyle) -> object:
-        """Return what is equal for as long as the view looks the same, apart from bodies and texts."""
-        view = self.interaction.drawn_view
-        return view.camera, view.size, self.interaction.mode, style, self._ratio
+        """Return what is equal for as long as the view looks the same, apart from texts and bodies not published."""
+        view, published = self.interaction.drawn_view, self._simulation.published.number
+        return view.camera, view.size, self.interaction.mode, style, self._ratio, published
 
     def _is_due(self, now: float, *, has_changed: bool) -> bool:
         """Return whether a picture is to be drawn of what is seen: it has changed, or come to rest."""

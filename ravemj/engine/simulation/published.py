@@ -1,0 +1,35 @@
+"""The state that viewers show while a script has the simulation."""
+
+from threading import Lock
+
+import mujoco
+
+
+class Published:
+    """A copy of the state of the world, for which nobody needs the lock of the simulation.
+
+    Attributes:
+        number: How many copies there were so far.
+        is_wanted: Whether a viewer waits for the simulation; copies are made for nobody else.
+    """
+
+    def __init__(self) -> None:
+        self.number = 0
+        self.is_wanted = False
+        self._lock = Lock()
+        self._model: mujoco.MjModel | None = None
+        self._data: mujoco.MjData | None = None
+
+    def put(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        """Copy a state."""
+        with self._lock:
+            if self._data is None or self._model is not model:
+                self._model, self._data = model, mujoco.MjData(model)
+            mujoco.mj_copyData(self._data, model, data)
+            self.number += 1
+
+    def copy_to(self, data: mujoco.MjData, model: mujoco.MjModel) -> None:
+        """Write the state into that of a viewer, unless it is of another model."""
+        with self._lock:
+            if self._data is not None and self._model is model:
+                mujoco.mj_copyData(data, model, self._data)
