@@ -59,10 +59,6 @@ class Multiple(NamedTuple):
     upper: float
     qpos: int
 
-    def value(self, of_dof: float) -> float:
-        """Return the value of the mimic joint for one of the DOF [rad or m]."""
-        return min(max(self.slope * of_dof + self.offset, self.lower), self.upper)
-
 
 class BodyKinematics:
     """The configuration of one body, in a MuJoCo model that has its links and joints but no shapes.

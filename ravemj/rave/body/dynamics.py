@@ -240,9 +240,7 @@ class Dynamics(BodyPart):
             return {}
         checked_kind(pushes, (dict, Mapping), name, "a dictionary")  # dict first, since it is faster to see
         count = len(self._state.scene.links)
-        return {
-            checked_index(link, count, "linkindex"): checked_vector(push, 6, name) for link, push in pushes.items()
-        }
+        return {checked_index(link, count, "linkindex"): checked_vector(push, 6, name) for link, push in pushes.items()}
 
     def batch_link_transforms(self, values: ArrayLike, out: Floats | None = None) -> Floats:
         """Return the poses of all links for many joint values, several times faster than a loop.
