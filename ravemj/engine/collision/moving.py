@@ -11,7 +11,7 @@ from ravemj.engine.collision.held import HeldRoots
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.engine.collision.world import CollisionWorld
-from ravemj.engine.kinematics.body import fixed_view
+from ravemj.engine.kinematics import fixed_view
 from ravemj.engine.simulation import BodyState
 
 _KEY = 1 << 31
@@ -126,12 +126,14 @@ class _MovingTest:
     def __init__(self, world: CollisionWorld, body: BodyState, place: Callable[[Floats], None], pairs: Ints) -> None:
         self._model, self._data = world.model.model, world.model.data
         self._place, self._world = place, world
-        self._held = HeldRoots(world, body) if body.grabs else None
-        if self._held is not None:
-            self._held.hang()
-        tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
-        if self._held is not None:
-            self._held.unhang()
+        self._held = held = HeldRoots(world, body) if body.grabs else None
+        try:
+            if held is not None:
+                held.hang()
+            tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
+        finally:
+            if held is not None:
+                held.unhang()
         meant = pairs[tested]
         self._meant = {*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()}
         rest = pairs[~tested]
@@ -155,8 +157,8 @@ class _MovingTest:
 
     def _detect_with(self, held: HeldRoots) -> None:
         """Let MuJoCo look for contacts, with what is held where its carriers are."""
-        held.hang()
         try:
+            held.hang()
             mujoco.mj_kinematics(self._model, self._data)
             if held.are_late:
                 mujoco.mj_kinematics(self._model, self._data)

@@ -306,13 +306,12 @@ class BodyDynamics:
         Returns:
             Torques and forces [N m or N], shape (dof,).
         """
-        forces = self._forces.matrix
         self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)
-        self._needed(forces)
+        self._needed(self._forces.matrix)
         if external:
-            self._add_external(forces, external)
+            self._add_external(self._forces.matrix, external)
         return self._of_dofs(self._forces)
 
     def _needed(self, forces: Floats) -> None:
@@ -333,7 +332,7 @@ class BodyDynamics:
         self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)
-        if self.motors or self._roots_move or self._coupling_matrix is None:
+        if self.motors is not None or self._roots_move or self._coupling_matrix is None:
             self._write_parts_of_all(velocities)
         else:
             self._write_parts_of_joints()
@@ -376,10 +375,9 @@ class BodyDynamics:
 
     def _add_external(self, forces: Floats, external: Mapping[int, Floats]) -> None:
         """Add forces and moments on links at their centres of mass."""
-        model, data, xipos = self._model, self._data, self._xipos
         for link, wrench in external.items():
             body_id = self._body_ids[link]
-            mujoco.mj_applyFT(model, data, wrench[:3], wrench[3:], xipos[body_id], body_id, forces)
+            mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], self._xipos[body_id], body_id, forces)
 
 
 def _turning_acceleration(velocity: Floats) -> Floats:
