@@ -91,9 +91,9 @@ def _placement(world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> C
     if (places < 0).any() or (multiples is None and followed & set(dofs)):
         return place_all
     followers = [
-        (columns.index(one.dof), *one[1:-1], part.qpos.start + kinematics.inner_index(one.qpos))
-        for one in multiples or ()
-        if one.dof in columns
+        (columns.index(dof), *equation, part.qpos.start + kinematics.inner_index(index))
+        for dof, *equation, index in multiples or ()
+        if dof in columns
     ]
     return place_with_multiples if followers else place
 
