@@ -46,7 +46,7 @@ class BodyDynamics:
         self._are_one_to_one = columns is not None
         self._moving, self._turning = (Rows((3,), model.nv, columns) for _ in range(2))
         self._forces, self._by_velocity, self._rest = (Rows((), model.nv, columns) for _ in range(3))
-        self._xipos = self._data.xipos
+        self._xipos: list[Floats] = list(self._data.xipos)  # views, since making one takes time
         self._qvel, self._qacc, self._gravity = self._data.qvel, self._data.qacc, model.opt.gravity
         self._free_fall = (ZERO, np.zeros(3))  # the last gravity asked for, as given and as an array
         self._velocities: Floats | None = None  # of the links: those that the data are set for
