@@ -91,7 +91,8 @@ def checked_point(values: ArrayLike, name: str) -> Floats:
     given = _floats(values, name)
     if given.shape != (3,):
         raise ValueError(f"{name}: has shape {given.shape}, and should have shape (3,)")
-    return checked_vector(given, 3, name)
+    x, y, z = given.tolist()
+    return given.copy() if math.isfinite(x + y + z) else checked_vector(given, 3, name)
 
 
 def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "DOF indices") -> Ints:

@@ -3,7 +3,7 @@
 import statistics
 import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import mujoco
@@ -11,7 +11,7 @@ import numpy as np
 
 import ravemj
 from benchmarks.measure import ROOT, Row, microseconds, take_turns
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, Ints
 from ravemj.planning.edges import Edges, length
 from ravemj.planning.retiming.parabolic import Parabolic
 from ravemj.planning.retiming.segments import Limits, retime
@@ -87,7 +87,7 @@ def rows(seed: int = 0, each: int = 20, resolution: float = _RESOLUTION) -> list
         Row(f"{_SHORTCUTS} shortcuts: median", "ms", statistics.median(cuts), 1.0, 10.0, note="limit in ms"),
         Row("shortcuts: median of what is saved", "%", statistics.median(savings), 1.0, 30.0, more_is_better=True),
     ]
-    return [*found, _one_check(), _retiming()]
+    return [*found, *_one_check(), _retiming()]
 
 
 def problems(seed: int, each: int, resolution: float) -> "list[tuple[str, Problem]]":
@@ -276,29 +276,41 @@ def _mean(numbers: Sequence[float]) -> float | None:
     return statistics.mean(numbers) if numbers else None
 
 
-def _one_check() -> Row:
-    """Compare one test inside of a planner with bare MuJoCo."""
-    ((_, problem),) = [one for one in problems(3, 1, _RESOLUTION) if one[0] == "boxes"]
-    bodies, random = problem.bodies, np.random.default_rng(4)
-    with bodies.kept():
-        test = _test(bodies)
-        samples = list(filter(test, (problem.space.sample(random) for _ in range(300))))[:50]
-        model, data = problem.env.model, mujoco.MjData(problem.env.model)
-        robot = problem.env.GetRobots()[0]
-        places = robot.qpos_indices[:_DOFS]
+def _one_check() -> Iterator[Row]:
+    """Compare one test inside of a planner with bare MuJoCo, for which what is held stays where it is."""
+    by_kind = dict(problems(3, 1, _RESOLUTION))
+    for what, problem in (("", by_kind["boxes"]), (" with a held box", by_kind["held"])):
+        bodies, random = problem.bodies, np.random.default_rng(4)
+        with bodies.kept():
+            test = _test(bodies)
+            samples = list(filter(test, (problem.space.sample(random) for _ in range(300))))[:50]
+            model, data = problem.env.model, mujoco.MjData(problem.env.model)
+            places = problem.env.GetRobots()[0].qpos_indices[:_DOFS]
+            measured, floor = (one / len(samples) for one in _times(test, samples, model, data, places))
+        label = f"a test of a free configuration{what} : mj_kinematics + mj_collision"
+        yield Row(label, "µs", measured, floor, 1.5)
 
-        def ours() -> None:
-            for one in samples:
-                test(one)
 
-        def bare() -> None:
-            for one in samples:
-                data.qpos[places] = one
-                mujoco.mj_kinematics(model, data)
-                mujoco.mj_collision(model, data)
+def _times(
+    test: Callable[[Floats], bool],
+    samples: Sequence[Floats],
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    places: Ints,
+) -> list[float]:
+    """Return how long all samples take us, and MuJoCo alone [µs]."""
 
-        measured, floor = (one / len(samples) for one in take_turns([microseconds(ours), microseconds(bare)], 30))
-    return Row("a test of a free configuration : mj_kinematics + mj_collision", "µs", measured, floor, 1.5)
+    def ours() -> None:
+        for one in samples:
+            test(one)
+
+    def bare() -> None:
+        for one in samples:
+            data.qpos[places] = one
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_collision(model, data)
+
+    return take_turns([microseconds(ours), microseconds(bare)], 30)
 
 
 def _retiming() -> Row:

@@ -36,10 +36,10 @@ ARM = """<Environment><Robot name="arm"><KinBody>
 
 THING = """<KinBody name="thing">
 <Body name="handle"><Geom type="box"><extents>.1 .03 .03</extents></Geom></Body>
-<Body name="tip"><offsetfrom>handle</offsetfrom><Translation>.15 0 0</Translation>
+<Body name="tip"><offsetfrom>handle</offsetfrom><Translation>0 0 .2</Translation>
 <Geom type="box"><Translation>.05 0 0</Translation><extents>.1 .02 .02</extents></Geom></Body>
-<Body name="rim"><offsetfrom>handle</offsetfrom><Translation>0 .1 0</Translation><Geom type="sphere"><radius>.02</radius>
-</Geom></Body>
+<Body name="rim"><offsetfrom>handle</offsetfrom><Translation>0 .1 0</Translation>
+<Geom type="sphere"><radius>.02</radius></Geom></Body>
 <Joint name="swivel" type="hinge"><Body>handle</Body><Body>tip</Body><offsetfrom>tip</offsetfrom><axis>0 1 0</axis>
 </Joint><Joint name="weld" type="hinge" enable="false"><Body>handle</Body><Body>rim</Body><offsetfrom>rim</offsetfrom>
 <axis>0 1 0</axis><limits>0 0</limits></Joint></KinBody>"""
@@ -750,14 +750,16 @@ def test_batch_agrees_with_single_questions(env, texts):
     for text in texts:
         env.LoadData(text)
     arm, thing = env.GetRobot("arm"), env.GetKinBody("thing")
-    for number, position in enumerate([(1.2, 0.7, 0.3), (-0.5, 1.0, 0.3), (0.3, -1.2, 0.3)]):
-        box(env, f"box{number}", position, (0.2, 0.2, 0.2))
+    far = [(2.4 * np.cos(angle), 2.4 * np.sin(angle), 0.3) for angle in (0.5, 1.5, 2.5, 4)]  # what is held gets there
+    for number, position in enumerate([(1.2, 0.7, 0.3), (-0.5, 1.0, 0.3), (0.3, -1.2, 0.3), *far]):
+        box(env, f"box{number}", position, (0.2, 0.2, 0.1))
     place(thing, (2.2, 0, 0.3), (0.3, 0, 0))
-    box(env, "on thing", (2.4, 0, 0.4), (0.1, 0.02, 0.02))
+    box(env, "on thing", (2.2, 0, 0.6), (0.1, 0.02, 0.02))
     thing.SetDOFValues([0.4])
     thing.Grab(env.GetKinBody("on thing"), thing.GetLinks()[1])
     arm.Grab(thing)
     values = np.random.default_rng(4).uniform(*arm.GetDOFLimits(), (60, arm.GetDOF()))
+    values[::2, 1] *= 0.2  # stretched out
     arm.SetDOFValues([0.1, 0.2, 0.3])
     before, held = arm.GetLinkTransformations(), thing.GetTransform()
     with_itself, without = arm.batch_collides(values), arm.batch_collides(values, itself_too=False)

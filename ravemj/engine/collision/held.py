@@ -23,7 +23,7 @@ class HeldRoots:
     def __init__(self, world: CollisionWorld, body: BodyState) -> None:
         """Find them, where they are now."""
         model, data = world.model.model, world.model.data
-        self._parents, self._weld_ids = model.body_parentid, model.body_weldid
+        self._parents, self._weld_ids, self._dof_counts = model.body_parentid, model.body_weldid, model.body_dofnum
         self._roots: list[_Root] = []
         self._welds: list[tuple[int, int]] = []
         for grab in body.grabs:
@@ -37,12 +37,13 @@ class HeldRoots:
                 self._roots.append(_Root(root, carrier, model.body_pos[root], model.body_quat[root], *place))
             fixed = [index for index in ids if self._weld_ids[index] == 0]
             self._welds += zip(fixed, model.body_rootid[fixed].tolist(), strict=True)
-        self.are_late = any(one.index < one.carrier for one in self._roots)
+        self.are_late = any(one.body_id < one.carrier for one in self._roots)
 
     def hang(self) -> None:
         """Make them children of their carriers."""
         for index, carrier, position, wxyz, offset, turn in self._roots:
             self._parents[index] = carrier
+            self._dof_counts[index] = 1  # else MuJoCo would take it for fixed to the world
             position[...] = offset
             wxyz[...] = turn
         for index, root in self._welds:
@@ -51,7 +52,7 @@ class HeldRoots:
     def unhang(self) -> None:
         """Make them children of the world again; their poses there are for the caller to restore."""
         for one in self._roots:
-            self._parents[one.index] = 0
+            self._parents[one.body_id] = self._dof_counts[one.body_id] = 0
         for index, _ in self._welds:
             self._weld_ids[index] = 0
 
@@ -60,7 +61,7 @@ class _Root(NamedTuple):
     """A root link that is held.
 
     Attributes:
-        index: MuJoCo's index of it.
+        body_id: MuJoCo's index of it.
         carrier: MuJoCo's index of the link that holds it.
         position: Its position in its parent in the model [m], shape (3,); a view.
         wxyz: Its orientation there; a view.
@@ -68,7 +69,7 @@ class _Root(NamedTuple):
         turn: Its orientation there, wxyz.
     """
 
-    index: int
+    body_id: int
     carrier: int
     position: Floats
     wxyz: Floats

@@ -11,6 +11,7 @@ from ravemj.engine.collision.held import HeldRoots
 from ravemj.engine.collision.pairs import Pairs
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.engine.collision.world import CollisionWorld
+from ravemj.engine.kinematics import fixed_view
 from ravemj.engine.simulation import BodyState
 
 _KEY = 1 << 31
@@ -71,14 +72,15 @@ def _placement(world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> C
     followed = {dof for joint in body.scene.all_joints if joint.mimic is not None for dof in joint.mimic.dofs}
     places, multiples = world.model.qpos_indices(body)[columns], kinematics.multiples
     full = kinematics.values()
+    target, indices = fixed_view(qpos, places)
 
     def place(values: Floats) -> None:
-        qpos[places] = values
+        target[indices] = values
 
     def place_with_multiples(values: Floats) -> None:
-        qpos[places] = values
-        for column, one, index in followers:
-            qpos[index] = one.value(values[column])
+        target[indices] = values
+        for column, slope, offset, lower, upper, index in followers:
+            qpos[index] = min(max(slope * values.item(column) + offset, lower), upper)
 
     def place_all(values: Floats) -> None:
         full[columns] = values
@@ -89,9 +91,9 @@ def _placement(world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> C
     if (places < 0).any() or (multiples is None and followed & set(dofs)):
         return place_all
     followers = [
-        (columns.index(one.dof), one, part.qpos.start + kinematics.inner_index(one.qpos))
-        for one in multiples or ()
-        if one.dof in columns
+        (columns.index(dof), *equation, part.qpos.start + kinematics.inner_index(index))
+        for dof, *equation, index in multiples or ()
+        if dof in columns
     ]
     return place_with_multiples if followers else place
 
@@ -124,12 +126,14 @@ class _MovingTest:
     def __init__(self, world: CollisionWorld, body: BodyState, place: Callable[[Floats], None], pairs: Ints) -> None:
         self._model, self._data = world.model.model, world.model.data
         self._place, self._world = place, world
-        self._held = HeldRoots(world, body) if body.grabs else None
-        if self._held:
-            self._held.hang()
-        tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
-        if self._held:
-            self._held.unhang()
+        self._held = held = HeldRoots(world, body) if body.grabs else None
+        try:
+            if held is not None:
+                held.hang()
+            tested = world.found_by_mujoco(pairs[:, 0], pairs[:, 1])
+        finally:
+            if held is not None:
+                held.unhang()
         meant = pairs[tested]
         self._meant = {*_keys(meant).tolist(), *_keys(meant[:, ::-1]).tolist()}
         rest = pairs[~tested]
@@ -153,10 +157,12 @@ class _MovingTest:
 
     def _detect_with(self, held: HeldRoots) -> None:
         """Let MuJoCo look for contacts, with what is held where its carriers are."""
-        held.hang()
-        mujoco.mj_kinematics(self._model, self._data)
-        if held.are_late:
+        try:
+            held.hang()
             mujoco.mj_kinematics(self._model, self._data)
-        mujoco.mj_collision(self._model, self._data)
-        held.unhang()
+            if held.are_late:
+                mujoco.mj_kinematics(self._model, self._data)
+            mujoco.mj_collision(self._model, self._data)
+        finally:  # also at Ctrl-C
+            held.unhang()
         self._world.model.pose_stamp += 1  # else pairs without a joint between them are not looked at again

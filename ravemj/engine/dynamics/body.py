@@ -46,7 +46,7 @@ class BodyDynamics:
         self._are_one_to_one = columns is not None
         self._moving, self._turning = (Rows((3,), model.nv, columns) for _ in range(2))
         self._forces, self._by_velocity, self._rest = (Rows((), model.nv, columns) for _ in range(3))
-        self._xipos = self._data.xipos
+        self._xipos: list[Floats] = list(self._data.xipos)  # views, since making one takes time
         self._qvel, self._qacc, self._gravity = self._data.qvel, self._data.qacc, model.opt.gravity
         self._free_fall = (ZERO, np.zeros(3))  # the last gravity asked for, as given and as an array
         self._velocities: Floats | None = None  # of the links: those that the data are set for
@@ -306,13 +306,12 @@ class BodyDynamics:
         Returns:
             Torques and forces [N m or N], shape (dof,).
         """
-        forces = self._forces.matrix
         self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)
-        self._needed(forces)
+        self._needed(self._forces.matrix)
         if external:
-            self._add_external(forces, external)
+            self._add_external(self._forces.matrix, external)
         return self._of_dofs(self._forces)
 
     def _needed(self, forces: Floats) -> None:
@@ -333,7 +332,7 @@ class BodyDynamics:
         self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)
-        if self.motors or self._roots_move or self._coupling_matrix is None:
+        if self.motors is not None or self._roots_move or self._coupling_matrix is None:
             self._write_parts_of_all(velocities)
         else:
             self._write_parts_of_joints()
@@ -376,10 +375,9 @@ class BodyDynamics:
 
     def _add_external(self, forces: Floats, external: Mapping[int, Floats]) -> None:
         """Add forces and moments on links at their centres of mass."""
-        model, data, xipos = self._model, self._data, self._xipos
         for link, wrench in external.items():
             body_id = self._body_ids[link]
-            mujoco.mj_applyFT(model, data, wrench[:3], wrench[3:], xipos[body_id], body_id, forces)
+            mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], self._xipos[body_id], body_id, forces)
 
 
 def _turning_acceleration(velocity: Floats) -> Floats:

@@ -40,30 +40,6 @@ class Configuration(NamedTuple):
     displaced: bool
 
 
-class Multiple(NamedTuple):
-    """A mimic joint whose value is a multiple of a DOF's.
-
-    Attributes:
-        dof: The DOF.
-        slope: What its value is multiplied by.
-        offset: What is added [rad or m].
-        lower: Lower limit, at which the mimic joint stops [rad or m].
-        upper: Upper limit.
-        qpos: Where the mimic joint is in ``qpos``.
-    """
-
-    dof: int
-    slope: float
-    offset: float
-    lower: float
-    upper: float
-    qpos: int
-
-    def value(self, of_dof: float) -> float:
-        """Return the value of the mimic joint for one of the DOF [rad or m]."""
-        return min(max(self.slope * of_dof + self.offset, self.lower), self.upper)
-
-
 class BodyKinematics:
     """The configuration of one body, in a MuJoCo model that has its links and joints but no shapes.
 
@@ -174,7 +150,7 @@ class BodyKinematics:
         self.mimic = MimicJoints(body.all_joints if body.joints else ())
         self._mimic_qpos = {one.joint: places[0] for one in self.mimic.joints if (places := self.joint_qpos[one.joint])}
         self._multiples = [
-            Multiple(self.first_dofs[leader], slope, offset, one.lower, one.upper, self._mimic_qpos[one.joint])
+            (self.first_dofs[leader], slope, offset, one.lower, one.upper, self._mimic_qpos[one.joint])
             for one in self.mimic.joints
             if one.joint in self._mimic_qpos and one.multiple is not None
             for leader, slope, offset in [one.multiple]
@@ -261,8 +237,11 @@ class BodyKinematics:
         return active + [passive[0] for passive in self._passive_values]
 
     @property
-    def multiples(self) -> list[Multiple] | None:
-        """The mimic joints as multiples of DOFs; None where there are others."""
+    def multiples(self) -> list[tuple[int, float, float, float, float, int]] | None:
+        """The mimic joints as multiples of DOFs; None where there are others.
+
+        For each one the DOF, the factor, what is added, both limits [rad or m], and its place in ``qpos``.
+        """
         return self._multiples if self._are_multiples else None
 
     def passive_values(self, index: int) -> Floats:

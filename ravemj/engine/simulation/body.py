@@ -150,11 +150,10 @@ class BodyState:
     @property
     def dynamics(self) -> "BodyDynamics":
         """Jacobians and inverse dynamics; errors as for ``kinematics``."""
-        kinematics = self.kinematics
-        if self._dynamics is None:
+        if self._dynamics is None or not self.index:
             from ravemj.engine.dynamics import BodyDynamics  # noqa: PLC0415 - slow to import
 
-            self._dynamics = BodyDynamics(kinematics)
+            self._dynamics = BodyDynamics(self.kinematics)
         return self._dynamics
 
     @property

@@ -6,7 +6,7 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arguments import checked_index, checked_kind
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_first, checked_point, checked_vector
 from ravemj.core.transforms import Floats, wxyz_jacobian
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
@@ -250,8 +250,7 @@ class Dynamics(BodyPart):
         if not pushes:
             return {}
         checked_kind(pushes, (dict, Mapping), name, "a dictionary")  # dict first, since it is faster to see
-        count = len(self._state.scene.links)
-        return {checked_index(link, count, "linkindex"): checked_vector(push, 6, name) for link, push in pushes.items()}
+        return {self._checked_link(link): checked_vector(push, 6, name) for link, push in pushes.items()}
 
     def batch_link_transforms(self, values: ArrayLike, out: Floats | None = None) -> Floats:
         """Return the poses of all links for many joint values, several times faster than a loop.
