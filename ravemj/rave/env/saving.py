@@ -55,7 +55,7 @@ _NO_EFFECT = {
 }
 """OpenRAVE's options that change nothing about what is read again."""
 
-_FILE_TYPES = {"collada": ".dae", "json": ".json", "msgpack": ".msgpack"}
+_FILE_TYPES = {"collada": ".dae", "json": ".json"}
 
 _VALUES = {"skipwrite": tuple(_PARTS), "format": ("collada", "openrave", "json"), "meshes": ("stl", "obj")}
 
