@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.compat.interfaces.helper import Helper, given
+from ravemj.compat.planningutils import RetimeTrajectory, VerifyTrajectory
 from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
@@ -336,6 +337,48 @@ class BaseManipulation(Helper):
         """
         found = self._base.jitter_active(**given(tries=maxiter, jitter=jitter))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
+
+    def TrajFromData(self, data: str | bytes, resettrans: bool | None = None, resettiming: bool | None = None) -> None:
+        """Execute a trajectory.
+
+        Args:
+            data: The trajectory, as ``Trajectory.serialize`` writes it.
+            resettrans: Not used.
+            resettiming: Whether it gets new times.
+
+        Raises:
+            openrave_exception: this is no trajectory, or it cannot be executed.
+        """
+        del resettrans
+        self.robot.GetController().SetPath(self._read(data, resettiming))
+
+    def VerifyTrajectory(
+        self,
+        data: str | bytes,
+        resettrans: bool | None = None,
+        resettiming: bool | None = None,
+        samplingstep: float | None = None,
+    ) -> None:
+        """Check that a trajectory keeps limits and constraints; see ``planningutils.VerifyTrajectory``.
+
+        Args:
+            data: The trajectory, as ``Trajectory.serialize`` writes it.
+            resettrans: Not used.
+            resettiming: Whether it gets new times first.
+            samplingstep: Steps in which it is looked at [s].
+
+        Raises:
+            openrave_exception: it does not, or this is no trajectory.
+        """
+        del resettrans
+        VerifyTrajectory(None, self._read(data, resettiming), **given(samplingstep=samplingstep))
+
+    def _read(self, data: str | bytes, resettiming: bool | None) -> Trajectory:
+        traj = Trajectory(self.robot.GetEnv(), "")
+        traj.deserialize(data)
+        if resettiming:
+            RetimeTrajectory(traj, False)
+        return traj
 
     def FindIKWithFilters(
         self,
