@@ -163,6 +163,7 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
         source = reference.simulation
         if source is self._simulation:
             return
+        self.SetUnitInfo(reference.GetUnitInfo())
         with both_locks(source, self._simulation):
             self._kept_objects.clear()
             for original, copy in self._simulation.copy(source, bodies=bool(options & CloningOptions.Bodies)).items():

@@ -117,7 +117,7 @@ class Saving(JsonFiles):
             return
         kind = cast("ModelFormat", named.get("format", "collada"))
         if self._metre != 1 and kind == "collada":
-            raise UnsupportedError("Save", "COLLADA files of environments in other units than metres; JSON has a unit")
+            raise UnsupportedError("Save", "COLLADA files in other units than the metre")
         bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
         for part in skipped:
             bodies = [_PARTS[part](body) for body in bodies]
