@@ -350,7 +350,7 @@ class BaseManipulation(Helper):
             openrave_exception: this is no trajectory, or it cannot be executed.
         """
         del resettrans
-        self.robot.GetController().SetPath(self._read(data, resettiming))
+        self._base.execute(self._read(data, resettiming))
 
     def VerifyTrajectory(
         self,
