@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.compat.interfaces.helper import Helper, given
-from ravemj.compat.planningutils import RetimeTrajectory, VerifyTrajectory
+from ravemj.compat.interfaces.helper import given
+from ravemj.compat.interfaces.trajectory_text import TrajectoryText
 from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
@@ -23,7 +23,7 @@ from ravemj.rave.trajectory import Trajectory
 Answer = Trajectory | str | None
 
 
-class BaseManipulation(Helper):
+class BaseManipulation(TrajectoryText):
     """Plans and executes motions of the active DOFs, of an arm, or of its tool.
 
     Each method gives the robot's controller the motion, and returns before it is over; ``execute=False`` leaves the
@@ -337,48 +337,6 @@ class BaseManipulation(Helper):
         """
         found = self._base.jitter_active(**given(tries=maxiter, jitter=jitter))
         return self._pair(found, execute, outputtraj, outputfinal, outputtrajobj)
-
-    def TrajFromData(self, data: str | bytes, resettrans: bool | None = None, resettiming: bool | None = None) -> None:
-        """Execute a trajectory.
-
-        Args:
-            data: The trajectory, as ``Trajectory.serialize`` writes it.
-            resettrans: Not used.
-            resettiming: Whether it gets new times.
-
-        Raises:
-            openrave_exception: this is no trajectory, or it cannot be executed.
-        """
-        del resettrans
-        self._base.execute(self._read(data, resettiming))
-
-    def VerifyTrajectory(
-        self,
-        data: str | bytes,
-        resettrans: bool | None = None,
-        resettiming: bool | None = None,
-        samplingstep: float | None = None,
-    ) -> None:
-        """Check that a trajectory keeps limits and constraints; see ``planningutils.VerifyTrajectory``.
-
-        Args:
-            data: The trajectory, as ``Trajectory.serialize`` writes it.
-            resettrans: Not used.
-            resettiming: Whether it gets new times first.
-            samplingstep: Steps in which it is looked at [s].
-
-        Raises:
-            openrave_exception: it does not, or this is no trajectory.
-        """
-        del resettrans
-        VerifyTrajectory(None, self._read(data, resettiming), **given(samplingstep=samplingstep))
-
-    def _read(self, data: str | bytes, resettiming: bool | None) -> Trajectory:
-        traj = Trajectory(self.robot.GetEnv(), "")
-        traj.deserialize(data)
-        if resettiming:
-            RetimeTrajectory(traj, False)
-        return traj
 
     def FindIKWithFilters(
         self,
