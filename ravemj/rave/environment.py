@@ -164,6 +164,7 @@ class Environment(Loading, Saving, Collision, Drawing, Viewing):
         source = reference.simulation
         if source is self._simulation:
             return
+        self.SetUnitInfo(reference.GetUnitInfo())
         with both_locks(source, self._simulation):
             self._remove_all()
             for original, copy in self._simulation.copy(source, bodies=bool(options & CloningOptions.Bodies)).items():

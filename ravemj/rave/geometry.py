@@ -10,7 +10,7 @@ from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_numbers, checked_transform, checked_vector
 from ravemj.core.transforms import Floats, Vec3, pose_of
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import AABB
 from ravemj.model import scene
 from ravemj.model.bounds import geometry_bounds
@@ -43,17 +43,21 @@ class Geometry(ApiObject):
 
     @property
     def _scene(self) -> scene.Geometry:
-        link = self._state.scene.links[self._link]
-        return (link.geometries if self._group is None else dict(link.groups)[self._group])[self._index]
+        try:
+            link = self._state.scene.links[self._link]
+            return (link.geometries if self._group is None else dict(link.groups)[self._group])[self._index]
+        except LookupError:
+            raise RavemjError(f"{self!r} is not there any more", ErrorCode.InvalidState) from None
 
     def _edit(self, **changes: Any) -> None:  # noqa: ANN401 - the fields of a scene.Geometry
         with self._state.simulation.lock:
+            present = self._scene
             if self._group is None:
                 self._state.edit_geometry(self._link, self._index, **changes)
                 return
             groups = dict(self._state.scene.links[self._link].groups)
             members = list(groups[self._group])
-            members[self._index] = replace(members[self._index], **changes)
+            members[self._index] = replace(present, **changes)
             groups[self._group] = tuple(members)
             self._state.edit_link(self._link, groups=tuple(groups.items()))
 

@@ -20,7 +20,10 @@ class JointLimits(Member):
     def _scene(self) -> scene.Joint:
         body = self._state.scene
         first = len(body.joints)
-        return body.joints[self._index] if self._index < first else body.passive_joints[self._index - first]
+        try:
+            return body.joints[self._index] if self._index < first else body.passive_joints[self._index - first]
+        except IndexError:
+            raise self._gone("joint") from None
 
     def GetLimits(self) -> tuple[Floats, Floats]:
         """Return the lower and the upper limits [rad or m], each of shape (axes,); ±10000 for a circular joint."""

@@ -26,7 +26,10 @@ class LinkGeometries(Member):
 
     @property
     def _scene(self) -> scene.Link:
-        return self._state.scene.links[self._index]
+        try:
+            return self._state.scene.links[self._index]
+        except IndexError:
+            raise self._gone("link") from None
 
     def GetGeometries(self) -> list[Geometry]:
         """Return the link's shapes, in the order of the file.

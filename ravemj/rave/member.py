@@ -13,6 +13,7 @@ from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers
 from ravemj.core.transforms import Floats, Ints
 from ravemj.engine.simulation import BodyState
+from ravemj.errors import ErrorCode, RavemjError
 from ravemj.model import scene
 from ravemj.model.scene import Parameters
 
@@ -32,6 +33,10 @@ class Member(ApiObject):
     @abstractmethod
     def _scene(self) -> scene.Link | scene.Joint:
         """The description as it stands."""
+
+    def _gone(self, kind: str) -> RavemjError:
+        """Return the error for a link or joint that the body had before it was made anew."""
+        return RavemjError(f"'{self._parent.GetName()}' has no {kind} {self._index} any more", ErrorCode.InvalidState)
 
     @abstractmethod
     def _set_parameters(self, parameters: Parameters) -> None:

@@ -537,3 +537,21 @@ def test_what_joints_do_not_move_is_no_obstacle_of_theirs(env, robot):
     env.GetKinBody("floor").SetTransform(ravemj.matrixFromPose([1, 0, 0, 0, 0, 0, 0.2]))
     described = planned(robot, parameters(robot))[0].description
     assert re.match("start: it collides: link 'upper' of 'arm' with link .* of 'floor'", described), described
+
+
+def test_trajectories_are_executed_and_verified_from_their_text(robot):
+    helper = ravemj.interfaces.BaseManipulation(robot)
+    goal = robot.GetActiveDOFValues() + 0.1
+    text = helper.MoveActiveJoints(goal=goal, execute=False, outputtraj=True)
+    helper.VerifyTrajectory(text, samplingstep=0.01)
+    helper.VerifyTrajectory(data=text, resettiming=True)
+    robot.GetEnv().StopSimulation()
+    helper.TrajFromData(text)
+    while not robot.GetController().IsDone():
+        robot.GetEnv().StepSimulation(0.05)
+    np.testing.assert_allclose(robot.GetActiveDOFValues(), goal, atol=1e-9)
+    robot.SetDOFVelocityLimits([1e-3] * robot.GetDOF())
+    with pytest.raises(ravemj.openrave_exception, match="VerifyTrajectory"):
+        helper.VerifyTrajectory(text)
+    with pytest.raises(ravemj.openrave_exception):
+        helper.TrajFromData("no trajectory")

@@ -55,8 +55,6 @@ MISTAKES = {
     "gap-04-arrays-that-are-too-long": (r"a\[4\]", "OpenRAVE leaves out what accelerates the follower"),
     "ik-10-param-distance": (r"Lookat3D\[0\]", "OpenRAVE leaves out what is along a direction that nobody can set"),
     "info-23-extract-and-init": ("limits-before-add", "OpenRAVE counts no DOFs of a body that is not added yet"),
-    "mesh-03-sphere": ("counts", "how finely a sphere is divided is not part of the API"),
-    "mesh-04-cylinder": ("counts", "how finely a cylinder is divided is not part of the API"),
     "world-14-rave-environment-ids": ("destroyed|number", "OpenRAVE goes on listing environments that are destroyed"),
     "name-30-mimic-equations": ("atan2", "OpenRAVE's atan2 is wrong in the third digit"),
     "name-36-spec-of-trajectory-file": (

@@ -83,10 +83,17 @@ def test_parts_come_and_go_with_the_robot(env, robot):
     assert (list(hand.GetArmIndices()), list(hand.GetGripperIndices())) == ([0, 1, 2, 3, 4, 5], [6])
     assert robot.GetAttachedSensor("tool_eye").GetAttachingLink() == palm
     assert robot.GetGripperInfo("tool_two")._gripperJointNames == ["tool_close"]
+    tool_joint, shape = robot.GetJoint("tool_close"), right.GetGeometries()[0]
     robot.GetJoint("joint1").SetVelocityLimits([0.125])
+    saver = robot.CreateRobotStateSaver()
     env.Remove(robot)
     assert len(robot.GetLinks()) == 7
     assert robot.GetGripperInfos() == []
+    with pytest.raises(ravemj.openrave_exception, match="10 links and 7 DOFs"):
+        saver.Restore()
+    for gone in (palm, tool_joint, hand, shape):
+        with pytest.raises(ravemj.openrave_exception, match="any more"):
+            gone.GetName()
     env.Add(robot)
     assert robot.GetDOF() == 7
     assert robot.GetDOFVelocityLimits()[0] == 0.125

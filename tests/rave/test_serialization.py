@@ -119,6 +119,7 @@ class TestUnits:
             millimetres.Save(tmp_path / "scene.dae")
 
     def test_a_whole_description_has_its_unit(self, env, millimetres):
+        assert millimetres.CloneSelf().GetUnit() == ("mm", 0.001)
         millimetres.UpdateFromInfo(env.ExtractInfo())
         assert millimetres.GetUnit() == ("m", 1)
 

@@ -5,6 +5,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from conftest import MODELS
 
 import ravemj
 from ravemj import (
@@ -207,3 +208,30 @@ def test_table_of_a_body_that_is_not_added(env):
     body = RaveCreateKinBody(env, "")
     body.InitFromBoxes(np.array([[0, 0, 0, 1, 1, 1]]))
     assert re.search("<b></b> \\(body, 0 DOF\\)<details>", body._repr_html_())
+
+
+def test_contexts_show_only_the_arm_or_what_it_carries():
+    from ravemj.databases.grasping import GraspingModel
+    from ravemj.databases.inversekinematics import InverseKinematicsModel
+
+    def visible(robot):
+        return {link.GetName() for link in robot.GetLinks() if all(one.IsVisible() for one in link.GetGeometries())}
+
+    robot = ravemj.load(MODELS / "puma560.xml").GetRobots()[0]
+    before, arm = visible(robot), robot.GetActiveManipulator()
+    with GraspingModel.GripperVisibility(arm):
+        hidden = before - visible(robot)
+    assert hidden == {link.GetName() for link in robot.GetLinks() if link not in arm.GetChildLinks()} & before
+    assert visible(robot) == before
+    info = arm.GetInfo()
+    info._name, info._sBaseLinkName, info._sEffectorLinkName = "upper", "link1", "link3"
+    upper = robot.AddManipulator(info)
+    shape = robot.GetLink("base").GetGeometries()[0]
+    with InverseKinematicsModel.ArmVisibility(upper, 0.5):
+        assert shape.GetTransparency() == 0.5
+        assert robot.GetLink("link2").GetGeometries()[0].GetTransparency() == 0
+    assert shape.GetTransparency() == 0
+    with InverseKinematicsModel.ArmVisibility(manip=upper):
+        assert not shape.IsVisible()
+        assert robot.GetLink("link2").GetGeometries()[0].IsVisible()
+    assert visible(robot) == before

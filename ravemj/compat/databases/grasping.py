@@ -1,6 +1,7 @@
 """Grasps of a body by a hand."""
 
 from ravemj.compat.databases.model import DatabaseGenerator, lacking, refusing
+from ravemj.compat.databases.visibility import GripperVisibility
 
 GRASPS = "planning of grasps"
 
@@ -37,13 +38,13 @@ GRASPS = "planning of grasps"
     },
     static={
         "CreateOptionParser": "",
-        "GripperVisibility": "manip",
         "InitializeFromParser": "Model parser defaultviewer args *margs **named",
     },
 )
 class GraspingModel(DatabaseGenerator):
     """Grasps of a body by a hand."""
 
+    GripperVisibility = GripperVisibility
     graspsetname = ""
 
     def load(self, filename: str | None = None) -> bool:

@@ -12,12 +12,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.compat.databases.model import lacking, refusing
 from ravemj.compat.databases.solved_joints import InverseKinematicsError, SolvedJoints
+from ravemj.compat.databases.visibility import ArmVisibility
 from ravemj.errors import RavemjError, UnsupportedError
 from ravemj.geometry_functions.ik_types import IkParameterizationType, goal_dof
 from ravemj.rave.enums import CheckLimitsAction, IkFilterOptions
 from ravemj.rave.environment import Environment
 from ravemj.rave.iksolver import IkSolver
+
+COMPILING = "compiling of solvers of inverse kinematics"
 
 _LOG = logging.getLogger("ravemj")
 _UNCHECKED = IkFilterOptions.IgnoreSelfCollisions | IkFilterOptions.IgnoreCustomFilters
@@ -25,6 +29,11 @@ _WRONG = 1e-8
 """Squared distance from the goal beyond which a solution is wrong."""
 
 
+@lacking(
+    COMPILING,
+    {"getsourcefilename": "read outputlang", "show": "delay options forceclosure"},
+    static={"getcompiler": ""},
+)
 class InverseKinematicsModel(SolvedJoints):
     """A solver for an arm.
 
@@ -58,6 +67,9 @@ class InverseKinematicsModel(SolvedJoints):
         ...     model.autogenerate()
         >>> values = model.manip.FindIKSolution(T_world_tool, IkFilterOptions.CheckEnvCollisions)
     """
+
+    ArmVisibility = ArmVisibility
+    ikfastproblem = None
 
     # Life
 
@@ -259,3 +271,6 @@ class InverseKinematicsModel(SolvedJoints):
                 self.robot.SetDOFValues(values, indices)
                 goals.append(self.manip.GetIkParameterization(kind))
         return goals
+
+
+run = refusing("inversekinematics.run", COMPILING, "*arguments **named")

@@ -1,6 +1,7 @@
 """From where a camera on an arm sees a body."""
 
 from ravemj.compat.databases.model import DatabaseGenerator, lacking, refusing
+from ravemj.compat.databases.visibility import GripperVisibility
 
 SEEING = "visual feedback"
 
@@ -18,12 +19,11 @@ SEEING = "visual feedback"
         "show": "options",
         "showtransforms": "options",
     },
-    static={
-        "GripperVisibility": "manip",
-    },
 )
 class VisibilityModel(DatabaseGenerator):
     """From where a camera on an arm sees a body."""
+
+    GripperVisibility = GripperVisibility
 
     def autogenerate(self, options: object = None, gmodel: object = None) -> None:
         """Refuse to compute the model; see ``DatabaseGenerator.autogenerate``."""

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.compat.interfaces.helper import Helper, given
+from ravemj.compat.interfaces.helper import given
+from ravemj.compat.interfaces.trajectory_text import TrajectoryText
 from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
@@ -22,7 +23,7 @@ from ravemj.rave.trajectory import Trajectory
 Answer = Trajectory | str | None
 
 
-class BaseManipulation(Helper):
+class BaseManipulation(TrajectoryText):
     """Plans and executes motions of the active DOFs, of an arm, or of its tool.
 
     Each method gives the robot's controller the motion, and returns before it is over; ``execute=False`` leaves the

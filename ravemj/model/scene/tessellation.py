@@ -9,6 +9,19 @@ from ravemj.model.scene.mesh import Mesh
 
 SUBDIVISIONS = 3
 """How often the triangles of an icosahedron are divided to make a sphere."""
+
+# Corners and faces in OpenRAVE's order, which scripts see in meshes (random api-5000-118); 2: the golden ratio.
+_ICOSAHEDRON = np.array(
+    [
+        *((0, 2, -1), (2, 1, 0), (1, 0, -2), (1, 0, 2), (2, -1, 0), (0, 2, 1)),
+        *((-1, 0, 2), (0, -2, -1), (-2, 1, 0), (-1, 0, -2), (-2, -1, 0), (0, -2, 1)),
+    ]
+)
+_FACES = (
+    *((0, 1, 2), (1, 3, 4), (3, 5, 6), (2, 4, 7), (6, 5, 8), (2, 7, 9), (5, 0, 8), (9, 7, 10), (1, 0, 5), (10, 7, 11)),
+    *((3, 1, 5), (6, 10, 11), (3, 6, 11), (9, 10, 8), (4, 3, 11), (6, 8, 10), (7, 4, 11), (2, 1, 4), (8, 0, 9)),
+    (0, 2, 9),
+)
 SIDES = 51
 """Sides of a cylinder."""
 
@@ -58,33 +71,22 @@ def _unit_cylinder() -> tuple[Floats, Ints]:
 @functools.cache
 def _unit_sphere() -> tuple[Floats, Ints]:
     golden = (1 + 5**0.5) / 2
-    corners = np.array([[0.0, y, z] for y in (-1.0, 1.0) for z in (-golden, golden)])
-    corners = np.concatenate([np.roll(corners, shift, axis=1) for shift in range(3)])
+    corners = np.sign(_ICOSAHEDRON) * np.where(np.abs(_ICOSAHEDRON) == 2, golden, 1.0)
     corners /= np.linalg.norm(corners[0])
-    triangles = _icosahedron(corners)
+    triangles = np.array(_FACES)
     for _ in range(SUBDIVISIONS):
         corners, triangles = _refined(corners, triangles)
     return corners, triangles
 
 
-def _icosahedron(corners: Floats) -> Ints:
-    """Return the faces: the triples of corners that are next to each other, seen from outside."""
-    near = corners @ corners.T > 0.4
-    np.fill_diagonal(near, val=False)
-    faces: list[tuple[int, int, int]] = []
-    for a, b, c in np.argwhere(near[:, :, None] & near[:, None, :] & near[None, :, :]).tolist():
-        if a < min(b, c) and np.linalg.det(corners[[a, b, c]]) > 0:
-            faces.append((a, b, c))
-    return np.array(faces)
-
-
 def _refined(corners: Floats, triangles: Ints) -> tuple[Floats, Ints]:
-    """Return four triangles for each, with the new corners on the unit sphere."""
+    """Return four triangles for each, with the new corners on the unit sphere, in the order in which edges come."""
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    unique, places = np.unique(edges, axis=0, return_inverse=True)
-    middles = corners[unique].sum(axis=1)
+    unique, first, places = np.unique(edges, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    middles = corners[unique[order]].sum(axis=1)
     middles /= np.linalg.norm(middles, axis=1, keepdims=True)
-    ab, bc, ca = (places.reshape(-1, 3) + len(corners)).T
+    ab, bc, ca = (np.argsort(order)[places].reshape(-1, 3) + len(corners)).T
     a, b, c = triangles.T
-    four = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
-    return np.concatenate([corners, middles]), np.concatenate([np.column_stack(three) for three in four])
+    four = [(a, ab, ca), (ab, b, bc), (ca, ab, bc), (ca, bc, c)]
+    return np.concatenate([corners, middles]), np.stack([np.column_stack(three) for three in four], 1).reshape(-1, 3)

@@ -316,7 +316,7 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         return rates @ self.CalculateActiveAngularVelocityJacobian(linkindex)
 
     def GetAffineRotationQuatLimits(self) -> Floats:
-        """Return how far the base may turn: a quaternion [w, x, y, z] times the largest angle from it [rad]."""
+        """Return how far the base may turn: a quaternion [w, x, y, z] times the largest angle from it, shape (4,)."""
         return self.quaternion_limits.copy()
 
     def SetAffineRotationQuatLimits(self, quatangle: ArrayLike) -> None:

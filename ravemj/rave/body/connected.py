@@ -63,6 +63,9 @@ class Connected(Building):
             connectedbodyinfo: Its description.
             removeduplicate: Whether it replaces one of the same name.
 
+        Returns:
+            The body.
+
         Raises:
             openrave_exception: the robot is in an environment (``InvalidState``); the description has no name, or that
                 of another, or names no link of the robot. Nothing has changed then.

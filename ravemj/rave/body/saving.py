@@ -68,6 +68,7 @@ class StateSaver(ApiObject):
         wanted = body.default_saved if options is None else int(SaveParameters(options))
         with body.GetEnv().simulation.lock:
             self._restorers = body.restorers(wanted)
+            self._structure = _structure(body)
 
     def GetBody(self) -> "KinBody":
         """Return the body."""
@@ -81,8 +82,9 @@ class StateSaver(ApiObject):
         """
         target = self._body if body is None else body
         checked_kind(target, BodyPart, "Restore: body", "a KinBody")
-        if _structure(target) != _structure(self._body):
-            raise ArgumentError(f"Restore: body is {target!r}, and should have the structure of {self._body!r}")
+        if self._restorers and _structure(target) != self._structure:
+            saved = "{} links and {} DOFs".format(*self._structure)
+            raise ArgumentError(f"Restore: {target!r} should have {saved}, as {self._body!r} had when it was saved")
         with target.GetEnv().simulation.lock:
             for restore in self._restorers:
                 restore(target)

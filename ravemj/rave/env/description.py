@@ -10,6 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from ravemj.core.arguments import checked_kind
+from ravemj.core.arrays import checked_numbers
 from ravemj.errors import ArgumentError, UnsupportedError
 from ravemj.model import scene
 from ravemj.model.shape_bodies import FROM_SCRIPT
@@ -127,7 +128,7 @@ class Description(Simulating):
         """
         unit = GetLengthUnitFromString(unitname, LengthUnit.m)
         metres = GetLengthUnitConversionScale(unit, LengthUnit.m)
-        if not isinstance(unitmult, int | float) or not np.isclose(unitmult, metres):  # as users give it
+        if not np.isclose(checked_numbers(unitmult, "SetUnit: unitmult"), metres):
             raise ArgumentError(f"SetUnit: unitmult is {unitmult}, and '{unitname}' is {metres:g} m long")
         self._units.lengthUnit = unit
 

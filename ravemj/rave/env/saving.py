@@ -54,7 +54,7 @@ _NO_EFFECT = {
 }
 """OpenRAVE's options that change nothing about what is read again."""
 
-_FILE_TYPES = {"collada": ".dae", "json": ".json", "msgpack": ".msgpack"}
+_FILE_TYPES = {"collada": ".dae", "json": ".json"}
 
 _VALUES = {"skipwrite": tuple(_PARTS), "format": ("collada", "openrave", "json"), "meshes": ("stl", "obj")}
 
@@ -118,7 +118,7 @@ class Saving(JsonFiles):
             return
         kind = cast("ModelFormat", named.get("format", "collada"))
         if self._metre != 1 and kind == "collada":
-            raise UnsupportedError("Save", "COLLADA files of environments in other units than metres; JSON has a unit")
+            raise UnsupportedError("Save", "COLLADA files in other units than the metre")
         bodies = [replace(one, grabs=tuple(grab for grab in one.grabs if grab.body in names)) for one in bodies]
         diagnostics = Diagnostics()
         references = _external_names(given, names) if kind == "collada" else set[str]()
