@@ -44,6 +44,8 @@ _LOG = logging.getLogger("ravemj")
 class Loading(JsonFiles):
     """Loads models."""
 
+    _internal = ("add_file",)
+
     def Load(self, filename: Text, atts: Attributes | None = None) -> bool:
         """Add the content of a model file to the environment.
 
