@@ -14,7 +14,7 @@ PHONE = {"viewport": {"width": 360, "height": 600}, "device_scale_factor": 2, "i
 
 
 def main(folder: Path) -> None:
-    """Select a joint on a desk and then the robot on a phone, with a picture of each."""
+    """Select a joint on a desk, the robot on a phone and a joint in the tree, with a picture of each."""
     env = ravemj.load("models/env.xml")
     viewer, robot = env.serve_viewer(), env.GetRobots()[0]
     viewer.SetBkgndColor([0.8, 0.85, 0.9])
@@ -32,7 +32,26 @@ def main(folder: Path) -> None:
         phone, at = opened(browser, viewer, PHONE)
         phone.touchscreen.tap(*at)
         take(phone, folder / "web-phone.png")
+        env.Destroy()
+        take_tree(browser, folder / "web-tree.png")
         browser.close()
+
+
+def take_tree(browser: Browser, path: Path) -> None:
+    """Select a joint of an arm in the tree, and take a picture."""
+    env = ravemj.load("models/panda.xml")
+    viewer = env.serve_viewer()
+    viewer.SetBkgndColor([0.8, 0.85, 0.9])
+    eye, middle = [1.5, -0.9, 0.8], [0.05, 0.35, 0.45]
+    viewer.SetCamera(ravemj.transformLookat(lookat=middle, camerapos=eye, cameraup=[0, 0, -1]), 1.9)
+    env.GetRobots()[0].SetDOFValues([0.2, -0.6, 0.1, -2.0, 0.0, 1.5, 0.8], range(7))
+    page = browser.new_context(viewport={"width": 960, "height": 640}).new_page()
+    page.goto(viewer.url)
+    page.wait_for_selector("[data-crisp=true]")
+    page.get_by_role("button", name="Interaction mode").click()
+    page.keyboard.press("b")
+    page.get_by_role("treeitem").nth(8).click()
+    take(page, path)
     env.Destroy()
 
 

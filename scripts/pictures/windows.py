@@ -9,7 +9,7 @@ from pathlib import Path
 from PIL import ImageGrab
 
 import ravemj
-from ravemj.gui.interaction import Key, Leave, Operate, Press, Release
+from ravemj.gui.interaction import Button, Key, Leave, Move, Operate, Press, Release
 from ravemj.gui.viewers import Viewer
 
 SIZE = 640, 480
@@ -52,6 +52,72 @@ def take(folder: Path) -> None:
     viewer.playback.seek(1.2)
     grab(viewer, folder / "window-playback.png")
     env.Destroy()
+    take_forces(folder / "window-forces.png")
+    take_branches(folder / "window-branches.png")
+
+
+BOXES = """<Environment>
+<KinBody name="floor"><Body type="static"><Geom type="box"><translation>0 0 -0.02</translation>
+<extents>0.6 0.6 0.02</extents><diffuseColor>0.75 0.72 0.66</diffuseColor></Geom></Body></KinBody>
+{}</Environment>"""
+BOX = """<KinBody name="box{0}"><translation>{1}</translation><Body type="dynamic">
+<Geom type="box"><extents>0.08 0.08 0.08</extents><diffuseColor>{2}</diffuseColor></Geom>
+<mass type="custom"><total>1</total><inertia>0.004 0 0 0 0.004 0 0 0 0.004</inertia></mass></Body></KinBody>"""
+
+
+def take_forces(file: Path) -> None:
+    """Pull one of three boxes while physics runs, and take a picture."""
+    env = ravemj.Environment()
+    places = (("0 -0.2 0.08", "0.2 0.4 0.7"), ("0 0.15 0.08", "0.3 0.6 0.35"), ("0.02 0.17 0.24", "0.8 0.45 0.2"))
+    env.LoadData(BOXES.format("".join(BOX.format(number, *box) for number, box in enumerate(places))))
+    env.StopSimulation()
+    env.SetPhysicsEngine("mujoco")
+    env.GetPhysicsEngine().SetGravity([0, 0, -9.8])
+    viewer = opened(env, [1.3, 0.5, 0.75], [0, 0, 0.12])
+    for _ in range(100):
+        env.StepSimulation(0.01)
+    ((x, y),), _ = viewer.camera.project([[0.08, -0.2, 0.1]], *SIZE)
+    for event in (Key("c"), Press(x, y, Button.RIGHT), Move(x - 10, y - 110)):
+        viewer.interaction.handle(event)
+    for _ in range(100):
+        env.StepSimulation(0.01)
+    grab(viewer, file)
+    env.Destroy()
+
+
+def take_branches(file: Path) -> None:
+    """Pull the flange of an arm, and take a picture of its other configurations."""
+    env = ravemj.load("models/puma560.xml")
+    robot = env.GetRobots()[0]
+    robot.SetDOFValues([0.1, -0.5, -1.2, 0.3, 0.6, 0.2])
+    viewer = opened(env, [2.2, 1.4, 1.0], [0.35, 0.05, 0.45])
+    ((x, y),), _ = viewer.camera.project([robot.GetLinks()[6].GetTransform()[:3, 3]], *SIZE)
+    x, y = next((x + i, y + j) for i in range(-20, 21) for j in range(-20, 21) if link_at(viewer, x + i, y + j) == 6)
+    for event in (Key("escape"), Press(x, y, ctrl=True, shift=True), Move(x + 10, y - 10), Move(x + 20, y - 15)):
+        viewer.interaction.handle(event)
+    grab(viewer, file)
+    env.Destroy()
+
+
+def link_at(viewer: Viewer, x: float, y: float) -> int | None:
+    """Return the index of the link that is seen at a point of the window."""
+    viewer.interaction.handle(Move(x, y))
+    hit = viewer.interaction.hover
+    return None if hit is None else hit.link
+
+
+def opened(env: ravemj.Environment, eye: list[float], middle: list[float]) -> Viewer:
+    """Open a window that looks from a point to another one."""
+    env.SetViewer("window")
+    viewer = env.GetViewer()
+    viewer.SetSize(*SIZE)
+    viewer.Move(0, 0)
+    viewer.SetBkgndColor([0.8, 0.85, 0.9])
+    viewer.SetCamera(ravemj.transformLookat(lookat=middle, camerapos=eye, cameraup=[0, 0, -1]))
+    while viewer.interaction.view.size != SIZE:
+        time.sleep(0.05)
+    time.sleep(0.5)  # until the window has told where the pointer is
+    return viewer
 
 
 def grab(viewer: Viewer, file: Path) -> None:

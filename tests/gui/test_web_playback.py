@@ -130,7 +130,7 @@ def test_everything_can_be_reached_and_done_by_keys(desk):
     desk.page.keyboard.press("Space")
     await_that(lambda: not playback.playing, "the space bar does not pause")
     names = []
-    for _ in range(17):
+    for _ in range(19):
         desk.page.keyboard.press("Tab")
         names.append(desk.page.evaluate("document.activeElement.dataset.name || document.activeElement.type"))
         if names[-1] == "play":
@@ -153,7 +153,9 @@ def test_everything_can_be_reached_and_done_by_keys(desk):
         "camera",
         "view",
         "display",
+        "tree",
         "help",
+        "pull",
         "joints",
     ]
     assert [name for name in names if name in wanted] == wanted

@@ -17,8 +17,8 @@ _LEFT, _RIGHT = 212.0, 62.0
 """What the wheels and their labels take of the bottom row."""
 
 _COLUMN_TOP, _COLUMN_WIDTH, _COLUMN_HEIGHT = 104.0, 44.0, 22.0
-_WHEEL = 150.0
-"""What the wheel and the row below it take at the right."""
+_WHEEL = 180.0
+"""What the wheel, its label and the row below it take at the right."""
 
 _BAR, _ICON = 26.0, 28.0
 _CLOCK, _SPEED, _PASSED = 110.0, 44.0, 130.0

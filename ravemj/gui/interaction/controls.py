@@ -124,7 +124,7 @@ class Controls:
             *(Control(name, label, text, is_on=self.unfolded == name) for name, (text, label, _) in MENUS.items()),
         ]
         if body is not None:
-            label = "Pull: in interaction mode, drag links, and the joints above them come along"
+            label = "Pull links: a drag on one takes the joints above it along (P)"
             controls.append(Control("pull", label, "Pull", is_on=self.pulls))
             label = f"DOFs of {body.scene.name}: a slider for each"
             controls.append(Control("joints", label, "DOFs", is_on=self.unfolded == "joints"))

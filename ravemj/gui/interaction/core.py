@@ -144,7 +144,7 @@ class Interaction:
         """Select something, or nothing, without asking anybody."""
         with self._simulation.lock:
             self._selector.selection = selection
-            self._changes += 1
+            self._selector.changes += 1  # all views show it
 
     @property
     def hover(self) -> Hit | None:

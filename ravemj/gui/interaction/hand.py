@@ -341,11 +341,12 @@ class Hand:
         hit = pick(self._simulation, self.view.ray(press.x, press.y))
         if hit is None:
             return None
-        if self._simulation.physics is None:
+        physics = self._simulation.physics
+        if physics is None:
             self._controls.notices.say(WITHOUT_PHYSICS)
             return None
         from ravemj.gui.interaction.pulling import Pulling  # noqa: PLC0415 - slow to import
 
-        self._pulling = Pulling(self._simulation, hit)
+        self._pulling = Pulling(physics, hit)
         follow = self._pulling.follow(self.view.camera.rotation[:, 2])
         return lambda x, y: follow(self.view.ray(x, y))

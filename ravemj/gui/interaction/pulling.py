@@ -3,8 +3,7 @@
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.engine.physics import Spring
-from ravemj.engine.simulation import Simulation
+from ravemj.engine.physics import Physics, Spring
 from ravemj.gui.interaction.dragging import Follow, in_plane
 from ravemj.gui.interaction.picking import Hit
 from ravemj.gui.interaction.viewpoint import Ray
@@ -20,15 +19,14 @@ _RADIUS = 0.008
 class Pulling:
     """Hangs a link on a spring whose other end the pointer has; ``end`` takes it away."""
 
-    def __init__(self, simulation: Simulation, hit: Hit) -> None:
+    def __init__(self, physics: Physics, hit: Hit) -> None:
         """Take hold of a point of a link that physics moves."""
         T_world_link = hit.body.link_transform(hit.link)
         point = (hit.position - T_world_link[:3, 3]) @ T_world_link[:3, :3]
         self._spring = Spring(hit.body, hit.link, point, hit.position)
         self._radius = _RADIUS * hit.distance
-        self._physics = simulation.physics
-        if self._physics is not None:
-            self._physics.spring = self._spring
+        self._physics = physics
+        physics.spring = self._spring
 
     def follow(self, normal: Floats) -> Follow:
         """Return what leads the spring in the plane with some normal, unit vector, shape (3,)."""
@@ -43,7 +41,7 @@ class Pulling:
 
     def end(self) -> None:
         """Let go; the simulation need not be locked."""
-        if self._physics is not None and self._physics.spring is self._spring:
+        if self._physics.spring is self._spring:  # else another view pulls by now
             self._physics.spring = None
 
     def primitives(self) -> Primitives:

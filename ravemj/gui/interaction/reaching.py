@@ -26,8 +26,8 @@ _SWEEP = 0.08
 _SAME = 0.05
 """Configurations whose joints all differ by less [rad or m] are the same to the eye."""
 
-_GHOST = np.array([0.35, 0.45, 0.75, 0.55])
-_WIDTH = 4.0
+_GHOST = np.array([0.3, 0.4, 0.75, 0.75])
+_WIDTH = 6.0
 
 
 class Reach:

@@ -40,7 +40,7 @@ DISPLAY = (
     Shortcut("frames", ("l",), "Link frames", "show the frames of the links: x red, y green, z blue"),
     Shortcut("axes", ("j",), "Joint axes", "show the axes of the joints, and the range between their limits"),
     Shortcut("masses", ("i", "m"), "Masses", "show centres of mass, and inertia as ellipsoids of even density"),
-    Shortcut("contacts", ("c",), "Contacts", "show points where shapes touch, and with physics the forces there"),
+    Shortcut("contacts", ("c",), "Contacts", "show where shapes touch; with physics, the forces there"),
     Shortcut("transparent", ("t",), "Transparent", "look through the bodies"),
     Shortcut("wireframe", ("w",), "Wireframe", "show edges only"),
     Shortcut("names", ("n",), "Names", "show the names of the links"),
@@ -50,13 +50,13 @@ DISPLAY = (
 OTHERS = (
     Shortcut("help", ("f1", "h", "?"), "?", "show this help, or hide it"),
     Shortcut("tree", ("b",), "", "show the tree of bodies, links and joints, or hide it"),
-    Shortcut("pull", ("p",), "", "let a left drag on a link pull the joints above it, or the cube again"),
+    Shortcut("pull", ("p",), "", "pull links with left drags, or move bodies again"),
     Shortcut("reload", ("r",), "", "read the model again (in ravemj view)"),
-    Shortcut("play", (" ",), "", "play a motion, or pause it; without one, let simulation time pass, or stop it"),
+    Shortcut("play", (" ",), "", "play or pause a motion; without one, simulation time"),
     Shortcut("back", ("arrowleft",), "", "one frame of a motion back"),
-    Shortcut("forward", ("arrowright",), "", "one frame of a motion forward; without one, one step of simulation time"),
-    Shortcut("slower", ("-",), "", "play the motion slower; without one, let simulation time pass slower"),
-    Shortcut("faster", ("+", "="), "", "play the motion faster; without one, let simulation time pass faster"),
+    Shortcut("forward", ("arrowright",), "", "one frame of a motion forward; without one, a step of time"),
+    Shortcut("slower", ("-",), "", "play a motion slower; without one, simulation time"),
+    Shortcut("faster", ("+", "="), "", "play a motion faster; without one, simulation time"),
 )
 """What has a key, and is in no menu."""
 

@@ -21,6 +21,7 @@ class GlfwWindow:
 
     Attributes:
         events: What people did since the list was last emptied.
+        dropped: Paths of files that people dropped on it since the list was last emptied.
         size: Width and height, in units of the screen.
         pixels: Width and height of what is drawn [pixels]; 0 while it is minimised.
         pixel_ratio: How many pixels a point has: 1, or more on screens with small pixels.
@@ -35,6 +36,7 @@ class GlfwWindow:
         """
         self._glfw = glfw = _import_glfw()
         self.events: list[Event] = []
+        self.dropped: list[str] = []
         self.is_lost = True
         self._pointer = 0.0, 0.0
         self._cursor = ""
@@ -68,6 +70,7 @@ class GlfwWindow:
         glfw.set_key_callback(window, self._on_key)
         glfw.set_char_callback(window, self._on_letter)
         glfw.set_window_focus_callback(window, self._on_focus)
+        glfw.set_drop_callback(window, self._on_drop)
         self._buttons = {
             glfw.MOUSE_BUTTON_LEFT: Button.LEFT,
             glfw.MOUSE_BUTTON_MIDDLE: Button.MIDDLE,
@@ -151,6 +154,10 @@ class GlfwWindow:
         del window
         if not focused:
             self.events.append(Leave())
+
+    def _on_drop(self, window: object, paths: list[str]) -> None:
+        del window
+        self.dropped += paths
 
     # --- what it is
 

@@ -16,6 +16,7 @@ from ravemj.engine.simulation import Simulation
 from ravemj.errors import ArgumentError, RavemjError, RenderingError
 from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.gui.interaction import Request, Resize
+from ravemj.gui.viewers.dropping import add_files
 from ravemj.gui.viewers.glfw_window import GlfwWindow
 from ravemj.gui.viewers.player import camera_line
 from ravemj.gui.viewers.recorder import FrameSource
@@ -186,8 +187,7 @@ class WindowViewer(Viewer):
             waiting = []
         if is_changed or painter.is_due(now):
             self._draw(window, painter, now)
-        for request in self.interaction.controls.take_requests():
-            self._grant(request, window)
+        self._serve(window)
         for drawn in waiting:
             drawn.set()
         return True
@@ -235,6 +235,14 @@ class WindowViewer(Viewer):
         painter.draw_overlay(surface)
         window.set_cursor(painter.cursor)
         window.swap()
+
+    def _serve(self, window: GlfwWindow) -> None:
+        """Do what buttons asked for, and add files that were dropped."""
+        for request in self.interaction.controls.take_requests():
+            self._grant(request, window)
+        if window.dropped:
+            add_files(self.GetEnv(), window.dropped, self.interaction.controls.notices)
+            window.dropped = []
 
     def _grant(self, request: Request, window: GlfwWindow) -> None:
         """Do what a button asked for that needs the window."""

@@ -44,6 +44,8 @@ _LOG = logging.getLogger("ravemj")
 class Loading(JsonFiles):
     """Loads models."""
 
+    _internal = ("add_file",)
+
     def Load(self, filename: Text, atts: Attributes | None = None) -> bool:
         """Add the content of a model file to the environment.
 
@@ -83,6 +85,30 @@ class Loading(JsonFiles):
             return False
 
     LoadURI = Load
+
+    def add_file(self, path: str) -> str:
+        """Add a file that people chose, all of it or nothing; bodies get other names where theirs are taken.
+
+        Args:
+            path: The file, one that ``Load`` reads.
+
+        Returns:
+            What is wrong with it, with file and line; empty where it is in the environment now.
+        """
+        try:
+            if is_json(path):
+                self._load_json(path)
+                return ""
+            reading = _read_file(path, {})
+            broken = [finding for finding in reading.diagnostics if finding.severity == "error"]
+            if reading.failure is not None or broken:
+                return str(reading.failure or broken[0])
+            if not reading.scene.bodies:
+                return f"{path}: there is no body in it"
+            self._add(replace(reading, renames=True))
+        except RavemjError as error:
+            return str(error)
+        return ""
 
     def _try_json(self, path: str, given: Attributes) -> bool:
         _warn_of_attributes(path, given)

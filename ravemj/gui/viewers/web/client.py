@@ -13,12 +13,13 @@ from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
 from ravemj.graphics.simulation_renderer import Format, Frame, SimulationRenderer
 from ravemj.gui.interaction import Event, Interaction, Leave, Move, Overlay
+from ravemj.gui.viewers.dropping import Upload
 from ravemj.gui.viewers.recorder import free_path
 from ravemj.gui.viewers.sharpness import CRISP, REST, Level, Sharpness
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE
 from ravemj.gui.viewers.web import encoding
 from ravemj.gui.viewers.web.frame_pacing import Link
-from ravemj.gui.viewers.web.messages import Message, Ready, Shape, parse
+from ravemj.gui.viewers.web.messages import Message, Piece, Ready, Shape, parse
 from ravemj.gui.viewers.web.rejections import Rejections
 from ravemj.gui.viewers.window_renderer import appearance
 
@@ -73,6 +74,7 @@ class Client:
 
     Attributes:
         interaction: The mouse and the keys of the page, and its view.
+        complete_uploads: Files that were dropped on the page, which are to be added.
         looks: How often it was found, or seen to, that the page was sent how everything is.
     """
 
@@ -94,6 +96,8 @@ class Client:
         self._seen_view: object = None
         self._says_locked = False
         self._complaint = ""
+        self._upload: Upload | None = None
+        self.complete_uploads: list[Upload] = []
         self._changed_at = 0.0
         self._is_crisp = True
 
@@ -118,9 +122,21 @@ class Client:
             if isinstance(message, Ready):
                 self._link.shown()
                 continue
+            if isinstance(message, Piece):
+                self._take_piece(message)
+                continue
             if isinstance(message, Move) and self._waiting and isinstance(self._waiting[-1], Move):
                 self._waiting.pop()  # only where the pointer is now counts
             self._waiting.append(message)
+
+    def _take_piece(self, piece: Piece) -> None:
+        upload = self._upload = self._upload or Upload()
+        if not upload.take(piece.name, piece.data):
+            self.interaction.controls.notices.say("The files that were dropped are too large")
+            self._upload = None
+        elif piece.is_last:
+            self.complete_uploads.append(upload)
+            self._upload = None
 
     def attend(self, connection: Connection, style: PageStyle) -> Frame | None:
         """Do what the page said, and send it a picture if it takes one and anything has changed or come to rest.
@@ -174,7 +190,7 @@ class Client:
         for message in self._waiting:
             if isinstance(message, Shape):
                 self._ratio = message.ratio
-            if not isinstance(message, Ready):
+            if not isinstance(message, Ready | Piece):
                 events.append(message.resize if isinstance(message, Shape) else message)
         before = self.interaction.view.camera
         self._waiting = deque(self.interaction.steer(events))
@@ -218,7 +234,7 @@ class Client:
         if isinstance(message, Shape):
             self._ratio = message.ratio
             self.interaction.handle(message.resize)
-        elif not isinstance(message, Ready):
+        elif not isinstance(message, Ready | Piece):
             self.interaction.handle(message)
 
     def _picture(self, overlay: Overlay, style: PageStyle, level: Level = CRISP) -> Frame:

@@ -1,7 +1,9 @@
 """What pages send: JSON objects of a few known kinds, checked before they count."""
 
+import base64
 import json
 import math
+import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -28,6 +30,8 @@ _FARTHEST = 100_000.0
 _LARGEST = 8192
 _LONGEST_KEY = 20
 _MOST_BRACKETS = 8
+_FILE = re.compile(r"[\w(][\w() .+-]{0,99}")
+"""Names of files that a page may send; none of them leads to another folder."""
 
 
 class Shape(NamedTuple):
@@ -46,7 +50,21 @@ class Ready(NamedTuple):
     """The page has shown the last picture and takes another."""
 
 
-Message = Event | Shape | Ready
+class Piece(NamedTuple):
+    """A piece of a file that was dropped on the page.
+
+    Attributes:
+        name: The file's name, without a folder.
+        data: What comes next in it.
+        is_last: Whether all files of the drop are complete.
+    """
+
+    name: str
+    data: bytes
+    is_last: bool
+
+
+Message = Event | Shape | Ready | Piece
 
 
 def parse(text: str | bytes) -> Message:
@@ -136,6 +154,13 @@ def _shape(fields: dict[str, Any]) -> Shape:
     return Shape(Resize(round(width), round(height)), ratio)
 
 
+def _piece(fields: dict[str, Any]) -> Piece:
+    name, data = fields["name"], fields["data"]
+    if not isinstance(name, str) or not _FILE.fullmatch(name) or not isinstance(data, str):
+        raise ValueError("there are no such files")
+    return Piece(name, base64.b64decode(data, validate=True), _flag(fields["last"]))
+
+
 _BUTTONS: dict[object, Button] = {button.value: button for button in Button}
 _TOOLS: dict[object, Tool] = {tool.value: tool for tool in Tool}
 _PARSERS: dict[str, Callable[[dict[str, Any]], Message]] = {
@@ -149,5 +174,6 @@ _PARSERS: dict[str, Callable[[dict[str, Any]], Message]] = {
     "key": _key,
     "leave": lambda fields: Leave(),
     "shape": _shape,
+    "piece": _piece,
     "ready": lambda fields: Ready(),
 }

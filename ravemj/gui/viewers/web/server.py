@@ -31,6 +31,7 @@ _FILES = {
     "page.js": "text/javascript",
     "controls.css": "text/css",
     "controls.js": "text/javascript",
+    "drop.js": "text/javascript",
     "tree.css": "text/css",
     "tree.js": "text/javascript",
 }

@@ -161,6 +161,8 @@ class WebViewer(Viewer):
             self._image_callbacks.call(picture)
         for request in client.interaction.controls.take_requests():
             self._grant(request, client, connection, style)
+        while client.complete_uploads:
+            client.complete_uploads.pop(0).add_to(self.GetEnv(), client.interaction.controls.notices)
         return not client.is_behind
 
     def _grant(self, request: Request, client: Client, connection: ServerConnection, style: PageStyle) -> None:

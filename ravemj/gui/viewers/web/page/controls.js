@@ -82,7 +82,7 @@ function makeSlider(name) {
 function update(made, control) {
   if (made.input) {
     const { input, title, output } = made;
-    if (title.textContent !== control.label) title.textContent = title.title = control.label;
+    if (title.textContent !== control.label) title.textContent = control.label;
     [input.min, input.max] = [control.lower, control.upper];
     const isHeld = input.matches(":active") || performance.now() - made.touched < QUIET;
     if (!isHeld) input.value = control.value;
@@ -91,7 +91,9 @@ function update(made, control) {
     else {
       input.setAttribute("aria-label", control.label);
       output.setAttribute("aria-label", `${control.label}, value`);
-      output.dataset.unit = control.text.split(" ").pop();
+      const unit = output.dataset.unit = control.text.split(" ").pop();
+      const [low, high] = [control.lower, control.upper].map((end) => (unit === "deg" ? 180 / Math.PI : 1) * end);
+      title.title = `${control.label}: ${low.toFixed(2)} to ${high.toFixed(2)} ${unit}`;
       if (document.activeElement !== output) output.value = control.text;
     }
     return;

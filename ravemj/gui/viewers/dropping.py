@@ -1,0 +1,79 @@
+"""Files that people drop on a window or a page: they are added to the environment."""
+
+import logging
+import os
+import shutil
+import tempfile
+import threading
+import weakref
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ravemj.gui.interaction import Notices
+
+_LOG = logging.getLogger("ravemj")
+
+_MODELS = {".xml", ".dae", ".zae", ".json"}
+_SHOWN = 20.0
+"""How long it is said what is wrong with a file [s]."""
+
+
+def add_files(env: Any, paths: Sequence[str], notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
+    """Add files to an environment, in a thread of its own: reading may take long, and others may have the lock.
+
+    Args:
+        env: The environment, or None where it is gone.
+        paths: The files. Where models are among them, meshes and pictures beside these are what they refer to.
+        notices: Where it is said what was added, and what is wrong with a file.
+    """
+    threading.Thread(target=_add, args=(env, list(paths), notices), name="ravemj drop", daemon=True).start()
+
+
+def _add(env: Any, paths: list[str], notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
+    if env is None:
+        return
+    models = [path for path in paths if Path(path).suffix.lower() in _MODELS]
+    for path in models or paths:
+        try:
+            trouble = env.add_file(path)
+        except Exception as error:
+            _LOG.exception("a file that was dropped cannot be added")
+            trouble = f"{path}: {error}"
+        if trouble:
+            notices.say(trouble, _SHOWN)
+        else:
+            notices.say(f"Added {os.path.basename(path)}")
+
+
+class Upload:
+    """Files that come from a page in pieces, into a folder of their own that goes with this."""
+
+    _LARGEST = 64 * 2**20
+
+    def __init__(self) -> None:
+        self._folder = tempfile.mkdtemp(prefix="ravemj-")
+        self._remove = weakref.finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
+        self._size = 0
+        self.paths: list[str] = []
+
+    def take(self, name: str, piece: bytes) -> bool:
+        """Write a piece of a file to its end; return False where there is too much of it all."""
+        self._size += len(piece)
+        if self._size > self._LARGEST:
+            return False
+        path = os.path.join(self._folder, name)
+        if path not in self.paths:
+            self.paths.append(path)
+        with open(path, "ab") as file:
+            file.write(piece)
+        return True
+
+    def add_to(self, env: Any, notices: Notices) -> None:  # noqa: ANN401 - the API stands above viewers
+        """Add the files to an environment, unless that is gone, and remove them then."""
+
+        def add() -> None:
+            _add(env, self.paths, notices)
+            self._remove()
+
+        threading.Thread(target=add, name="ravemj drop", daemon=True).start()

@@ -1,0 +1,88 @@
+"""Files that are dropped on a viewer are added to the environment; errors are shown in the view."""
+
+import base64
+import json
+import os
+
+import pytest
+from conftest import MODELS
+from waiting import await_that
+
+from ravemj.gui.interaction import Notices
+from ravemj.gui.viewers.dropping import Upload, add_files
+from ravemj.gui.viewers.web.messages import parse
+
+MUG = '<KinBody name="mug"><Body><Geom type="trimesh"><data>mug.stl</data></Geom></Body></KinBody>'
+STL = b"""solid
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 1 0 0
+vertex 0 1 0
+endloop
+endfacet
+endsolid
+"""
+
+
+@pytest.fixture
+def notices():
+    return Notices()
+
+
+def said(notices, words):
+    await_that(lambda: any(words in line for line in notices.lines), f"it does not say: {words}")
+
+
+def test_a_file_is_added_and_again_under_another_name(env, notices):
+    for count in (2, 3):
+        add_files(env, [str(MODELS / "env.xml")], notices)
+        await_that(lambda count=count: len(env.GetBodies()) == count, "it is not added")
+    said(notices, "Added env.xml")
+    assert len({body.GetName() for body in env.GetBodies()}) == 3
+
+
+def test_a_broken_file_changes_nothing_and_the_view_says_where(env, notices, tmp_path):
+    path = tmp_path / "bad.xml"
+    path.write_text('<Environment><KinBody name="a"><Body/></KinBody>\n<KinBody name="b"></Body>')
+    add_files(env, [str(path)], notices)
+    said(notices, "bad.xml:2")
+    assert len(env.GetBodies()) == 1
+    add_files(env, [str(tmp_path / "none.xml")], notices)
+    said(notices, "none.xml")
+    add_files(None, [str(path)], notices)  # a viewer whose environment is gone
+
+
+def piece(name, data, last=False):
+    return parse(json.dumps({"type": "piece", "name": name, "data": base64.b64encode(data).decode(), "last": last}))
+
+
+def test_a_page_sends_a_model_with_its_meshes_in_pieces(env, notices):
+    upload = Upload()
+    for name, content in (("mug.stl", STL), ("mug.kinbody.xml", MUG.encode())):
+        for start in range(0, len(content), 50):
+            message = piece(name, content[start : start + 50])
+            assert upload.take(message.name, message.data)
+    folder = upload.paths[0].rpartition("/")[0]
+    upload.add_to(env, notices)
+    said(notices, "Added mug.kinbody.xml")
+    assert env.GetKinBody("mug").GetLinks()[0].GetGeometries()[0].GetCollisionMesh().indices.shape == (1, 3)
+    await_that(lambda: not os.path.exists(folder), "the files stay")
+
+
+def test_an_upload_has_an_end(monkeypatch):
+    monkeypatch.setattr(Upload, "_LARGEST", 10)
+    upload = Upload()
+    assert upload.take("a", b"12345")
+    assert not upload.take("a", b"123456")
+
+
+@pytest.mark.parametrize("name", ["", "../a.xml", "a/b.xml", ".bashrc", "a\\b", "a\x00", "x" * 101, 7, None])
+def test_names_lead_to_no_other_folder(name):
+    with pytest.raises(ValueError, match="there are no such files"):
+        parse(json.dumps({"type": "piece", "name": name, "data": "", "last": False}))
+
+
+def test_pieces_are_base64():
+    with pytest.raises(ValueError, match="ASCII"):
+        parse(json.dumps({"type": "piece", "name": "a.xml", "data": "§", "last": False}))
