@@ -46,7 +46,17 @@ class Ready(NamedTuple):
     """The page has shown the last picture and takes another."""
 
 
-Message = Event | Shape | Ready
+class Draws(NamedTuple):
+    """The page says who draws.
+
+    Attributes:
+        itself: Whether it draws by itself; False: it shows pictures.
+    """
+
+    itself: bool
+
+
+Message = Event | Shape | Ready | Draws
 
 
 def parse(text: str | bytes) -> Message:
@@ -150,4 +160,5 @@ _PARSERS: dict[str, Callable[[dict[str, Any]], Message]] = {
     "leave": lambda fields: Leave(),
     "shape": _shape,
     "ready": lambda fields: Ready(),
+    "draws": lambda fields: Draws(_flag(fields["itself"])),
 }

@@ -6,12 +6,16 @@ const FIRST_WAIT = 300, LONGEST_WAIT = 4000, LONG_PRESS = 550, FAR = 4, GOING_AW
 
 // --- the connection
 
-let socket = null, overlay = null, wait = FIRST_WAIT, retry = 0, owed = 0;
+let socket = null, overlay = {}, wait = FIRST_WAIT, retry = 0, owed = 0, said = 0;
 
 const tab = sessionStorage.ravemj ||= crypto.getRandomValues(new Uint32Array(3)).join("-");
 
 function send(message) {
-  if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+  if (!socket || socket.readyState !== WebSocket.OPEN) return;
+  socket.send(JSON.stringify(message));
+  if (message.type === "ready") return;
+  said += 1;
+  if (drawing && drawing.foresee(message, said, overlay.mode, view.clientHeight)) requestDrawing();
 }
 
 function connect() {
@@ -21,14 +25,14 @@ function connect() {
   opened.onopen = () => {
     wait = FIRST_WAIT;
     tell("");
+    [overlay, said] = [{}, 0];
+    if (drawing) drawing.begin();
     shape();
+    send({ type: "draws", itself: drawing !== null });
     ready();
   };
-  opened.onmessage = (event) => {
-    if (typeof event.data !== "string") return show(event.data, overlay, opened);
-    const said = JSON.parse(event.data);
-    if (said.task) doTask(said);
-    else overlay = said;
+  opened.onmessage = ({ data }) => {  // one after the other: some take time
+    order = order.then(() => (opened === socket ? take(data, opened) : null)).catch(() => opened.close());
   };
   opened.onclose = (event) => {
     if (event.code === GOING_AWAY) {
@@ -59,6 +63,52 @@ window.addEventListener("online", () => {
   if (socket.readyState === WebSocket.CLOSED) connect();
 });
 
+async function take(data, from) {
+  if (typeof data === "string") {
+    const news = JSON.parse(data);
+    if (news.task) return doTask(news);
+    overlay = { ...overlay, ...news };
+    isNews = true;
+    if (drawing && news.scene) await drawing.load(news.scene);
+  } else if (new Uint8Array(data)[0] > LAST_KIND) {
+    show(data, overlay, from);
+  } else if (!drawing || await drawing.take(data)) {
+    unanswered += 1;
+    requestDrawing();
+  }
+}
+
+// --- drawing here, where there is WebGL
+
+let drawing = null, order = Promise.resolve(), isNews = false, unanswered = 0, requested = 0;
+
+function requestDrawing() {
+  requested ||= requestAnimationFrame(() => {
+    requested = 0;
+    draw();
+    for (; unanswered > 0; unanswered -= 1) ready();
+  });
+}
+
+function draw() {
+  if (!drawing || !drawing.view) return;
+  drawing.renderer.background = overlay.background;
+  drawing.renderer.hasEdgesOnly = overlay.edges;
+  drawing.draw(paint);
+  const places = overlay.labels.map(([x, y, z, words]) => [
+    ...(drawing.view.projected([x, y, z], view.clientWidth, view.clientHeight) || [-1e4, 0]), words]);
+  label(places);
+  if (isNews) write(overlay);
+  isNews = false;
+}
+
+function takePictures(why) {
+  const source = document.getElementById("source");
+  [source.hidden, source.title] = [false, why];
+  drawing = null;
+  send({ type: "draws", itself: false });
+}
+
 // --- pictures and text
 
 let received = 0, newest = 0;
@@ -71,6 +121,7 @@ async function show(data, over, from) {
       newest = number;
       paint.drawImage(picture, 0, 0, view.width, view.height);
       write(over);
+      label(over.labels);
     }
     picture.close();
   } finally {
@@ -85,7 +136,6 @@ function write(over) {
   view.style.cursor = pressed && over.cursor === "grab" ? "" : over.cursor;
   showControls(over.controls);
   showHelp(over.help);
-  label(over.labels);
   document.title = over.title;
   Object.assign(document.body.dataset, { mode: over.mode, crisp: over.crisp });
   for (const button of document.querySelectorAll("#modes button")) {
@@ -117,6 +167,7 @@ function shape() {
     kept.getContext("2d").drawImage(view, 0, 0);
     [view.width, view.height] = [columns, rows];
     paint.drawImage(kept, 0, 0, columns, rows);
+    requestDrawing();
   }
   send({ type: "shape", width, height, ratio });
 }
@@ -302,4 +353,10 @@ class Wheel {
 }
 
 for (const element of document.querySelectorAll("[role=slider]")) new Wheel(element);
+try {
+  if (new URLSearchParams(location.search).has("pictures")) throw new Error("the address asks for pictures");
+  drawing = new Drawing(() => takePictures("WebGL has stopped"));
+} catch (error) {
+  takePictures(error.message);
+}
 connect();
