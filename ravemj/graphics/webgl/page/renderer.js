@@ -85,7 +85,8 @@ void main() {
   vec2 aside = vec2(-along.y, along.x) * corner.y;
   vec4 p = corner.x < 0.0 ? a : b;
   vec2 beyond = isPoint ? along * corner.x : vec2(0.0);
-  gl_Position = p + vec4((aside + beyond) * max(width, 1.0) / size * p.w, 0.0, 0.0);
+  float nearer = 2e-6 * max(width, 1.0);  // wide lines cover narrow ones in the same place
+  gl_Position = p + vec4((aside + beyond) * max(width, 1.0) / size * p.w, -nearer * p.w, 0.0);
   color = rgba;
 }`;
 

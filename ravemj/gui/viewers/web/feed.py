@@ -1,19 +1,20 @@
 """What a page that draws by itself is sent: only what has changed.
 
-Texts are JSON objects with the fields that are new. Binary messages begin with a number of 32 bits, their kind:
+Texts are JSON objects with the fields that are new; ``changed`` holds controls that take the place of those of the same
+names. Binary messages begin with a number of 32 bits, their kind:
 
 - ``FRAME``: the page draws all that came since the last one. Then, little endian: how many messages of the page have
   been acted on, how many bodies and how many shapes follow, and whether a camera does (32 bits each); the camera's
   position, quaternion wxyz, vertical field of view [rad] and distance to its focus [m], 0 where the page cannot know
-  what a drag does (9 floats); the bodies' positions (3 floats each), their quaternions (4 integers of 16 bits each, 1 is
-  32767), their numbers (32 bits each); the shapes' numbers (32 bits each), their colours (4 bytes each).
+  what a drag does (9 floats); the bodies' positions (3 floats each), their quaternions (4 integers of 16 bits each, 32767
+  is 1), their numbers (32 bits each); the shapes' numbers (32 bits each), their colours (4 bytes each).
 - ``DRAWINGS``, ``FIGURES``: what scripts have drawn, and what is drawn over the bodies, as ``pack_drawings`` packs it.
 """
 
 import json
 import struct
 from dataclasses import asdict
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,7 +80,7 @@ class Feed:
     """Knows what a page has."""
 
     def __init__(self) -> None:
-        self._text: dict[str, object] = {}
+        self._text: dict[str, Any] = {}
         self._stage: Stage | None = None
         self._camera = b""
         self._heard = 0
@@ -95,7 +96,7 @@ class Feed:
         """
         messages: list[str | bytes] = []
         text = {**text, "scene": stage.scene.name, "edges": stage.edges}
-        said = {name: value for name, value in text.items() if name not in self._text or self._text[name] != value}
+        said = _changed(self._text, text)
         if said:
             messages.append(json.dumps(said, default=asdict))
         before = self._stage
@@ -119,9 +120,17 @@ class Feed:
         return news if any(part.size for part in news) else None
 
 
-def _frame(
-    stage: Stage, news: tuple[NDArray[np.intp], NDArray[np.intp]] | None, camera: bytes, heard: int
-) -> bytes:
+def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields that are new; where only values of controls are, ``changed`` has those controls."""
+    said = {name: value for name, value in after.items() if name not in before or before[name] != value}
+    old, new = before.get("controls", ()), said.get("controls", ())
+    if new and [control.name for control in old] == [control.name for control in new]:
+        del said["controls"]
+        said["changed"] = [control for control, other in zip(new, old, strict=True) if control != other]
+    return said
+
+
+def _frame(stage: Stage, news: tuple[NDArray[np.intp], NDArray[np.intp]] | None, camera: bytes, heard: int) -> bytes:
     moved, painted = news or (np.empty(0, np.intp), np.empty(0, np.intp))
     return b"".join(
         (
@@ -156,4 +165,3 @@ def _is_same(one: Primitives, other: Primitives) -> bool:
         for batch, other_batch in zip(one.batches, other.batches, strict=True)
         for array, others in zip(batch, other_batch, strict=True)
     )
-

@@ -20,12 +20,14 @@ class Drawing {
     this.letGo();
   }
 
+  /** Fetch surfaces; return whether they were there. */
   async load(name) {
-    if (this.name === name) return;
-    const answer = await fetch(name);
-    if (!answer.ok) throw new Error(`${name} is not there`);
+    if (this.name === name) return true;
+    const answer = await fetch(name).catch(() => ({ ok: false }));
+    if (!answer.ok) return false;
     this.renderer.load(await unpacked(await answer.arrayBuffer()));
     this.name = name;
+    return true;
   }
 
   /** Take over a binary message; return whether it is a frame to be drawn. */
@@ -137,4 +139,35 @@ class Drawing {
   }
 
   get aspect() { return this.canvas.width / this.canvas.height; }
+}
+
+let isNews = false, unanswered = 0, requested = 0;
+
+/** Draw with the screen's next picture, and say so for all frames that have come until then. */
+function requestDrawing() {
+  requested ||= requestAnimationFrame(() => {
+    requested = 0;
+    draw();
+    for (; unanswered > 0; unanswered -= 1) ready();
+  });
+}
+
+function draw() {
+  if (!drawing || !drawing.view) return;
+  drawing.renderer.background = overlay.background;
+  drawing.renderer.hasEdgesOnly = overlay.edges;
+  drawing.draw(paint);
+  label(overlay.labels.flatMap(([x, y, z, words]) => {
+    const place = drawing.view.projected([x, y, z], view.clientWidth, view.clientHeight);
+    return place ? [[...place, words]] : [];
+  }));
+  if (isNews) write(overlay);
+  isNews = false;
+}
+
+function takePictures(why) {
+  const source = document.getElementById("source");
+  [source.hidden, source.title] = [false, why];
+  drawing = null;
+  send({ type: "draws", itself: false });
 }

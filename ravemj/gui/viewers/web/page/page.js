@@ -7,6 +7,7 @@ const FIRST_WAIT = 300, LONGEST_WAIT = 4000, LONG_PRESS = 550, FAR = 4, GOING_AW
 // --- the connection
 
 let socket = null, overlay = {}, wait = FIRST_WAIT, retry = 0, owed = 0, said = 0;
+let drawing = null, order = Promise.resolve();  // what draws here, if anything does; what is done with messages
 
 const tab = sessionStorage.ravemj ||= crypto.getRandomValues(new Uint32Array(3)).join("-");
 
@@ -32,7 +33,10 @@ function connect() {
     ready();
   };
   opened.onmessage = ({ data }) => {  // one after the other: some take time
-    order = order.then(() => (opened === socket ? take(data, opened) : null)).catch(() => opened.close());
+    order = order.then(() => (opened === socket ? take(data, opened) : null)).catch((error) => {
+      console.error(error);
+      if (drawing) takePictures(error.message);
+    });
   };
   opened.onclose = (event) => {
     if (event.code === GOING_AWAY) {
@@ -68,45 +72,17 @@ async function take(data, from) {
     const news = JSON.parse(data);
     if (news.task) return doTask(news);
     overlay = { ...overlay, ...news };
+    for (const one of news.changed || []) {
+      overlay.controls = overlay.controls.map((other) => (other.name === one.name ? one : other));
+    }
     isNews = true;
-    if (drawing && news.scene) await drawing.load(news.scene);
+    if (drawing && news.scene && !await drawing.load(news.scene)) from.close();
   } else if (new Uint8Array(data)[0] > LAST_KIND) {
     show(data, overlay, from);
   } else if (!drawing || await drawing.take(data)) {
     unanswered += 1;
     requestDrawing();
   }
-}
-
-// --- drawing here, where there is WebGL
-
-let drawing = null, order = Promise.resolve(), isNews = false, unanswered = 0, requested = 0;
-
-function requestDrawing() {
-  requested ||= requestAnimationFrame(() => {
-    requested = 0;
-    draw();
-    for (; unanswered > 0; unanswered -= 1) ready();
-  });
-}
-
-function draw() {
-  if (!drawing || !drawing.view) return;
-  drawing.renderer.background = overlay.background;
-  drawing.renderer.hasEdgesOnly = overlay.edges;
-  drawing.draw(paint);
-  const places = overlay.labels.map(([x, y, z, words]) => [
-    ...(drawing.view.projected([x, y, z], view.clientWidth, view.clientHeight) || [-1e4, 0]), words]);
-  label(places);
-  if (isNews) write(overlay);
-  isNews = false;
-}
-
-function takePictures(why) {
-  const source = document.getElementById("source");
-  [source.hidden, source.title] = [false, why];
-  drawing = null;
-  send({ type: "draws", itself: false });
 }
 
 // --- pictures and text
