@@ -22,7 +22,7 @@ _RATE = 60.0
 _SECONDS = 3.0
 _SETTLING = 1.0
 _TABS = 3
-_MOST = {"arm with 7 joints": 20.0, "PR2": 150.0}
+_MOST = {"arm": 20.0, "PR2": 150.0}
 """Most kilobytes a second."""
 
 _SHARE = 20.0
@@ -34,12 +34,13 @@ class Tab(threading.Thread):
 
     Attributes:
         received: Bytes.
+        frames: How many frames these were.
         used: What this thread took of the processor [s].
     """
 
     def __init__(self, url: str) -> None:
         super().__init__(daemon=True)
-        self.received, self.used = 0, 0.0
+        self.received, self.frames, self.used = 0, 0, 0.0
         address, origin = url.replace("http", "ws", 1) + "socket", url.rsplit("/", 2)[0]
         self._connection = connect(address, origin=origin, compression=None)
         for message in (
@@ -57,6 +58,7 @@ class Tab(threading.Thread):
             for message in self._connection:
                 self.received += len(message)
                 if isinstance(message, bytes) and message[:4] == frame:
+                    self.frames += 1
                     self._connection.send('{"type": "ready"}')
                 self.used = time.thread_time()
         except ConnectionClosed:
@@ -73,7 +75,7 @@ def rows() -> list[Row]:
 
 
 def _robots() -> Generator[tuple[str, Path]]:
-    yield "arm with 7 joints", ROOT / "models" / "panda.xml"
+    yield "arm", ROOT / "models" / "panda.xml"
     if (CORPUS / PR2).exists():
         yield "PR2", CORPUS / PR2
 
@@ -88,16 +90,17 @@ def _rows(name: str, path: Path) -> Generator[Row]:
         tabs = [Tab(viewer.url)]
         time.sleep(_SETTLING)
         moving, _ = _measured(robot, tabs, _SECONDS)
+        rate = tabs[0].frames / _SECONDS
         time.sleep(_SETTLING)
         before = tabs[0].received
         time.sleep(_SETTLING)
         rest = (tabs[0].received - before) / _SETTLING
-        note = f"{robot.GetDOF()} DOFs; {rest:g} bytes at rest"
-        yield Row(f"bytes to a page while a {name} moves : most", "kB/s", moving, _MOST[name], 1.0, note=note)
+        note = f"{robot.GetDOF()} DOFs, {rate:.0f} frames/s; {rest:g} bytes at rest"
+        yield Row(f"bytes to a page while the {name} moves : most", "kB/s", moving, _MOST[name], 1.0, note=note)
         tabs += [Tab(viewer.url) for _ in range(_TABS - 1)]
         time.sleep(_SETTLING)
         _, share = _measured(robot, tabs, _SECONDS)
-        yield Row(f"processor for {_TABS} pages while a {name} moves : most", "% of one", share, _SHARE, 1.0)
+        yield Row(f"processor for {_TABS} pages while the {name} moves : most", "% of one", share, _SHARE, 1.0)
         for tab in tabs:
             tab.leave()
     finally:

@@ -6,8 +6,8 @@ names. Binary messages begin with a number of 32 bits, their kind:
 - ``FRAME``: the page draws all that came since the last one. Then, little endian: how many messages of the page have
   been acted on, how many bodies and how many shapes follow, and whether a camera does (32 bits each); the camera's
   position, quaternion wxyz, vertical field of view [rad] and distance to its focus [m], 0 where the page cannot know
-  what a drag does (9 floats); the bodies' positions (3 floats each), their quaternions (4 integers of 16 bits each, 32767
-  is 1), their numbers (32 bits each); the shapes' numbers (32 bits each), their colours (4 bytes each).
+  what a drag does (9 floats); the bodies' positions (3 floats each), their quaternions (4 integers of 16 bits each;
+  32767 is 1), their numbers (32 bits each); the shapes' numbers (32 bits each), their colours (4 bytes each).
 - ``DRAWINGS``, ``FIGURES``: what scripts have drawn, and what is drawn over the bodies, as ``pack_drawings`` packs it.
 """
 
