@@ -70,11 +70,17 @@ def webgl_browser(chromium):
 def unlike(picture: np.ndarray, expected: np.ndarray) -> np.ndarray:
     """Return the pixels (N, 2) that are brighter or darker than all that are at most two pixels away in the other."""
     wrong = np.zeros(picture.shape[:2], dtype=bool)
-    for one, other in ((picture, expected), (expected, picture)):
-        padded = np.pad(other.astype(int), ((2, 2), (2, 2), (0, 0)), mode="edge")
-        around = np.lib.stride_tricks.sliding_window_view(padded, (5, 5), axis=(0, 1))
-        wrong |= ((one < around.min(axis=(3, 4)) - 40) | (one > around.max(axis=(3, 4)) + 40)).any(axis=2)
+    for one, other in ((picture.astype(int), expected.astype(int)), (expected.astype(int), picture.astype(int))):
+        wrong |= (one < around(other, np.minimum) - 40).any(axis=2) | (one > around(other, np.maximum) + 40).any(axis=2)
     return np.argwhere(wrong)
+
+
+def around(picture: np.ndarray, choose: np.ufunc) -> np.ndarray:
+    """Return the least or the greatest numbers that are at most two pixels away."""
+    height, width = picture.shape[:2]
+    padded = np.pad(picture, ((2, 2), (2, 2), (0, 0)), mode="edge")
+    rows = choose.reduce([padded[shift : shift + height] for shift in range(5)])
+    return choose.reduce([rows[:, shift : shift + width] for shift in range(5)])
 
 
 def await_equal(picture: Callable[[], np.ndarray], expected: Callable[[], np.ndarray]) -> None:

@@ -45,19 +45,23 @@ def take_both(playwright: Playwright, folder: Path) -> None:
     env = ravemj.load("models/puma560.xml")
     viewer, robot = env.serve_viewer(), env.GetRobots()[0]
     viewer.SetBkgndColor([0.8, 0.85, 0.9])
-    robot.SetDOFValues([0.5, -0.9, 0.6], [0, 1, 2])
-    viewer.SetCamera(env.renderer.camera_for_stills(4 / 3).T_world_camera)
+    robot.SetDOFValues([0.5, -0.7, 0.6], [0, 1, 2])
+    T_world_camera = env.renderer.camera_for_stills(4 / 3).T_world_camera
+    viewer.SetCamera(T_world_camera @ ravemj.matrixFromPose([1, 0, 0, 0, 0, 0, -0.5]))
+    middle = robot.GetLinks()[0].ComputeAABB().pos()
+    ((x, y),), _ = viewer.camera.project([middle], DESK["viewport"]["width"], DESK["viewport"]["height"])
     browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=[*SANDBOX, *SOFTWARE])
     for name, query in (("web-drawn", ""), ("web-picture", "?pictures")):
-        page = browser.new_context(viewport={"width": 480, "height": 360}).new_page()
+        page = browser.new_context(**DESK).new_page()
         page.goto(viewer.url + query)
         page.wait_for_selector("[data-crisp=true]")
         for key in ("Escape", "l"):  # the frames of the links
             page.keyboard.press(key)
             page.keyboard.up(key)
-        page.mouse.click(240, 200)
+        page.mouse.click(x, y)
+        page.mouse.move(500, 400)
         take(page, folder / f"{name}.png")
-        page.mouse.click(240, 200)
+        page.mouse.click(x, y)
         page.keyboard.press("l")
         page.context.close()
     browser.close()

@@ -89,7 +89,6 @@ class TestCameraMode:
         assert is_colour(desk, desk.point(1, 0.1, 0, 0), "red")
         assert is_colour(desk, desk.point(2, 0.15, 0, 0), "blue")
 
-    @BOTH
     def test_shift_and_middle_drags_shift_the_view(self, desk):
         for how in ({"keys": ["Shift"]}, {"button": Button.MIDDLE}):
             before = desk.core.view.camera
@@ -126,7 +125,6 @@ class TestCameraMode:
         assert np.allclose(desk.core.view.focus, focus)
         assert colour_of(desk.picture()[238:243, 318:323]) == "blue"
 
-    @BOTH
     def test_wheels_on_the_page_turn_and_zoom(self, desk):
         for tool, amount in ((Tool.ROT_X, 40), (Tool.ROT_Y, -50), (Tool.DOLLY, 30)):
             desk.roll(tool, amount)
@@ -460,7 +458,6 @@ class TestPage:
             assert 0 <= box["top"] < box["bottom"] <= size[1]
         assert len(boxes) >= 5
 
-    @BOTH
     def test_tabs_have_their_own_cameras_and_keep_them_when_they_are_loaded_again(self, desk):
         other = desk.open_page()
         desk.page.bring_to_front()
