@@ -13,7 +13,6 @@ import weakref
 from collections.abc import Callable
 from importlib import resources
 from importlib.resources.abc import Traversable
-from pathlib import Path
 
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
@@ -26,7 +25,7 @@ from ravemj.gui.viewers.web.rejections import Rejections
 LOOPBACK = "127.0.0.1"
 _LOCAL_NAMES = {LOOPBACK, "localhost", "::1"}
 _EVERYWHERE = {"", "0.0.0.0", "::"}
-_FOLDER = Path(__file__).with_name("page")
+_FOLDER = resources.files("ravemj.gui.viewers.web") / "page"
 _WEBGL = resources.files("ravemj.graphics.webgl") / "page"
 _FILES: dict[str, tuple[str, Traversable]] = {
     "": ("text/html", _FOLDER / "page.html"),
