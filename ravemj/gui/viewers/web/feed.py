@@ -107,7 +107,8 @@ class Feed:
         news, camera = self._news(stage), _packed_camera(view)
         if messages or news is not None or camera != self._camera or heard != self._heard:
             messages.append(_frame(stage, news, camera if camera != self._camera else b"", heard))
-        self._text, self._stage, self._camera, self._heard = text, stage, camera, heard
+        self._text, self._stage = text, stage
+        self._camera, self._heard = camera, heard
         return messages
 
     def _news(self, stage: Stage) -> tuple[NDArray[np.intp], NDArray[np.intp]] | None:
