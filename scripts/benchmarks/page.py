@@ -1,10 +1,7 @@
 """Pages that draw by themselves: what they are sent while robots move, and what that takes of the processor."""
 
-import asyncio
-import importlib.util
 import itertools
 import json
-import shutil
 import threading
 import time
 import warnings
@@ -19,8 +16,6 @@ import ravemj
 from benchmarks.kinematics import PR2
 from benchmarks.measure import ROOT, Row
 from benchmarks.reading import CORPUS
-from benchmarks.viewer import NOTE_FIRST_FRAME, robots
-from ravemj.gui.viewers.web import WebViewer
 from ravemj.gui.viewers.web.feed import FRAME
 
 _RATE = 60.0
@@ -29,12 +24,6 @@ _SETTLING = 1.0
 _TABS = 3
 _MOST = {"arm": 20.0, "PR2": 150.0}
 """Most kilobytes a second."""
-
-_FIRST = {"pendulum": 1.0, "PR2": 3.0}
-"""Longest time to the first picture [s], over a connection with this throughput [bytes/s] and delay [s]."""
-
-_THROUGHPUT, _DELAY = 10e6 / 8, 0.05
-_FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 
 _SHARE = 20.0
 """Most of a processor that three tabs take while a PR2 moves [%]."""
@@ -80,61 +69,9 @@ class Tab(threading.Thread):
         self._connection.close()
 
 
-class SlowPort:
-    """A port that leads to another one, slowly.
-
-    Attributes:
-        port: Its number.
-    """
-
-    def __init__(self, target: int) -> None:
-        self._target = target
-        self._free_at = 0.0
-        self._loop = asyncio.new_event_loop()
-        threading.Thread(target=self._loop.run_forever, daemon=True).start()
-        starting = asyncio.start_server(self._join, "127.0.0.1", 0)
-        self._server = asyncio.run_coroutine_threadsafe(starting, self._loop).result()
-        self.port = self._server.sockets[0].getsockname()[1]
-
-    async def _join(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        await asyncio.sleep(2 * _DELAY)  # of the handshake
-        far_reader, far_writer = await asyncio.open_connection("127.0.0.1", self._target)
-        ways = (reader, far_writer), (far_reader, writer)
-        await asyncio.gather(*(self._carry(*way) for way in ways), return_exceptions=True)
-
-    async def _carry(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        while content := await reader.read(16384):
-            now = self._loop.time()
-            self._free_at = max(self._free_at, now) + len(content) / _THROUGHPUT
-            self._loop.call_at(self._free_at + _DELAY, writer.write, content)
-        self._loop.call_at(max(self._free_at, self._loop.time()) + _DELAY, writer.close)
-
-
 def rows() -> list[Row]:
-    """Measure robots all of whose joints move 60 times a second, and how soon the first picture is seen."""
-    moving = [row for name, path in _robots() for row in _rows(name, path)]
-    return [*moving, *_first_rows()]
-
-
-def _first_rows() -> Generator[Row]:
-    program = shutil.which("chromium")
-    if program is None or importlib.util.find_spec("playwright") is None:
-        return
-    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - optional
-
-    with sync_playwright() as playwright, playwright.chromium.launch(executable_path=program, args=_FLAGS) as browser:
-        for name, env in robots():
-            viewer = WebViewer(env.simulation, env.renderer, "web", any_name=True)
-            port = SlowPort(viewer.server.port).port
-            page = browser.new_page(viewport={"width": 800, "height": 600})
-            page.add_init_script(NOTE_FIRST_FRAME)
-            page.goto(f"http://127.0.0.1:{port}/{viewer.server.token}/")
-            page.wait_for_selector("[data-crisp=true]")
-            first = page.evaluate("firstFrame") / 1e3
-            note = "10 Mbit/s, 50 ms; Chromium without a graphics card"
-            yield Row(f"first picture of the {name} on a slow way : most", "s", first, _FIRST[name], 1.0, note=note)
-            page.close()
-            viewer.close()
+    """Measure robots all of whose joints move 60 times a second."""
+    return [row for name, path in _robots() for row in _rows(name, path)]
 
 
 def _robots() -> Generator[tuple[str, Path]]:

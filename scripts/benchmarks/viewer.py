@@ -33,7 +33,7 @@ _IDLE = 3.0
 _LARGE = 960, 720
 _WARM, _PICTURES = 10, 15
 _FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-webgl"]
-NOTE_FIRST_FRAME = """
+_NOTE_FIRST_FRAME = """
 new MutationObserver(() => { window.firstFrame ??= performance.now(); })
     .observe(document, { attributes: true, attributeFilter: ["data-crisp"], subtree: true });
 """
@@ -176,7 +176,7 @@ def _browser_rows(url: str) -> list[Row]:
         firsts: list[float] = []
         for _ in range(_ROUNDS):
             page = browser.new_page(viewport={"width": _SIZE[0], "height": _SIZE[1]})
-            page.add_init_script(NOTE_FIRST_FRAME)
+            page.add_init_script(_NOTE_FIRST_FRAME)
             page.goto(url)
             page.wait_for_selector("[data-crisp=true]")
             firsts.append(page.evaluate("firstFrame"))
