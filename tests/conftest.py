@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from browsers import browser  # noqa: F401 - a fixture
+from browsers import browser, chromium, webgl_browser  # noqa: F401 - fixtures
 from hypothesis import HealthCheck, settings
 from newcomers import pytest_report_header, pytest_terminal_summary  # noqa: F401 - hooks
 from screens import display, folder  # noqa: F401 - fixtures

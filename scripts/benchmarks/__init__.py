@@ -14,6 +14,7 @@ from benchmarks import (
     kinematics,
     loading,
     memory,
+    page,
     planning,
     reading,
     sensors,
@@ -36,6 +37,7 @@ AREAS: dict[str, Callable[[], list[Row]]] = {
     "sensors": sensors.rows,
     "video": video.rows,
     "viewer": viewer.rows,
+    "page": page.rows,
     "memory": memory.rows,
     "window": window.rows,
 }

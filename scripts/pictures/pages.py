@@ -4,13 +4,16 @@ import shutil
 import sys
 from pathlib import Path
 
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
 import ravemj
 from ravemj.gui.viewers import Viewer
 
 DESK = {"viewport": {"width": 640, "height": 480}}
 PHONE = {"viewport": {"width": 360, "height": 600}, "device_scale_factor": 2, "is_mobile": True, "has_touch": True}
+
+SANDBOX = ["--no-sandbox"]
+SOFTWARE = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 
 
 def main(folder: Path) -> None:
@@ -21,7 +24,7 @@ def main(folder: Path) -> None:
     viewer.SetCamera([[-0.643, 0.324, -0.694, 0.755], [0.766, 0.272, -0.583, 0.634], [0, -0.906, -0.423, 0.285]])
     robot.SetDOFValues([0.3, 0.7])
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=SANDBOX)
         desk, at = opened(browser, viewer, DESK)
         desk.keyboard.press("Escape")
         desk.mouse.move(*at)
@@ -35,6 +38,7 @@ def main(folder: Path) -> None:
         env.Destroy()
         take_tree(browser, folder / "web-tree.png")
         browser.close()
+        take_both(playwright, folder)
 
 
 def take_tree(browser: Browser, path: Path) -> None:
@@ -52,6 +56,34 @@ def take_tree(browser: Browser, path: Path) -> None:
     page.keyboard.press("b")
     page.get_by_role("treeitem").nth(8).click()
     take(page, path)
+    env.Destroy()
+
+
+def take_both(playwright: Playwright, folder: Path) -> None:
+    """Take a picture of a page that draws by itself, and of one that shows pictures, of the same arm."""
+    env = ravemj.load("models/puma560.xml")
+    viewer, robot = env.serve_viewer(), env.GetRobots()[0]
+    viewer.SetBkgndColor([0.8, 0.85, 0.9])
+    robot.SetDOFValues([0.5, -0.7, 0.6], [0, 1, 2])
+    T_world_camera = env.renderer.camera_for_stills(4 / 3).T_world_camera
+    viewer.SetCamera(T_world_camera @ ravemj.matrixFromPose([1, 0, 0, 0, 0, 0, -0.5]))
+    middle = robot.GetLinks()[0].ComputeAABB().pos()
+    ((x, y),), _ = viewer.camera.project([middle], DESK["viewport"]["width"], DESK["viewport"]["height"])
+    browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=[*SANDBOX, *SOFTWARE])
+    for name, query in (("web-drawn", ""), ("web-picture", "?pictures")):
+        page = browser.new_context(**DESK).new_page()
+        page.goto(viewer.url + query)
+        page.wait_for_selector("[data-crisp=true]")
+        for key in ("Escape", "l"):  # the frames of the links
+            page.keyboard.press(key)
+            page.keyboard.up(key)
+        page.mouse.click(x, y)
+        page.mouse.move(500, 400)
+        take(page, folder / f"{name}.png")
+        page.mouse.click(x, y)
+        page.keyboard.press("l")
+        page.context.close()
+    browser.close()
     env.Destroy()
 
 

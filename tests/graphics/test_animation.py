@@ -9,7 +9,7 @@ import zlib
 
 import numpy as np
 import pytest
-from browsers import CHROMIUM, FLAGS, NEEDS_A_BROWSER
+from browsers import NEEDS_A_BROWSER
 from command_line import run
 from conftest import MODELS
 from PIL import Image
@@ -207,31 +207,24 @@ class Player:
 
 
 @pytest.fixture(scope="module")
-def opened(tmp_path_factory):
+def opened(tmp_path_factory, webgl_browser):
     """Open the file of an environment in a browser without a network."""
-    from playwright.sync_api import sync_playwright
 
-    flags = [flag for flag in FLAGS if flag not in ("--disable-gpu", "--disable-webgl")]
-    flags += ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
+    def open_page(text: str, before: str = "", **context) -> Player:
+        path = tmp_path_factory.mktemp("page") / "a.html"
+        path.write_text(text, encoding="utf-8")
+        context = webgl_browser.new_context(viewport={"width": 320, "height": 291}, offline=True, **context)
+        context.add_init_script(before)
+        page = context.new_page()
+        page.troubles, page.requests = [], []
+        page.on("pageerror", lambda error: page.troubles.append(str(error)))
+        page.on("console", lambda message: page.troubles.append(message.text))
+        page.on("request", lambda request: page.requests.append(request.url))
+        page.goto(path.as_uri())
+        await_that(lambda: page.evaluate("!!window.ravemj || !document.getElementById('error').hidden"))
+        return Player(page)
 
-        def open_page(text: str, before: str = "", **context) -> Player:
-            path = tmp_path_factory.mktemp("page") / "a.html"
-            path.write_text(text, encoding="utf-8")
-            context = browser.new_context(viewport={"width": 320, "height": 291}, offline=True, **context)
-            context.add_init_script(before)
-            page = context.new_page()
-            page.troubles, page.requests = [], []
-            page.on("pageerror", lambda error: page.troubles.append(str(error)))
-            page.on("console", lambda message: page.troubles.append(message.text))
-            page.on("request", lambda request: page.requests.append(request.url))
-            page.goto(path.as_uri())
-            await_that(lambda: page.evaluate("!!window.ravemj || !document.getElementById('error').hidden"))
-            return Player(page)
-
-        yield open_page
-        browser.close()
+    return open_page
 
 
 def silhouette(env, camera: Camera, size) -> np.ndarray:

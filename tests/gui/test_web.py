@@ -33,7 +33,7 @@ from ravemj.gui.viewers.viewer import LOCKED
 from ravemj.gui.viewers.web import WebViewer, client, server
 from ravemj.gui.viewers.web import viewer as viewers
 from ravemj.gui.viewers.web.frame_pacing import Link
-from ravemj.gui.viewers.web.messages import Ready, Shape, parse
+from ravemj.gui.viewers.web.messages import Draws, Ready, Shape, parse
 
 FROM_FRONT = np.array([[0.0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 SIZE = 400, 300
@@ -616,6 +616,7 @@ def test_closing_ends_all_pages_and_main(env, viewer):
         ('{"type":"key","name":"s","pressed":true}', Key("s")),
         ('{"type":"leave"}', Leave()),
         ('{"type":"ready"}', Ready()),
+        ('{"type":"draws","itself":false}', Draws(False)),
         ('{"type":"shape","width":3,"height":4,"ratio":1.5}', Shape(Resize(3, 4), 1.5)),
     ],
 )
@@ -624,7 +625,7 @@ def test_messages(text, message):
     fields = json.loads(text)
     for name in fields:
         for wrong in (None, [], "?", True, 1e9, float("inf"), {}):
-            if name in ("name", "pressed", "ctrl", "shift", "touch") and wrong in ("?", True):
+            if name in ("name", "pressed", "ctrl", "shift", "touch", "itself") and wrong in ("?", True):
                 continue
             with pytest.raises(ValueError):  # noqa: PT011 - whatever it says
                 parse(json.dumps({**fields, name: wrong}))

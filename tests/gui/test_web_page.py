@@ -1,4 +1,7 @@
-"""The page of the viewer in a real browser, with its mouse, keys and fingers; WebGL is off."""
+"""The page of the viewer in a real browser, with its mouse, keys and fingers.
+
+The server draws, but for tests of ``BOTH``: these are done once more by a page that draws by itself, with WebGL.
+"""
 
 import itertools
 import math
@@ -17,6 +20,7 @@ from ravemj.gui.interaction.cube import Cube
 from ravemj.gui.interaction.joint_handle import JointHandle
 
 pytestmark = NEEDS_A_BROWSER
+BOTH = pytest.mark.parametrize("desk", ["browser", "webgl_browser"], indirect=True)
 SLIDING = """<Robot name="Sliding"><KinBody>
 <Body name="Base"><Geom type="box"><extents>0.05 0.05 0.05</extents></Geom></Body>
 <Body name="Block"><Translation>0 0.2 0</Translation>
@@ -37,18 +41,27 @@ def sliding() -> ravemj.Environment:
 
 
 @pytest.fixture(scope="module")
-def shared_desk(browser):
-    desk = Desk(browser, pendulum)
-    yield desk
-    desk.close()
+def desks(browser, webgl_browser):
+    """The desk of each browser, made for the first test that wants it."""
+    desks = {}
+
+    def desk_of(name):
+        if name not in desks:
+            desks[name] = Desk({"browser": browser, "webgl_browser": webgl_browser}[name], pendulum)
+        return desks[name]
+
+    yield desk_of
+    for desk in desks.values():
+        desk.close()
 
 
 @pytest.fixture
-def desk(shared_desk):
+def desk(desks, request):
     """The pendulum as it was loaded, in camera mode, with nothing selected."""
-    shared_desk.reset()
-    yield shared_desk
-    assert shared_desk.troubles == []
+    desk = desks(getattr(request, "param", "browser"))
+    desk.reset()
+    yield desk
+    assert desk.troubles == []
 
 
 @pytest.fixture(params=[(pendulum, {})], ids=[""])
@@ -67,6 +80,7 @@ def is_colour(desk, point, name) -> bool:
 
 
 class TestCameraMode:
+    @BOTH
     def test_left_drag_turns_the_view(self, desk):
         before = desk.core.view.camera.T_world_camera
         desk.drag((320, 100), (350, 120), (400, 130))
@@ -84,6 +98,7 @@ class TestCameraMode:
             desk.await_camera()
             assert is_colour(desk, desk.point(2, 0.15, 0, 0), "blue")
 
+    @BOTH
     def test_the_wheel_zooms(self, desk):
         for steps in (1, -2, 3):
             desk.wheel(steps)
@@ -164,6 +179,7 @@ class TestInteractionMode:
             desk.await_picture()
             assert np.ptp(desk.picture()[around], axis=2).max() < 10
 
+    @BOTH
     def test_dragging_a_face_moves_the_body(self, desk):
         desk.escape()
         desk.click(desk.at(desk.point(2, 0.15, 0, 0)))
@@ -187,6 +203,7 @@ class TestInteractionMode:
         assert np.allclose(turned[:, 0], cube.T_world_cube[:3, 0]), "it turns about the direction of the edge"
         desk.await_robot()
 
+    @BOTH
     def test_ctrl_and_a_click_select_the_joint_which_its_cylinder_turns(self, desk):
         desk.escape()
         desk.click(desk.at(desk.point(2, 0.15, 0, 0)), keys=["Control"])
@@ -238,6 +255,7 @@ class TestInteractionMode:
             grip = grip + np.array([0, own_desk.robot.GetDOFValues()[0], 0])
         assert is_colour(own_desk, own_desk.point(1, 0.05, 0, 0), "green")
 
+    @BOTH
     def test_a_joint_set_by_the_script_is_seen_at_once(self, desk):
         desk.robot.SetDOFValues([0.5, -1])
         tip = desk.point(2, 0.18, 0, 0)
@@ -324,11 +342,13 @@ class TestTouch:
     def press(self, at, **more):
         return Press(*at, touch=True, **more)
 
+    @BOTH
     def test_one_finger_turns_the_view(self, desk):
         desk.touch([(320, 100)], [(350, 120)], [(400, 130)])
         desk.touched(self.press((320, 100)), Move(350, 120), Move(400, 130), Release(400, 130))
         desk.await_camera()
 
+    @BOTH
     def test_two_fingers_shift_and_zoom(self, desk):
         moments = [(300, 200), (360, 200)], [(300, 220), (360, 220)], [(280, 220), (380, 230)]
         desk.touch([(300, 200)], *moments)
@@ -341,6 +361,7 @@ class TestTouch:
         )
         assert desk.viewer.GetCameraDistanceToFocus() == pytest.approx(after.distance, rel=0.02)
 
+    @BOTH
     def test_a_tap_selects_and_a_finger_drags_the_cube(self, desk):
         arm = desk.at(desk.point(2, 0.15, 0, 0))
         desk.touch([arm])

@@ -4,6 +4,8 @@ from threading import Lock
 
 import mujoco
 
+from ravemj.core.transforms import Floats
+
 
 class Published:
     """A copy of the state of the world, for which nobody needs the lock of the simulation.
@@ -33,3 +35,17 @@ class Published:
         with self._lock:
             if self._data is not None and self._model is model:
                 mujoco.mj_copyData(data, model, self._data)
+
+    def poses(self, model: mujoco.MjModel) -> tuple[Floats, Floats] | None:
+        """Return positions, shape (B, 3) [m], and quaternions wxyz, shape (B, 4), of the bodies in the world.
+
+        Args:
+            model: The model that numbers the bodies.
+
+        Returns:
+            Copies; None if the state is of another model.
+        """
+        with self._lock:
+            if self._data is None or self._model is not model:
+                return None
+            return self._data.xpos.copy(), self._data.xquat.copy()

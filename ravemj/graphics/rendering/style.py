@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering.visibility import DRAWN_GROUPS
 
 COLLISION_GROUPS = np.array([1, 0, 0, 1, 0, 0], dtype=np.uint8)
@@ -45,6 +46,15 @@ class Style:
         """Set what is taken over into a scene."""
         option.geomgroup[:] = self.groups
         option.flags[mujoco.mjtVisFlag.mjVIS_CONVEXHULL] = self.hulls
+
+    def colours(self, model: mujoco.MjModel, rgba: Floats) -> Floats:
+        """Return the colours that geoms of these colours, (ngeom, 4), are drawn in."""
+        changed = rgba.copy()
+        if self.transparent:
+            changed[:, 3] *= _OPACITY
+        lit = model.geom_bodyid == self.lit
+        changed[lit, :3] = (1 - _TINT_PART) * changed[lit, :3] + _TINT_PART * _TINT
+        return changed
 
     def finish(self, model: mujoco.MjModel, scene: mujoco.MjvScene) -> None:
         """Change a scene that was filled: edges only, a body that is tinted, or all transparent."""

@@ -14,7 +14,8 @@ from ravemj.core.output import AnyPath, new_file
 from ravemj.core.transforms import Floats
 from ravemj.graphics.rendering import Camera
 from ravemj.graphics.rendering.camera import bounding_sphere
-from ravemj.graphics.webgl.packing import Package, pack_scene
+from ravemj.graphics.webgl.packing import Package, pack_drawings, pack_scene
+from ravemj.graphics.webgl.surfaces import surfaces
 from ravemj.model.drawing import NOTHING, Primitives
 
 _HEIGHT = 480
@@ -105,7 +106,8 @@ def animation_page(
         drawings: What scripts have drawn; it does not move.
     """
     package = Package()
-    pack_scene(package, model, drawings)
+    pack_scene(package, model, surfaces(model))
+    pack_drawings(package, drawings)
     _pack_recording(package, recording)
     _pack_view(package, model, data, appearance)
     parts = {

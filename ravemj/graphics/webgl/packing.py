@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ravemj.core.transforms import Floats
-from ravemj.graphics.webgl.surfaces import Mesh, round_mesh, surfaces
-from ravemj.model.drawing import NOTHING, PrimitiveBatch, Primitives
+from ravemj.graphics.webgl.surfaces import Mesh, Surfaces, round_mesh
+from ravemj.model.drawing import PrimitiveBatch, Primitives
 
 _STEPS = 65535
 _WIDE = 65536
@@ -55,27 +55,31 @@ class Package:
             "columns": self.array(np.diff(whole.T, prepend=np.uint16(0))),
         }
 
-    def content(self) -> bytes:
-        """Return all of it, compressed (zlib)."""
+    def content(self, level: int = 9) -> bytes:
+        """Return all of it, compressed (zlib).
+
+        Args:
+            level: From 1, quick, to 9, small.
+        """
         document = json.dumps(self.document, separators=(",", ":")).encode()
         document += b" " * (-len(document) % 4)
-        return zlib.compress(len(document).to_bytes(4, "little") + document + b"".join(self._arrays), 9)
+        return zlib.compress(len(document).to_bytes(4, "little") + document + b"".join(self._arrays), level)
 
     def text(self) -> str:
         """Return all of it, compressed and as letters."""
         return base64.b64encode(self.content()).decode()
 
 
-def pack_scene(package: Package, model: mujoco.MjModel, drawings: Primitives = NOTHING) -> None:
-    """Add the surfaces of a model, its lights and drawings.
+def pack_scene(package: Package, model: mujoco.MjModel, shown: Surfaces) -> None:
+    """Add surfaces of a model, and its lights.
 
     Args:
-        package: Gets ``meshes``, ``shapes``, ``bodies``, ``lights`` and ``drawings``.
+        package: Gets ``meshes``, ``shapes``, ``bodies`` and ``lights``, and the ``ball`` that spheres are drawn as.
         model: The compiled model.
-        drawings: What scripts have drawn.
+        shown: What is drawn of it.
     """
-    shown = surfaces(model)
     package.document["meshes"] = [_packed_mesh(package, mesh) for mesh in shown.meshes]
+    package.document["ball"] = _packed_mesh(package, round_mesh(0.0))
     package.document["shapes"] = [
         {
             "mesh": shape.mesh,
@@ -87,8 +91,10 @@ def pack_scene(package: Package, model: mujoco.MjModel, drawings: Primitives = N
     ]
     package.document["bodies"] = [model.body(number).name for number in range(model.nbody)]
     package.document["lights"] = _lights(model)
-    if drawings.spheres.sizes.size:
-        package.document["ball"] = _packed_mesh(package, round_mesh(0.0))
+
+
+def pack_drawings(package: Package, drawings: Primitives) -> None:
+    """Add drawings as ``drawings``."""
     names = ("points", "spheres", "lines", "triangles")
     package.document["drawings"] = {
         name: _packed_batch(package, batch)

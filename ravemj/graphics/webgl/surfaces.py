@@ -39,12 +39,14 @@ class Shape(NamedTuple):
     Attributes:
         mesh: Number of the mesh.
         body: Number of the body in the model.
+        geom: Number of the geom in the model.
         T_body_shape: Pose with the scale in its columns, shape (3, 4) [m].
         rgba: Colour and opacity, 0 to 1.
     """
 
     mesh: int
     body: int
+    geom: int
     T_body_shape: Floats
     rgba: Floats
 
@@ -56,23 +58,30 @@ class Surfaces(NamedTuple):
     shapes: list[Shape]
 
 
-def surfaces(model: mujoco.MjModel) -> Surfaces:
-    """Return the surfaces of all geoms that pictures show."""
+def surfaces(model: mujoco.MjModel, geoms: NDArray[np.bool_] | None = None, *, hulls: bool = False) -> Surfaces:
+    """Return the surfaces of geoms.
+
+    Args:
+        model: The compiled model.
+        geoms: Which geoms, shape (ngeom,); None: all that pictures show.
+        hulls: Whether meshes that collide are given as their convex hulls.
+    """
     meshes: list[Mesh] = []
     numbers: dict[tuple[int, ...], int] = {}
     colours = geom_rgba(model)
     shapes: list[Shape] = []
-    for geom in np.flatnonzero(drawn_geoms(model)).tolist():
+    for geom in np.flatnonzero(drawn_geoms(model) if geoms is None else geoms).tolist():
         kind, data = int(model.geom_type[geom]), int(model.geom_dataid[geom])
         size = model.geom_size[geom]
-        key = _key(kind, data, size)
+        is_hull = hulls and _has_hull(model, geom)
+        key = (*_key(kind, data, size), is_hull)
         if key not in numbers:
             numbers[key] = len(meshes)
-            meshes.append(_mesh(model, kind, data, size))
+            meshes.append(_hull(model, data) if is_hull else _mesh(model, kind, data, size))
         rotation = np.empty(9)
         mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
         placed = np.column_stack([rotation.reshape(3, 3) * _scale(kind, size), model.geom_pos[geom]])
-        shapes.append(Shape(numbers[key], int(model.geom_bodyid[geom]), placed, colours[geom]))
+        shapes.append(Shape(numbers[key], int(model.geom_bodyid[geom]), geom, placed, colours[geom]))
     return Surfaces(meshes, shapes)
 
 
@@ -128,6 +137,26 @@ def _mesh_of_model(model: mujoco.MjModel, number: int) -> Mesh:
         model.mesh_normal[towards].astype(np.float64),
         corners.reshape(-1, 3).astype(np.uint32),
     )
+
+
+def _has_hull(model: mujoco.MjModel, geom: int) -> bool:
+    """Return whether MuJoCo draws a geom as its hull where hulls are drawn."""
+    data = int(model.geom_dataid[geom])
+    is_mesh = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
+    collides = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
+    return bool(is_mesh and collides and model.mesh_graphadr[data] >= 0)
+
+
+def _hull(model: mujoco.MjModel, number: int) -> Mesh:
+    """Return the convex hull of a mesh, with flat faces."""
+    graph = model.mesh_graph[int(model.mesh_graphadr[number]) :]
+    vertices, faces = int(graph[0]), int(graph[1])
+    start = 2 + 3 * vertices + 3 * faces  # behind the numbers and edges of the vertices
+    corners = model.mesh_vert[int(model.mesh_vertadr[number]) + graph[start : start + 3 * faces]].astype(np.float64)
+    sides = corners.reshape(-1, 3, 3)
+    normals = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    return Mesh(corners, normals.repeat(3, axis=0), np.arange(3 * faces, dtype=np.uint32).reshape(-1, 3))
 
 
 def _box() -> Mesh:

@@ -75,7 +75,7 @@ class JsonFiles(Description):
         with _placed_errors(path):
             self.LoadJSON(content)
 
-    def _read_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
+    def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
         """Return the first body of a file, which is not added.
 
         Args:
@@ -89,7 +89,7 @@ class JsonFiles(Description):
         content = self._content(path)
         info = EnvironmentBaseInfo()
         with _placed_errors(path):
-            info.DeserializeJSON(content)
+            self._read_json(info, content)
             if not info._vBodyInfos:
                 raise SourceError("there is no body in it", Source(path))
             first = info._vBodyInfos[0]

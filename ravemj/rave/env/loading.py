@@ -99,7 +99,7 @@ class Loading(JsonFiles):
             if is_json(path):
                 self._load_json(path)
                 return ""
-            reading = _read_file(path, {})
+            reading = self._read_file(path, {})
             broken = [finding for finding in reading.diagnostics if finding.severity == "error"]
             if reading.failure is not None or broken:
                 return str(reading.failure or broken[0])
@@ -245,7 +245,7 @@ class Loading(JsonFiles):
             return self._read(self._read_file(path, given), into, is_robot=is_robot)
         _warn_of_attributes(path, given)
         try:
-            return self._read_json(path, into, is_robot=is_robot)
+            return self._body_of_json(path, into, is_robot=is_robot)
         except SourceError as error:
             _LOG.error("%s", error)
             return None

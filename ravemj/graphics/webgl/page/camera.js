@@ -64,4 +64,12 @@ class View {
     const distance = Math.min(Math.max(this.distance * Math.exp(power), 1e-3), 1e6);
     return this.placed(this.rotation, this.focus, distance);
   }
+
+  /** Where a point of the world is in a picture of so many pixels or points; null behind the eye. */
+  projected(point, width, height) {
+    const [x, y, depth] = [0, 1, 2].map((number) => this.axis(number)
+      .reduce((sum, part, i) => sum + part * (point[i] - this.position[i]), 0));
+    const scale = this.focal(height) / depth;
+    return depth > 0 ? [0.5 * width + scale * x, 0.5 * height + scale * y] : null;
+  }
 }

@@ -85,7 +85,8 @@ void main() {
   vec2 aside = vec2(-along.y, along.x) * corner.y;
   vec4 p = corner.x < 0.0 ? a : b;
   vec2 beyond = isPoint ? along * corner.x : vec2(0.0);
-  gl_Position = p + vec4((aside + beyond) * max(width, 1.0) / size * p.w, 0.0, 0.0);
+  float nearer = 2e-6 * max(width, 1.0);  // wide lines cover narrow ones in the same place
+  gl_Position = p + vec4((aside + beyond) * max(width, 1.0) / size * p.w, -nearer * p.w, 0.0);
   color = rgba;
 }`;
 
@@ -124,6 +125,8 @@ class Renderer {
     this.gl = gl;
     this.surface = program(gl, SURFACE_VERTEX, SURFACE_FRAGMENT);
     this.line = program(gl, LINE_VERTEX, LINE_FRAGMENT);
+    this.parts = new Map();
+    this.groups = new Map();
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
@@ -134,14 +137,11 @@ class Renderer {
     const { gl } = this;
     this.content = content;
     this.poses = content.bodies.map(() => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]);
-    this.meshes = content.meshes.map((mesh) => this.mesh(mesh, array));
+    this.remake("surfaces", () => { this.meshes = content.meshes.map((mesh) => this.mesh(mesh, array)); });
+    this.ball = (instances) => this.mesh(content.ball, array, instances);
     this.shapes = content.shapes.map((shape) => ({ ...shape, world: new Array(12) }));
     this.reach = this.shapes.map((shape) => this.radius(shape));
-    const { lines, points, spheres, triangles } = content.drawings;
-    this.strokes = [lines, points].filter(Boolean).map((batch) => this.stroke(batch, array));
-    this.balls = spheres && this.ballsOf(spheres, array);
-    this.facets = triangles && this.facetsOf(triangles, array);
-    this.marks = [lines, points, spheres, triangles].filter(Boolean).map(({ corners }) => array(corners));
+    if (content.drawings) this.show("drawings", content.drawings, array);
     const lights = content.lights, sum = (i) => lights.reduce((total, { ambient }) => total + ambient[i], 0);
     gl.useProgram(this.surface.made);
     gl.uniform1i(this.surface.lights, lights.length);
@@ -150,8 +150,26 @@ class Renderer {
     gl.uniform3fv(this.surface.specular, lights.flatMap(({ specular }) => specular));
   }
 
+  /** Make a part of what is on the graphics card anew. */
+  remake(part, make) {
+    for (const free of this.parts.get(part) || []) free();
+    this.parts.set(part, this.made = []);
+    make();
+  }
+
+  /** Draw points, lines, spheres and triangles in place of those that were shown under a name. */
+  show(name, { lines, points, spheres, triangles }, array) {
+    this.remake(name, () => this.groups.set(name, {
+      strokes: [lines, points].filter(Boolean).map((batch) => this.stroke(batch, array)),
+      balls: spheres && this.ballsOf(spheres, array),
+      facets: triangles ? [true, false].map((isSolid) => this.facetsOf(triangles, array, isSolid)) : [],
+      marks: [lines, points, spheres, triangles].filter(Boolean).map(({ corners }) => array(corners)),
+    }));
+  }
+
   buffer(content, target = this.gl.ARRAY_BUFFER) {
     const made = this.gl.createBuffer();
+    this.made.push(() => this.gl.deleteBuffer(made));
     this.gl.bindBuffer(target, made);
     this.gl.bufferData(target, content, this.gl.STATIC_DRAW);
     return made;
@@ -167,6 +185,7 @@ class Renderer {
 
   vertices(fill) {
     const { gl } = this, made = gl.createVertexArray();
+    this.made.push(() => gl.deleteVertexArray(made));
     gl.bindVertexArray(made);
     fill();
     gl.bindVertexArray(null);
@@ -178,17 +197,17 @@ class Renderer {
     const { gl, surface } = this;
     const axes = columns(positions, array), count = axes[0].whole.length, whole = new Uint16Array(3 * count);
     axes.forEach((axis, i) => axis.whole.forEach((number, at) => { whole[3 * at + i] = number; }));
-    const indices = summed(array(corners));
+    const indices = summed(array(corners)), faces = this.buffer(indices, gl.ELEMENT_ARRAY_BUFFER);
     const vertices = this.vertices(() => {
       this.attribute(surface.position, this.buffer(whole), 3, gl.UNSIGNED_SHORT);
       this.attribute(surface.folded, this.buffer(array(normals)), 2, gl.BYTE, { normalized: true });
-      this.buffer(indices, gl.ELEMENT_ARRAY_BUFFER);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, faces);
       instances();
     });
     const low = axes.map((axis) => axis.low), step = axes.map((axis) => axis.step);
     const far = axes.map(({ low: least, step: by }) => Math.max(Math.abs(least), Math.abs(least + 65535 * by)));
     const type = indices instanceof Uint16Array ? gl.UNSIGNED_SHORT : gl.UNSIGNED_INT;
-    return { vertices, low, step, far, type, count: indices.length };
+    return { vertices, low, step, far, type, indices, faces, count: indices.length };
   }
 
   /** How far a shape reaches from the origin of its mesh, at most. */
@@ -219,7 +238,7 @@ class Renderer {
       rows[12 * i + 5 * row] = radius;
       rows[12 * i + 4 * row + 3] = centers[3 * i + row];
     }));
-    const mesh = this.mesh(this.content.ball, array, () => {
+    const mesh = this.ball(() => {
       const placed = this.buffer(rows);
       [surface.row0, surface.row1, surface.row2].forEach((place, row) => {
         this.attribute(place, placed, 4, gl.FLOAT, { stride: 48, offset: 16 * row, divisor: 1 });
@@ -229,8 +248,16 @@ class Renderer {
     return { ...mesh, instances: radii.length };
   }
 
-  facetsOf({ corners, rgba }, array) {
-    const { gl, surface } = this, places = array(corners), colors = array(rgba), count = places.length / 3;
+  /** Triangles that nothing shines through, or the others. */
+  facetsOf({ corners, rgba }, array, isSolid) {
+    const { gl, surface } = this, all = array(corners), shade = array(rgba);
+    const chosen = [...shade.keys()].filter((i) => i % 4 === 3 && (shade[i] >= 1) === isSolid).map((i) => (i - 3) / 4);
+    const places = new Float32Array(9 * chosen.length), colors = new Float32Array(4 * chosen.length);
+    chosen.forEach((from, to) => {
+      places.set(all.subarray(9 * from, 9 * from + 9), 9 * to);
+      colors.set(shade.subarray(4 * from, 4 * from + 4), 4 * to);
+    });
+    const count = 3 * chosen.length;
     const normals = new Int8Array(2 * count), shades = new Float32Array(4 * count);
     for (let i = 0; i < count; i += 3) {
       const [a, b, c] = [0, 3, 6].map((start) => places.subarray(3 * i + start, 3 * i + start + 3));
@@ -259,19 +286,20 @@ class Renderer {
 
   /** Draw the scene as a view sees it. */
   draw(view, marked = -1) {
-    const { gl } = this;
+    const { gl, background } = this;
     this.prepare(view);
-    gl.clearColor(...this.content.background, 1);
+    gl.clearColor(...(background || this.content.background), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     this.setUp(view, true);
-    const clear = this.shapes.filter(({ rgba }) => rgba[3] < 1);
+    const clear = this.shapes.filter(({ rgba }) => rgba[3] > 0 && rgba[3] < 1);
     for (const shape of this.shapes) if (shape.rgba[3] >= 1) this.drawShape(shape, this.tinted(shape, marked));
-    this.drawDrawings();
-    clear.sort((a, b) => b.depth - a.depth);
     gl.enable(gl.BLEND);
+    for (const group of this.groups.values()) this.drawGroup(group);
+    clear.sort((a, b) => b.depth - a.depth);
     gl.depthMask(false);
     gl.useProgram(this.surface.made);
     for (const shape of clear) this.drawShape(shape, this.tinted(shape, marked));
+    for (const { facets } of this.groups.values()) if (facets.length) this.drawFacets(facets[1]);
     gl.depthMask(true);
     gl.disable(gl.BLEND);
   }
@@ -320,7 +348,7 @@ class Renderer {
       }
       shape.depth = seen(to[3], to[7], to[11], this.reach[number]);
     });
-    for (const places of this.marks) {
+    for (const places of [...this.groups.values()].flatMap(({ marks }) => marks)) {
       for (let i = 0; i < places.length; i += 3) seen(places[i], places[i + 1], places[i + 2], 0.1);
     }
     far = Math.max(1.01 * far, 1e-3);
@@ -360,12 +388,28 @@ class Renderer {
       gl.vertexAttrib4f(place, world[4 * row], world[4 * row + 1], world[4 * row + 2], world[4 * row + 3]);
     });
     gl.vertexAttrib4f(surface.rgba, ...rgba);
-    gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);
+    if (this.hasEdgesOnly) this.drawEdges(mesh);
+    else gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);
   }
 
-  drawDrawings() {
-    const { gl, surface, balls, facets } = this;
-    gl.enable(gl.BLEND);
+  drawEdges(mesh) {
+    const { gl } = this, { indices, faces, count, type } = mesh;
+    if (!mesh.edges) {
+      const ends = indices.constructor.from({ length: 2 * count }, (_, i) => {
+        const corner = i >> 1, side = (corner % 3 + i % 2) % 3;
+        return indices[corner - corner % 3 + side];
+      });
+      this.made = this.parts.get("surfaces");
+      mesh.edges = this.buffer(ends, gl.ELEMENT_ARRAY_BUFFER);
+    }
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.edges);
+    gl.drawElements(gl.LINES, 2 * count, type, 0);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, faces);
+  }
+
+  drawGroup({ strokes, balls, facets }) {
+    const { gl, surface } = this;
+    gl.useProgram(surface.made);
     gl.uniform1f(surface.gloss, 0);
     if (balls) {
       gl.bindVertexArray(balls.vertices);
@@ -373,22 +417,25 @@ class Renderer {
       gl.uniform3fv(surface.step_, balls.step);
       gl.drawElementsInstanced(gl.TRIANGLES, balls.count, balls.type, 0, balls.instances);
     }
-    if (facets) {
-      gl.bindVertexArray(facets.vertices);
-      gl.uniform3f(surface.low, 0, 0, 0);
-      gl.uniform3f(surface.step_, 1, 1, 1);
-      [surface.row0, surface.row1, surface.row2].forEach((place, row) => {
-        gl.vertexAttrib4f(place, row === 0, row === 1, row === 2, 0);
-      });
-      gl.drawArrays(gl.TRIANGLES, 0, facets.count);
-    }
+    gl.uniform1f(surface.gloss, 0.5);
+    if (facets.length) this.drawFacets(facets[0]);
     gl.useProgram(this.line.made);
-    for (const { vertices, count } of this.strokes) {
+    for (const { vertices, count } of strokes) {
       gl.bindVertexArray(vertices);
       gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
     }
-    gl.useProgram(surface.made);
+  }
+
+  drawFacets({ vertices, count }) {
+    const { gl, surface } = this;
+    gl.uniform1f(surface.gloss, 0);
+    gl.bindVertexArray(vertices);
+    gl.uniform3f(surface.low, 0, 0, 0);
+    gl.uniform3f(surface.step_, 1, 1, 1);
+    [surface.row0, surface.row1, surface.row2].forEach((place, row) => {
+      gl.vertexAttrib4f(place, row === 0, row === 1, row === 2, 0);
+    });
+    gl.drawArrays(gl.TRIANGLES, 0, count);
     gl.uniform1f(surface.gloss, 0.5);
-    gl.disable(gl.BLEND);
   }
 }

@@ -1,4 +1,4 @@
-"""One page in a browser: its events in, pictures of its view out."""
+"""One page in a browser: its events in; pictures of its view out, or what it needs to draw them by itself."""
 
 import base64
 import json
@@ -18,9 +18,11 @@ from ravemj.gui.viewers.recorder import free_path
 from ravemj.gui.viewers.sharpness import CRISP, REST, Level, Sharpness
 from ravemj.gui.viewers.viewer import LOCKED, PATIENCE
 from ravemj.gui.viewers.web import encoding
+from ravemj.gui.viewers.web.feed import Feed, Stage
 from ravemj.gui.viewers.web.frame_pacing import Link
-from ravemj.gui.viewers.web.messages import Message, Piece, Ready, Shape, parse
+from ravemj.gui.viewers.web.messages import Draws, Piece, Ready, Shape, parse
 from ravemj.gui.viewers.web.rejections import Rejections
+from ravemj.gui.viewers.web.scenes import Scenes
 from ravemj.gui.viewers.window_renderer import appearance
 
 _LOG = logging.getLogger("ravemj")
@@ -31,6 +33,10 @@ _HALF = 0.5
 _MOST_PIXELS = 1920 * 1440
 _MOST_AT_ONCE = 100
 """Messages that are taken in before the next picture: moves come faster than pictures can be drawn."""
+
+
+_Update = Frame | list[str | bytes]
+"""A picture, or messages for a page that draws by itself."""
 
 
 class Connection(Protocol):
@@ -78,11 +84,17 @@ class Client:
         looks: How often it was found, or seen to, that the page was sent how everything is.
     """
 
-    def __init__(self, simulation: Simulation, renderer: SimulationRenderer, interaction: Interaction) -> None:
+    def __init__(
+        self, simulation: Simulation, renderer: SimulationRenderer, interaction: Interaction, scenes: Scenes
+    ) -> None:
         self.interaction = interaction
         self.looks = 0
         self._simulation = simulation
         self._renderer = renderer
+        self._scenes = scenes
+        self._feed: Feed | None = None  # pages that draw by themselves have one
+        self._stage: Stage | None = None
+        self._heard = 0
         self._link = Link()
         self._sharpness = Sharpness()
         self._overlay: Overlay | None = None
@@ -91,7 +103,7 @@ class Client:
         self._sees_bodies = False
         self._has_moved = False
         self._ratio = 1.0
-        self._waiting: deque[Message] = deque([Leave()])  # of what an earlier connection of the page has left
+        self._waiting: deque[Event | Shape] = deque([Leave()])  # of what an earlier connection of the page has left
         self._seen: object = None
         self._seen_view: object = None
         self._says_locked = False
@@ -117,13 +129,18 @@ class Client:
             try:
                 message = parse(text)
             except ValueError as error:
+                self._heard += 1
                 complain(str(error), text)
                 continue
             if isinstance(message, Ready):
                 self._link.shown()
                 continue
+            self._heard += 1
             if isinstance(message, Piece):
                 self._take_piece(message)
+                continue
+            if isinstance(message, Draws):
+                self._feed, self._seen = Feed() if message.itself else None, None
                 continue
             if isinstance(message, Move) and self._waiting and isinstance(self._waiting[-1], Move):
                 self._waiting.pop()  # only where the pointer is now counts
@@ -138,32 +155,41 @@ class Client:
             self.complete_uploads.append(upload)
             self._upload = None
 
-    def attend(self, connection: Connection, style: PageStyle) -> Frame | None:
-        """Do what the page said, and send it a picture if it takes one and anything has changed or come to rest.
+    def attend(self, connection: Connection, style: PageStyle, *, is_watched: bool = False) -> Frame | None:
+        """Do what the page said, and send it what is new if it takes that and anything has changed or come to rest.
+
+        Args:
+            connection: The way to the page.
+            style: How the page looks.
+            is_watched: Whether a picture is wanted although the page draws by itself.
 
         Returns:
-            The picture; None if there was none to be sent.
+            The picture that the page shows; None if nothing was sent.
         """
         try:
-            picture = self._picture_if_due(style)
+            update = self._update_if_due(style)
+            if not isinstance(update, list):
+                picture = update
+            else:
+                picture = self._picture(self.interaction.overlay(), style) if update and is_watched else None
         except RavemjError as error:
             if error.message != self._complaint:
                 _LOG.error("a page cannot show the environment: %s", error)
                 self._complaint = error.message
             self._seen = None
             return None
-        if picture is not None:
-            self._send(connection, picture, style)
+        if update is not None:
+            self._send(connection, update, style)
             self.looks += self._sees_bodies
         return picture
 
-    def _picture_if_due(self, style: PageStyle) -> Frame | None:
-        """Do what the page said; return a picture if one is due."""
+    def _update_if_due(self, style: PageStyle) -> _Update | None:
+        """Do what the page said; return what it is to be sent if that is due."""
         now = time.monotonic()
         self._sees_bodies = self._simulation.lock.acquire(timeout=_PERIOD)
         self._simulation.published.is_wanted = not self._sees_bodies
         if not self._sees_bodies:  # who holds it may wait for this thread to end
-            return self._picture_of_view(style, now)
+            return self._update_of_view(style, now)
         try:
             self._free_at = now
             self.interaction.pass_time(now)
@@ -173,25 +199,29 @@ class Client:
             self._has_moved |= self.interaction.view.camera is not before
             if not self._link.is_free:
                 return None
-            seen = appearance(self._simulation), self.interaction.version, style, self._ratio
+            heard = self._heard if self._feed else 0  # what a page did by itself is waiting for an answer
+            seen = appearance(self._simulation), self.interaction.version, style, self._ratio, heard
             has_changed = seen != self._seen or self._says_locked
             if not self._is_due(now, has_changed=has_changed):
                 self.looks += 1
                 return None
             self._seen, self._seen_view, self._says_locked = seen, self._view(style), False
             self._overlay = self.interaction.overlay()
+            if self._feed is not None:
+                self._stage = Stage.of(self._simulation, self._overlay, self._scenes)
         finally:
             self._simulation.lock.release()
+        if self._feed is not None and self._stage is not None:
+            return self._news(self._feed, self._stage, self._overlay, style)
         return self._picture(self._overlay, style, self._level(now))
 
-    def _picture_of_view(self, style: PageStyle, now: float) -> Frame | None:
-        """Do what changes only the view, while others have the simulation; return a picture if one is due."""
+    def _update_of_view(self, style: PageStyle, now: float) -> _Update | None:
+        """Do what changes only the view, while others have the simulation; return what is to be sent if that is due."""
         events: list[Event] = []
         for message in self._waiting:
             if isinstance(message, Shape):
                 self._ratio = message.ratio
-            if not isinstance(message, Ready | Piece):
-                events.append(message.resize if isinstance(message, Shape) else message)
+            events.append(message.resize if isinstance(message, Shape) else message)
         before = self.interaction.view.camera
         self._waiting = deque(self.interaction.steer(events))
         self._has_moved |= self.interaction.view.camera is not before
@@ -205,6 +235,9 @@ class Client:
         self._seen_view, self._says_locked = seen, is_long
         lines = tuple(line for line in self._overlay.lines if line != LOCKED)
         self._overlay = self._overlay._replace(lines=(LOCKED, *lines) if is_long else lines)
+        if self._feed is not None and self._stage is not None:
+            self._stage = self._stage.with_published(self._simulation.published)
+            return self._news(self._feed, self._stage, self._overlay, style)
         level = self._level(now)
         return self._renderer.render_again(self.interaction.drawn_view.camera, style.background, self._form(level))
 
@@ -230,11 +263,11 @@ class Client:
         level = self._sharpness.moving(now)
         return level._replace(scale=min(level.scale, _HALF)) if self._link.is_halved else level
 
-    def _do(self, message: Message) -> None:
+    def _do(self, message: Event | Shape) -> None:
         if isinstance(message, Shape):
             self._ratio = message.ratio
             self.interaction.handle(message.resize)
-        elif not isinstance(message, Ready | Piece):
+        else:
             self.interaction.handle(message)
 
     def _picture(self, overlay: Overlay, style: PageStyle, level: Level = CRISP) -> Frame:
@@ -259,20 +292,41 @@ class Client:
         """Have the browser put a text on the clipboard."""
         connection.send(json.dumps({"task": "copy", "text": text}))
 
-    def _send(self, connection: Connection, picture: Frame, style: PageStyle) -> None:
+    def _send(self, connection: Connection, update: _Update, style: PageStyle) -> None:
         link, overlay = self._link, self._overlay
-        if overlay is None:
-            return
-        link.sent(is_moving=not self._is_crisp)
-        mode = self.interaction.mode.value
-        controls = [asdict(control) for control in overlay.controls]
-        text = {"lines": overlay.lines, "mode": mode, "title": style.title, "crisp": self._is_crisp}
-        text["cursor"] = overlay.cursor
-        over = {"controls": controls, "help": overlay.help, "labels": overlay.labels_on(self.interaction.drawn_view)}
-        news = None if overlay.tree is self._tree else overlay.tree  # it may be long
-        tree, self._tree = {"tree": news, "chosen": overlay.chosen}, overlay.tree
-        connection.send(json.dumps({**text, **over, **tree}))
-        if self._is_crisp:
-            connection.send(encoding.resting(picture, is_exact=link.is_good))
-        else:
-            connection.send(encoding.moving(picture, link.quality))
+        if isinstance(update, list):
+            if update:
+                link.sent(is_moving=False)
+            for message in update:
+                connection.send(message)
+        elif overlay is not None:
+            link.sent(is_moving=not self._is_crisp)
+            labels = overlay.labels_on(self.interaction.drawn_view)
+            text = {**self._text(overlay, style), "labels": labels, "crisp": self._is_crisp}
+            if overlay.tree is self._tree:  # it may be long
+                del text["tree"]
+            self._tree = overlay.tree
+            connection.send(json.dumps(text, default=asdict))
+            if self._is_crisp:
+                connection.send(encoding.resting(update, is_exact=link.is_good))
+            else:
+                connection.send(encoding.moving(update, link.quality))
+
+    def _news(self, feed: Feed, stage: Stage, overlay: Overlay, style: PageStyle) -> list[str | bytes]:
+        """Return what a page that draws by itself has not been sent yet."""
+        labels = [(*label.point.tolist(), label.text) for label in overlay.labels]
+        text = {**self._text(overlay, style), "labels": labels, "background": style.background, "crisp": True}
+        return feed.messages(stage, self.interaction.drawn_view, text, self._heard)
+
+    def _text(self, overlay: Overlay, style: PageStyle) -> dict[str, object]:
+        """Return what stands beside pictures, by field."""
+        return {
+            "lines": overlay.lines,
+            "mode": self.interaction.mode.value,
+            "title": style.title,
+            "cursor": overlay.cursor,
+            "controls": overlay.controls,
+            "help": overlay.help,
+            "tree": overlay.tree,
+            "chosen": overlay.chosen,
+        }

@@ -64,7 +64,17 @@ class Piece(NamedTuple):
     is_last: bool
 
 
-Message = Event | Shape | Ready | Piece
+class Draws(NamedTuple):
+    """The page says who draws.
+
+    Attributes:
+        itself: Whether it draws by itself; False: it shows pictures.
+    """
+
+    itself: bool
+
+
+Message = Event | Shape | Ready | Piece | Draws
 
 
 def parse(text: str | bytes) -> Message:
@@ -176,4 +186,5 @@ _PARSERS: dict[str, Callable[[dict[str, Any]], Message]] = {
     "shape": _shape,
     "piece": _piece,
     "ready": lambda fields: Ready(),
+    "draws": lambda fields: Draws(_flag(fields["itself"])),
 }

@@ -11,7 +11,8 @@ import threading
 import time
 import weakref
 from collections.abc import Callable
-from pathlib import Path
+from importlib import resources
+from importlib.resources.abc import Traversable
 
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
@@ -24,18 +25,25 @@ from ravemj.gui.viewers.web.rejections import Rejections
 LOOPBACK = "127.0.0.1"
 _LOCAL_NAMES = {LOOPBACK, "localhost", "::1"}
 _EVERYWHERE = {"", "0.0.0.0", "::"}
-_FOLDER = Path(__file__).with_name("page")
-_FILES = {
-    "": "text/html",
-    "page.css": "text/css",
-    "page.js": "text/javascript",
-    "controls.css": "text/css",
-    "controls.js": "text/javascript",
-    "drop.js": "text/javascript",
-    "tree.css": "text/css",
-    "tree.js": "text/javascript",
+_FOLDER = resources.files("ravemj.gui.viewers.web") / "page"
+_WEBGL = resources.files("ravemj.graphics.webgl") / "page"
+_FILES: dict[str, tuple[str, Traversable]] = {
+    "": ("text/html", _FOLDER / "page.html"),
+    "page.css": ("text/css", _FOLDER / "page.css"),
+    "page.js": ("text/javascript", _FOLDER / "page.js"),
+    "drawing.js": ("text/javascript", _FOLDER / "drawing.js"),
+    "controls.css": ("text/css", _FOLDER / "controls.css"),
+    "controls.js": ("text/javascript", _FOLDER / "controls.js"),
+    "drop.js": ("text/javascript", _FOLDER / "drop.js"),
+    "tree.css": ("text/css", _FOLDER / "tree.css"),
+    "tree.js": ("text/javascript", _FOLDER / "tree.js"),
+    "camera.js": ("text/javascript", _WEBGL / "camera.js"),
+    "renderer.js": ("text/javascript", _WEBGL / "renderer.js"),
 }
 _SOCKET = "socket"
+_FOREVER = "private, max-age=31536000, immutable"
+"""How long browsers keep what has a name made of its content."""
+
 _TOKEN = re.compile(r"[A-Za-z0-9_-]{8,64}")
 _MOST_CONNECTIONS = 32
 _HANDSHAKE = 5.0
@@ -68,6 +76,7 @@ class PageServer:
         host: str,
         port: int,
         serve_page: Callable[[ServerConnection], None],
+        find_scene: Callable[[str], bytes | None],
         *,
         token: str | None = None,
         any_name: bool,
@@ -78,6 +87,7 @@ class PageServer:
             host: Name or number of the interface.
             port: Number of the port; 0: any that is free.
             serve_page: Called with the connection of each page, in a thread of its own.
+            find_scene: Returns what pages fetch once and keep, by its name; None where there is no such thing.
             token: The secret that begins each path; None: a new one.
             any_name: Whether browsers may call this server what they like, as they do where something stands between.
 
@@ -90,6 +100,7 @@ class PageServer:
         self.closed = threading.Event()
         self._may_stop = threading.Lock()  # once, by whoever comes first
         self._any_name = any_name
+        self._find_scene = find_scene
         self._listening = _listen(host, port)
         self.port = int(self._listening.getsockname()[1])
         self._threads: set[threading.Thread] = set()
@@ -169,13 +180,18 @@ class PageServer:
     def _answer(self, request: Request) -> Response | None:
         """Answer a request: with a file, with a refusal, or None where a page may open its connection."""
         token, slash, name = request.path.partition("?")[0].removeprefix("/").partition("/")
-        is_known = secrets.compare_digest(token.encode(), self.token.encode()) and name in {*_FILES, _SOCKET}
+        is_friend = secrets.compare_digest(token.encode(), self.token.encode())
+        scene = self._find_scene(name) if is_friend else None
+        is_known = is_friend and (name in {*_FILES, _SOCKET} or scene is not None)
         if is_known:
             self._strangers.pop(threading.current_thread(), None)
         if not (slash and is_known) or not self._is_our_name(request.headers.get("Host", "")):
             return _text(http.HTTPStatus.NOT_FOUND, "There is nothing here.\n")
+        if scene is not None:
+            return _response(http.HTTPStatus.OK, "application/octet-stream", scene, _FOREVER)
         if name != _SOCKET:
-            return _response(http.HTTPStatus.OK, f"{_FILES[name]}; charset=utf-8", _read(name or "page.html"))
+            kind, file = _FILES[name]
+            return _response(http.HTTPStatus.OK, f"{kind}; charset=utf-8", file.read_bytes())
         origin = request.headers.get("Origin", "")
         if not self._is_our_page(origin, request.headers):
             self.complain("a page of another site is refused", origin)
@@ -231,20 +247,16 @@ def _bracketed(name: str) -> str:
     return f"[{name}]" if ":" in name else name
 
 
-def _read(name: str) -> bytes:
-    return (_FOLDER / name).read_bytes()
-
-
 def _text(status: http.HTTPStatus, text: str) -> Response:
     return _response(status, "text/plain", text.encode())
 
 
-def _response(status: http.HTTPStatus, kind: str, body: bytes) -> Response:
+def _response(status: http.HTTPStatus, kind: str, body: bytes, caching: str = "no-store") -> Response:
     headers = Headers()
     headers["Content-Type"] = kind
     headers["Content-Length"] = str(len(body))
     headers["Content-Security-Policy"] = _POLICY
-    headers["Cache-Control"] = "no-store"
+    headers["Cache-Control"] = caching
     headers["Referrer-Policy"] = "no-referrer"
     headers["X-Content-Type-Options"] = "nosniff"
     headers["Connection"] = "close"

@@ -22,6 +22,7 @@ from ravemj.gui.viewers.player import camera_line
 from ravemj.gui.viewers.recorder import FrameSource
 from ravemj.gui.viewers.viewer import Viewer
 from ravemj.gui.viewers.web.client import Client, PageStyle, receive
+from ravemj.gui.viewers.web.scenes import Scenes
 from ravemj.gui.viewers.web.server import LOOPBACK, PageServer, is_local
 
 _LOG = logging.getLogger("ravemj")
@@ -72,11 +73,13 @@ class WebViewer(Viewer):
         self._clients: dict[ServerConnection, Client] = {}
         self._views: dict[str, Interaction] = {}
         self._lock = threading.Lock()
+        self._scenes = Scenes()
         reference: weakref.ref[WebViewer] = weakref.ref(self)
         self.server = PageServer(
             host,
             port,
             lambda connection: _serve(reference, connection),
+            self._scenes.content,
             token=token,
             any_name=any_name or not is_local(host),
         )
@@ -143,7 +146,7 @@ class WebViewer(Viewer):
             self._views[tab] = view
             for oldest in list(self._views)[:-_MOST_TABS]:
                 del self._views[oldest]
-            self._clients[connection] = Client(self._simulation, self._renderer, view)
+            self._clients[connection] = Client(self._simulation, self._renderer, view, self._scenes)
 
     def attend(self, connection: ServerConnection, messages: Iterable[str | bytes]) -> bool:
         """Do what a page says and send it a picture if one is due; return whether it may say more.
@@ -153,7 +156,7 @@ class WebViewer(Viewer):
         client = self._clients[connection]
         client.take_in(messages, self.server.complain)
         style = PageStyle(self._background, self._title)
-        picture = client.attend(connection, style)
+        picture = client.attend(connection, style, is_watched=bool(self._image_callbacks))
         if client.take_moved():
             with self._lock:  # or a script's camera, which comes to the views one by one, would be lost
                 self.interaction.look_as(client.interaction.view)

@@ -6,12 +6,17 @@ const FIRST_WAIT = 300, LONGEST_WAIT = 4000, LONG_PRESS = 550, FAR = 4, GOING_AW
 
 // --- the connection
 
-let socket = null, overlay = null, wait = FIRST_WAIT, retry = 0, owed = 0;
+let socket = null, overlay = {}, wait = FIRST_WAIT, retry = 0, owed = 0, said = 0;
+let drawing = null, order = Promise.resolve();  // what draws here, if anything does; what is done with messages
 
 const tab = sessionStorage.ravemj ||= crypto.getRandomValues(new Uint32Array(3)).join("-");
 
 function send(message) {
-  if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+  if (!socket || socket.readyState !== WebSocket.OPEN) return;
+  socket.send(JSON.stringify(message));
+  if (message.type === "ready") return;
+  said += 1;
+  if (drawing && drawing.foresee(message, said, overlay.mode, view.clientHeight)) requestDrawing();
 }
 
 function connect() {
@@ -21,14 +26,17 @@ function connect() {
   opened.onopen = () => {
     wait = FIRST_WAIT;
     tell("");
+    [overlay, said] = [{}, 0];
+    if (drawing) drawing.begin();
     shape();
+    send({ type: "draws", itself: drawing !== null });
     ready();
   };
-  opened.onmessage = (event) => {
-    if (typeof event.data !== "string") return show(event.data, overlay, opened);
-    const said = JSON.parse(event.data);
-    if (said.task) doTask(said);
-    else overlay = said;
+  opened.onmessage = ({ data }) => {  // one after the other: some take time
+    order = order.then(() => (opened === socket ? take(data, opened) : null)).catch((error) => {
+      console.error(error);
+      if (drawing) takePictures(error.message);
+    });
   };
   opened.onclose = (event) => {
     if (event.code === GOING_AWAY) {
@@ -59,6 +67,24 @@ window.addEventListener("online", () => {
   if (socket.readyState === WebSocket.CLOSED) connect();
 });
 
+async function take(data, from) {
+  if (typeof data === "string") {
+    const news = JSON.parse(data);
+    if (news.task) return doTask(news);
+    overlay = { ...overlay, ...news };
+    for (const one of news.changed || []) {
+      overlay.controls = overlay.controls.map((other) => (other.name === one.name ? one : other));
+    }
+    isNews = true;
+    if (drawing && news.scene && !await drawing.load(news.scene)) from.close();
+  } else if (new Uint8Array(data)[0] > LAST_KIND) {
+    show(data, overlay, from);
+  } else if (!drawing || await drawing.take(data)) {
+    unanswered += 1;
+    requestDrawing();
+  }
+}
+
 // --- pictures and text
 
 let received = 0, newest = 0;
@@ -71,6 +97,7 @@ async function show(data, over, from) {
       newest = number;
       paint.drawImage(picture, 0, 0, view.width, view.height);
       write(over);
+      label(over.labels);
     }
     picture.close();
   } finally {
@@ -86,7 +113,6 @@ function write(over) {
   showControls(over.controls);
   showHelp(over.help);
   showTree(over.tree, over.chosen);
-  label(over.labels);
   document.title = over.title;
   Object.assign(document.body.dataset, { mode: over.mode, crisp: over.crisp });
   for (const button of document.querySelectorAll("#modes button")) {
@@ -118,6 +144,7 @@ function shape() {
     kept.getContext("2d").drawImage(view, 0, 0);
     [view.width, view.height] = [columns, rows];
     paint.drawImage(kept, 0, 0, columns, rows);
+    requestDrawing();
   }
   send({ type: "shape", width, height, ratio });
 }
@@ -303,4 +330,10 @@ class Wheel {
 }
 
 for (const element of document.querySelectorAll("[role=slider]")) new Wheel(element);
+try {
+  if (new URLSearchParams(location.search).has("pictures")) throw new Error("the address asks for pictures");
+  drawing = new Drawing(() => takePictures("WebGL has stopped"));
+} catch (error) {
+  takePictures(error.message);
+}
 connect();

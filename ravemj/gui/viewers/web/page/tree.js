@@ -4,10 +4,11 @@
 const tree = document.getElementById("tree"), branches = tree.querySelector("[role=tree]");
 const search = tree.querySelector("input");
 const MARKS = { body: "▣", link: "◆", joint: "↻" };
-let marked = "";
+let marked = "", shown = null;
 
-function showTree(nodes, chosen) {  // no nodes: those from before; an empty list: it is folded
-  if (nodes) {
+function showTree(nodes, chosen) {  // an empty list: it is folded
+  if (nodes !== shown) {
+    shown = nodes;
     tree.hidden = nodes.length === 0;
     branches.replaceChildren(...nodes.map(branch));
     marked = "";

@@ -1,0 +1,188 @@
+"""What a page that draws by itself is sent: only what has changed.
+
+Texts are JSON objects with the fields that are new; ``changed`` holds controls that take the place of those of the same
+names. Binary messages begin with a number of 32 bits, their kind:
+
+- ``FRAME``: the page draws all that came since the last one. Then, little endian: how many messages of the page have
+  been acted on, how many bodies and how many shapes follow, and whether a camera does (32 bits each); the camera's
+  position, quaternion wxyz, vertical field of view [rad] and distance to its focus [m], 0 where the page cannot know
+  what a drag does (9 floats); the bodies' positions (3 floats each), their quaternions (4 integers of 16 bits each;
+  32767 is 1), their numbers (32 bits each); the shapes' numbers (32 bits each), their colours (4 bytes each).
+- ``DRAWINGS``, ``FIGURES``: what scripts have drawn, and what is drawn over the bodies, as ``pack_drawings`` packs it.
+"""
+
+import json
+import struct
+from dataclasses import asdict
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from ravemj.core.transforms import Floats, wxyz_from_rows
+from ravemj.engine.simulation import Simulation
+from ravemj.engine.simulation.published import Published
+from ravemj.graphics.rendering.visibility import geom_rgba
+from ravemj.graphics.webgl.packing import Package, pack_drawings
+from ravemj.gui.interaction import Overlay, View
+from ravemj.gui.viewers.web.scenes import Scene, Scenes
+from ravemj.model.drawing import Primitives
+
+FRAME, DRAWINGS, FIGURES = range(3)
+
+_UNIT = 32767
+_DIGITS = 6
+"""Decimals of positions [m]: what moves less stands still."""
+
+_LEVEL = 1
+"""How hard drawings are compressed: they may change with every frame."""
+
+
+class Stage(NamedTuple):
+    """What is seen, but for the camera and texts.
+
+    Attributes:
+        scene: The surfaces.
+        positions: Of the scene's bodies in the world, shape (B, 3) [m].
+        rotations: Their quaternions wxyz in parts of 32767, shape (B, 4).
+        colours: Of the shapes, red, green, blue and opacity from 0 to 255, shape (S, 4).
+        drawings: What scripts have drawn.
+        figures: What is drawn over the bodies.
+        edges: Whether only edges are drawn.
+        model: What numbers the bodies.
+        published: How often a script had published where the bodies are.
+    """
+
+    scene: Scene
+    positions: NDArray[np.float32]
+    rotations: NDArray[np.int16]
+    colours: NDArray[np.uint8]
+    drawings: Primitives
+    figures: Primitives
+    edges: bool
+    model: mujoco.MjModel
+    published: int
+
+    @classmethod
+    def of(cls, simulation: Simulation, overlay: Overlay, scenes: Scenes) -> "Stage":
+        """Return what is seen of a simulation, which the caller has locked."""
+        compiled = simulation.compiled()
+        model, data, style = compiled.model, compiled.data, overlay.style
+        scene = scenes.of(model, simulation.version, style)
+        colours = style.colours(model, geom_rgba(model))[scene.geoms]
+        return cls(
+            scene,
+            *_packed_poses(scene, data.xpos, data.xquat),
+            np.rint(255 * np.clip(colours, 0, 1)).astype(np.uint8),
+            simulation.drawings.primitives(),
+            overlay.primitives,
+            style.wireframe,
+            model,
+            simulation.published.number,
+        )
+
+    def with_published(self, published: Published) -> "Stage":
+        """Return it with the bodies where a script has published them since, while it has the simulation."""
+        poses = None if published.number == self.published else published.poses(self.model)
+        if poses is None:
+            return self
+        positions, rotations = _packed_poses(self.scene, *poses)
+        return self._replace(positions=positions, rotations=rotations, published=published.number)
+
+
+def _packed_poses(scene: Scene, positions: Floats, wxyz: Floats) -> tuple[NDArray[np.float32], NDArray[np.int16]]:
+    rounded = np.round(positions[scene.bodies], _DIGITS).astype(np.float32)
+    return rounded, np.rint(_UNIT * wxyz[scene.bodies]).astype(np.int16)
+
+
+class Feed:
+    """Knows what a page has."""
+
+    def __init__(self) -> None:
+        self._text: dict[str, Any] = {}
+        self._stage: Stage | None = None
+        self._camera = b""
+        self._heard: int = 0
+
+    def messages(self, stage: Stage, view: View, text: dict[str, object], heard: int) -> list[str | bytes]:
+        """Return what is new for the page; nothing where it has everything.
+
+        Args:
+            stage: What is seen.
+            view: Where from.
+            text: What stands beside it, by field.
+            heard: How many messages of the page have been acted on.
+        """
+        messages: list[str | bytes] = []
+        text = {**text, "scene": stage.scene.name, "edges": stage.edges}
+        said = _changed(self._text, text)
+        if said:
+            messages.append(json.dumps(said, default=asdict))
+        before = self._stage
+        if before is None or stage.drawings is not before.drawings:
+            messages.append(_drawn(DRAWINGS, stage.drawings))
+        if before is None or not _is_same(stage.figures, before.figures):
+            messages.append(_drawn(FIGURES, stage.figures))
+        news, camera = self._news(stage), _packed_camera(view)
+        if messages or news is not None or camera != self._camera or heard != self._heard:
+            messages.append(_frame(stage, news, camera if camera != self._camera else b"", heard))
+        self._text, self._stage = text, stage
+        self._camera, self._heard = camera, heard
+        return messages
+
+    def _news(self, stage: Stage) -> tuple[NDArray[np.intp], NDArray[np.intp]] | None:
+        """Return which bodies have moved and which shapes have other colours, as indices; None where nothing has."""
+        before = self._stage
+        if before is None or before.scene.name != stage.scene.name:
+            return np.arange(len(stage.positions)), np.arange(len(stage.colours))
+        moved = (stage.positions != before.positions).any(axis=1) | (stage.rotations != before.rotations).any(axis=1)
+        news = np.flatnonzero(moved), np.flatnonzero((stage.colours != before.colours).any(axis=1))
+        return news if any(part.size for part in news) else None
+
+
+def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields that are new; where only values of controls are, ``changed`` has those controls."""
+    said = {name: value for name, value in after.items() if name not in before or before[name] != value}
+    old, new = before.get("controls", ()), said.get("controls", ())
+    if new and [control.name for control in old] == [control.name for control in new]:
+        del said["controls"]
+        said["changed"] = [control for control, other in zip(new, old, strict=True) if control != other]
+    return said
+
+
+def _frame(stage: Stage, news: tuple[NDArray[np.intp], NDArray[np.intp]] | None, camera: bytes, heard: int) -> bytes:
+    moved, painted = news or (np.empty(0, np.intp), np.empty(0, np.intp))
+    return b"".join(
+        (
+            struct.pack("<5I", FRAME, heard & 0xFFFFFFFF, moved.size, painted.size, camera != b""),
+            camera,
+            stage.positions[moved].tobytes(),
+            stage.rotations[moved].tobytes(),
+            stage.scene.bodies[moved].astype(np.uint32).tobytes(),
+            painted.astype(np.uint32).tobytes(),
+            stage.colours[painted].tobytes(),
+        )
+    )
+
+
+def _packed_camera(view: View) -> bytes:
+    camera = view.camera
+    rotation = wxyz_from_rows(camera.rotation.tolist())
+    distance = 0.0 if view.is_upright else view.distance
+    return struct.pack("<9f", *camera.position.tolist(), *rotation, camera.fovy, distance)
+
+
+def _drawn(kind: int, primitives: Primitives) -> bytes:
+    package = Package()
+    pack_drawings(package, primitives)
+    return struct.pack("<I", kind) + package.content(_LEVEL)
+
+
+def _is_same(one: Primitives, other: Primitives) -> bool:
+    """Return whether figures look the same."""
+    return one is other or all(
+        np.array_equal(array, others)
+        for batch, other_batch in zip(one.batches, other.batches, strict=True)
+        for array, others in zip(batch, other_batch, strict=True)
+    )

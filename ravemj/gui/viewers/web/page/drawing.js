@@ -1,0 +1,173 @@
+"use strict";
+// Draws what the other side sends: surfaces once, then what has changed. The view turns at once; the answer corrects it.
+
+const FRAME = 0, DRAWINGS = 1, LAST_KIND = 2;
+const CLICK = 4, NEARER = 0.9, ZOOM = 4;  // as in ravemj/gui/interaction
+
+class Drawing {
+  /** Raises an error where there is no WebGL2. */
+  constructor(onLost) {
+    this.canvas = document.createElement("canvas");
+    this.canvas.addEventListener("webglcontextlost", onLost);
+    this.renderer = new Renderer(this.canvas);
+    this.begin();
+  }
+
+  /** Begin a connection. */
+  begin() {
+    this.answer = this.foreseen = null;  // the view as the other side says, and as it should become
+    this.heard = this.foreseenBy = 0;  // numbers of messages
+    this.letGo();
+  }
+
+  /** Fetch surfaces; return whether they were there. */
+  async load(name) {
+    if (this.name === name) return true;
+    const answer = await fetch(name).catch(() => ({ ok: false }));
+    if (!answer.ok) return false;
+    this.renderer.load(await unpacked(await answer.arrayBuffer()));
+    this.name = name;
+    return true;
+  }
+
+  /** Take over a binary message; return whether it is a frame to be drawn. */
+  async take(bytes) {
+    const { renderer } = this, [kind] = new Uint32Array(bytes, 0, 1);
+    if (kind !== FRAME) {
+      const { content, array } = await unpacked(new Uint8Array(bytes, 4));
+      renderer.show(kind === DRAWINGS ? "drawings" : "figures", content.drawings, array);
+      return false;
+    }
+    const [, heard, bodies, shapes, cameras] = new Uint32Array(bytes, 0, 5);
+    let at = 20;
+    const part = (Type, count) => {
+      const made = new Type(bytes, at, count);
+      at += made.byteLength;
+      return made;
+    };
+    const camera = part(Float32Array, 9 * cameras);
+    const positions = part(Float32Array, 3 * bodies), turns = part(Int16Array, 4 * bodies);
+    part(Uint32Array, bodies).forEach((body, i) => {
+      renderer.place(body, ...positions.subarray(3 * i, 3 * i + 3), ...turns.subarray(4 * i, 4 * i + 4));
+    });
+    const painted = part(Uint32Array, shapes), colors = part(Uint8Array, 4 * shapes);
+    painted.forEach((shape, i) => {
+      renderer.shapes[shape].rgba = [...colors.subarray(4 * i, 4 * i + 4)].map((shade) => shade / 255);
+    });
+    if (cameras) {
+      const [x, y, z, w, a, b, c, fovy, distance] = camera;
+      this.answer = new View({ rotation: rotationOf(w, a, b, c), position: [x, y, z], fovy, distance });
+    }
+    this.heard = heard;
+    return true;
+  }
+
+  get view() { return this.foreseen && this.heard < this.foreseenBy ? this.foreseen : this.answer; }
+
+  /** Draw into another canvas. */
+  draw(paint) {
+    const { canvas } = this, { width, height } = paint.canvas;
+    if (!this.view || !this.name) return;
+    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+    this.renderer.draw(this.view);
+    paint.drawImage(canvas, 0, 0);
+  }
+
+  // --- what the view becomes by what hands do, as in ravemj/gui/interaction/hand.py
+
+  letGo() {
+    this.buttons = new Set();
+    this.press = this.follow = null;
+    this.isCentring = false;
+  }
+
+  /** Do with the view what a message will do over there; return whether that changes anything. */
+  foresee(message, number, mode, height) {
+    const view = this.foreseeable(message, mode === "camera", height);
+    if (!view || !this.view || !this.view.distance) return false;
+    this.foreseen = view;
+    this.foreseenBy = number;
+    return true;
+  }
+
+  foreseeable(message, isCamera, height) {
+    const { view } = this, { x, y, steps, tool, amount, button } = message;
+    if (!view) return null;
+    switch (message.type) {
+      case "press":
+        this.buttons.add(button);
+        this.press = message;
+        this.follow = isCamera && !message.touch && !this.isCentring ? this.hold(message, view, height) : null;
+        return null;
+      case "move":
+      case "release": {
+        const right = x - (this.press || message).x, down = y - (this.press || message).y;
+        if (this.press && this.press.touch && isCamera && !this.follow && Math.hypot(right, down) > CLICK) {
+          this.follow = (across, along) => view.turned(across, along, height);
+        }
+        const followed = this.follow && this.follow(right, down);
+        if (message.type === "release") {
+          this.buttons.delete(button);
+          this.press = this.follow = null;
+        }
+        return followed;
+      }
+      case "wheel": return isCamera ? view.zoomed(Math.log(NEARER) * steps) : null;
+      case "fingers": return this.pinched(view, message, height);
+      case "use":
+        if (tool === "Dolly") return view.zoomed(-ZOOM * amount / height);
+        if (tool.startsWith("Rot")) return tool === "RotX" ? view.turned(0, amount, height) : view.turned(amount, 0, height);
+        return null;
+      case "key": if (message.name === "s") this.isCentring = message.pressed; return null;
+      case "leave": this.letGo(); return null;
+      default: return null;
+    }
+  }
+
+  hold({ button, shift }, view, height) {
+    if (this.buttons.has("left") && this.buttons.has("middle")) {
+      return (right, down) => view.zoomed(-ZOOM * down / height);
+    }
+    if (button === "middle" || (button === "left" && shift)) return (right, down) => view.shifted(right, down, height);
+    return button === "left" ? (right, down) => view.turned(right, down, height) : null;
+  }
+
+  pinched(view, { x, y, right, down, spread }, height) {
+    const across = x - 0.5 * height * this.aspect, along = y - 0.5 * height;
+    return view.zoomed(-Math.log(spread))
+      .shifted(across - spread * (across - right), along - spread * (along - down), height);
+  }
+
+  get aspect() { return this.canvas.width / this.canvas.height; }
+}
+
+let isNews = false, unanswered = 0, requested = 0;
+
+/** Draw with the screen's next picture, and say so for all frames that have come until then. */
+function requestDrawing() {
+  requested ||= requestAnimationFrame(() => {
+    requested = 0;
+    draw();
+    for (; unanswered > 0; unanswered -= 1) ready();
+  });
+}
+
+function draw() {
+  if (!drawing || !drawing.view) return;
+  drawing.renderer.background = overlay.background;
+  drawing.renderer.hasEdgesOnly = overlay.edges;
+  drawing.draw(paint);
+  label(overlay.labels.flatMap(([x, y, z, words]) => {
+    const place = drawing.view.projected([x, y, z], view.clientWidth, view.clientHeight);
+    return place ? [[...place, words]] : [];
+  }));
+  if (isNews) write(overlay);
+  isNews = false;
+}
+
+function takePictures(why) {
+  const source = document.getElementById("source");
+  [source.hidden, source.title] = [false, why];
+  drawing = null;
+  send({ type: "draws", itself: false });
+}
