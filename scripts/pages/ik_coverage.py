@@ -46,7 +46,7 @@ _TYPES_HEAD = """\
 |---|---|---|---|---:|---:|---:|---:|
 """
 HEAD = """\
-# Inverse kinematics
+# How inverse kinematics is solved
 
 Which joint values bring the tool to a place? This page says how ravemj answers, and how well. The tables are made by
 `scripts/pages/ik_coverage.py`; a test compares what does not depend on the machine.

@@ -633,8 +633,12 @@ class TestCopies:
         assert loose.GetTransform()[0, 3] == 0.5
         taken = ravemj.RaveClone(devices[0])
         np.testing.assert_allclose(taken.GetTransform(), devices[0].GetTransform())
-        with pytest.raises(ravemj.openrave_exception, match="on a robot"):
+        with pytest.raises(ravemj.openrave_exception, match="this is a 'BaseLaser2D'"):
             devices[0].Clone(loose)
+        at = devices[0].GetTransform()
+        taken.set_noise(0, seed=1)
+        devices[0].Clone(taken)  # its robot carries it on
+        np.testing.assert_array_equal(devices[0].GetTransform(), at)
 
     def test_of_a_sensor_that_needs_its_link(self, env):
         info = Robot.AttachedSensorInfo(_name="imu", _linkname="base", _sensorname="BaseIMU")
