@@ -136,7 +136,7 @@ class TestCameraMode:
         for key in ("a", "Enter", "F2", "Delete", "Space", "Home", "r"):
             desk.page.keyboard.press(key)
         desk.page.mouse.move(300, 100)
-        desk.await_camera()
+        desk.await_picture()
         assert np.allclose(desk.viewer.GetCameraTransform(), ASLANT, atol=1e-3)
         assert desk.viewer.GetSelectedBody() is None
 

@@ -138,11 +138,11 @@ def test_sliders_unfold_and_turn_joints(desk):
     time.sleep(0.5)  # until it is crisp
     plain = desk.picture()
     desk.click("joints")
-    desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 13, "no sliders")
+    desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 15, "no sliders")
     desk.drag("dof 1", 0.5, 0.6, 0.75)
     desk.await_value("robot.GetDOFValues().tolist()", lambda q: q[0] == 0 and 1.2 < q[1] < 2.1, "the joint stays")
     desk.click("joints")
-    desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 7, "the sliders stay")
+    desk.await_value("len(viewer.interaction.overlay().controls)", lambda count: count == 9, "the sliders stay")
     desk.ask("robot.SetDOFValues([0, 0])")
     desk.display.tool("mousemove", "--window", str(desk.window), "320", "5")
     await_that(lambda: np.array_equal(desk.picture(), plain), "something of them stays")
@@ -154,7 +154,7 @@ def test_a_picture_and_a_video_are_saved_and_the_window_says_where(desk, folder)
     await_that(lambda: list(folder.glob("ravemj-*.png")), "no picture is saved")
     (file,) = folder.glob("ravemj-*.png")
     saved = imageio.v3.imread(file)
-    clear = slice(100, 300), slice(60, 560)
+    clear = slice(100, 300), slice(60, 530)
     away = np.abs(saved[clear].astype(int) - desk.picture()[clear]).max(axis=2)
     assert (away > 0).mean() < 0.005, "another renderer may draw other edges, no more"
     assert np.ptp(saved[clear]) > 100

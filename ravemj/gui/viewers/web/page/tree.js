@@ -4,11 +4,11 @@
 const tree = document.getElementById("tree"), branches = tree.querySelector("[role=tree]");
 const search = tree.querySelector("input");
 const MARKS = { body: "▣", link: "◆", joint: "↻" };
-let marked = "", shown = null;
+let marked = "", listed = null;
 
 function showTree(nodes, chosen) {  // an empty list: it is folded
-  if (nodes !== shown) {
-    shown = nodes;
+  if (nodes !== listed) {
+    listed = nodes;
     tree.hidden = nodes.length === 0;
     branches.replaceChildren(...nodes.map(branch));
     marked = "";
