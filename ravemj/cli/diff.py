@@ -5,8 +5,9 @@ import json
 from collections.abc import Sequence
 from typing import cast
 
-from ravemj.cli.console import console, table
+from ravemj.cli.console import console, print_error, table
 from ravemj.cli.models import load_model
+from ravemj.errors import RavemjError
 from ravemj.model.comparison import Difference, compare
 from ravemj.model.scene import Scene
 
@@ -14,8 +15,12 @@ _LONGEST = 60
 
 
 def diff(options: argparse.Namespace) -> int:
-    """Compare two models by their numbers; return 1 where they differ."""
-    first, second = (_scene(model) for model in (options.first, options.second))
+    """Compare two models by their numbers; return 1 where they differ, and 2 where one cannot be read."""
+    try:
+        first, second = (_scene(model) for model in (options.first, options.second))
+    except RavemjError as error:
+        print_error(error)
+        return 2
     found = compare(first, second, options.tolerance)
     if options.json:
         print(json.dumps([_entry(difference) for difference in found], indent=1, default=str))

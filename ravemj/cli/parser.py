@@ -194,7 +194,7 @@ def _add_diff(commands: Commands) -> None:
     parser = command(
         commands,
         "diff",
-        "compare two models by their numbers; exit with 1 where they differ",
+        "compare two models by their numbers; exit with 1 where they differ, with 2 where one cannot be read",
         "ravemj diff puma560 arm.xml",
         "ravemj diff old.robot.xml new.robot.xml --json      # a list of part, quantity, first, second, difference",
     )

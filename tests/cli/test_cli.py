@@ -350,6 +350,12 @@ def test_diff_tells_what_differs(folder):
     assert said(ravemj_command(folder, "diff", "env.xml", "other/env.xml", "--tolerance", "0.1")).startswith("no diff")
 
 
+def test_diff_ends_otherwise_where_a_model_cannot_be_read(folder):
+    done = ravemj_command(folder, "diff", "env.xml", "nosuch.xml")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("nosuch.xml: error: there is no such file")
+
+
 def test_convert_writes_what_mujoco_loads(folder):
     assert said(ravemj_command(folder, "convert", "env.xml", "-o", "out.xml")) == "wrote out.xml\n"
     text = (folder / "out.xml").read_text()
