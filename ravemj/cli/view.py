@@ -11,7 +11,7 @@ import numpy as np
 
 from ravemj.cli.models import load_model
 from ravemj.cli.reloading import Reloader
-from ravemj.core.signals import signals_raised
+from ravemj.core.signals import signals_delayed, signals_raised
 from ravemj.gui.viewers import Viewer, has_display
 from ravemj.gui.viewers.window import WindowViewer
 from ravemj.rave import Environment
@@ -34,7 +34,9 @@ def view(options: argparse.Namespace) -> int:
         if window is None:
             _serve(env, options)
         else:
-            _attend(window, Reloader(env, window, options.model, watches=options.watch))
+            reloader = Reloader(env, window, options.model, watches=options.watch)
+            with signals_raised():  # so that what is being saved gets complete
+                _attend(window, reloader)
     finally:
         env.Destroy()
     return 0
@@ -72,15 +74,15 @@ def _serve(env: Environment, options: argparse.Namespace) -> None:
             "everything, and nothing is encrypted on the way",
             file=sys.stderr,
         )
-    with contextlib.suppress(KeyboardInterrupt):
-        with signals_raised():
-            print(viewer.url, flush=True)
-        _attend(viewer, Reloader(env, viewer, options.model, watches=options.watch))
+    reloader = Reloader(env, viewer, options.model, watches=options.watch)
+    with contextlib.suppress(KeyboardInterrupt), signals_raised():  # so that pages learn that it has ended
+        print(viewer.url, flush=True)
+        _attend(viewer, reloader)
 
 
 def _attend(viewer: "WindowViewer | WebViewer", reloader: Reloader) -> None:
     """Wait until a viewer is closed; meanwhile read the model again when that is asked for."""
     while viewer.is_open:
-        with signals_raised():  # so that what is being saved gets complete, and pages learn that it has ended
-            time.sleep(_LOOK)
-        reloader.look()
+        time.sleep(_LOOK)
+        with signals_delayed():
+            reloader.look()
