@@ -34,7 +34,10 @@ nitpick_ignore_regex = [  # pages of others, which a build without network knows
     ("py:class", r"(collections|mujoco|np|numpy|optparse|os|weakref)\..*|EllipsisType|NDArray|Path"),
     ("py:class", r"Parameters|Result"),  # type variables
     # Names of types: of JSON, of functions that scripts hand in, of what modules take.
-    ("py:class", r"(Grasp)?Answer|BodyCallback|Command|Constraint|FilterFunction|Json|PlanCallback|SaveArguments|State"),
+    (
+        "py:class",
+        r"(Grasp)?Answer|BodyCallback|Command|Constraint|FilterFunction|Json|PlanCallback|SaveArguments|State",
+    ),
     ("py:class", r"Animation|View"),  # results with a line or two to say
     (
         "py:class",
