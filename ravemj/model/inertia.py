@@ -40,10 +40,11 @@ class Inertias:
             T_a_links: Poses of the links, shape (links, 4, 4).
 
         Returns:
-            The point [m], shape (3,).
+            The point [m], shape (3,); NaN where nothing has a mass.
         """
         coms = np.einsum("nij,nj->ni", T_a_links[:, :3, :3], self.coms) + T_a_links[:, :3, 3]
-        return self.masses @ coms / self.masses.sum()
+        mass = self.masses.sum()
+        return self.masses @ coms / mass if mass else np.full(3, np.nan)
 
 
 _ROUNDING = 1e-12

@@ -225,6 +225,21 @@ class TestWhatIsSent:
             page.settled()
             assert page.text["lines"] == []
 
+    def test_what_a_script_publishes_is_shown_while_it_has_the_environment(self, env, viewer):
+        robot = env.GetRobots()[0]
+        env.StopSimulation()
+        with Page(viewer) as page:
+            page.settled()
+            with env:
+                await_that(lambda: env.simulation.published.is_wanted)
+                robot.SetDOFValues([0, 0.5])
+                env.UpdatePublishedBodies()
+                published = robot.GetLink("Arm1").GetTransform()
+                robot.SetDOFValues([0, 1])  # nobody has published this
+                while page.frame().bodies != [3]:
+                    pass
+                np.testing.assert_allclose(rows_from_wxyz(page.poses[3][3:]), published[:3, :3], atol=1e-4)
+
     def test_a_body_is_removed_and_another_comes(self, env, viewer):
         with Page(viewer) as page:
             page.settled()

@@ -83,6 +83,9 @@ class TestMass:
         assert np.isfinite(body.GetCenterOfMass()).all()
         other.SetMass(2)
         assert (body.GetMass(), other.GetLocalCOM().tolist()) == (3, [0, 0, 0])
+        for link in (one, other):
+            link.SetMass(0)
+        assert np.isnan(body.GetCenterOfMass()).all()  # and numpy does not warn
 
     def test_moments_and_frame_stay_as_they_are_set(self, robot):
         link = robot.GetLinks()[1]
