@@ -476,6 +476,17 @@ def test_links_touching_when_added_are_looked_up_where_they_were(env, arm):
     assert pairs == [(0, 2), (0, 3), (1, 3)]
 
 
+def test_copies_touch_where_their_originals_touch(env, arm):
+    """A copy that is made in a colliding configuration collides in it, too."""
+    arm.SetDOFValues([0, 3.1, 0])
+    assert arm.CheckSelfCollision()
+    copy = ravemj.RaveCreateRobot(env, "")
+    copy.Clone(arm, 0)
+    env.Add(copy, True)
+    assert copy.CheckSelfCollision()
+    assert copy.GetNonAdjacentLinks() == arm.GetNonAdjacentLinks()
+
+
 def test_end_effector(env, arm):
     hand = arm.GetActiveManipulator()
     box(env, "wall", (1.9, 0.6, 0.3), (0.1, 0.1, 0.1))

@@ -230,6 +230,7 @@ class TestLinkTransformations:
         tree.SetDOFValues([-0.5, 0, other])
         tree.SetLinkTransformations(transforms, values)
         np.testing.assert_allclose(tree.GetDOFValues(), [0.5, 0.25, angle], atol=1e-12)
+        np.testing.assert_array_equal(tree.GetLinkTransformations(True)[1], values)
         np.testing.assert_allclose(tree.GetLinkTransformations(), transforms, atol=1e-12)
 
     @pytest.mark.parametrize("last", CORNERS)

@@ -25,8 +25,8 @@ class DHParameter:
         parentindex: Which record is the joint before; -1: none, and the frame before is the body's.
         transform: ``T_body_joint`` with all joints at 0, shape (4, 4).
         d: Distance along the z axis before [m].
-        a: Distance of both z axes [m].
-        theta: Angle about the z axis before [rad].
+        a: Distance of both z axes [m], along the x axis of the joint's frame, which may point back.
+        theta: Angle about the z axis before [rad], at most 90 degrees either way.
         alpha: Angle between both z axes [rad].
     """
 
@@ -84,9 +84,14 @@ def _record(joint: Joint, before: int, start: Floats, anchor: Floats, axis: Floa
         d = float(np.cross(apart, axis) @ normal) / sine**2
         foot = anchor + axis * (float(np.cross(apart, z) @ normal) / sine**2)
         across = foot - origin - d * z
-    a = float(np.linalg.norm(across))
-    meeting = x if sine < _PARALLEL else normal / sine
-    new_x = across / a if a > _PARALLEL else meeting
+    length = float(np.linalg.norm(across))
+    if sine >= _PARALLEL:
+        new_x = normal / sine
+    else:
+        new_x = across / length if length > _PARALLEL else x
+    if new_x @ x < -_PARALLEL:  # of both directions along the common normal that which turns x by less: 90 degrees
+        new_x = -new_x
+    a = float(across @ new_x)
     theta = float(np.arctan2(np.cross(x, new_x) @ z, x @ new_x))
     alpha = float(np.arctan2(np.cross(z, axis) @ new_x, z @ axis))
     transform = np.eye(4)

@@ -51,7 +51,7 @@ class BodyDynamics:
         self._free_fall = (ZERO, np.zeros(3))  # the last gravity asked for, as given and as an array
         self._velocities: Floats | None = None  # of the links: those that the data are set for
         self._velocities_stamp = -1
-        self._with_joints: bool = False
+        self._with_roots: bool = False
         self._are_moving: bool = False
         self._roots_move: bool = False
         self._rates = np.zeros(kinematics.dof)
@@ -222,33 +222,30 @@ class BodyDynamics:
         linear = motions[:, 3:] + cross(turning, self._arms()) + cross(speeds[:, 3:], speeds[:, :3])
         return np.concatenate((linear, turning), axis=1)
 
-    def _set_velocities(self, velocities: Floats, *, with_joints: bool = True) -> None:
+    def _set_velocities(self, velocities: Floats, *, with_roots: bool = True) -> None:
         """Write velocities into MuJoCo's data, with what follows from them; nothing where they are there already.
 
         Args:
             velocities: Those of the links, shape (links, 6), in an array that is never changed: those of the roots
                 count, and what the others show of the joints.
-            with_joints: Whether the joints move.
+            with_roots: Whether the roots move, too, and not only the joints.
         """
         kinematics = self._kinematics
         kinematics.place_coms()
         is_other, has_moved = velocities is not self._velocities, kinematics.stamp != self._velocities_stamp
-        if not (is_other or has_moved) and with_joints == self._with_joints:
+        if not (is_other or has_moved) and with_roots == self._with_roots:
             return
         were_moving = self._are_moving
         if is_other:
             self._are_moving, self._roots_move = bool(velocities.any()), bool(velocities[kinematics.roots].any())
-        self._velocities, self._velocities_stamp, self._with_joints = velocities, kinematics.stamp, with_joints
+        self._velocities, self._velocities_stamp, self._with_roots = velocities, kinematics.stamp, with_roots
         if not (were_moving or self._are_moving):
             return  # all is 0 in MuJoCo's data
         if is_other or has_moved:
             self._rates = self.dof_velocities(velocities)
         self._rest_qacc[...] = 0.0
-        if with_joints:
-            self._set_joint_velocities()
-        else:
-            self._qvel[...] = 0.0
-        if self._roots_move:
+        self._set_joint_velocities()
+        if self._roots_move and with_roots:
             self._set_roots(self._qvel, velocities)
             turning = {root: _turning_acceleration(velocities[root]) for root in kinematics.roots}
             self._set_roots(self._rest_qacc, turning)
@@ -356,17 +353,18 @@ class BodyDynamics:
     def _write_parts_of_all(self, velocities: Floats) -> None:
         """Write the parts of the forces for the motion in MuJoCo's data.
 
-        Gravity and the base are in all three motions, so that differences leave what is asked for.
+        The part of the joint velocities is that with the base at rest and without gravity.
         """
         by_acceleration, by_velocity, rest = self._forces.matrix, self._by_velocity.matrix, self._rest.matrix
         self._needed(by_acceleration)
         self._set_accelerations(None)
-        self._needed(by_velocity)
-        self._set_velocities(velocities, with_joints=False)
-        self._set_accelerations(None)
         self._needed(rest)
-        by_acceleration -= by_velocity
-        by_velocity -= rest
+        self._gravity[...] = 0.0
+        self._set_velocities(velocities, with_roots=False)
+        self._set_accelerations(None)
+        self._needed(by_velocity)
+        by_acceleration -= rest
+        rest -= by_velocity
 
     def _set_gravity(self, gravity: Vec3) -> None:
         if gravity is not self._free_fall[0]:

@@ -18,6 +18,9 @@ from ravemj.model.scene import Joint
 ROUNDING = 1e-10
 """A link this far [m or in its matrix] from where its joint places it is where its joint places it."""
 
+_VALUE_ROUNDING = 1e-12
+"""The values [rad or m] of a pose are this exact, for links up to some metres apart."""
+
 
 def place_links(kinematics: BodyKinematics, T_world_links: Floats, last_values: Floats) -> None:
     """Put every link at a pose; joints get the values that the poses show.
@@ -46,10 +49,13 @@ def _shown_values(kinematics: BodyKinematics, T_world_links: Floats, last_values
 
 
 def _in_turn(joint: Joint, shown: float, last: float) -> float:
-    """Return the value of a hinge in the full turn that is nearest to its last value."""
-    if joint.kind != "hinge" or joint.static:
-        return shown
-    return shown + math.tau * round((last - shown) / math.tau)
+    """Return the value that a pose shows; of a hinge in the full turn that is nearest to its last value.
+
+    It is the last value itself where only rounding is between them: values do not drift when poses are put back.
+    """
+    if joint.kind == "hinge" and not joint.static:
+        shown += math.tau * round((last - shown) / math.tau)
+    return last if abs(shown - last) < _VALUE_ROUNDING else shown
 
 
 def _displace(kinematics: BodyKinematics, placed: Floats, wanted: Floats) -> None:

@@ -63,7 +63,7 @@ class BodyState:
         index: Its index in the world, from 1; 0 while it is not in the world.
         stamp: Grows with every change of pose.
         rest_poses: The pose in which links that touch never count as colliding, shape (links, 4, 4): that in which the
-            body was added.
+            body was added, or that of the body of which it is a copy.
     """
 
     def __init__(self, scene: KinBody, simulation: "Simulation") -> None:
@@ -309,7 +309,7 @@ class BodyState:
             RavemjError: this body is in the world.
         """
         self.rebuild(other.scene if name is None else replace(other.scene, name=name))
-        self.link_enabled = other.link_enabled
+        self.link_enabled, self.rest_poses = other.link_enabled, other.rest_poses
         if other._kinematics is not None:
             self.own_kinematics.restore(other._kinematics.configuration())
         self._velocities = other.link_velocities()

@@ -100,7 +100,8 @@ class Simulation:
             body.index = index or [*self._places, None].index(None) + 1
             self._places += [None] * (body.index - len(self._places))
             self._places[body.index - 1] = self._by_name[body.scene.name] = body
-            body.rest_poses = body.link_transforms()
+            if body.rest_poses is None:
+                body.rest_poses = body.link_transforms()
 
     def remove(self, body: BodyState) -> bool:
         """Take a body out of the world; it keeps its pose. Return False if it was not there."""
@@ -109,7 +110,7 @@ class Simulation:
                 return False
             self.forget_model()
             self.changed.discard(body)
-            body.grabs = []
+            body.grabs, body.rest_poses = [], None
             for holder in self.bodies:
                 holder.release(body)
             self._places[body.index - 1] = None
@@ -182,7 +183,6 @@ class Simulation:
         for body, copy in copies.items():
             copy.copy(body)
             self.insert(copy, body.index)
-            copy.rest_poses = body.rest_poses
             copy.enter_limits()
         for body, copy in copies.items():
             copy.grabs = [grab._replace(body=copies[grab.body]) for grab in body.grabs if grab.body in copies]

@@ -1,0 +1,33 @@
+"""``openravepy.planningutils`` where no case of the suites says what it answers."""
+
+import numpy as np
+import pytest
+
+import ravemj
+from ravemj import planningutils
+
+WRIST = """<Environment><KinBody name="arm">
+  <Body name="base"/><Body name="shoulder"/><Body name="upper"/><Body name="fore"/>
+  <Joint name="pan"><Body>base</Body><Body>shoulder</Body><axis>0 0 1</axis><anchor>.3 .4 .1</anchor></Joint>
+  <Joint name="lift"><Body>shoulder</Body><Body>upper</Body><axis>0 1 0</axis><anchor>.3 .4 .1</anchor></Joint>
+  <Joint name="turn"><Body>upper</Body><Body>fore</Body><axis>0 0 1</axis><anchor>.2 .4 .6</anchor></Joint>
+</KinBody></Environment>"""
+
+
+def test_dh_turns_x_by_at_most_a_right_angle(env):
+    # The common normal has two directions; OpenRAVE takes that which is nearer to x of the frame before, so that the
+    # distance along it can be negative.
+    assert env.LoadData(WRIST)
+    pan, lift, turn = planningutils.GetDHParameters(env.GetKinBody("arm"))
+    angle = np.arctan2(0.4, 0.3)
+    assert (pan.d, pan.a, pan.theta, pan.alpha) == pytest.approx((0.1, 0.5, angle, 0))
+    assert (lift.d, lift.a, lift.theta, lift.alpha) == pytest.approx((0, 0, -angle, -np.pi / 2))
+    assert (turn.d, turn.a, turn.theta, turn.alpha) == pytest.approx((0, -0.1, 0, np.pi / 2))
+    assert turn.transform == pytest.approx(np.array([[1, 0, 0, 0.2], [0, 1, 0, 0.4], [0, 0, 1, 0.1], [0, 0, 0, 1]]))
+    for record in (pan, lift, turn):
+        start = np.eye(4) if record.parentindex < 0 else [pan, lift, turn][record.parentindex].transform
+        about_z = ravemj.matrixFromAxisAngle([0, 0, record.theta])
+        about_z[:3, 3] = [0, 0, record.d]
+        about_x = ravemj.matrixFromAxisAngle([record.alpha, 0, 0])
+        about_x[:3, 3] = [record.a, 0, 0]
+        assert start @ about_z @ about_x == pytest.approx(record.transform, abs=1e-12)
