@@ -294,3 +294,51 @@ def test_commands(env, robot):
         assert error_of(lambda text=wrong: controller.SendCommand(text))[0] == "InvalidArguments"
     assert error_of(lambda: controller.SendCommand("nosuch 1"))[0] == "CommandNotSupported"
     assert error_of(lambda: robot.SendCommand("SetThrowExceptions 1"))[0] == "CommandNotSupported"
+
+
+@pytest.mark.parametrize("timestep", [0.07, 0.01])
+def test_trajectories_grab_and_release(env, robot, timestep):
+    """A body is held from the configuration of the waypoint that grabs it to that of the one that releases it."""
+    mug = ravemj.RaveCreateKinBody(env, "")
+    mug.InitFromBoxes(np.array([[0, 0, 0, 0.02, 0.02, 0.02]]), True)
+    mug.SetName("mug")
+    env.Add(mug)
+    hand, index = robot.GetLinks()[-1], robot.GetLinks()[-1].GetIndex()
+    spec = ravemj.ConfigurationSpecification()
+    spec.AddGroup(f"joint_values {robot.GetName()} 0 1", 2, "linear")
+    spec.AddGroup(f"grab {robot.GetName()} {index}", 1, "previous")
+    spec.AddDeltaTimeGroup()
+    own = mug.GetEnvironmentId()
+    trajectory = ravemj.RaveCreateTrajectory(env, "")
+    trajectory.Init(spec)
+    points = {"joint_values": [[0, 0], [0.1, 0.2], [0.4, -0.1], [0.2, 0]], "grab": [0, own, -own, 0]}
+    rows = np.zeros((4, spec.GetDOF()))
+    rows[1:, spec.GetGroupFromName("deltatime").offset] = 0.105
+    for name, values in points.items():
+        group = spec.GetGroupFromName(name)
+        rows[:, group.offset : group.offset + group.dof] = np.reshape(values, (4, -1))
+    trajectory.Insert(0, rows.ravel())
+    robot.SetDOFValues(points["joint_values"][1])
+    T_hand_mug = np.linalg.inv(hand.GetTransform()) @ mug.GetTransform()
+    robot.SetDOFValues(points["joint_values"][2])
+    T_world_end = hand.GetTransform() @ T_hand_mug
+    robot.GetController().SetPath(trajectory)
+    while not robot.GetController().IsDone():
+        env.StepSimulation(timestep)
+        if robot.GetGrabbed():
+            np.testing.assert_allclose(hand.GetTransform() @ T_hand_mug, mug.GetTransform(), atol=1e-12)
+    assert not robot.GetGrabbed()
+    np.testing.assert_allclose(mug.GetTransform(), T_world_end, atol=1e-12)
+
+
+def test_grabs_of_bodies_that_are_not_there(env, robot, caplog):
+    spec = ravemj.ConfigurationSpecification()
+    spec.AddGroup(f"grab {robot.GetName()} 0", 1, "previous")
+    spec.AddDeltaTimeGroup()
+    trajectory = ravemj.RaveCreateTrajectory(env, "")
+    trajectory.Init(spec)
+    trajectory.Insert(0, [77, 0])
+    robot.GetController().SetPath(trajectory)
+    step(env, 0.01, 0.01)
+    assert robot.GetController().IsDone()
+    assert "cannot grab or release body 77 with link 0" in caplog.text

@@ -8,6 +8,7 @@ import numpy as np
 from ravemj.core.arguments import checked_flag, checked_kind
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.rave.controllers import grabs
 from ravemj.rave.controllers.base import Controller
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.report import CollisionReport
@@ -28,19 +29,23 @@ class _Path(NamedTuple):
         columns: Where the joint values are in its points.
         dofs: The DOFs that they are for.
         moves_base: Whether it has a pose of the robot's base.
+        grabs: What it still has to grab and to release.
     """
 
     trajectory: Trajectory
     columns: Ints
     dofs: Ints
     moves_base: bool
+    grabs: list[grabs.GrabChange]
 
 
 class IdealController(Controller):
     """Puts the robot where it should be, at once and exactly: the controller that robots have from the start.
 
     ``SetDesired`` moves the robot at once, and is done with the next step of time. ``SetPath`` plays a trajectory:
-    the first step shows its first point, and the path is done one step after its last point.
+    the first step shows its first point, and the path is done one step after its last point. A group
+    ``grab ROBOT LINK`` of the trajectory grabs the body whose ``GetEnvironmentBodyIndex()`` is its value with the link
+    of this index, and releases it where the value is negative.
 
     Joints that move faster than their limits allow are a problem, and so are joints outside their limits; after
     ``SendCommand("SetCheckCollisions 1")`` also collisions of the robot. The first problem of each command is logged
@@ -128,7 +133,7 @@ class IdealController(Controller):
         has_base = spec.FindCompatibleGroup(f"affine_transform {name}") is not None
         copy = Trajectory(self._env, traj.GetXMLId())
         copy.Clone(traj)
-        return _Path(copy, columns, dofs, has_base and self._moves_base)
+        return _Path(copy, columns, dofs, has_base and self._moves_base, grabs.grab_changes(copy, name))
 
     def SimulationStep(self, timestep: float) -> None:
         """Go on by a step of time [s]; ``StepSimulation`` and the thread of simulation time call this.
@@ -149,17 +154,26 @@ class IdealController(Controller):
         duration = path.trajectory.GetDuration()
         is_over = self._time > duration
         self._time = min(self._time, duration)
-        point = path.trajectory.Sample(self._time)
-        T_world_base = None
-        if path.moves_base:
-            spec = path.trajectory.GetConfigurationSpecification()
-            T_world_base = spec.ExtractTransform(self._robot.GetTransform(), point, self._robot)
-        self._place(path.dofs, point[path.columns], T_world_base, self._last_timestep or timestep)
+        while path.grabs and path.grabs[0].time <= self._time:
+            change = path.grabs.pop(0)
+            self._show(path, change.time, 0.0)  # bodies are grabbed where the robot is then, not where the step ends
+            if not grabs.apply(change, self._robot):
+                self._complain(f"cannot grab or release body {abs(change.body)} with link {change.link}")
+        self._show(path, self._time, self._last_timestep or timestep)
         if is_over:
             self._path, self._is_done = None, True
         else:
             self._time += timestep
             self._last_timestep = timestep
+
+    def _show(self, path: _Path, time: float, elapsed: float) -> None:
+        """Put the robot where a path has it at a time [s] from its start; see ``_place``."""
+        point = path.trajectory.Sample(time)
+        T_world_base = None
+        if path.moves_base:
+            spec = path.trajectory.GetConfigurationSpecification()
+            T_world_base = spec.ExtractTransform(self._robot.GetTransform(), point, self._robot)
+        self._place(path.dofs, point[path.columns], T_world_base, elapsed)
 
     def _place(self, dofs: Ints, values: Floats, T_world_base: Floats | None, elapsed: float = 0.0) -> None:
         """Put some of the joints, and the base, where they should be, at rest.
