@@ -10,6 +10,27 @@ from ravemj.rave.enums import DebugLevel
 
 _LOG = logging.getLogger("ravemj")
 
+_PLUGINS = frozenset(
+    [
+        "basecontrollers",
+        "basesamplers",
+        "basesensors",
+        "bulletrave",
+        "configurationcache",
+        "fclrave",
+        "grasper",
+        "ikfastsolvers",
+        "logging",
+        "oderave",
+        "pqprave",
+        "qtcoinrave",
+        "qtosgrave",
+        "rmanipulation",
+        "rplanners",
+    ]
+)
+"""The plugins that come with OpenRAVE and have a counterpart here: what they provide is there from the start."""
+
 
 def RaveInitialize(load_all_plugins: bool = True, level: int = DebugLevel.Info) -> int:
     """Make the folder of ``RaveGetHomeDirectory()``, and set the level of the log; importing has done the rest.
@@ -33,14 +54,17 @@ def RaveInitialize(load_all_plugins: bool = True, level: int = DebugLevel.Info) 
 
 
 def RaveLoadPlugin(filename: str) -> bool:
-    """Say that there is no way to load OpenRAVE's native plugins.
+    """Say whether what a plugin of OpenRAVE provides is there; native plugins cannot be loaded.
 
     Args:
-        filename: Name of the plugin.
+        filename: Name of the plugin, or its file.
 
     Returns:
-        False, as OpenRAVE does when it cannot load a plugin; a warning is logged.
+        True for the plugins that come with OpenRAVE, whose interfaces are part of ravemj as far as ravemj has them.
+        False for all others, as in OpenRAVE when it cannot load a plugin; a warning is logged.
     """
+    if Path(filename).name.split(".")[0].removeprefix("lib") in _PLUGINS:
+        return True
     _LOG.warning("RaveLoadPlugin: native plugins cannot be loaded, and %s is not", filename)
     return False
 

@@ -138,6 +138,19 @@ def test_the_level_decides_what_is_logged(caplog):
     assert caplog.messages == ["loud", "100 %s"]
 
 
+def test_plugins_of_openrave_are_there_from_the_start(caplog):
+    for name in ("ikfastsolvers", "libikfastsolvers", "/usr/lib/openrave0.9-plugins/librmanipulation.so"):
+        assert ravemj.RaveLoadPlugin(name) is True
+    assert not caplog.messages
+
+
+def test_enumerations_list_their_members_as_those_of_boost_python():
+    kinds = ravemj.IkParameterizationType
+    assert kinds.values[int(kinds.Transform6D)] is kinds.Transform6D
+    assert kinds.names["Ray4D"] is kinds.Ray4D
+    assert list(ravemj.SampleDataType.values.values()) == [ravemj.SampleDataType.Real, ravemj.SampleDataType.Uint32]
+
+
 def test_native_plugins_and_unknown_things_fail_softly(env, caplog):
     assert ravemj.RaveLoadPlugin("libor_urdf.so") is False
     assert "libor_urdf.so" in caplog.text

@@ -49,6 +49,22 @@ def leaves(value):
         yield value
 
 
+def test_parts_go_through_json_and_back(env):
+    env.Load("models/puma560.xml")
+    robot = env.GetRobots()[0]
+    parts = [*robot.GetLinks(), *robot.GetJoints(), *robot.GetManipulators()]
+    assert len(parts) > 12
+    for part in parts:
+        info = part.GetInfo()
+        read = type(info)()
+        read.DeserializeJSON(json.loads(json.dumps(info.SerializeJSON())))
+        for geometry, own in zip(
+            getattr(read, "_vgeometryinfos", []), getattr(info, "_vgeometryinfos", []), strict=True
+        ):
+            geometry._filenamerender = own._filenamerender  # OpenRAVE's JSON has none
+        assert read == info
+
+
 def test_a_robot_goes_through_json_and_back(env, robot):
     robot.SetDOFValues([0.4, 0.2])
     info = robot.ExtractInfo()

@@ -79,16 +79,14 @@ def _record(joint: Joint, before: int, start: Floats, anchor: Floats, axis: Floa
     if sine < _PARALLEL:
         d = float(z @ apart)
         foot, across = anchor, apart - d * z
+        direction = across
     else:
         # Feet of the common normal: origin + d z on the one axis, anchor + s axis on the other.
         d = float(np.cross(apart, axis) @ normal) / sine**2
         foot = anchor + axis * (float(np.cross(apart, z) @ normal) / sine**2)
-        across = foot - origin - d * z
-    length = float(np.linalg.norm(across))
-    if sine >= _PARALLEL:
-        new_x = normal / sine
-    else:
-        new_x = across / length if length > _PARALLEL else x
+        across, direction = foot - origin - d * z, normal
+    length = float(np.linalg.norm(direction))
+    new_x = direction / length if length > _PARALLEL else x
     if new_x @ x < -_PARALLEL:  # of both directions along the common normal that which turns x by less: 90 degrees
         new_x = -new_x
     a = float(across @ new_x)

@@ -175,6 +175,10 @@ def _default(one: Field[Any]) -> object:
     return one.default if one.default_factory is MISSING else one.default_factory()
 
 
+_ROUNDING = 1e-14
+"""Matrices that are the same differ by this much once their rotations were quaternions, as in JSON."""
+
+
 def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put into fields
     """Return whether two values are the same numbers, texts and infos."""
     if isinstance(first, TriMesh) and isinstance(second, TriMesh):
@@ -182,9 +186,12 @@ def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put
     if isinstance(first, Mapping) and isinstance(second, Mapping):
         return first.keys() == second.keys() and all(_same(first[key], second[key]) for key in first)
     if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):
-        return np.array_equal(cast("Any", first), cast("Any", second))
+        numbers = np.asarray(cast("Any", first)), np.asarray(cast("Any", second))
+        return numbers[0].shape == numbers[1].shape and np.allclose(*numbers, rtol=0.0, atol=_ROUNDING)
     if isinstance(first, list | tuple) and isinstance(second, list | tuple):
         return len(first) == len(second) and all(map(_same, first, second))
+    if first in (None, "") and second in (None, ""):
+        return True  # in OpenRAVE's JSON a text that is not there is empty
     return bool(first == second)
 
 
