@@ -10,6 +10,7 @@ from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import transformInversePoints, transformPoints
 from ravemj.rave import (
     IkParameterizationType,
+    IkReturnAction,
     Interface,
     PlanningError,
     RaveCreateModule,
@@ -26,6 +27,7 @@ from ravemj.rave import (
 )
 
 __all__ = [
+    "IkFilterReturn",
     "InterfaceBase",
     "RaveCreateProblemInstance",
     "RaveGetIkTypeFromUniqueId",
@@ -62,6 +64,7 @@ raveSetDebugLevel = RaveSetDebugLevel
 RaveCreateProblemInstance = RaveCreateModule
 planning_error = PlanningError
 InterfaceBase = Interface
+IkFilterReturn = IkReturnAction
 TransformPoints = transformPoints
 TransformInversePoints = transformInversePoints
 

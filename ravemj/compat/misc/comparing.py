@@ -6,8 +6,10 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.model.expressions import joint_variables, parse, substitute
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.environment import Environment
+from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 
@@ -88,7 +90,14 @@ def _joints(body0: KinBody, body1: KinBody, epsilon: float) -> None:
         _near(joint0.GetTorqueLimits(), joint1.GetTorqueLimits(), epsilon, f"{name}: torque limits")
         _near(joint0.GetWeights(), joint1.GetWeights(), epsilon, f"{name}: weights")
         _near(joint0.GetResolutions(), joint1.GetResolutions(), epsilon, f"{name}: resolutions")
-        _alike(joint0.GetMimicEquation(), joint1.GetMimicEquation(), f"{name}: equations")
+        _alike(_equation(joint0, first), _equation(joint1, second), f"{name}: equations")
+
+
+def _equation(joint: Joint, joints: Iterable[Joint]) -> str:
+    """Return the equation that a joint follows as one text for all ways of writing it; empty for none."""
+    text = joint.GetMimicEquation()
+    variables = joint_variables([one.GetName() for one in joints])
+    return str(parse(substitute(text, variables), set(variables.values()))) if text else ""
 
 
 def _manipulators(robot0: Robot, robot1: Robot, epsilon: float) -> None:

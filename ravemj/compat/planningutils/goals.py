@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ravemj.core.api_object import ApiObject
 from ravemj.core.transforms import Floats
@@ -21,11 +22,11 @@ class ManipulatorIKGoalSampler(ApiObject):
         manip: The arm.
         parameterizations: The goals.
         nummaxsamples: How many solutions of each goal are given at most.
-        nummaxtries: For OpenRAVE.
-        jitter: For OpenRAVE.
+        nummaxtries: How often a goal is moved aside.
+        jitter: How far [m] along each axis a goal that has no solution is moved aside, at random; 0: it is left out.
         searchfreeparameters: For OpenRAVE.
         ikfilteroptions: Which solutions count, ``IkFilterOptions``.
-        freevalues: For OpenRAVE.
+        freevalues: Values of the arm's free joints, as ``FindIKSolutions`` takes them; None or []: all are searched.
     """
 
     def __init__(
@@ -37,11 +38,14 @@ class ManipulatorIKGoalSampler(ApiObject):
         jitter: float = 0,
         searchfreeparameters: bool = True,
         ikfilteroptions: int = IkFilterOptions.CheckEnvCollisions,
-        freevalues: object = None,
+        freevalues: ArrayLike | None = None,
     ) -> None:
-        del nummaxtries, jitter, searchfreeparameters, freevalues
+        del searchfreeparameters
         self._manip = manip
-        self._options = int(ikfilteroptions)
+        free = [] if freevalues is None or not np.size(freevalues) else [freevalues]
+        self._arguments = [*free, int(ikfilteroptions)]
+        self._jitter, self._tries = jitter, nummaxtries if jitter > 0 else 0
+        self._random = np.random.default_rng(0)
         self._goals = list(enumerate(parameterizations))
         self._most = nummaxsamples
         self._ready: list[tuple[int, Any]] = []
@@ -57,13 +61,23 @@ class ManipulatorIKGoalSampler(ApiObject):
         del releasegil
         while not self._ready and self._goals:
             index, goal = self._goals.pop(0)
-            found = self._manip.FindIKSolutions(goal, self._options, ikreturn=True)
-            self._ready = [(index, one) for one in found[: self._most]]
+            self._ready = [(index, one) for one in self._solutions(goal)[: self._most]]
         if not self._ready:
             return None
         index, solution = self._ready.pop(0)
         self._given.append(index)
         return solution if ikreturn else _values(solution)
+
+    def _solutions(self, goal: IkParameterization) -> Any:  # noqa: ANN401 - IkReturn, or rows of values
+        """Return the solutions of a goal; where there are none, those of the first place beside it that has some."""
+        found = self._manip.FindIKSolutions(goal, *self._arguments, ikreturn=True)
+        for _ in range(self._tries):
+            if len(found):
+                break
+            aside = np.eye(4)
+            aside[:3, 3] = self._random.uniform(-self._jitter, self._jitter, 3)
+            found = self._manip.FindIKSolutions(goal.Transform(aside), *self._arguments, ikreturn=True)
+        return found
 
     def SampleAll(self, maxsamples: int = 0, maxchecksamples: int = 0, releasegil: bool = False) -> list[Any]:
         """Return the solutions that are left, as ``IkReturn``.

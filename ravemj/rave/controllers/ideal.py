@@ -8,11 +8,11 @@ import numpy as np
 from ravemj.core.arguments import checked_flag, checked_kind
 from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.rave.controllers import grabs
 from ravemj.rave.controllers.base import Controller
 from ravemj.rave.enums import CheckLimitsAction
 from ravemj.rave.report import CollisionReport
 from ravemj.rave.trajectory import Trajectory
+from ravemj.trajectories.grabs import GrabChange, grab_changes
 from ravemj.trajectories.groups import joint_indices
 
 _LOG = logging.getLogger("ravemj")
@@ -36,7 +36,7 @@ class _Path(NamedTuple):
     columns: Ints
     dofs: Ints
     moves_base: bool
-    grabs: list[grabs.GrabChange]
+    grabs: list[GrabChange]
 
 
 class IdealController(Controller):
@@ -133,7 +133,7 @@ class IdealController(Controller):
         has_base = spec.FindCompatibleGroup(f"affine_transform {name}") is not None
         copy = Trajectory(self._env, traj.GetXMLId())
         copy.Clone(traj)
-        return _Path(copy, columns, dofs, has_base and self._moves_base, grabs.grab_changes(copy, name))
+        return _Path(copy, columns, dofs, has_base and self._moves_base, grab_changes(copy.waypoints, name))
 
     def SimulationStep(self, timestep: float) -> None:
         """Go on by a step of time [s]; ``StepSimulation`` and the thread of simulation time call this.
@@ -157,14 +157,23 @@ class IdealController(Controller):
         while path.grabs and path.grabs[0].time <= self._time:
             change = path.grabs.pop(0)
             self._show(path, change.time, 0.0)  # bodies are grabbed where the robot is then, not where the step ends
-            if not grabs.apply(change, self._robot):
-                self._complain(f"cannot grab or release body {abs(change.body)} with link {change.link}")
+            self._grab_or_release(change)
         self._show(path, self._time, self._last_timestep or timestep)
         if is_over:
             self._path, self._is_done = None, True
         else:
             self._time += timestep
             self._last_timestep = timestep
+
+    def _grab_or_release(self, change: GrabChange) -> None:
+        robot = self._robot
+        body = self._env.GetBodyFromEnvironmentId(abs(change.body))
+        if body is None or change.link >= len(robot.GetLinks()):
+            self._complain(f"cannot grab or release body {abs(change.body)} with link {change.link}")
+        elif change.body < 0:
+            robot.Release(body)
+        elif not robot.IsGrabbing(body):
+            robot.Grab(body, robot.GetLinks()[change.link])
 
     def _show(self, path: _Path, time: float, elapsed: float) -> None:
         """Put the robot where a path has it at a time [s] from its start; see ``_place``."""

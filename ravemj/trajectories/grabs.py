@@ -1,13 +1,10 @@
 """Bodies that a robot grabs and releases while it plays a trajectory: its groups ``grab``."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ravemj.rave.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    from ravemj.rave.robot import Robot
+from ravemj.trajectories.waypoints import Waypoints
 
 
 class GrabChange(NamedTuple):
@@ -24,13 +21,12 @@ class GrabChange(NamedTuple):
     body: int
 
 
-def grab_changes(trajectory: Trajectory, robot_name: str) -> list[GrabChange]:
+def grab_changes(waypoints: Waypoints, robot_name: str) -> list[GrabChange]:
     """Return what a trajectory grabs and releases, in the order of time.
 
     A group ``grab ROBOT LINK …`` has a value for each link of these indices: the index of a body to grab with it, the
     negative index of one to release, or 0 for no change.
     """
-    waypoints = trajectory.waypoints
     times = waypoints.times()
     found: list[GrabChange] = []
     for group in waypoints.groups:
@@ -43,15 +39,3 @@ def grab_changes(trajectory: Trajectory, robot_name: str) -> list[GrabChange]:
             for row, column in zip(*np.nonzero(bodies), strict=True)
         ]
     return sorted(found, key=lambda change: change.time)
-
-
-def apply(change: GrabChange, robot: "Robot") -> bool:
-    """Grab or release a body; return False where the environment has none of this index, or the robot no such link."""
-    body = robot.GetEnv().GetBodyFromEnvironmentId(abs(change.body))
-    if body is None or change.link >= len(robot.GetLinks()):
-        return False
-    if change.body < 0:
-        robot.Release(body)
-    elif not robot.IsGrabbing(body):
-        robot.Grab(body, robot.GetLinks()[change.link])
-    return True
