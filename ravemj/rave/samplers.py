@@ -155,7 +155,7 @@ class SpaceSampler(Interface):
         return self.SampleSequence(type, 1, interval)[0]
 
     def SampleComplete(self, type: SampleDataType, num: int, interval: int = Interval.Closed) -> Floats:
-        """Raise an error: no sampler of OpenRAVE returns points that cover its space completely.
+        """Raise an error: no sampler of OpenRAVE returns points, shape (num, dof), that cover its space completely.
 
         Args:
             type: The kind of numbers, a ``SampleDataType``.
