@@ -1,13 +1,13 @@
-"""Values of the words of a command line. Errors say which values are valid."""
+"""Converters of command-line arguments. Their errors say which values are valid."""
 
 import argparse
 import math
 
 TO_STANDARD_OUTPUT = "-"
-"""What stands for standard output in place of a file."""
+"""The name that stands for standard output in place of a file."""
 
-_LONGEST_SIDE = 16384
-_MOST_DIGITS = 9
+_LONGEST_SIDE = 16384  # what OpenGL's frame buffers can have on most machines
+_MOST_DIGITS = 9  # of a seed: numpy's older generators take 32 bits
 
 
 def target(text: str) -> str:
@@ -28,7 +28,7 @@ def _number(text: str) -> float:
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise argparse.ArgumentTypeError(f"'{text}' is no finite number")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a finite number")
     return number
 
 
@@ -43,14 +43,16 @@ def positive(text: str) -> float:
 def seed(text: str) -> int:
     """Return the seed of random numbers: a whole number from 0 on."""
     if not (text.isascii() and text.isdecimal() and len(text) <= _MOST_DIGITS):
-        raise argparse.ArgumentTypeError(f"'{text}' is no whole number from 0 on, of at most {_MOST_DIGITS} digits")
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is not a whole number from 0 on, with {_MOST_DIGITS} digits or less"
+        )
     return int(text)
 
 
 def port(text: str) -> int:
     """Return the number of a port."""
     if not (text.isascii() and text.isdecimal() and int(text) <= 65535):
-        raise argparse.ArgumentTypeError(f"'{text}' is no port from 0 to 65535")
+        raise argparse.ArgumentTypeError(f"'{text}' is not the number of a port, from 0 to 65535")
     return int(text)
 
 
@@ -58,12 +60,13 @@ def size(text: str) -> tuple[int, int]:
     """Return width and height of a picture [pixels]."""
     width, cross, height = text.lower().partition("x")
     if not (cross and all(side.isdecimal() and 0 < int(side) <= _LONGEST_SIDE for side in (width, height))):
-        raise argparse.ArgumentTypeError(f"'{text}' is no size like 640x480, up to {_LONGEST_SIDE}x{_LONGEST_SIDE}")
+        wanted = f"a size such as 640x480, at most {_LONGEST_SIDE}x{_LONGEST_SIDE}"
+        raise argparse.ArgumentTypeError(f"'{text}' is not {wanted}")
     return int(width), int(height)
 
 
 def colour(text: str) -> list[float]:
-    """Return red, green and blue from 0 to 1: three numbers, or what CSS means by a name or digits."""
+    """Return red, green and blue from 0 to 1, given as three numbers, as a colour name of CSS, or as #rrggbb."""
     if text[:1].isalpha() or text.startswith("#"):
         return _colour_of_name(text)
     parts = vector(text)
@@ -73,7 +76,7 @@ def colour(text: str) -> list[float]:
 
 
 def _colour_of_name(text: str) -> list[float]:
-    """Return what CSS means by a name or by hexadecimal digits."""
+    """Return the colour of a CSS name or of hexadecimal digits."""
     from PIL import ImageColor  # noqa: PLC0415 - slow to import
 
     try:
@@ -83,4 +86,4 @@ def _colour_of_name(text: str) -> list[float]:
 
 
 def _no_colour(text: str) -> argparse.ArgumentTypeError:
-    return argparse.ArgumentTypeError(f"'{text}' is no colour like 0.8,0.85,0.9 or red or #d9e2e6")
+    return argparse.ArgumentTypeError(f"'{text}' is not a colour such as red, #d9e2e6 or 0.8,0.85,0.9")

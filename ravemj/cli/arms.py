@@ -44,7 +44,7 @@ def arm_of(env: Environment, name: str | None) -> Manipulator:
     """Return the manipulator of a name, or the active one of the first robot that has one.
 
     Raises:
-        ArgumentError: there is none.
+        ArgumentError: there is no such manipulator.
     """
     arms = [arm for robot in env.GetRobots() for arm in robot.GetManipulators()]
     if name is None:
@@ -53,8 +53,10 @@ def arm_of(env: Environment, name: str | None) -> Manipulator:
     else:
         chosen = next((arm for arm in arms if arm.GetName() == name), None)
     if chosen is None:
-        names = ", ".join(arm.GetName() for arm in arms) or "none"
-        raise ArgumentError(f"there is no manipulator{'' if name is None else f' {name!r}'}; the model has {names}")
+        if not arms:
+            raise ArgumentError("the model has no manipulator, and this command needs one: a <Manipulator> of a robot")
+        names = ", ".join(arm.GetName() for arm in arms)
+        raise ArgumentError(f"there is no manipulator '{name}'; the model has {names}")
     return chosen
 
 
@@ -93,7 +95,8 @@ def start_values(path: str, robot: Robot) -> list[float]:
         content = [items.get(name, value) for name, value in zip(names, values, strict=True)]
     numbers = cast("list[object]", content) if isinstance(content, list) else []
     if len(numbers) != len(values) or not all(isinstance(number, int | float) for number in numbers):
-        raise SourceError(f"these are no {len(values)} joint values", Source(path), hint)
+        found = f"{len(numbers)} values" if isinstance(content, list) else "no list"
+        raise SourceError(f"found {found}, expected {len(values)} joint values", Source(path), hint)
     return [float(cast("float", number)) for number in numbers]
 
 

@@ -20,12 +20,14 @@ _FORMATS = {
     (".json",): "json",
     (".robot.xml", ".kinbody.xml", ".env.xml"): "openrave",
 }
-"""Formats by the ends of names; other names stand for MJCF."""
+"""Formats by the ends of names; names with other ends are for MJCF."""
+
+_MJCF_ENDS = (".xml", ".mjcf")
 
 
 def convert(options: argparse.Namespace) -> int:
     """Translate a model to MJCF, or write it as COLLADA, OpenRAVE XML or JSON."""
-    kind = options.format or next((form for ends, form in _FORMATS.items() if _ends(options.output, ends)), "mjcf")
+    kind = options.format or _format_of(options.output)
     env = load_model(options)
     if kind != "mjcf":
         return _save(env, options, kind)
@@ -47,6 +49,23 @@ def convert(options: argparse.Namespace) -> int:
     return 0
 
 
+def _format_of(output: str) -> str:
+    """Return the format that the name of a target stands for.
+
+    Raises:
+        OutputError: the name has another suffix.
+    """
+    if output != TO_STANDARD_OUTPUT and not is_folder(output):
+        known = {end: form for ends, form in _FORMATS.items() for end in ends} | dict.fromkeys(_MJCF_ENDS, "mjcf")
+        form = next((form for end, form in known.items() if output.lower().endswith(end)), None)
+        if form is None:
+            ends = ", ".join(end for end in known if end.count(".") == 1)
+            reason = f"'{Path(output).suffix}' is none of {ends}, a folder (no suffix or a final /)"
+            raise OutputError(f"cannot write {output}: {reason}; --format chooses a format for any name")
+        return form
+    return "mjcf"
+
+
 def _save(env: Environment, options: argparse.Namespace, kind: str) -> int:
     """Write a model in one of OpenRAVE's formats."""
     if options.output == TO_STANDARD_OUTPUT:
@@ -61,10 +80,6 @@ def _save(env: Environment, options: argparse.Namespace, kind: str) -> int:
     _report([item.message.diagnostic for item in found if isinstance(item.message, RavemjWarning)], options)
     print(f"wrote {options.output}")
     return 0
-
-
-def _ends(name: str, ends: tuple[str, ...]) -> bool:
-    return name.lower().endswith(ends)
 
 
 def _report(findings: Sequence[Diagnostic], options: argparse.Namespace) -> None:

@@ -66,7 +66,7 @@ def _goal(options: argparse.Namespace) -> Floats:
     size = _POSE if kind == IkParameterizationType.Transform6D else goal_size(kind)
     if len(numbers) != size:
         order = "x,y,z,qw,qx,qy,qz" if size == _POSE else f"{size} values"
-        raise ArgumentError(f"--to has {len(numbers)} values, and a goal of type {kind.name} is {order}")
+        raise ArgumentError(f"--to: found {len(numbers)} numbers, expected {order} for a goal of type {kind.name}")
     return pose_goal(numbers, "--to") if kind == IkParameterizationType.Transform6D else np.array(numbers)
 
 
@@ -84,7 +84,7 @@ def _print_table(arm: Manipulator, found: Sequence[Solution], count: int) -> Non
     robot = arm.GetRobot()
     joints = [robot.GetJointFromDOFIndex(dof) for dof in arm.GetArmIndices()]
     turns = [joint.IsRevolute(0) for joint in joints]
-    title = f"Joint values of '{arm.GetName()}' of '{robot.GetName()}', the nearest to the present ones first"
+    title = f"Joint values of '{arm.GetName()}' of '{robot.GetName()}', the nearest to the current ones first"
     rows = table(title, "branch", *(f"{joint.GetName()}>" for joint in joints), "")
     for solution in found:
         cells = [_value(value, turn) for value, turn in zip(solution.values, turns, strict=True)]

@@ -25,6 +25,8 @@ from ravemj.rave import Environment, KinBody
 from ravemj.rave.recording import Shot, camera_for_motion, draw_frames, moving_body, within_limits
 from ravemj.trajectories.motion import Motion, read_motion
 
+_MOST_FRAMES = 1_000_000  # nine hours at 30 frames a second: more is a slip of the finger
+
 
 def play(options: argparse.Namespace) -> int:
     """Play a motion: in a window, or into a video."""
@@ -34,6 +36,7 @@ def play(options: argparse.Namespace) -> int:
     env = load_model(options)
     body = moving_body(env)
     motion = within_limits(body, _motion(options, body))
+    _check_length(motion, options.fps)
     camera = camera or camera_for_motion(env, body, motion, options.size[0] / options.size[1])
     background = env.background if options.background is None else tuple(options.background)
     if options.output is not None and _is_page(options.output):
@@ -47,6 +50,18 @@ def play(options: argparse.Namespace) -> int:
         return 0
     write_video(options.output or f"{Path(options.model).stem}.mp4", env, body, motion, shot)
     return 0
+
+
+def _check_length(motion: Motion, fps: float) -> None:
+    """Check that a motion is not so long that a video of it would fill the disk.
+
+    Raises:
+        ArgumentError: the motion has too many frames.
+    """
+    count = motion.number_of_frames(fps)
+    if count > _MOST_FRAMES:
+        found = f"{motion.duration:g} s at {fps:g} frames a second are {count:.3g} frames"
+        raise ArgumentError(f"{found}, and at most {_MOST_FRAMES:,} are drawn; give a smaller --duration or --fps")
 
 
 def _is_page(output: str) -> bool:
@@ -70,17 +85,19 @@ def _checked_values(option: str, values: list[float], body: KinBody) -> list[flo
     """Return the joint values of an option, one for each DOF.
 
     Raises:
-        ArgumentError: there are fewer or more.
+        ArgumentError: the number of values is wrong.
     """
     dof = body.GetDOF()
     if len(values) != dof:
         joints = ", ".join(joint.GetName() for joint in body.GetJoints())
-        raise ArgumentError(f"{option} has {len(values)} values, and '{body.GetName()}' has {dof} DOFs: {joints}")
+        raise ArgumentError(
+            f"{option}: found {len(values)}, expected {dof}: one for each DOF of '{body.GetName()}': {joints}"
+        )
     return values
 
 
 def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot) -> bool:
-    """Play, and wait until the window is closed; False where no window can be opened."""
+    """Play in a window, and wait until it is closed; return False if no window can be opened."""
     if not has_display():
         return False
     env.SetViewer("window")
@@ -90,7 +107,7 @@ def _play_in_window(env: Environment, body: KinBody, motion: Motion, shot: Shot)
     viewer.SetCamera(shot.camera.T_world_camera)
     viewer.SetBkgndColor(shot.background)
     viewer.play(motion, robot=body)
-    with signals_raised():  # so that what is being saved gets complete
+    with signals_raised():  # Ctrl-C then leaves time to complete a file that is being saved
         viewer.wait()
     return True
 

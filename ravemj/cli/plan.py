@@ -66,7 +66,8 @@ def _values(robot: Robot, arm: Manipulator | None, options: argparse.Namespace) 
         dofs = every
     if len(options.to) != len(dofs):
         names = ", ".join(robot.GetJointFromDOFIndex(dof).GetName() for dof in dofs)
-        message = f"--to has {len(options.to)} values, and '{(arm or robot).GetName()}' has {len(dofs)} joints: {names}"
+        moved = (arm or robot).GetName()
+        message = f"--to: found {len(options.to)}, expected {len(dofs)}: one for each joint of '{moved}': {names}"
         raise ArgumentError(message)
     return dofs, np.array([options.to])
 
@@ -80,7 +81,7 @@ def _solutions(arm: Manipulator | None, pose: Sequence[float]) -> tuple[list[int
     """
     assert arm is not None
     if len(pose) not in {_POSE, _POINT}:
-        raise ArgumentError(f"--pose has {len(pose)} values, and should be x,y,z,qw,qx,qy,qz or x,y,z")
+        raise ArgumentError(f"--pose: found {len(pose)} numbers, expected x,y,z,qw,qx,qy,qz or x,y,z")
     is_point = len(pose) == _POINT
     kind = IkParameterizationType.Translation3D if is_point else IkParameterizationType.Transform6D
     ways = reached(arm, np.array(pose) if is_point else pose_goal(pose, "--pose"), kind)

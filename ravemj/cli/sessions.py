@@ -17,14 +17,19 @@ from ravemj.compat import python2
 from ravemj.core import signals
 from ravemj.errors import Source, SourceError
 
+_MODELS = (".xml", ".dae", ".zae", ".json")
 _OUR_FILES = {__file__, *python2.FILES, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
 
 
 def run(options: argparse.Namespace) -> int:
     """Run a script that imports openravepy."""
     script = options.script
-    if not os.path.isfile(script):
-        raise SourceError("there is no such script", Source(script))
+    if os.path.isdir(script):
+        raise SourceError("this is a folder, not a script", Source(script))
+    if not os.path.exists(script):
+        raise SourceError("there is no such script", Source(script), "check the path")
+    if script.lower().endswith(_MODELS):
+        raise SourceError("this is a model, not a Python script", Source(script), f"open it with ravemj shell {script}")
     openravepy_alias.install_finder()
     if options.interactive and not options.py2:
         return _start_ipython(["-i", script, "--", *options.arguments])

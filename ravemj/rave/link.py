@@ -17,7 +17,7 @@ from ravemj.rave.link_geometries import LinkGeometries
 
 
 class Link(LinkGeometries):
-    """A rigid part of a body; ``body.GetLinks()`` makes it."""
+    """A link: one rigid part of a body. ``body.GetLinks()`` returns the links."""
 
     Geometry = Geometry
     GeometryInfo = GeometryInfo
@@ -39,20 +39,20 @@ class Link(LinkGeometries):
             return self._state.link_transform(self._index)
 
     def GetVelocity(self) -> Floats:
-        """Return the link's velocity, in world axes.
+        """Return the velocity of the link in the world.
 
         Returns:
-            That of its origin [m/s] and the angular one [rad/s], shape (6,); a copy.
+            The velocity of the link's origin [m/s], then its angular velocity [rad/s], in world axes, shape (6,).
         """
         with self._state.simulation.lock:
             return self._state.link_velocities()[self._index]
 
     def SetVelocity(self, linear: ArrayLike, angular: ArrayLike) -> None:
-        """Set the velocity of this link alone; those of the DOFs are read off the differences between links.
+        """Set the velocity of this link alone. The velocities of DOFs follow from the differences between links.
 
         Args:
-            linear: Velocity of its origin in the world [m/s], shape (3,).
-            angular: Angular velocity in the world [rad/s], shape (3,).
+            linear: The velocity of the link's origin in world axes [m/s], shape (3,).
+            angular: The angular velocity in world axes [rad/s], shape (3,).
         """
         moved, turned = checked_vector(linear, 3, "linear"), checked_vector(angular, 3, "angular")
         with self._state.simulation.lock:
@@ -65,15 +65,15 @@ class Link(LinkGeometries):
         return pose_of(self.GetTransform()).numbers()
 
     def SetTransform(self, transform: ArrayLike) -> None:
-        """Move this link only; the joints at it get the values that the poses of the links show.
+        """Move this link only. Its joints then have the values that fit the poses of the links.
 
-        The next ``SetDOFValues`` puts all links where the joint values say.
+        The next ``SetDOFValues`` moves all links back to the poses that the joint values give.
 
         Args:
             transform: ``T_world_link``: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
 
         Raises:
-            ArgumentError: this is no rigid transform. Nothing has moved then.
+            ArgumentError: the transform is not rigid; the link does not move.
         """
         checked = checked_transform(transform, "SetTransform: transform")
         with self._state.simulation.lock:
@@ -82,11 +82,11 @@ class Link(LinkGeometries):
             self._state.place_links(transforms)
 
     def IsStatic(self) -> bool:
-        """Return whether the link is declared static, by its file or by ``SetStatic``."""
+        """Return whether the link is marked as static, by its file or by ``SetStatic``."""
         return self._scene.static
 
     def SetStatic(self, bStatic: bool) -> None:
-        """Declare the link static or not; its joints move it all the same.
+        """Mark the link as static or not. Its joints move it either way.
 
         Args:
             bStatic: Whether it is static.
@@ -95,11 +95,11 @@ class Link(LinkGeometries):
             self._state.edit_link(self._index, static=bool(bStatic))
 
     def GetParentLinks(self) -> "list[Link]":
-        """Return the links that joints hang this one on."""
+        """Return the parents of the link: the links that a joint connects it to, one step closer to the root."""
         return [self._other(link) for link in chains.parents(self._state.scene, self._index)]
 
     def IsParentLink(self, link: "Link") -> bool:
-        """Return whether a joint hangs this link on another one.
+        """Return whether another link is a parent of this one.
 
         Args:
             link: The other link.
@@ -107,11 +107,11 @@ class Link(LinkGeometries):
         return link in self.GetParentLinks()
 
     def GetRigidlyAttachedLinks(self) -> "list[Link]":
-        """Return the links that never move against this one; this one is the first."""
+        """Return this link, then all links that no joint moves relative to it."""
         return [self._other(link) for link in chains.rigidly_attached(self._state.scene, self._index)]
 
     def IsRigidlyAttached(self, link: "Link") -> bool:
-        """Return whether another link never moves against this one.
+        """Return whether no joint moves another link relative to this one.
 
         Args:
             link: The other link.
@@ -126,11 +126,14 @@ class Link(LinkGeometries):
         return self._scene.inertial
 
     def _answer(self, value: ArrayLike) -> Floats:
-        """Return mass, centre or inertia; NaN where OpenRAVE finds no number."""
+        """Return a mass, a centre or an inertia; NaN where OpenRAVE's formulas give no number."""
         return np.where(self._inertial.undefined, np.nan, value)
 
     def GetMass(self) -> float:
-        """Return the link's mass [kg]; NaN, as its centre and inertia, for a total over shapes without a volume."""
+        """Return the mass of the link [kg].
+
+        If the file gives a total mass for shapes that have no volume, mass, centre and inertia are NaN, as in OpenRAVE.
+        """
         return float(self._answer(self._inertial.mass))
 
     def GetLocalCOM(self) -> Floats:
@@ -144,11 +147,11 @@ class Link(LinkGeometries):
         return self.GetTransform()[:3] @ (*self.GetLocalCOM(), 1.0)
 
     def GetLocalInertia(self) -> Floats:
-        """Return the inertia about the centre of mass, in axes parallel to the link's [kg m^2], shape (3, 3)."""
+        """Return the inertia about the centre of mass, in link axes [kg m^2], shape (3, 3)."""
         return self._answer(self._inertial.inertia)
 
     def GetGlobalInertia(self) -> Floats:
-        """Return the inertia about the centre of mass, in axes parallel to the world's [kg m^2], shape (3, 3)."""
+        """Return the inertia about the centre of mass, in world axes [kg m^2], shape (3, 3)."""
         rotation = self.GetTransform()[:3, :3]
         return rotation @ self.GetLocalInertia() @ rotation.T
 
@@ -173,16 +176,16 @@ class Link(LinkGeometries):
         return principal_moments(self._inertial)
 
     def SetMass(self, mass: float) -> None:
-        """Set the mass; the moments of inertia stay as they are.
+        """Set the mass. The moments of inertia stay as they are.
 
         Args:
-            mass: Mass [kg].
+            mass: The mass [kg].
         """
         (value,) = checked_vector([mass], 1, "SetMass: mass").tolist()
         self._set_inertial(replace(self._inertial, mass=value, undefined=False))
 
     def SetLocalMassFrame(self, massframe: ArrayLike) -> None:
-        """Set where the centre of mass is, and how the principal axes lie; the moments about these stay.
+        """Set the centre of mass and the principal axes of inertia. The moments about these axes stay as they are.
 
         Args:
             massframe: ``T_link_mass``: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
@@ -194,7 +197,7 @@ class Link(LinkGeometries):
         """Set the moments of inertia about the axes of the mass frame.
 
         Args:
-            inertiamoments: Moments [kg m^2], shape (3,).
+            inertiamoments: The moments [kg m^2], shape (3,).
         """
         moments = checked_vector(inertiamoments, 3, "SetPrincipalMomentsOfInertia: inertiamoments")
         self._set_inertial(inertial_about(self._inertial.mass, principal_frame(self._inertial), moments))
@@ -204,12 +207,12 @@ class Link(LinkGeometries):
             self._state.set_inertial(self._index, inertial)
 
     def SetForce(self, force: ArrayLike, pos: ArrayLike, add: bool) -> None:
-        """Let a force act on the link during the next step of simulation time; without physics it does nothing.
+        """Apply a force to the link during the next simulation step. Without physics it has no effect.
 
         Args:
-            force: In the world [N], shape (3,).
-            pos: Where it acts, in the world [m], shape (3,).
-            add: Whether forces that were set for that step stay.
+            force: The force in world axes [N], shape (3,).
+            pos: The point of application in the world [m], shape (3,).
+            add: Whether to add to the forces that were set for that step; False replaces them.
 
         Example:
             >>> env.SetPhysicsEngine("mujoco")
@@ -220,11 +223,11 @@ class Link(LinkGeometries):
         self._parent.GetEnv().GetPhysicsEngine().SetBodyForce(self, force, pos, add)
 
     def SetTorque(self, torque: ArrayLike, add: bool) -> None:
-        """Let a torque act on the link during the next step of simulation time; without physics it does nothing.
+        """Apply a torque to the link during the next simulation step. Without physics it has no effect.
 
         Args:
-            torque: In world axes [N m], shape (3,).
-            add: Whether torques that were set for that step stay.
+            torque: The torque in world axes [N m], shape (3,).
+            add: Whether to add to the torques that were set for that step; False replaces them.
         """
         self._parent.GetEnv().GetPhysicsEngine().SetBodyTorque(self, torque, add)
 
@@ -232,7 +235,7 @@ class Link(LinkGeometries):
         self._state.edit_link(self._index, parameters=parameters)
 
     def GetInfo(self) -> LinkInfo:
-        """Return the description of the link as it stands, a copy."""
+        """Return the description of the link in its current state."""
         with self._state.simulation.lock:
             enabled = self._state.link_enabled[self._index]
             return LinkInfo.of(self._state.scene, self._index, self.GetTransform(), enabled=enabled)

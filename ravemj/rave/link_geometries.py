@@ -1,4 +1,4 @@
-"""Geometries of a link: shapes, groups of them, collision checking and bounding boxes."""
+"""The collision geometries of a link, their groups, and bounding boxes."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -20,7 +20,7 @@ from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 
 class LinkGeometries(Member):
-    """The geometries of a link, groups that can replace them, collision checking and bounding boxes."""
+    """The methods of links about collision geometries, groups of geometries, and bounding boxes."""
 
     _internal = ("scene_with_group",)
 
@@ -32,7 +32,7 @@ class LinkGeometries(Member):
             raise self._gone("link") from None
 
     def GetGeometries(self) -> list[Geometry]:
-        """Return the link's shapes, in the order of the file.
+        """Return the geometries of the link, in the order of the file.
 
         Example:
             >>> for geometry in robot.GetLink("Arm0").GetGeometries():
@@ -41,38 +41,38 @@ class LinkGeometries(Member):
         return [Geometry(self, self._state, self._index, index) for index in range(len(self._scene.geometries))]
 
     def GetGeometry(self, index: int) -> Geometry:
-        """Return one of the link's shapes.
+        """Return one geometry of the link.
 
         Args:
-            index: Its position in ``GetGeometries()``.
+            index: The position of the geometry in ``GetGeometries()``.
         """
         return self.GetGeometries()[index]
 
     def GetCollisionData(self) -> TriMesh:
-        """Return all shapes of the link as triangles, in the link's frame; copies."""
+        """Return the triangles of all geometries of the link, in the link frame."""
         return trimesh_of(links_triangles([self._scene], [np.eye(4)]))
 
     def InitGeometries(self, geometryinfos: Sequence[GeometryInfo]) -> None:
-        """Give the link other shapes in place of its own.
+        """Replace the geometries of the link.
 
         Args:
-            geometryinfos: Their descriptions.
+            geometryinfos: The descriptions of the new geometries.
 
         Raises:
-            openrave_exception: one describes nothing that can be. Nothing has changed then.
+            openrave_exception: a description does not make a geometry; the link stays as it is.
         """
         self._set_own_geometries(geometries_of(geometryinfos))
 
     def AddGeometry(self, geometryinfo: GeometryInfo, addToGroups: bool = False) -> None:
-        """Add a shape.
+        """Add a geometry to the link.
 
         Args:
-            geometryinfo: Its description.
-            addToGroups: Whether to add it to all groups, too.
+            geometryinfo: The description of the geometry.
+            addToGroups: Whether to add it to all groups as well.
 
         Raises:
-            openrave_exception: it describes nothing that can be, or a shape of that name is there. Nothing has changed
-                then.
+            openrave_exception: the description does not make a geometry, or the link has a geometry of that name; the
+                link stays as it is.
         """
         added = geometries_of([geometryinfo])
         if any(one.name == added[0].name for one in self._scene.geometries if one.name):
@@ -82,14 +82,14 @@ class LinkGeometries(Member):
             self._set_groups({name: (*group, *added) for name, group in self._scene.groups})
 
     def RemoveGeometryByName(self, geometryname: str, removeFromAllGroups: bool = True) -> bool:
-        """Remove the shapes of a name.
+        """Remove the geometries of a name.
 
         Args:
             geometryname: The name.
-            removeFromAllGroups: Whether to remove them from all groups, too.
+            removeFromAllGroups: Whether to remove them from all groups as well.
 
         Returns:
-            Whether there was one.
+            Whether the link had such a geometry.
         """
 
         def without(geometries: tuple[scene.Geometry, ...]) -> tuple[scene.Geometry, ...]:
@@ -104,28 +104,28 @@ class LinkGeometries(Member):
         return removed
 
     def SetGroupGeometries(self, name: str, geometryinfos: Sequence[GeometryInfo]) -> None:
-        """Keep a set of shapes under a name, for ``SetGeometriesFromGroup``.
+        """Store a group of geometries under a name, for ``SetGeometriesFromGroup``.
 
         Args:
             name: The name of the group.
-            geometryinfos: The descriptions of the shapes.
+            geometryinfos: The descriptions of the geometries.
         """
         self._set_groups(dict(self._scene.groups) | {str(name): geometries_of(geometryinfos)})
 
     def GetGroupNumGeometries(self, name: str) -> int:
-        """Return the number of shapes in a group, or -1 where there is no such group.
+        """Return the number of geometries in a group, or -1 if the link has no such group.
 
         Args:
-            name: Name of the group; ``self`` is that of the link's own shapes.
+            name: The name of the group; ``self`` is the group of the link's own geometries.
         """
         groups = self._groups
         return len(groups[name]) if name in groups else -1
 
     def GetGeometriesFromGroup(self, name: str) -> list[Geometry]:
-        """Return the shapes of a group.
+        """Return the geometries of a group.
 
         Args:
-            name: Name of the set.
+            name: The name of the group.
 
         Raises:
             openrave_exception: there is no such group.
@@ -137,13 +137,13 @@ class LinkGeometries(Member):
     GetGroupGeometries = GetGeometriesFromGroup
 
     def SetGeometriesFromGroup(self, name: str) -> None:
-        """Give the link the shapes of a group in place of its own.
+        """Replace the geometries of the link by those of a group.
 
         Args:
-            name: Name of the group; ``self`` brings the link's own shapes back.
+            name: The name of the group; ``self`` restores the link's own geometries.
 
         Raises:
-            openrave_exception: there is no such group. Nothing has changed then.
+            openrave_exception: there is no such group; the link stays as it is.
         """
         shapes, groups = self._group(name), self._groups
         if name == scene.OWN_SHAPES:
@@ -152,12 +152,12 @@ class LinkGeometries(Member):
         self._set_geometries(shapes)
 
     def scene_with_group(self, name: str) -> scene.Link:
-        """Return the link as it would be with the shapes of a group."""
+        """Return the link with the geometries of a group in place of its own."""
         return replace(self._scene, geometries=self._group(name))
 
     @property
     def _groups(self) -> dict[str, tuple[scene.Geometry, ...]]:
-        """All groups, the link's own shapes among them."""
+        """All groups, including the link's own geometries."""
         return {scene.OWN_SHAPES: self._scene.geometries} | dict(self._scene.groups)
 
     def _group(self, name: str) -> tuple[scene.Geometry, ...]:
@@ -172,7 +172,7 @@ class LinkGeometries(Member):
             self._state.edit_link(self._index, groups=tuple(groups.items()))
 
     def _set_own_geometries(self, geometries: Sequence[scene.Geometry]) -> None:
-        """Set what the link has, and what the group ``self`` brings back."""
+        """Replace the geometries of the link, also in the group ``self``."""
         self._set_groups({name: group for name, group in self._scene.groups if name != scene.OWN_SHAPES})
         self._set_geometries(geometries)
 
@@ -181,25 +181,25 @@ class LinkGeometries(Member):
             self._state.set_geometries(self._index, geometries)
 
     def IsVisible(self) -> bool:
-        """Return whether any shape of the link is drawn."""
+        """Return whether any geometry of the link is drawn."""
         return any(geometry.visible for geometry in self._scene.geometries)
 
     def SetVisible(self, visible: bool) -> bool:
-        """Draw all shapes of the link, or none; they collide all the same.
+        """Draw all geometries of the link, or none. Collision checks do not depend on it.
 
         Args:
             visible: Whether to draw them.
 
         Returns:
-            Whether that changed something.
+            Whether the visibility of any geometry has changed.
         """
         return any([geometry.SetVisible(visible) for geometry in self.GetGeometries()])
 
     def Enable(self, enable: bool) -> None:
-        """Enable or disable the link for collision checking; nothing else changes.
+        """Enable or disable the link for collision checks.
 
         Args:
-            enable: False: collision checking leaves it out.
+            enable: False excludes the link from collision checks.
         """
         with self._state.simulation.lock:
             enabled = list(self._state.link_enabled)
@@ -207,34 +207,35 @@ class LinkGeometries(Member):
             self._state.link_enabled = enabled
 
     def IsEnabled(self) -> bool:
-        """Return whether collision checking looks at the link."""
+        """Return whether the link takes part in collision checks."""
         return self._state.link_enabled[self._index]
 
     def SetIgnoreSelfCollision(self, bIgnore: bool) -> None:
-        """Leave the link out of ``body.CheckSelfCollision``, or take it in again.
+        """Exclude the link from ``body.CheckSelfCollision``, or include it again.
 
         Args:
-            bIgnore: Whether it is left out.
+            bIgnore: Whether to exclude the link.
         """
         with self._state.simulation.lock:
             self._state.edit_link(self._index, self_collision_ignored=bool(bIgnore))
             self._state.simulation.collision_stamp += 1
 
     def IsSelfCollisionIgnored(self) -> bool:
-        """Return whether ``body.CheckSelfCollision`` leaves the link out."""
+        """Return whether ``body.CheckSelfCollision`` excludes the link."""
         return self._scene.self_collision_ignored
 
     def ComputeAABB(self) -> AABB:
-        """Return the smallest box along the world's axes that holds the link's geometries.
+        """Return the axis-aligned bounding box of the link's geometries in the world.
 
         Returns:
-            The box, with methods ``pos()`` and ``extents()``; a point at the link's origin if there is no geometry.
+            The box; ``pos()`` is its centre, ``extents()`` its half extents [m]. Without geometries it is a point at
+            the link's origin.
         """
         with self._state.simulation.lock:
             return self.ComputeAABBFromTransform(self._state.link_transform(self._index))
 
     def ComputeAABBFromTransform(self, transform: ArrayLike) -> AABB:
-        """Return the box of ``ComputeAABB`` for the link standing at a pose: 4x4, 3x4 or 7 numbers.
+        """Return the bounding box of ``ComputeAABB`` for another pose of the link.
 
         Args:
             transform: ``T_world_link``: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
@@ -243,17 +244,17 @@ class LinkGeometries(Member):
         return enclosing_box(link_bounds(self._scene, T_a_link), T_a_link)
 
     def ComputeAABBForGeometryGroup(self, geomgroupname: str) -> AABB:
-        """Return the box of ``ComputeAABB`` around the shapes of a group.
+        """Return the bounding box of ``ComputeAABB`` for the geometries of a group.
 
         Args:
-            geomgroupname: The name of the group; ``self``: the link's own shapes.
+            geomgroupname: The name of the group; ``self`` is the group of the link's own geometries.
         """
         with self._state.simulation.lock:
             transform = self._state.link_transform(self._index)
         return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, transform)
 
     def ComputeAABBForGeometryGroupFromTransform(self, geomgroupname: str, transform: ArrayLike) -> AABB:
-        """Return the box of ``ComputeAABBForGeometryGroup`` for the link standing at a pose.
+        """Return the bounding box of ``ComputeAABBForGeometryGroup`` for another pose of the link.
 
         Args:
             geomgroupname: The name of the group.
@@ -263,7 +264,7 @@ class LinkGeometries(Member):
         return enclosing_box(link_bounds(self.scene_with_group(geomgroupname), T_a_link), T_a_link)
 
     def ComputeLocalAABBForGeometryGroup(self, geomgroupname: str) -> AABB:
-        """Return the box of ``ComputeAABBForGeometryGroup`` along the link's axes and in its frame.
+        """Return the bounding box of a group of geometries in the link frame.
 
         Args:
             geomgroupname: The name of the group.
@@ -271,5 +272,5 @@ class LinkGeometries(Member):
         return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, np.eye(4))
 
     def ComputeLocalAABB(self) -> AABB:
-        """Return the smallest box along the link's axes that holds its geometries, in the link's frame."""
+        """Return the axis-aligned bounding box of the link's geometries in the link frame."""
         return self.ComputeAABBFromTransform(np.eye(4))

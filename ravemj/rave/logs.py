@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from ravemj.rave.enums import DebugLevel
 
-_VERBOSE = logging.DEBUG - 5
+_VERBOSE = logging.DEBUG - 5  # Python has no level below DEBUG
 _LEVELS = {
     DebugLevel.Fatal: logging.CRITICAL,
     DebugLevel.Error: logging.ERROR,
@@ -14,7 +14,7 @@ _LEVELS = {
     DebugLevel.Debug: logging.DEBUG,
     DebugLevel.Verbose: _VERBOSE,
 }
-_LEVEL_BITS = 0xFFFF
+_LEVEL_BITS = 0xFFFF  # OpenRAVE's levels have flags above these bits
 
 log = logging.getLogger("openravepy")
 log.setLevel(logging.INFO)
@@ -22,10 +22,10 @@ _level = int(DebugLevel.Info)
 
 
 def RaveSetDebugLevel(level: int) -> None:
-    """Set what is logged, by ``RaveLogInfo`` and its like and by ravemj itself.
+    """Set the level from which messages are logged, those of ``RaveLogInfo`` and its like and those of ravemj.
 
     Args:
-        level: A ``DebugLevel``, or its number; its bit ``VerifyPlans`` is kept, and has no effect.
+        level: A ``DebugLevel``, or its number. The flag ``VerifyPlans`` is stored and has no effect.
 
     Example:
         >>> RaveSetDebugLevel(DebugLevel.Warn)
@@ -37,7 +37,7 @@ def RaveSetDebugLevel(level: int) -> None:
 
 
 def RaveGetDebugLevel() -> int:
-    """Return the number of ``RaveSetDebugLevel``, or that of ``DebugLevel.Info``."""
+    """Return the number that ``RaveSetDebugLevel`` set; from the start that of ``DebugLevel.Info``."""
     return _level
 
 
@@ -45,14 +45,14 @@ def RaveLog(log: str, level: int = DebugLevel.Info) -> None:  # OpenRAVE's name 
     """Log a line.
 
     Args:
-        log: What to say.
+        log: The message.
         level: A ``DebugLevel``, or its number.
     """
     logging.getLogger("openravepy").log(_python_level(int(level)), "%s", str(log).rstrip("\n"))
 
 
 def _log_function(name: str, level: DebugLevel, summary: str) -> Callable[[str], None]:
-    """Return a function of a text that logs it with one level."""
+    """Return a function that logs a message with a fixed level."""
 
     def function(log: str) -> None:
         RaveLog(log, level)
@@ -62,12 +62,12 @@ def _log_function(name: str, level: DebugLevel, summary: str) -> Callable[[str],
     return function
 
 
-RaveLogFatal = _log_function("RaveLogFatal", DebugLevel.Fatal, "Log that nothing can go on.")
+RaveLogFatal = _log_function("RaveLogFatal", DebugLevel.Fatal, "Log a fatal error.")
 RaveLogError = _log_function("RaveLogError", DebugLevel.Error, "Log an error.")
 RaveLogWarn = _log_function("RaveLogWarn", DebugLevel.Warn, "Log a warning.")
-RaveLogInfo = _log_function("RaveLogInfo", DebugLevel.Info, "Log something of interest.")
-RaveLogDebug = _log_function("RaveLogDebug", DebugLevel.Debug, "Log something for those who look for a mistake.")
-RaveLogVerbose = _log_function("RaveLogVerbose", DebugLevel.Verbose, "Log something for those who want all.")
+RaveLogInfo = _log_function("RaveLogInfo", DebugLevel.Info, "Log an informative message.")
+RaveLogDebug = _log_function("RaveLogDebug", DebugLevel.Debug, "Log a message for debugging.")
+RaveLogVerbose = _log_function("RaveLogVerbose", DebugLevel.Verbose, "Log a detail for debugging.")
 
 
 def _python_level(level: int) -> int:

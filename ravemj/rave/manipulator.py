@@ -1,4 +1,4 @@
-"""Arms of a robot."""
+"""The manipulators of a robot."""
 
 from typing import TYPE_CHECKING
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from ravemj.rave.robot import Robot
 
 _SAME = 1e-12
-"""Tools that differ less are the same."""
+"""The tolerance within which two tool poses or directions are equal."""
 
 
 class Manipulator(ArmEnd, ArmRedundancy):
-    """A chain of joints with a tool at its end; ``robot.GetManipulators()`` makes it."""
+    """A manipulator: a chain of joints with a tool at its end. ``robot.GetManipulators()`` returns them."""
 
     def SetName(self, name: str) -> None:
         """Give the manipulator another name.
@@ -33,15 +33,16 @@ class Manipulator(ArmEnd, ArmRedundancy):
             name: The name.
 
         Raises:
-            openrave_exception: it is empty, or another manipulator of the robot has it. Nothing has changed then.
+            openrave_exception: the name is empty, or another manipulator of the robot has it.
         """
         taken = {arm.name for arm in self._state.scene.manipulators} - {self.GetName()}
         if not name or name in taken:
-            raise ArgumentError(f"SetName: the manipulator cannot be called '{name}': that is empty, or taken")
+            problem = f"the robot has another manipulator '{name}'" if name else "the name is empty"
+            raise ArgumentError(f"SetName: {problem}; choose another name")
         self._edit(name=str(name))
 
     def GetId(self) -> str:
-        """Return the id of the manipulator in OpenRAVE's JSON: empty."""
+        """Return the id of the manipulator in OpenRAVE's JSON, which is always empty."""
         return ""
 
     def GetRobot(self) -> "Robot":
@@ -57,17 +58,17 @@ class Manipulator(ArmEnd, ArmRedundancy):
         return self._link(self._scene.effector)
 
     def GetIkChainEndLink(self) -> Link | None:
-        """Return the link that solvers of inverse kinematics count the arm up to: None, the end effector."""
+        """Return the link at which the chain of IK solvers ends. It is None, which stands for the end effector."""
         return None
 
     def _link(self, index: int | None) -> Link | None:
         return None if index is None else Link(self._robot, self._state, index)
 
     def GetVelocity(self) -> Floats:
-        """Return the velocity of the tool, in world axes.
+        """Return the velocity of the tool in the world.
 
         Returns:
-            That of the tool point [m/s] and the angular one [rad/s], shape (6,).
+            The velocity of the tool's origin [m/s], then its angular velocity [rad/s], in world axes, shape (6,).
         """
         effector = self._checked_effector()
         with self._state.simulation.lock:
@@ -77,10 +78,11 @@ class Manipulator(ArmEnd, ArmRedundancy):
         return velocity
 
     def CalculateJacobian(self) -> Floats:
-        """Return how the tool point moves with the arm's joints.
+        """Return the Jacobian of the tool's position.
 
         Returns:
-            Derivative of its position in the world by the values of ``GetArmIndices()``, shape (3, arm dof).
+            The derivative of the tool's position in the world by the joint values of ``GetArmIndices()``,
+            [m/rad or m/m], shape (3, arm dof).
         """
         effector = self._checked_effector()
         with self._state.simulation.lock:
@@ -89,13 +91,13 @@ class Manipulator(ArmEnd, ArmRedundancy):
             return state.dynamics.translation_jacobian(effector, point).take(tool.dofs, 1)
 
     def CalculateAngularVelocityJacobian(self) -> Floats:
-        """Return the angular velocity of the tool, in world axes, per unit of the arm's, shape (3, arm dof)."""
+        """Return the Jacobian of the tool's angular velocity in world axes, shape (3, arm dof)."""
         effector = self._checked_effector()
         with self._state.simulation.lock:
             return self._state.dynamics.rotation_jacobian(effector).take(self._tool().dofs, 1)
 
     def CalculateRotationJacobian(self) -> Floats:
-        """Return how the tool's quaternion [w, x, y, z] changes with the arm's joints, shape (4, arm dof)."""
+        """Return the Jacobian of the tool's quaternion [w, x, y, z], shape (4, arm dof)."""
         with self._state.simulation.lock:
             wxyz = wxyz_from_rows(self.GetTransform()[:3, :3].tolist())
             return wxyz_jacobian(wxyz).dot(self.CalculateAngularVelocityJacobian())
@@ -105,7 +107,7 @@ class Manipulator(ArmEnd, ArmRedundancy):
         return pose_of(self.GetTransform()).numbers()
 
     def GetLocalToolTransform(self) -> Floats:
-        """Return the pose of the tool in the effector.
+        """Return the pose of the tool in the frame of the end effector.
 
         Returns:
             ``T_effector_tool``, shape (4, 4).
@@ -117,13 +119,13 @@ class Manipulator(ArmEnd, ArmRedundancy):
         return self._scene.T_effector_tool.numbers()
 
     def GetLocalToolDirection(self) -> Floats:
-        """Return the unit vector that the tool points along, in its own frame, shape (3,)."""
+        """Return the direction in which the tool points, a unit vector in the tool frame, shape (3,)."""
         return np.array(self._scene.direction)
 
     GetDirection = GetPalmDirection = GetLocalToolDirection
 
     def SetLocalToolTransform(self, transform: ArrayLike) -> None:
-        """Set the pose of the tool in the effector. A new one takes the solver of inverse kinematics away.
+        """Set the pose of the tool in the frame of the end effector. A changed pose removes the IK solver.
 
         Args:
             transform: ``T_effector_tool``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
@@ -134,14 +136,18 @@ class Manipulator(ArmEnd, ArmRedundancy):
         self._edit(T_effector_tool=pose_of(matrix))
 
     def SetLocalToolDirection(self, direction: ArrayLike) -> None:
-        """Set the direction that the tool points along, in its own frame, shape (3,); it is normalised.
+        """Set the direction in which the tool points. A changed direction removes an IK solver that depends on it.
 
-        Another one than before takes the solver away whose goals have a direction.
+        Args:
+            direction: The direction in the tool frame, shape (3,); it is normalised.
+
+        Raises:
+            ArgumentError: the direction is zero.
         """
         given = checked_vector(direction, 3, "SetLocalToolDirection: direction")
         length = float(np.linalg.norm(given))
         if not length:
-            raise ArgumentError("SetLocalToolDirection: direction is zero, and should point somewhere")
+            raise ArgumentError("SetLocalToolDirection: direction is 0 0 0, and should have a length")
         solver, unit = self.GetIkSolver(), given / length
         turned = not np.allclose(unit, self._scene.direction, rtol=0, atol=_SAME)
         if turned and solver is not None and solver.kind in WITH_DIRECTION:
@@ -149,7 +155,7 @@ class Manipulator(ArmEnd, ArmRedundancy):
         self._edit(direction=tuple(unit.tolist()))
 
     def GetArmIndices(self) -> Ints:
-        """Return the DOF indices of the joints between base and effector, the base first.
+        """Return the DOF indices of the joints from the base to the end effector, shape (n,).
 
         Example:
             >>> robot.SetActiveDOFs(robot.GetActiveManipulator().GetArmIndices())
@@ -167,24 +173,24 @@ class Manipulator(ArmEnd, ArmRedundancy):
         return self._robot.GetDOFValues(self.GetArmIndices())
 
     def GetKinematicsStructureHash(self) -> str:
-        """Return a text that is the same for arms of the same joints and tool: 32 hexadecimal digits."""
+        """Return a hash of the arm's joints and tool, 32 hexadecimal digits."""
         return hashes.of_arm(self._state.scene, self._scene)
 
     def GetStructureHash(self) -> str:
-        """Return a text that is the same for manipulators of the same kind in the same robot: 32 hexadecimal digits."""
+        """Return a hash of the manipulator and its robot's structure, 32 hexadecimal digits."""
         return hashes.of_manipulator(self._state.scene, self._scene)
 
     def GetInfo(self) -> ManipulatorInfo:
-        """Return the description of the manipulator, a copy."""
+        """Return the description of the manipulator."""
         return ManipulatorInfo.of(self._state.scene, self._scene)
 
     UpdateAndGetInfo = GetInfo
 
     def GetArmConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
-        """Return the specification of the arm's joint values.
+        """Return the configuration specification of the arm's joint values.
 
         Args:
-            interpolation: How they change between waypoints, for instance ``linear``.
+            interpolation: The interpolation between waypoints, for instance ``linear``.
         """
         return self._robot.GetConfigurationSpecificationIndices(self.GetArmIndices(), interpolation)
 

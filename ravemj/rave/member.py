@@ -1,4 +1,4 @@
-"""What links and joints have in common, among it numbers and texts that scripts attach."""
+"""The base class of links and joints: name, parent, and parameters of the user."""
 
 from abc import abstractmethod
 from collections.abc import Hashable
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Member(ApiObject):
-    """A link or joint of a body. It is equal to others of its kind at the same place of the same body."""
+    """A link or joint of a body. Two objects are equal if they stand for the same link or joint of the same body."""
 
     def __init__(self, parent: "KinBody", state: BodyState, index: int) -> None:
         self._parent = parent
@@ -32,10 +32,10 @@ class Member(ApiObject):
     @property
     @abstractmethod
     def _scene(self) -> scene.Link | scene.Joint:
-        """The description as it stands."""
+        """The current description in the scene."""
 
     def _gone(self, kind: str) -> RavemjError:
-        """Return the error for a link or joint that the body had before it was made anew."""
+        """Return the error for a link or joint that the body no longer has, since it was initialized again."""
         return RavemjError(f"'{self._parent.GetName()}' has no {kind} {self._index} any more", ErrorCode.InvalidState)
 
     @abstractmethod
@@ -56,17 +56,17 @@ class Member(ApiObject):
         return self._parent
 
     def UpdateInfo(self) -> None:
-        """Do nothing: ``GetInfo`` always gives the present state."""
+        """Do nothing: ``GetInfo`` always returns the current state."""
 
     def GetFloatParameters(self, name: str | None = None, index: int = -1) -> dict[str, Floats] | Floats | float | None:
-        """Return numbers that ``SetFloatParameters`` attached.
+        """Return the numbers that ``SetFloatParameters`` attached.
 
         Args:
-            name: Which; None: all of them.
-            index: Which number of them; below 0: all.
+            name: The name of the parameter; None returns all parameters.
+            index: The index of one number; -1 returns all numbers.
 
         Returns:
-            An array of shape (n,), a number where an index was given, None for an unknown name, or all arrays by name.
+            All arrays by name; for a name its array, shape (n,); with an index one number; None for an unknown name.
         """
         return _chosen({key: np.array(values) for key, values in self._scene.parameters.floats}, name, index)
 
@@ -80,11 +80,11 @@ class Member(ApiObject):
         self._set_parameter("floats", key, tuple(checked_numbers(parameters, "SetFloatParameters").ravel().tolist()))
 
     def GetIntParameters(self, name: str | None = None, index: int = -1) -> dict[str, Ints] | Ints | int | None:
-        """Return integers that ``SetIntParameters`` attached, as ``GetFloatParameters`` does.
+        """Return the integers that ``SetIntParameters`` attached; see ``GetFloatParameters``.
 
         Args:
-            name: Which; None: all of them.
-            index: Which number of them; below 0: all.
+            name: The name of the parameter; None returns all parameters.
+            index: The index of one number; -1 returns all numbers.
         """
         arrays = {key: np.array(values, dtype=np.int_) for key, values in self._scene.parameters.integers}
         return _chosen(arrays, name, index)

@@ -1,4 +1,4 @@
-"""Modules: objects of an environment that take commands."""
+"""Modules: objects of an environment that execute commands."""
 
 import inspect
 from collections.abc import Callable, Mapping
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 
 class Module(Interface):
-    """An object that takes commands; ``RaveCreateModule`` makes it.
+    """An object that executes commands. ``RaveCreateModule`` makes modules.
 
     Args:
         env: The environment.
         xmlid: The name of the module.
-        start: Called with the arguments with which the module is added.
-        commands: What runs commands, by their names.
+        start: Called with the arguments of ``env.Add`` when the module is added.
+        commands: The functions that execute commands, by the names of the commands.
 
     Example:
         >>> module = RaveCreateModule(env, "BaseManipulation")
@@ -41,24 +41,24 @@ class Module(Interface):
         self._by_name = commands
 
     def GetXMLId(self) -> str:
-        """Return the name of the module, as it was spelled when it was made."""
+        """Return the name of the module, spelled as the caller of ``RaveCreateModule`` spelled it."""
         return self._xmlid
 
     def Destroy(self) -> None:
-        """Take the module out of the environment."""
+        """Remove the module from the environment."""
         self._env.Remove(self)
 
     def end(self) -> None:
-        """End what the module does; the environment calls this when it removes it."""
+        """End the work of the module. The environment calls this when it removes the module."""
 
     def SimulationStep(self, timeelapsed: float) -> bool:
-        """Take note that simulation time has passed; ``env.StepSimulation`` calls this for modules that were added.
+        """Advance the module by a step of simulation time. ``env.StepSimulation`` calls this for added modules.
 
         Args:
-            timeelapsed: How long [s].
+            timeelapsed: The duration of the step [s].
 
         Returns:
-            Whether something was done.
+            Whether the module did anything.
         """
         del timeelapsed
         return False

@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
 
 class PhysicsEngine(Interface):
-    """A physics engine: it holds gravity and advances bodies in time; ``env.GetPhysicsEngine()`` returns it.
+    """A physics engine: it has gravity and advances bodies in time. ``env.GetPhysicsEngine()`` returns it.
 
-    This is OpenRAVE's ``GenericPhysicsEngine``, which every environment has from the start: bodies stay where they are
-    put, and forces do nothing. ``RaveCreatePhysicsEngine`` makes others.
+    This class is OpenRAVE's ``GenericPhysicsEngine``, which every environment has from the start: bodies stay in place,
+    and forces have no effect. ``RaveCreatePhysicsEngine`` makes other engines.
     """
 
     _interface_type = InterfaceType.physicsengine
     _internal = ("attach", "detach", "dynamics", "is_simulated", "loads")
     is_simulated = False
-    """Whether bodies fall and collide."""
+    """Whether the engine simulates dynamics, so that bodies fall and collide."""
     dynamics: "Physics | None" = None
-    """What moves the bodies, where they fall and collide."""
+    """The simulation of the dynamics, or None."""
 
     def __init__(self, env: "Environment", xml_id: str, gravity: Vec3 = ZERO) -> None:
         self._env = env
@@ -43,11 +43,11 @@ class PhysicsEngine(Interface):
         self._is_attached = False
 
     def GetXMLId(self) -> str:
-        """Return the name of the kind of engine, as it was spelt when it was made."""
+        """Return the name of the engine, spelled as the caller of ``RaveCreatePhysicsEngine`` spelled it."""
         return self._xml_id
 
     def Clone(self, ref: "PhysicsEngine", cloningoptions: int = 0) -> None:
-        """Take over gravity, the description and the data of users from another engine.
+        """Copy gravity, the description and the user data of another engine.
 
         Args:
             ref: The other engine.
@@ -57,12 +57,12 @@ class PhysicsEngine(Interface):
         self.SetGravity(ref.GetGravity())
 
     def SetGravity(self, gravity: ArrayLike) -> None:
-        """Set the acceleration of free fall in the world [m/s^2], shape (3,).
+        """Set the gravitational acceleration.
 
-        It belongs to the engine: a new one has its own.
+        It belongs to the engine: another engine has its own.
 
         Args:
-            gravity: The acceleration in the world [m/s^2], shape (3,).
+            gravity: The acceleration in world axes [m/s^2], shape (3,).
 
         Raises:
             IndexError: there are fewer than three numbers, as in OpenRAVE.
@@ -79,11 +79,11 @@ class PhysicsEngine(Interface):
             self._env.simulation.set_gravity(self._gravity)
 
     def GetGravity(self) -> Floats:
-        """Return the acceleration of free fall in the world [m/s^2], shape (3,)."""
+        """Return the gravitational acceleration in world axes [m/s^2], shape (3,)."""
         return np.array(self._env.simulation.gravity if self._is_attached else self._gravity)
 
     def SetPhysicsOptions(self, physicsoptions: int) -> bool:
-        """Set which collisions count, ``PhysicsEngineOptions``; return whether the engine has options.
+        """Set which collisions the simulation handles, and return whether the engine has options.
 
         Args:
             physicsoptions: ``PhysicsEngineOptions`` combined with ``|``.
@@ -92,25 +92,25 @@ class PhysicsEngine(Interface):
         return False
 
     def GetPhysicsOptions(self) -> PhysicsEngineOptions:
-        """Return which collisions count."""
+        """Return which collisions the simulation handles."""
         return PhysicsEngineOptions(0)
 
     def SimulateStep(self, timestep: float) -> None:
-        """Let the bodies move for a step of time [s]; ``StepSimulation`` calls this.
+        """Advance the bodies by a time step; ``StepSimulation`` calls this.
 
         Args:
-            timestep: How long [s].
+            timestep: The duration of the step [s].
         """
 
     def InitEnvironment(self) -> bool:
-        """Return True; nothing needs to be prepared."""
+        """Return True; the engine needs no preparation."""
         return True
 
     def DestroyEnvironment(self) -> None:
-        """Do nothing; OpenRAVE's engines free memory here."""
+        """Do nothing. OpenRAVE's engines free their memory here."""
 
     def InitKinBody(self, body: "KinBody") -> bool:
-        """Return True; nothing needs to be prepared.
+        """Return True; the engine needs no preparation.
 
         Args:
             body: The body.
@@ -125,7 +125,7 @@ class PhysicsEngine(Interface):
             link: The link.
 
         Returns:
-            That of its origin [m/s], and the angular one [rad/s], each of shape (3,).
+            The velocity of the link's origin [m/s] and the angular velocity [rad/s], each of shape (3,).
         """
         velocity = link.GetVelocity()
         return velocity[:3], velocity[3:]
@@ -135,8 +135,8 @@ class PhysicsEngine(Interface):
 
         Args:
             link: The link.
-            linearvel: Velocity of its origin in the world [m/s], shape (3,).
-            angularvel: Angular velocity in the world [rad/s], shape (3,).
+            linearvel: The velocity of the link's origin in world axes [m/s], shape (3,).
+            angularvel: The angular velocity in world axes [rad/s], shape (3,).
 
         Returns:
             True.
@@ -186,16 +186,16 @@ class PhysicsEngine(Interface):
         return np.zeros(3), np.zeros(3)
 
     def SetBodyForce(self, link: "Link", force: ArrayLike, position: ArrayLike, add: bool) -> bool:
-        """Let a force act on a link during the next step; ``link.SetForce`` is the same.
+        """Apply a force to a link during the next step, as ``link.SetForce`` does.
 
         Args:
             link: The link.
-            force: In the world [N], shape (3,).
-            position: Where it acts, in the world [m], shape (3,).
-            add: Whether forces that were set for that step stay.
+            force: The force in world axes [N], shape (3,).
+            position: The point of application in the world [m], shape (3,).
+            add: Whether to add to the forces that were set for that step; False replaces them.
 
         Returns:
-            Whether the engine moves bodies.
+            Whether the engine simulates dynamics.
         """
         checked = checked_vector(force, 3, "force"), checked_vector(position, 3, "position")
         with self._env.simulation.lock:
@@ -205,15 +205,15 @@ class PhysicsEngine(Interface):
         return loads is not None
 
     def SetBodyTorque(self, link: "Link", torque: ArrayLike, add: bool) -> bool:
-        """Let a torque act on a link during the next step; ``link.SetTorque`` is the same.
+        """Apply a torque to a link during the next step, as ``link.SetTorque`` does.
 
         Args:
             link: The link.
-            torque: In world axes [N m], shape (3,).
-            add: Whether torques that were set for that step stay.
+            torque: The torque in world axes [N m], shape (3,).
+            add: Whether to add to the torques that were set for that step; False replaces them.
 
         Returns:
-            Whether the engine moves bodies.
+            Whether the engine simulates dynamics.
         """
         checked = checked_vector(torque, 3, "torque")
         with self._env.simulation.lock:
@@ -223,14 +223,14 @@ class PhysicsEngine(Interface):
         return loads is not None
 
     def AddJointTorque(self, joint: "Joint", torques: ArrayLike) -> bool:
-        """Let torques act on a joint during the next step, with those before; ``joint.AddTorque`` is the same.
+        """Add torques to a joint during the next step, as ``joint.AddTorque`` does.
 
         Args:
             joint: The joint.
-            torques: For each of its axes [N m, for sliders N].
+            torques: A torque for each axis [N m; N for sliders], shape (axes,).
 
         Returns:
-            Whether the engine moves bodies.
+            Whether the engine simulates dynamics.
 
         Raises:
             ArgumentError: the joint is passive, or the number of torques is wrong.
@@ -246,18 +246,18 @@ class PhysicsEngine(Interface):
         return loads is not None
 
     def attach(self) -> None:
-        """Start to be the environment's engine."""
+        """Become the engine of the environment."""
         self._is_attached = True
         self._env.simulation.set_gravity(self._gravity)
         self._env.simulation.physics = self.dynamics
 
     def detach(self) -> None:
-        """Stop being the environment's engine."""
+        """Stop being the engine of the environment."""
         self._gravity = self._env.simulation.gravity
         self._is_attached = False
 
     def loads(self, state: BodyState) -> "Loads | None":
-        """Return the loads on a body in the next step, to be changed; None without simulated dynamics."""
+        """Return the loads on a body in the next step, which callers change; None without simulated dynamics."""
         del state
         return None
 
@@ -270,8 +270,8 @@ class PhysicsEngine(Interface):
 class SimulatedEngine(PhysicsEngine):
     """Simulates the dynamics of bodies with MuJoCo: masses, joints, contacts and forces.
 
-    Bodies without a static link fall; those with one stay, and their joints swing. Poses and velocities can be set at
-    any time. Robots with an ``IdealController`` go where it puts them.
+    Bodies without a static link fall. Bodies with a static link stay in place, and gravity and contacts move their
+    joints. Poses and velocities can be set at any time. An ``IdealController`` still places its robot exactly.
 
     Example:
         >>> env.SetPhysicsEngine(RaveCreatePhysicsEngine(env, "ode"))
@@ -289,10 +289,10 @@ class SimulatedEngine(PhysicsEngine):
         self.dynamics = self._physics = Physics(env.simulation)
 
     def SetPhysicsOptions(self, physicsoptions: int) -> bool:
-        """Set which collisions count.
+        """Set which collisions the simulation handles.
 
         Args:
-            physicsoptions: ``PhysicsEngineOptions.SelfCollisions``, or 0: links of one body do not collide.
+            physicsoptions: ``PhysicsEngineOptions.SelfCollisions``; with 0, links of one body do not collide.
 
         Returns:
             True.
@@ -332,7 +332,7 @@ class SimulatedEngine(PhysicsEngine):
             return self._physics.link_wrench(link.GetParent().simulation_state, link.GetIndex())
 
     def loads(self, state: BodyState) -> "Loads":
-        """Return the loads on a body in the next step, to be changed."""
+        """Return the loads on a body in the next step, which callers change."""
         return self._physics.loads(state)
 
 
@@ -345,15 +345,15 @@ _KINDS: dict[str, type[PhysicsEngine]] = {
 
 
 def RaveCreatePhysicsEngine(env: "Environment", name: str) -> PhysicsEngine | None:
-    """Make a physics engine; ``env.SetPhysicsEngine`` switches it on.
+    """Make a physics engine; ``env.SetPhysicsEngine`` puts it to use.
 
     Args:
-        env: The environment that it is for.
-        name: ``ode``, ``bullet`` or ``mujoco``, all of which are MuJoCo; or ``GenericPhysicsEngine``, with which
-            bodies stay where they are put. Upper and lower case are the same.
+        env: The environment.
+        name: ``ode``, ``bullet`` or ``mujoco``, which all simulate with MuJoCo; or ``GenericPhysicsEngine``, with which
+            bodies stay in place. Letter case does not matter.
 
     Returns:
-        The engine, without gravity; None where the name is not known.
+        The engine, without gravity; None for an unknown name.
 
     Example:
         >>> engine = RaveCreatePhysicsEngine(env, "ode")

@@ -1,4 +1,4 @@
-"""``RaveCreate…`` of what OpenRAVE's plugins provide and ravemj does not: None, or which capability is missing."""
+"""Makes modules and viewers, and refuses what OpenRAVE's plugins provide and ravemj lacks."""
 
 import logging
 from collections.abc import Mapping
@@ -32,11 +32,11 @@ MISSING: Mapping[InterfaceType, Mapping[str, str]] = MappingProxyType(
         },
     }
 )
-"""Names of OpenRAVE's own plugins, in lower case, with what ravemj lacks to have them."""
+"""Interfaces of OpenRAVE that ravemj lacks: their names in lower case, and the missing feature."""
 
 
 def RaveCreateModule(env: Environment, name: str) -> Module | None:
-    """Make a module, an object that takes commands; ``env.Add`` adds it.
+    """Make a module, an object that executes commands; ``env.Add`` adds it to the environment.
 
     Args:
         env: The environment.
@@ -44,10 +44,10 @@ def RaveCreateModule(env: Environment, name: str) -> Module | None:
             saves scenes; in any letter case.
 
     Returns:
-        The module; None, as in OpenRAVE, where no plugin has a module of that name: a warning is logged.
+        The module; None with a logged warning if no plugin of OpenRAVE has a module of that name.
 
     Raises:
-        UnsupportedError: the module is another one of OpenRAVE's own.
+        UnsupportedError: OpenRAVE has this module, and ravemj does not.
 
     Example:
         >>> module = RaveCreateModule(env, "BaseManipulation")
@@ -62,14 +62,14 @@ RaveCreateProblem = RaveCreateModule
 
 
 def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
-    """Attach a viewer to the environment, beside those that it has; ``env.Remove`` closes it.
+    """Attach another viewer to the environment; ``env.Remove`` closes it.
 
     Args:
         env: The environment.
-        name: As for ``env.SetViewer``.
+        name: A name of ``env.SetViewer``.
 
     Returns:
-        The viewer, or None for a name that is no viewer's.
+        The viewer; None for an unknown name.
     """
     from ravemj.gui.viewers import VIEWERS  # noqa: PLC0415 - slow to import
 
@@ -79,7 +79,7 @@ def RaveCreateViewer(env: Environment, name: str) -> "Viewer | None":
 
 
 def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
-    """Return the names that ``RaveCreate…`` of each kind makes something for."""
+    """Return the names that the ``RaveCreate…`` function of each kind of interface knows."""
     from ravemj.gui.viewers import VIEWERS  # noqa: PLC0415 - slow to import
 
     made: dict[InterfaceType, list[str]] = {
@@ -100,7 +100,7 @@ def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:
 
 
 def _refuse(env: Environment, kind: InterfaceType, name: str) -> None:
-    """Return None with a warning, or say what is missing."""
+    """Return None with a logged warning, or raise an error for a feature that ravemj lacks."""
     checked_environment(env, f"RaveCreate, {kind.name}")
     checked_kind(name, str, f"RaveCreate, {kind.name}: name", "a text")
     words = name.split() or [""]

@@ -1,4 +1,4 @@
-"""Values that scripts attach to interfaces under an id, as OpenRAVE's readers of custom tags do."""
+"""Data that scripts attach to interfaces under an id, as OpenRAVE's readers of custom XML tags do."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ from ravemj.core.api_object import ApiObject
 
 
 class Readable(ApiObject):
-    """A value under an id; ``stringreaders.CreateStringReadable`` makes one of a text."""
+    """A value with an id. ``stringreaders.CreateStringReadable`` makes one from a text."""
 
     def __init__(self, id: str, data: Any = "") -> None:  # noqa: ANN401 - what JSON can hold
         self._id = str(id)
@@ -17,7 +17,7 @@ class Readable(ApiObject):
         return self._id
 
     def SerializeXML(self, options: int = 0) -> str:
-        """Return the value as an element of XML that is called like the id.
+        """Return the value as an XML element whose tag is the id.
 
         Args:
             options: Not used.
@@ -38,7 +38,7 @@ class Readable(ApiObject):
         return self._data
 
     def DeserializeJSON(self, obj: Any, unitScale: float = 1.0) -> None:  # noqa: ANN401 - what JSON can hold
-        """Take over a value.
+        """Set the value.
 
         Args:
             obj: The value.
@@ -73,14 +73,14 @@ class ReadableInterface(ApiObject):
 
         Args:
             id: The id.
-            readable: The value; None: forget the one that is there.
+            readable: The value; None removes the value of that id.
         """
         kept = {key: one for key, one in (self._readables or {}).items() if key != id}
         self._readables = kept if readable is None else kept | {id: readable}
 
 
 class stringreaders:  # noqa: N801 - OpenRAVE's name
-    """Makes values of texts."""
+    """Makes values from texts."""
 
     @staticmethod
     def CreateStringReadable(id: str, data: str) -> Readable:
@@ -94,7 +94,7 @@ class stringreaders:  # noqa: N801 - OpenRAVE's name
 
 
 class xmlreaders:  # noqa: N801 - OpenRAVE's name
-    """Makes values of texts; the older name."""
+    """Makes values from texts, under OpenRAVE's older names."""
 
     @staticmethod
     def CreateStringXMLReadable(xmlid: str, data: str) -> Readable:
@@ -127,7 +127,7 @@ class SerializableData(ApiObject):
         return self._data
 
     def Deserialize(self, data: str) -> None:
-        """Take over a text.
+        """Set the text.
 
         Args:
             data: The text.
@@ -135,7 +135,7 @@ class SerializableData(ApiObject):
         self._data = data
 
     def Close(self) -> None:
-        """Forget the text."""
+        """Clear the text."""
         self._data = ""
 
     close = Close

@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
     from ravemj.rave.kinbody import KinBody
 
-_POSES_FOR_THE_VIEW = 17
+_POSES_FOR_THE_VIEW = 17  # configurations along a motion that the camera has to see: enough for full turns of a joint
 
 
 class Shot(NamedTuple):
     """The settings of a video.
 
     Attributes:
-        camera: Where from.
-        background: Colour behind everything: red, green, blue from 0 to 1.
-        form: Size and quality of the frames.
-        fps: Frames in a second.
+        camera: The camera.
+        background: The background colour: red, green, blue from 0 to 1.
+        form: The size and quality of the frames.
+        fps: Frames per second.
     """
 
     camera: Camera
@@ -50,19 +50,19 @@ def record(  # noqa: PLR0913 - keyword arguments
     background: ArrayLike | None = None,
     on_frame: Callable[[int], None] | None = None,
 ) -> Path:
-    """Write a video of a robot that follows a motion. The robot stays at the motion's end.
+    """Write a video of a robot that follows a motion. Afterwards the robot is at the end of the motion.
 
     Args:
         env: The environment.
-        path: The video: ``.mp4``, ``.gif``, ``.webp``, or a folder for PNG frames (no suffix).
-        motion: Joint values over time; values outside the limits are moved to them, with a warning.
-        robot: Which body moves; None: the first robot.
-        width: Columns of the frames [pixels].
-        height: Rows of the frames [pixels].
-        fps: Frames in a second.
-        camera: ``T_world_camera``, 4x4, z forward and y down; None: the viewer's, else the file's, else a view of the
-            whole motion.
-        background: Red, green, blue from 0 to 1; None: the viewer's, else the file's, else white.
+        path: The video file, ``.mp4``, ``.gif`` or ``.webp``; without a suffix, a folder for PNG frames.
+        motion: Joint values over time. Values outside the limits are set to the limits, with a warning.
+        robot: The body that moves; by default the first robot.
+        width: The width of the frames [pixels].
+        height: The height of the frames [pixels].
+        fps: Frames per second.
+        camera: ``T_world_camera``, 4x4, z forward and y down. The default is the viewer's, else the file's, else a view
+            of the whole motion.
+        background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else white.
         on_frame: Called with the number of frames drawn so far.
 
     Returns:
@@ -70,8 +70,8 @@ def record(  # noqa: PLR0913 - keyword arguments
 
     Raises:
         ArgumentError: an argument is wrong, or there is no robot.
-        OutputError: the video cannot be written; nothing is left behind then.
-        RenderingError: nothing can draw here.
+        OutputError: the video cannot be written; no partial file is left behind.
+        RenderingError: no renderer works on this machine.
 
     Example:
         >>> swing = ravemj.Motion.line([0, 0], [3.14, 0], duration=1.0)
@@ -91,7 +91,7 @@ def record(  # noqa: PLR0913 - keyword arguments
 
 
 def draw_frames(env: "Environment", body: "KinBody", motion: Motion, shot: Shot) -> Iterator[Frame]:
-    """Yield the frames of a motion, moving the body from one to the next."""
+    """Move a body along a motion, and yield the frames."""
     for values in motion.frames(shot.fps):
         with env:
             body.SetDOFValues(values, None, CheckLimitsAction.Nothing)
@@ -100,10 +100,10 @@ def draw_frames(env: "Environment", body: "KinBody", motion: Motion, shot: Shot)
 
 
 def moving_body(env: "Environment") -> "KinBody":
-    """Return the body that moves where none is named: the first robot with joints.
+    """Return the body that moves by default: the first robot with joints.
 
     Raises:
-        ArgumentError: there is none.
+        ArgumentError: no robot has joints.
     """
     for robot in env.GetRobots():
         if robot.GetDOF():
@@ -113,7 +113,7 @@ def moving_body(env: "Environment") -> "KinBody":
 
 
 def within_limits(body: "KinBody", motion: Motion) -> Motion:
-    """Return the motion with all values moved into the joints' limits; a warning names each joint concerned.
+    """Return the motion with values outside the limits set to the limits; a warning names each such joint.
 
     Raises:
         ArgumentError: the motion has another number of joints than the body.
@@ -136,13 +136,13 @@ def within_limits(body: "KinBody", motion: Motion) -> Motion:
 
 
 def camera_for_motion(env: "Environment", body: "KinBody", motion: Motion, aspect: float) -> Camera:
-    """Return the viewer's camera, else the file's, else a view of everything that the motion sweeps over.
+    """Return the viewer's camera, else the file's, else one that sees the whole motion.
 
     Args:
         env: The environment.
-        body: The body that moves; it is where it was afterwards.
-        motion: Its motion.
-        aspect: Width of the picture divided by its height.
+        body: The body that moves; afterwards it is back in its configuration.
+        motion: The motion of the body.
+        aspect: The width of the picture divided by its height.
     """
     chosen = env.renderer.file_camera() if env.GetViewer() is None else env.default_camera()
     if chosen is not None:

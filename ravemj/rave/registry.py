@@ -1,4 +1,4 @@
-"""Interfaces by their kind: which there are, making one, copying one."""
+"""Makes, lists and copies interfaces by kind and name."""
 
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -28,10 +28,10 @@ SENSOR_SYSTEMS = "sensor systems"
 
 
 class PluginInfo(ApiObject):
-    """A plugin; there are none.
+    """A plugin of OpenRAVE; ravemj has none.
 
     Attributes:
-        interfacenames: What it makes, a list of kind and name.
+        interfacenames: The kind and the name of each interface that the plugin makes.
         version: Its version.
     """
 
@@ -40,7 +40,7 @@ class PluginInfo(ApiObject):
 
 
 class SensorSystem(Interface):
-    """Feeds bodies with measurements of the real world; there is none here."""
+    """A source of measured poses for bodies; ravemj has none."""
 
     _interface_type = InterfaceType.sensorsystem
 
@@ -49,7 +49,7 @@ class SensorSystem(Interface):
 
 
 class ManageData(ApiObject):
-    """What a sensor system keeps about a body; there is none here, and ``body.GetManageData()`` is None."""
+    """The data of a sensor system about a body. ravemj has none, so ``body.GetManageData()`` is None."""
 
     def __init__(self, *args: object, **kwargs: object) -> None:
         raise UnsupportedError("ManageData", SENSOR_SYSTEMS)
@@ -122,7 +122,7 @@ def RaveHasInterface(type: InterfaceType, name: str) -> bool:  # OpenRAVE's name
 
     Args:
         type: The kind.
-        name: The name; upper and lower case are the same.
+        name: The name; letter case does not matter.
     """
     known = RaveGetLoadedInterfaces()[InterfaceType(type)]
     return checked_kind(name, str, "RaveHasInterface: name", "a text").lower() in {one.lower() for one in known}
@@ -132,9 +132,9 @@ def RaveCreateInterface(env: "Environment", type: InterfaceType, name: str) -> A
     """Make an object of any kind: a body, a controller, a trajectory, ...
 
     Args:
-        env: The environment that it is for.
+        env: The environment.
         type: The kind.
-        name: Its name, as ``RaveCreate…`` of that kind takes it.
+        name: The name, as the ``RaveCreate…`` function of that kind takes it.
 
     Returns:
         The object; None for an unknown name.
@@ -146,15 +146,17 @@ def RaveCreateInterface(env: "Environment", type: InterfaceType, name: str) -> A
 
 
 def RaveClone(ref: Interface, cloningoptions: int = 0, cloneenv: "Environment | None" = None) -> Any:  # noqa: ANN401 - of the same kind
-    """Return a copy, which is not added: an object of the same kind and name that takes over what ``Clone`` copies.
+    """Return a copy of an interface, which is not added to the environment.
+
+    The copy has the same kind and name, and the state that its ``Clone`` copies.
 
     Args:
-        ref: What to copy.
-        cloningoptions: OpenRAVE's; ignored.
-        cloneenv: The environment of the copy; None: that of ``ref``.
+        ref: The interface.
+        cloningoptions: Not used.
+        cloneenv: The environment of the copy; by default that of ``ref``.
 
     Raises:
-        openrave_exception: nothing of its kind and name can be made.
+        openrave_exception: no function makes an interface of this kind and name.
 
     Example:
         >>> copy = ravemj.RaveClone(robot, 0)

@@ -1,4 +1,4 @@
-"""Reports of collision checking."""
+"""Reports of collision checks."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -14,17 +14,18 @@ if TYPE_CHECKING:
     from ravemj.rave.link import Link
 
 FAR = 1e20
-"""Distance of a report that no distance was found for [m], as in OpenRAVE."""
+"""The distance in a report without any distance [m]; the number is OpenRAVE's."""
 
 
 @dataclass(slots=True)
 class Contact:
-    """A point where two shapes overlap, or where a ray meets a shape.
+    """A point where two geometries overlap, or where a ray hits a geometry.
 
     Attributes:
         pos: The point in the world [m], shape (3,).
-        norm: Unit vector out of the second shape towards the first; that of a ray's hit points outwards. Shape (3,).
-        depth: Penetration depth [m]; for a ray, the distance of the hit.
+        norm: The unit normal in the world, shape (3,). It points from the second geometry to the first; at the hit of a
+            ray it points outwards.
+        depth: The penetration depth [m]; for a ray, the distance of the hit.
     """
 
     pos: Floats = field(default_factory=lambda: np.zeros(3))
@@ -33,7 +34,7 @@ class Contact:
 
 
 class Part(NamedTuple):
-    """One of two shapes that collide, as objects of the API."""
+    """One of two colliding geometries, as objects of the API."""
 
     link: "Link"
     geometry: "Geometry"
@@ -44,11 +45,11 @@ class Part(NamedTuple):
 
 
 class CollisionPairInfo(ApiObject):
-    """Two links that collide, or are nearest to each other; or a link that a ray hits.
+    """Two links that collide, the two nearest links, or a link that a ray hits.
 
     Attributes:
-        contacts: Where they touch, as ``Contact``.
-        collides: False for links that are only nearest to each other.
+        contacts: The contact points, a list of ``Contact``.
+        collides: Whether the links collide; False for the nearest links.
     """
 
     __slots__ = ("collides", "contacts", "first", "second")  # slots show on the class, as OpenRAVE's properties do
@@ -66,20 +67,20 @@ class CollisionPairInfo(ApiObject):
 
     @property
     def bodyLinkGeom1Name(self) -> str:
-        """Names of body, link and geometry of the first, joined by spaces."""
+        """The names of the first body, link and geometry, joined by spaces."""
         return " ".join(self.ExtractFirstBodyLinkGeomNames())
 
     @property
     def bodyLinkGeom2Name(self) -> str:
-        """Names of body, link and geometry of the second; empty for a ray."""
+        """The names of the second body, link and geometry, joined by spaces; empty for a ray."""
         return " ".join(self.ExtractSecondBodyLinkGeomNames()) if self.second else ""
 
     def ExtractFirstBodyLinkGeomNames(self) -> tuple[str, str, str]:
-        """Return the names of body, link and geometry of the first."""
+        """Return the names of the first body, link and geometry."""
         return self.first.names()
 
     def ExtractSecondBodyLinkGeomNames(self) -> tuple[str, str, str]:
-        """Return the names of body, link and geometry of the second."""
+        """Return the names of the second body, link and geometry."""
         return self.second.names() if self.second else ("", "", "")
 
     def __str__(self) -> str:
@@ -91,19 +92,20 @@ class CollisionPairInfo(ApiObject):
 
 
 class CollisionReport(ApiObject):
-    """The result of a call of collision checking, which fills the report that it is given.
+    """The result of a collision check. The check fills the report that it is given.
 
-    OpenRAVE renamed the content over time; both sets of names are here: ``collisionInfos`` of newer versions, and
-    ``plink1``, ``plink2``, ``contacts``, ``vLinkColliding``, ``numCols`` of older ones. The first of two links
-    belongs to the first argument of the call.
+    Newer versions of OpenRAVE have ``collisionInfos``; older ones have ``plink1``, ``plink2``, ``contacts``,
+    ``vLinkColliding`` and ``numCols``. A report has both. The first of two links belongs to the first argument of the
+    check.
 
     Attributes:
-        collisionInfos: The colliding pairs; only the first one without ``CollisionOptions.AllLinkCollisions``. Where
-            nothing collides, with ``CollisionOptions.Distance``, the nearest pair.
-        minDistance: Least distance [m], with ``CollisionOptions.Distance``; 0 in collision. For a ray that of its hit.
-        numWithinTol: Number of pairs within the tolerance, with ``CollisionOptions.UseTolerance``.
-        nKeepPrevious: If 1, what earlier calls found is kept.
-        options: The options of the call.
+        collisionInfos: The colliding pairs; without ``CollisionOptions.AllLinkCollisions`` only the first one. If
+            nothing collides and ``CollisionOptions.Distance`` is set, the nearest pair.
+        minDistance: The smallest distance [m] if ``CollisionOptions.Distance`` is set; 0 in collision. For a ray, the
+            distance of the hit.
+        numWithinTol: The number of pairs within the tolerance if ``CollisionOptions.UseTolerance`` is set.
+        nKeepPrevious: If it is 1, the report keeps the pairs of earlier checks.
+        options: The options of the check.
 
     Example:
         >>> report = ravemj.CollisionReport()
@@ -123,7 +125,7 @@ class CollisionReport(ApiObject):
         """Clear the report, unless ``nKeepPrevious`` is set.
 
         Args:
-            coloptions: The options of the call that fills the report next.
+            coloptions: The options of the next check.
         """
         self.options = int(coloptions)
         if not self.nKeepPrevious:

@@ -52,12 +52,12 @@ _LOG = logging.getLogger("ravemj")
 _ACTIVE_DOF, _ACTIVE_MANIPULATOR = int(SaveParameters.ActiveDOF), int(SaveParameters.ActiveManipulator)
 _TOOLS, _ACTIVE_TOOL = int(SaveParameters.ManipulatorsToolTransform), int(SaveParameters.ActiveManipulatorToolTransform)
 
-POLL = 1e-3
-"""How often [s] ``WaitForController`` looks."""
+POLL = 1e-3  # short against a time step of 10 ms, long enough not to load a core
+"""The interval at which ``WaitForController`` asks the controller [s]."""
 
 
 class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
-    """A body that the file calls ``<Robot>``. ``env.GetRobots()`` makes it."""
+    """A robot: a body with manipulators, sensors and a controller. ``env.GetRobots()`` returns the robots."""
 
     DOFAffine = DOFAffine
     AttachedSensorInfo = AttachedSensorInfo
@@ -90,11 +90,11 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         self.arm_solvers: dict[tuple[str, IkParameterizationType], ArmSolver] = {}
 
     def set_following(self, index: int, equations: Equations) -> None:
-        """Let a joint follow others, or none; where DOFs get other numbers, all are active again."""
+        """Make a joint a mimic joint, or an ordinary one. If this changes the number of DOFs, all are active again."""
         before = self.GetDOF()
         super().set_following(index, equations)
         if self.GetDOF() != before:
-            self.active_choice = ActiveChoice()  # DOFs have other numbers now
+            self.active_choice = ActiveChoice()  # the indices of the old choice no longer mean the same DOFs
 
     def GetXMLId(self) -> str:
         """Return OpenRAVE's name of the kind of robot."""
@@ -107,16 +107,18 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         linkstoignore: "Iterable[Link | int | str] | EllipsisType" = ...,
         grabbedUserData: object = ...,
     ) -> bool:
-        """Hold a body: ``Grab(body)``, ``Grab(body, grablink)``, or with all four arguments.
+        """Grab a body, which then moves with the link that holds it.
+
+        OpenRAVE's forms are ``Grab(body)``, ``Grab(body, grablink)``, and the one with all four arguments.
 
         Args:
-            body: What to hold. See ``KinBody.Grab``.
-            grablink: The link of this robot that holds it; left out: the active manipulator's end effector.
-            linkstoignore: Further links of this robot that it should not collide with.
-            grabbedUserData: Goes with ``linkstoignore``; not used.
+            body: The body to grab. See ``KinBody.Grab``.
+            grablink: The link of this robot that holds the body; by default the active manipulator's end effector.
+            linkstoignore: Further links of this robot that are not tested against the body.
+            grabbedUserData: Not used; OpenRAVE has it together with ``linkstoignore``.
 
         Returns:
-            False if there is neither a link nor an active manipulator with an end effector.
+            False if no link is given and the robot has no active manipulator with an end effector.
 
         Example:
             >>> robot.Grab(mug)
@@ -128,11 +130,11 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         return False if link is None else super().Grab(body, link, linkstoignore, grabbedUserData)
 
     def CreateRobotStateSaver(self, options: int | None = None) -> StateSaver:
-        """Return what keeps the robot's state; see ``CreateKinBodyStateSaver``.
+        """Return an object that saves the robot's state and restores it; see ``CreateKinBodyStateSaver``.
 
         Args:
-            options: What to save, ``SaveParameters`` combined with ``|``; None: poses, joint values, enabled links,
-                active DOFs and the active manipulator.
+            options: The state to save, ``SaveParameters`` combined with ``|``. By default: poses, joint values, enabled
+                links, active DOFs and the active manipulator.
 
         Example:
             >>> with robot.CreateRobotStateSaver(Robot.SaveParameters.ActiveDOF):
@@ -143,12 +145,13 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
     def CheckLinkSelfCollision(
         self, linkindex: int, linktrans: ArrayLike, report: "CollisionReport | None" = None
     ) -> bool:
-        """Return whether one link, standing elsewhere, collides with the others and with what the robot holds.
+        """Return whether one link, moved to another pose, collides with the other links or with held bodies.
 
         Args:
-            linkindex: Index of the link.
-            linktrans: ``T_world_link``: 4x4, 3x4 or 7 numbers. The other links stay, those behind it too.
-            report: Filled with what is found.
+            linkindex: The index of the link.
+            linktrans: ``T_world_link``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz]. All other links stay in place, including
+                the children of this one.
+            report: Receives the collision.
         """
         link = self.GetLinks()[self._checked_link(linkindex)]
         with self._simulation.lock, self.CreateKinBodyStateSaver(SaveParameters.LinkTransformation):
@@ -156,7 +159,9 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
             return (self._self_checker or self._env.GetCollisionChecker()).CheckSelfCollision(link, report)
 
     def GetController(self) -> Controller | None:
-        """Return the robot's controller: an ``IdealController`` from the start; None after ``SetController(None)``.
+        """Return the robot's controller.
+
+        From the start it is an ``IdealController``; after ``SetController(None)`` it is None.
 
         Example:
             >>> robot.GetController().SetDesired([0.5, -0.5])
@@ -174,19 +179,20 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         dofindices: "ArrayLike | str | EllipsisType" = ...,
         controltransform: int = 1,
     ) -> bool:
-        """Give the robot a controller in place of the one before.
+        """Replace the robot's controller.
 
         Args:
-            controller: What ``RaveCreateController`` made; None: none.
-            dofindices: Which DOFs it moves; left out: all. A text is OpenRAVE's old form with arguments, for all.
-            controltransform: Whether it moves the robot's base, too.
+            controller: A controller from ``RaveCreateController``; None leaves the robot without one.
+            dofindices: The DOFs that it moves; by default all. A text, as in OpenRAVE's older form, also selects all.
+            controltransform: Whether it also moves the robot's base.
 
         Returns:
             True.
 
         Raises:
-            openrave_exception: None was given together with DOFs.
-            IndexError: there is no such DOF.
+            openrave_exception: ``controller`` is None, and DOFs are given.
+            ArgumentError: the controller belongs to another environment.
+            IndexError: the robot does not have such a DOF.
         """
         dofs = None if dofindices is ... or isinstance(dofindices, str) else dofindices
         if controller is None and dofs is not None:
@@ -203,17 +209,17 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         return True
 
     def WaitForController(self, timeout: float = 0.0) -> bool:
-        """Wait until the controller has done what it was told.
+        """Wait until the controller has finished its command.
 
         Args:
-            timeout: How long to wait [s] of real time; 0: as long as it takes.
+            timeout: The longest time to wait, in real time [s]; 0 sets no limit.
 
         Returns:
-            Whether it is done; False for a robot without a controller.
+            Whether the controller has finished; False for a robot without a controller.
 
         Raises:
-            openrave_exception: it would take forever: this thread holds the environment (``with env:``), so that
-                time stands still. With a timeout, the answer is False at once then.
+            openrave_exception: the wait would never end, since this thread locks the environment (``with env:``), and
+                simulation time stands still. With a timeout, the result is False at once.
 
         Example:
             >>> robot.GetController().SetPath(trajectory)
@@ -242,7 +248,7 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         return True
 
     def step_controller(self, timestep: float) -> None:
-        """Let the controller act for a step of time [s]; it is not made only for that."""
+        """Advance the controller by a time step [s]. A robot that never had one does not get one for this."""
         if isinstance(self._controller, Controller):
             self._controller.SimulationStep(timestep)
 
@@ -254,21 +260,21 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         attachedsensorinfos: Sequence[AttachedSensorInfo] = (),
         uri: str = "",
     ) -> bool:
-        """Make the robot of links, joints, arms and sensors.
+        """Make the robot from descriptions of links, joints, manipulators and sensors.
 
         Args:
             linkinfos: The descriptions of the links; the first one is the root.
-            jointinfos: The descriptions of the joints; those with DOFs in DOF order.
-            manipinfos: The descriptions of the arms; the first one is active.
-            attachedsensorinfos: The descriptions of the sensors on its links.
+            jointinfos: The descriptions of the joints; joints with DOFs stand in DOF order.
+            manipinfos: The descriptions of the manipulators; the first one is active.
+            attachedsensorinfos: The descriptions of the sensors on the links.
             uri: Not used.
 
         Returns:
             True.
 
         Raises:
-            openrave_exception: the robot is in an environment, or an info describes nothing that can be. Nothing has
-                changed then.
+            openrave_exception: the robot is in an environment, or the descriptions do not make a robot; the robot stays
+                as it is.
         """
         del uri
         info = RobotBaseInfo(
@@ -280,10 +286,10 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         return self.InitFromKinBodyInfo(info)
 
     def InitFromRobotInfo(self, info: RobotBaseInfo) -> bool:
-        """Make the robot, its name included, of a description; see ``InitFromKinBodyInfo``.
+        """Make the robot, including its name, from a description; see ``InitFromKinBodyInfo``.
 
         Args:
-            info: The description, for instance of ``ExtractInfo``.
+            info: The description, for instance a result of ``ExtractInfo``.
 
         Returns:
             True.
@@ -291,13 +297,13 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         return self.InitFromKinBodyInfo(info)
 
     def ExtractInfo(self, options: int = ExtractInfoOptions.Everything) -> RobotBaseInfo:
-        """Return the description of the robot as it stands, a copy.
+        """Return the description of the robot in its current state.
 
         Args:
-            options: What to take, ``ExtractInfoOptions``.
+            options: What to include, ``ExtractInfoOptions``.
 
         Returns:
-            A ``RobotBaseInfo``; connected bodies stand in it by themselves, active or not.
+            A ``RobotBaseInfo``. Connected bodies have their own list in it, whether they are active or not.
         """
         body = self._state.scene
         info = RobotBaseInfo(
@@ -310,13 +316,13 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         return info if self._own_parts is None else only_parts_of(info, self._own_parts)
 
     def Clone(self, ref: KinBody, cloningoptions: int = 0) -> None:
-        """Become like another body, as ``KinBody.Clone`` does; a robot's choices and sensors are copied, too.
+        """Copy another body, as ``KinBody.Clone`` does, and of a robot also the sensors and the user's choices.
 
-        Choices are its active DOFs, its active manipulator and its solvers.
+        These choices are the active DOFs, the active manipulator and the IK solvers.
 
         Args:
-            ref: The body to copy; what it holds is not copied.
-            cloningoptions: OpenRAVE's; ignored.
+            ref: The body to copy. Grabbed bodies are not copied.
+            cloningoptions: Not used.
 
         Raises:
             openrave_exception: this robot is in an environment.
@@ -327,7 +333,7 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
             self.take_choices(ref)
 
     def take_choices(self, other: "Robot") -> None:
-        """Take over active DOFs and manipulator, solvers and the state of the sensors of another robot like this."""
+        """Copy active DOFs and manipulator, IK solvers and the state of the sensors of a robot of the same kind."""
         self.active_choice = other.active_choice
         self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
         self.quaternion_limits = other.quaternion_limits.copy()
@@ -338,7 +344,7 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         self.take_sensors(other)
 
     def restorers(self, options: int) -> list[Restorer]:
-        """Return what gives this robot, or one like it, its present state back."""
+        """Return functions that restore the current state of this robot, on it or on a robot of the same kind."""
         found = super().restorers(options)
         if options & _ACTIVE_DOF:
             choice = self.active_choice
@@ -361,7 +367,7 @@ def _set_tool(body: KinBody, name: str, transform: Floats) -> None:
 
 
 def _is_held(lock: RLock) -> bool:
-    """Return whether this thread holds a lock: only its holder may notify others of something."""
+    """Return whether this thread holds a lock. ``RLock`` cannot tell, but only its holder may notify a condition."""
     try:
         Condition(lock).notify(0)
     except RuntimeError:

@@ -1,4 +1,4 @@
-"""Samplers: sequences of numbers that cover a space."""
+"""Samplers: sequences of points that cover a space."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -20,14 +20,16 @@ if TYPE_CHECKING:
 
 
 class SampleDataType(NamedInt):
-    """What samplers give."""
+    """The kind of numbers that a sampler returns."""
 
     Real = 1
     Uint32 = 2
 
 
 class SpaceSampler(Interface):
-    """A sequence of points; ``RaveCreateSpaceSampler`` makes it. Real numbers are from 0 to 1 where nothing is said.
+    """A sequence of points in a space; ``RaveCreateSpaceSampler`` makes samplers.
+
+    Real numbers are from 0 to 1, except for those of bodies and robots.
 
     Example:
         >>> sampler = ravemj.RaveCreateSpaceSampler(env, "halton")
@@ -47,25 +49,26 @@ class SpaceSampler(Interface):
         self._sequence = sequence
 
     def GetXMLId(self) -> str:
-        """Return the name of the kind of sampler, as it was spelt when it was made."""
+        """Return the name of the sampler, spelled as the caller of ``RaveCreateSpaceSampler`` spelled it."""
         return self._name
 
     def SetSeed(self, seed: int) -> None:
-        """Begin the sequence anew.
+        """Restart the sequence.
 
         Args:
-            seed: The same number gives the same sequence, here and not in OpenRAVE; of Halton's sequence the place.
+            seed: Equal seeds give equal sequences, though not those of OpenRAVE. For Halton's sequence, the index of
+                the next point.
         """
         self._sequence.start(int(seed))
 
     def SetSpaceDOF(self, dof: int) -> None:
-        """Choose the number of dimensions.
+        """Set the number of dimensions.
 
         Args:
-            dof: At least 1; that of a body cannot be changed.
+            dof: The number of dimensions, at least 1.
 
         Raises:
-            openrave_exception: there cannot be so many.
+            openrave_exception: the number is less than 1, or differs from the DOFs of the sampled body.
         """
         if dof < 1:
             raise ArgumentError(f"SetSpaceDOF: dof is {dof}, and should be at least 1")
@@ -79,7 +82,7 @@ class SpaceSampler(Interface):
 
     @also_named(seed="type")
     def Supports(self, type: SampleDataType) -> bool:
-        """Return whether the sampler gives this kind of numbers.
+        """Return whether the sampler returns this kind of numbers.
 
         Args:
             type: A ``SampleDataType``.
@@ -88,7 +91,7 @@ class SpaceSampler(Interface):
 
     @also_named(seed="type")
     def GetLimits(self, type: SampleDataType) -> tuple[Floats, Floats]:
-        """Return the least and the greatest values, shape (dof,) each.
+        """Return the smallest and the greatest values, shape (dof,) each.
 
         Args:
             type: A ``SampleDataType``.
@@ -102,9 +105,10 @@ class SpaceSampler(Interface):
         """Return the next points of the sequence in one row, shape (num * dof,).
 
         Args:
-            type: What to give, a ``SampleDataType``.
-            num: How many points.
-            interval: Which of the limits belong to the space, an ``Interval``; not used, since no limit is likely.
+            type: The kind of numbers, a ``SampleDataType``.
+            num: The number of points.
+            interval: Which of the limits belong to the space, an ``Interval``; not used, since samples hardly ever hit
+                a limit.
         """
         return self.SampleSequence2D(type, num, interval).ravel()
 
@@ -114,12 +118,13 @@ class SpaceSampler(Interface):
         """Return the next points of the sequence, shape (num, dof).
 
         Args:
-            type: What to give, a ``SampleDataType``.
-            num: How many points.
-            interval: Which of the limits belong to the space, an ``Interval``; not used, since no limit is likely.
+            type: The kind of numbers, a ``SampleDataType``.
+            num: The number of points.
+            interval: Which of the limits belong to the space, an ``Interval``; not used, since samples hardly ever hit
+                a limit.
 
         Raises:
-            openrave_exception: the sampler gives no numbers of this kind (``NotImplemented``).
+            openrave_exception: the sampler does not return this kind of numbers (``NotImplemented``).
         """
         del interval
         self._check(type, "SampleSequence")
@@ -129,18 +134,18 @@ class SpaceSampler(Interface):
         return self._sequence.integers(int(num)) if whole else self._sequence.reals(int(num))
 
     def SampleSequenceOneReal(self, interval: int = Interval.Closed) -> float:
-        """Return the next number of a sequence in one dimension.
+        """Return the next number of a one-dimensional sequence.
 
         Args:
             interval: As of ``SampleSequence``.
 
         Raises:
-            openrave_exception: the sampler gives points (``InvalidState``).
+            openrave_exception: the sequence has more than one dimension (``InvalidState``).
         """
         return float(self._one(SampleDataType.Real, interval))
 
     def SampleSequenceOneUInt32(self) -> int:
-        """Return the next whole number of a sequence in one dimension, as ``SampleSequenceOneReal``."""
+        """Return the next integer of a one-dimensional sequence, as ``SampleSequenceOneReal`` does a real number."""
         return int(self._one(SampleDataType.Uint32, Interval.Closed))
 
     def _one(self, type: SampleDataType, interval: int) -> float:
@@ -150,11 +155,11 @@ class SpaceSampler(Interface):
         return self.SampleSequence(type, 1, interval)[0]
 
     def SampleComplete(self, type: SampleDataType, num: int, interval: int = Interval.Closed) -> Floats:
-        """Refuse to return points, shape (num, dof), that cover the space completely; no sampler of OpenRAVE's does.
+        """Raise an error: no sampler of OpenRAVE returns points, shape (num, dof), that cover its space completely.
 
         Args:
-            type: What to give, a ``SampleDataType``.
-            num: How many points.
+            type: The kind of numbers, a ``SampleDataType``.
+            num: The number of points.
             interval: As of ``SampleSequence``.
 
         Raises:
@@ -171,10 +176,10 @@ class SpaceSampler(Interface):
 
 
 class _Random:
-    """Independent random numbers, even over the space."""
+    """Independent, uniformly distributed random points."""
 
     kinds = frozenset(SampleDataType)
-    """What it gives."""
+    """The kinds of numbers."""
 
     def __init__(self) -> None:
         self._generator = np.random.Generator(np.random.MT19937())
@@ -185,15 +190,15 @@ class _Random:
         return self._dof
 
     def set_dof(self, dof: int) -> None:
-        """Choose the number of dimensions."""
+        """Set the number of dimensions."""
         self._dof = dof
 
     def limits(self) -> tuple[Floats, Floats]:
-        """Return the least and the greatest real numbers, shape (dof,) each."""
+        """Return the smallest and the greatest real numbers, shape (dof,) each."""
         return np.zeros(self._dof), np.ones(self._dof)
 
     def start(self, seed: int) -> None:
-        """Begin the sequence that a seed stands for."""
+        """Restart the sequence with a seed."""
         self._generator = np.random.Generator(np.random.MT19937(seed))
 
     def reals(self, count: int) -> Floats:
@@ -202,12 +207,12 @@ class _Random:
         return self._generator.uniform(lower, upper, (count, len(lower)))
 
     def integers(self, count: int) -> "NDArray[np.uint32]":
-        """Return the next points in whole numbers, shape (count, dof)."""
+        """Return the next points as integers, shape (count, dof)."""
         return self._generator.integers(0, 2**32, (count, self._dof), dtype=np.uint32)
 
 
 class _Halton(_Random):
-    """Halton's sequence in the bases 2, 3, 5, ...: the same points every time, spread evenly."""
+    """Halton's low-discrepancy sequence in the bases 2, 3, 5, ...: the same, evenly spread points every time."""
 
     kinds = frozenset({SampleDataType.Real})
     _next = 0
@@ -225,7 +230,7 @@ class _Halton(_Random):
 
 
 class _Configurations(_Random):
-    """Random values within the limits of a body: of all DOFs, or of those that are active in a robot."""
+    """Random configurations within limits: of all DOFs of a body, or of the active DOFs of a robot."""
 
     kinds = frozenset({SampleDataType.Real})
 

@@ -1,4 +1,4 @@
-"""What sensors measure: a class for each kind of sensor."""
+"""Measurements of sensors: one class for each kind of sensor."""
 
 from dataclasses import dataclass, field, fields, replace
 from enum import IntEnum
@@ -19,7 +19,7 @@ def _nothing() -> Floats:
 
 @dataclass(eq=False, slots=True)
 class SensorData:
-    """A measurement of any kind; each kind of sensor has its own class.
+    """The base class of measurements. Each kind of sensor has a class of its own.
 
     Attributes:
         stamp: Simulation time of the measurement [microseconds].
@@ -39,9 +39,9 @@ class CameraSensorData(SensorData):
     """A camera's picture.
 
     Attributes:
-        transform: ``T_world_camera`` when it was taken, shape (4, 4); z forward, y down.
-        imagedata: Shape (height, width, 3), uint8, top row first.
-        intrinsics: The camera matrix, wrapped.
+        transform: ``T_world_camera`` at the time of the picture, shape (4, 4); z forward, y down.
+        imagedata: The pixels, shape (height, width, 3), uint8, RGB, top row first.
+        intrinsics: The intrinsics of the camera.
     """
 
     type: ClassVar[SensorType] = SensorType.Camera
@@ -58,13 +58,13 @@ class CameraSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class LaserSensorData(SensorData):
-    """A scan, in the world.
+    """A scan of a laser, in the world frame.
 
     Attributes:
-        positions: Where the rays begin [m], shape (1, 3): one row for all.
-        ranges: From there to what each ray meets [m], shape (n, 3), in the order of the angles, for a flash lidar
-            column after column; of a ray that meets nothing its direction times the greatest range.
-        intensity: 1 for each ray that meets something, else 0, shape (n,).
+        positions: The origin of all rays [m], shape (1, 3).
+        ranges: The vectors from the origin to the hits [m], shape (n, 3), in the order of the angles; those of a flash
+            lidar column by column. A ray without a hit has its direction times the maximum range.
+        intensity: 1 for each ray that hits something, else 0, shape (n,).
     """
 
     type: ClassVar[SensorType] = SensorType.Laser
@@ -79,9 +79,9 @@ class JointEncoderSensorData(SensorData):
     """Values of a robot's joints.
 
     Attributes:
-        encoderValues: Values of all DOFs [rad or m], rounded to the steps, shape (dof,).
+        encoderValues: Values of all DOFs [rad or m], rounded to the resolution, shape (dof,).
         encoderVelocity: Velocities [rad/s or m/s], shape (dof,).
-        resolution: Steps of the encoders [rad or m], shape (dof,); 0: exact.
+        resolution: The steps of the encoders [rad or m], shape (dof,); 0 for exact values.
     """
 
     type: ClassVar[SensorType] = SensorType.JointEncoder
@@ -93,10 +93,11 @@ class JointEncoderSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class Force6DSensorData(SensorData):
-    """The force and torque with which its parent holds the sensor's link and all that hangs on it, in sensor's axes.
+    """The force and torque that the parent link exerts on the sensor's link, in sensor axes.
 
     Attributes:
-        force: Force on the link [N], shape (3,): against gravity at rest. With a polarity of -1 the load itself.
+        force: The force on the link [N], shape (3,). At rest it carries the weight of the link and of its children, so
+            it points upwards. A polarity of -1 reverses it.
         torque: Torque about the sensor's origin [N m], shape (3,).
     """
 
@@ -108,13 +109,13 @@ class Force6DSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class IMUSensorData(SensorData):
-    """A measurement of motion, velocity and acceleration in the sensor's axes.
+    """Orientation, angular velocity and acceleration; the latter two in sensor axes.
 
     Attributes:
         rotation: Orientation in the world as a quaternion [w, x, y, z], shape (4,).
         angular_velocity: Angular velocity [rad/s], shape (3,).
-        linear_acceleration: What an accelerometer shows [m/s^2], shape (3,): the acceleration minus that of free
-            fall, so at rest the opposite of gravity.
+        linear_acceleration: The proper acceleration [m/s^2], shape (3,): the acceleration minus gravity, so at rest it
+            points upwards.
         rotation_covariance: Covariance of the orientation, shape (3, 3).
         angular_velocity_covariance: Covariance of the angular velocity, shape (3, 3).
         linear_acceleration_covariance: Covariance of the acceleration, shape (3, 3).
@@ -132,15 +133,15 @@ class IMUSensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class OdometrySensorData(SensorData):
-    """A pose and a velocity, in the world.
+    """A pose and a velocity, in the world frame.
 
     Attributes:
-        pose: ``T_world_sensor``, or the pose of the body that is followed, shape (4, 4).
-        linear_velocity: Velocity of its origin [m/s], shape (3,).
+        pose: ``T_world_sensor``, or ``T_world_body`` of the target, shape (4, 4).
+        linear_velocity: Velocity of the frame's origin [m/s], shape (3,).
         angular_velocity: Angular velocity [rad/s], shape (3,).
         pose_covariance: Covariance of the pose, shape (6, 6).
         velocity_covariance: Covariance of the velocities, shape (6, 6).
-        targetid: Name of the body that is followed; empty: the sensor itself.
+        targetid: The name of the target body; empty for the sensor itself.
     """
 
     type: ClassVar[SensorType] = SensorType.Odometry
@@ -155,11 +156,11 @@ class OdometrySensorData(SensorData):
 
 @dataclass(eq=False, slots=True)
 class TactileSensorData(SensorData):
-    """Forces on a skin, in the sensor's frame.
+    """Contact forces on a tactile skin, in the sensor frame.
 
     Attributes:
-        positions: Where the link is touched [m], shape (n, 3).
-        forces: Forces on it there [N], shape (n, 3).
+        positions: The contact points on the link [m], shape (n, 3).
+        forces: The forces on the link at these points [N], shape (n, 3).
         force_covariance: Covariance of a force, shape (3, 3).
         thickness: Thickness of the skin [m].
     """
@@ -173,7 +174,7 @@ class TactileSensorData(SensorData):
 
 
 class _ActuatorState(IntEnum):
-    """What an actuator does."""
+    """The state of motion of an actuator."""
 
     Undefined = 0
     Idle = 1
@@ -187,18 +188,18 @@ class ActuatorSensorData(SensorData):
     """The state of an actuator.
 
     Attributes:
-        state: What it does.
-        measuredcurrent: Current [A].
+        state: The state of motion.
+        measuredcurrent: Measured current [A].
         measuredtemperature: Temperature [degrees Celsius].
-        appliedcurrent: Current that is asked for [A].
+        appliedcurrent: Commanded current [A].
         maxtorque: Torque limit [N m].
         maxcurrent: Current limit [A].
-        nominalcurrent: Current for long [A].
+        nominalcurrent: Continuous current [A].
         maxvelocity: Velocity limit [rad/s].
         maxacceleration: Acceleration limit [rad/s^2].
         maxjerk: Jerk limit [rad/s^3].
-        staticfriction: Torque to start [N m].
-        viscousfriction: Torque per velocity [N m s/rad].
+        staticfriction: Static friction [N m].
+        viscousfriction: Viscous friction [N m s/rad].
     """
 
     type: ClassVar[SensorType] = SensorType.Actuator
@@ -240,6 +241,6 @@ DATA: dict[SensorType, type[SensorData]] = {
 
 
 def copied(data: SensorData) -> SensorData:
-    """Return a measurement with arrays of its own."""
+    """Return a copy of a measurement that shares no arrays with it."""
     values = {one.name: getattr(data, one.name) for one in fields(data)}
     return replace(data, **{name: value.copy() for name, value in values.items() if isinstance(value, np.ndarray)})

@@ -1,4 +1,4 @@
-"""What is fixed about sensors: name, place, geometry."""
+"""The constant properties of sensors: name, pose, geometry."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 
 class DescribedSensor(Interface):
-    """A sensor as the scene describes it, on a robot or on its own.
+    """A sensor as the scene describes it, on a robot or by itself.
 
     Attributes:
-        attached: Its place on a robot, or None.
+        attached: The attached sensor of a robot that it belongs to, or None.
     """
 
     _interface_type = InterfaceType.sensor
@@ -42,15 +42,15 @@ class DescribedSensor(Interface):
 
     @property
     def description(self) -> scene.AttachedSensor:
-        """What the scene says about the sensor; of one without a robot the pose is that in the world."""
+        """The description in the scene. The pose of a sensor without a robot is its pose in the world."""
         return self._own if self.attached is None else self.attached.description
 
     @property
     def device(self) -> scene.Device:
-        """What is fixed about the sensor.
+        """The constant properties of the sensor.
 
         Raises:
-            UnsupportedError: its kind is not known.
+            UnsupportedError: ravemj does not simulate this kind of sensor.
         """
         device = self.description.device
         if device is None:
@@ -64,13 +64,13 @@ class DescribedSensor(Interface):
             self.attached.edit(**changes)
 
     def _moved(self) -> None:
-        """Take note that a sensor without a robot is elsewhere."""
+        """React to a new pose of a sensor without a robot."""
 
     def _take_over(self) -> None:
-        """Begin anew with another device."""
+        """Restart with other constant properties."""
 
     def take_state(self, other: "DescribedSensor") -> None:
-        """Go on like another sensor of the same kind."""
+        """Copy the state of another sensor of the same kind."""
 
     def _problem(self) -> str | None:
         """Return why the sensor cannot measure, or None."""
@@ -82,13 +82,13 @@ class DescribedSensor(Interface):
         return device.problem()
 
     def GetName(self) -> str:
-        """Return the names of the robot and of the attached sensor, with a colon between them."""
+        """Return ``robot:sensor`` for an attached sensor, else the sensor's own name."""
         if self.attached is None:
             return self._own.name
         return f"{self.attached.GetRobot().GetName()}:{self.attached.GetName()}"
 
     def SetName(self, name: str) -> None:
-        """Give a sensor without a robot a name.
+        """Set the name of a sensor without a robot.
 
         Args:
             name: The name.
@@ -125,23 +125,23 @@ class DescribedSensor(Interface):
             transform: ``T_world_sensor``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
 
         Raises:
-            openrave_exception: a robot carries it; ``attached.SetRelativeTransform`` moves it on its link.
+            openrave_exception: a robot carries the sensor; ``attached.SetRelativeTransform`` moves it on its link.
         """
         self._check_loose("SetTransform", "attached.SetRelativeTransform moves it on its link")
         self._edit(T_link_sensor=pose_of(checked_transform(transform, "SetTransform: transform")))
         self._moved()
 
     def SetSensorGeometry(self, geometry: SensorGeometry) -> bool:
-        """Give the sensor another resolution, range or calibration; it begins to measure anew.
+        """Change the resolution, range or calibration of the sensor. Earlier measurements are discarded.
 
         Args:
-            geometry: A description as ``GetSensorGeometry`` returns it.
+            geometry: A description like those that ``GetSensorGeometry`` returns.
 
         Returns:
-            Whether the description is of its kind, and was taken over.
+            Whether the description fits this kind of sensor.
 
         Raises:
-            openrave_exception: nothing can be measured with it. Nothing has changed then.
+            openrave_exception: a sensor with these properties cannot measure; the sensor stays as it is.
         """
         with self._env.simulation.lock:
             device = device_of(geometry, self.device)
@@ -156,16 +156,16 @@ class DescribedSensor(Interface):
 
     @also_named(reference="ref")
     def Clone(self, ref: "DescribedSensor", cloningoptions: int = 0) -> None:
-        """Take over what another sensor of this kind is: its geometry, its noise, on or off, and data of users.
+        """Copy another sensor of the same kind: its geometry, its noise, whether it is on, and its user data.
 
-        A sensor that no robot carries takes over the name and the pose, too.
+        A sensor without a robot also copies the name and the pose.
 
         Args:
             ref: The other sensor.
-            cloningoptions: OpenRAVE's; ignored.
+            cloningoptions: Not used.
 
         Raises:
-            openrave_exception: it is of another kind.
+            openrave_exception: the other sensor is of another kind.
         """
         other = checked_kind(ref, DescribedSensor, "Clone: ref", "a Sensor")
         if other.GetXMLId().lower() != self.GetXMLId().lower():
@@ -179,10 +179,10 @@ class DescribedSensor(Interface):
             self.take_state(other)
 
     def GetSensorGeometry(self, type: SensorType | None = None) -> SensorGeometry | None:  # OpenRAVE's name
-        """Return what is fixed about the sensor, a copy; None where it has no geometry of this kind.
+        """Return the constant properties of the sensor; None if it has none of the requested kind.
 
         Args:
-            type: The kind of geometry that is asked for; None: the sensor's own.
+            type: The kind of geometry; by default the sensor's own.
         """
         device = self.description.device
         geometry = None if device is None else geometry_of(device)
@@ -193,15 +193,15 @@ class DescribedSensor(Interface):
         """Return an empty measurement.
 
         Args:
-            type: The kind of data; None: the sensor's own.
+            type: The kind of data; by default the sensor's own.
 
         Raises:
-            openrave_exception: the sensor gives no data of this kind.
+            openrave_exception: the sensor does not measure this kind of data.
         """
         return DATA[self._checked_type(type, "CreateSensorData")]()
 
     def Supports(self, type: SensorType) -> bool:  # OpenRAVE's name
-        """Return whether the sensor gives this kind of data.
+        """Return whether the sensor measures this kind of data.
 
         Args:
             type: A ``Sensor.Type``.

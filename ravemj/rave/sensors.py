@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 _LOG = logging.getLogger("ravemj")
 
 KIND_NAMES = tuple(kind.name for kind in scene.SENSOR_KINDS.values())
-"""The names that ``RaveCreateSensor`` makes something for."""
+"""The names that ``RaveCreateSensor`` knows."""
 
 _SWITCHES: tuple[SensorCommand, ...] = (
     SensorCommand.PowerOn,
@@ -54,23 +54,23 @@ _DRAWN: Mapping[SensorCommand, tuple[type, ...]] = MappingProxyType(
         SensorCommand.RenderGeometryOn: (scene.Laser, scene.FlashLidar, scene.Intrinsics),
     }
 )
-"""Of which devices viewers can draw what."""
+"""The devices whose measurements, and whose geometry, viewers can draw."""
 
 _OFF = 1
-"""What is added to the command that switches something on for the one that switches it off."""
+"""The number of an "off" command is that of its "on" command plus this."""
 
-_SWITCH_BITS = 0x30
+_SWITCH_BITS = 0x30  # the bits of a command's number that say what it switches
 
 _SLACK = 1e-9
-"""How much earlier [s] than its time a measurement may be taken, since steps of time add up with rounding."""
+"""How much too early a measurement may be taken [s]: the sum of many time steps has rounding errors."""
 
 
 class Sensor(DescribedSensor):
-    """A device that measures; ``attached.GetSensor()`` returns that of a robot, ``RaveCreateSensor`` makes one.
+    """A sensor. ``attached.GetSensor()`` returns a robot's sensor; ``RaveCreateSensor`` makes one without a robot.
 
-    It is off at first. While it is on, it measures in each step of simulation time, a laser once in its ``time_scan``;
-    ``GetSensorData`` returns the last measurement. Where no time has passed since, it measures anew, so that no
-    simulation has to run. Cameras take their picture when they are asked for it.
+    A sensor is off at first. While it is on, it measures in each step of simulation time; a laser measures once in
+    its ``time_scan``. ``GetSensorData`` returns the last measurement. If no simulation time has passed since, it
+    measures again, so it also works without a simulation. Cameras take their picture when they are asked for it.
 
     Example:
         >>> camera = robot.GetAttachedSensor("camera").GetSensor()
@@ -127,7 +127,7 @@ class Sensor(DescribedSensor):
             self._switched[SensorCommand.PowerOn] = True
 
     def _restart(self) -> None:
-        """Forget what was measured."""
+        """Discard all measurements."""
         self._instrument.restart()
         self._data: SensorData | None = None
         self._until_next = 0.0
@@ -141,21 +141,23 @@ class Sensor(DescribedSensor):
         self._show_shape(anew=True)
 
     def Configure(self, command: int, blocking: bool = False) -> int:
-        """Switch the sensor, or what viewers draw of it, on or off; or ask whether it is on.
+        """Switch the sensor or its drawing on or off, or ask whether it is on.
 
-        Viewers and pictures draw what lasers measure (``RenderDataOn``), and where cameras and lasers are
-        (``RenderGeometryOn``; off until then, which OpenRAVE's are not).
+        Viewers and pictures draw the measurements of lasers after ``RenderDataOn``, and the frustums and rays of
+        cameras and lasers after ``RenderGeometryOn``. At first neither is drawn; OpenRAVE draws geometries from the
+        start.
 
         Args:
             command: A ``Sensor.ConfigureCommand``.
-            blocking: OpenRAVE's; ignored.
+            blocking: Not used.
 
         Returns:
-            1 if it was done, or if the answer is yes; else 0: viewers draw nothing of this kind of sensor.
+            1 if the sensor was switched, or if the answer is yes; 0 if the answer is no, or if viewers do not draw this
+            kind of sensor.
 
         Raises:
-            openrave_exception: there is no such command; or nothing can be measured, since the sensor is on no link or
-                its geometry makes no sense. It stays off then.
+            openrave_exception: the command is unknown; or the sensor cannot measure, since it is on no link or its
+                geometry has impossible numbers, and stays off.
         """
         del blocking
         if command not in {one.value for one in SensorCommand}:
@@ -192,20 +194,20 @@ class Sensor(DescribedSensor):
             self._restart()
 
     def SimulationStep(self, timeelapsed: float) -> None:
-        """Let time pass for this sensor alone; ``env.StepSimulation`` does it for all.
+        """Advance this sensor alone by a time step; ``env.StepSimulation`` advances all sensors.
 
         Args:
-            timeelapsed: How long [s].
+            timeelapsed: The duration of the step [s].
         """
         checked = float(checked_vector([timeelapsed], 1, "SimulationStep: timeelapsed")[0])
         with self._env.simulation.lock:
             self.advance(checked, self._env.clock.now)
 
     def advance(self, timestep: float, stamp: int) -> None:
-        """Let time pass: measure if it is time to.
+        """Advance the sensor by a time step, and measure if a measurement is due.
 
         Args:
-            timestep: How long [s].
+            timestep: The duration of the step [s].
             stamp: The time at the end of the step [microseconds].
         """
         if self._switched[SensorCommand.PowerOn]:
@@ -216,22 +218,22 @@ class Sensor(DescribedSensor):
                 self._until_next = getattr(device, "scan_time", 0.0)
                 try:
                     self._data = self._measured(stamp)
-                except RavemjError:  # who asks for data is told
+                except RavemjError:  # GetSensorData measures again, and its caller gets the error
                     self._data = None
         self._show_shape()
 
     def GetSensorData(self, type: SensorType | None = None) -> Any:  # noqa: ANN401 - of the sensor's class of data
-        """Return what the sensor measured last; anew where no time has passed since. A camera takes a picture now.
+        """Return the last measurement. If no time has passed since, measure again. A camera takes a new picture.
 
         Args:
-            type: The kind of data; None: the sensor's own.
+            type: The kind of data; by default the sensor's own.
 
         Returns:
             ``CameraSensorData``, ``LaserSensorData`` and so on, a copy.
 
         Raises:
-            openrave_exception: the sensor is off, or gives no data of this kind; or it feels forces, and the
-                environment has no physics.
+            openrave_exception: the sensor is off, or does not measure this kind of data; or it measures forces, and
+                the environment has no physics engine that simulates them.
         """
         self._checked_type(type, "GetSensorData")
         with self._env.simulation.lock:
@@ -247,26 +249,26 @@ class Sensor(DescribedSensor):
             raise RavemjError(f"{caller}: sensor '{self.GetName()}' is off; {command} switches it on")
 
     def depth_image(self) -> NDArray[np.float32]:
-        """Return how far away is what a camera sees now.
+        """Return the depths that a camera sees now.
 
         Returns:
-            Distances along the viewing direction [m], shape (height, width), top row first; infinite where nothing is.
+            Depths along the viewing direction [m], shape (height, width), top row first; infinite in the background.
 
         Raises:
-            openrave_exception: the sensor is off, or is no camera.
+            openrave_exception: the sensor is off, or is not a camera.
         """
         with self._env.simulation.lock:
             return self._instrument.depth_image(self._checked_camera("depth_image"), self._place())
 
     def segmentation_image(self) -> Ints:
-        """Return which link each pixel of a camera shows now.
+        """Return the link that each pixel of a camera shows now.
 
         Returns:
-            Shape (height, width, 2), top row first: the body's number, as ``body.GetEnvironmentBodyIndex()`` gives it,
-            and the index of its link; 0 and -1 where nothing is.
+            Shape (height, width, 2), top row first: ``body.GetEnvironmentBodyIndex()``, and the index of the link; 0
+            and -1 in the background.
 
         Raises:
-            openrave_exception: the sensor is off, or is no camera.
+            openrave_exception: the sensor is off, or is not a camera.
         """
         with self._env.simulation.lock:
             return self._instrument.segmentation_image(self._checked_camera("segmentation_image"), self._place())
@@ -279,13 +281,13 @@ class Sensor(DescribedSensor):
         return device
 
     def set_noise(self, deviation: float, seed: int | None = None) -> None:
-        """Add normally distributed noise to what is measured from now on; there is none from the start.
+        """Add Gaussian noise to all further measurements. At first there is none.
 
         Args:
-            deviation: Standard deviation, in the unit of each number: distances of lasers, colours of cameras in
-                steps of 255, forces and torques, angular velocities and accelerations, joint values, positions. 0: no
-                noise.
-            seed: Where the random numbers begin; None: anywhere.
+            deviation: The standard deviation in the unit of the measured numbers: distances of lasers, colours of
+                cameras from 0 to 255, forces and torques, angular velocities and accelerations, joint values,
+                positions. 0 switches the noise off.
+            seed: The seed of the random numbers; by default a random one.
 
         Raises:
             openrave_exception: the deviation is negative or not finite.
@@ -295,7 +297,7 @@ class Sensor(DescribedSensor):
         self._instrument.set_noise(float(deviation), seed)
 
     def take_state(self, other: DescribedSensor) -> None:
-        """Go on like another sensor of the same kind: with its noise, on or off, and drawn or not."""
+        """Copy the state of another sensor of the same kind: its noise, whether it is on, and whether it is drawn."""
         assert isinstance(other, Sensor)
         self._restart()
         self._instrument.take_over(other._instrument)
@@ -304,7 +306,7 @@ class Sensor(DescribedSensor):
         self._show_shape(anew=True)
 
     def hide(self) -> None:
-        """Switch the sensor and its drawings off: it is taken away."""
+        """Switch the sensor and its drawings off, since it is removed."""
         for switch in _SWITCHES:
             self._switch_off(switch)
 
@@ -314,7 +316,7 @@ class Sensor(DescribedSensor):
         return Place(self.GetTransform(), carrier)
 
     def _measured(self, stamp: int) -> SensorData:
-        """Measure, and draw it where that is asked for."""
+        """Measure, and draw the measurement if that is switched on."""
         device = self.device
         data = self._instrument.measured(device, self._place(), stamp)
         scanned = self._instrument.scanned
@@ -327,10 +329,10 @@ class Sensor(DescribedSensor):
         return data
 
     def _show_shape(self, *, anew: bool = False) -> None:
-        """Draw where the sensor is, where that is asked for.
+        """Draw the geometry of the sensor if that is switched on.
 
         Args:
-            anew: Whether it may look another way than before.
+            anew: Whether the geometry may have changed since it was drawn.
         """
         if not self._switched[SensorCommand.RenderGeometryOn]:
             return
@@ -342,7 +344,7 @@ class Sensor(DescribedSensor):
         self._shape.SetTransform(self._instrument.rays_pose(device, self._place()))
 
     def _colliding_bodies(self, arguments: str) -> str:
-        """Return the numbers of the bodies that the rays met last, one for each; 0 for those that met nothing."""
+        """Return the environment index of the body that each ray has hit; 0 for rays without a hit."""
         del arguments
         if self._instrument.scanned is None:
             raise RavemjError(f"collidingbodies: '{self.GetName()}' has not scanned yet")
@@ -358,15 +360,15 @@ class Sensor(DescribedSensor):
 
 
 def RaveCreateSensor(env: "Environment", name: str) -> Sensor | None:
-    """Make a sensor that no robot carries; ``SetTransform`` places it, and ``env.Add`` lets it measure as time passes.
+    """Make a sensor without a robot. ``SetTransform`` places it; after ``env.Add`` simulation steps advance it.
 
     Args:
         env: The environment.
-        name: ``BaseCamera``, ``BaseLaser2D``, ``BaseSpinningLaser2D`` or ``BaseFlashLidar3D``; or a kind that needs a
-            robot to measure. Upper and lower case are the same.
+        name: ``BaseCamera``, ``BaseLaser2D``, ``BaseSpinningLaser2D`` or ``BaseFlashLidar3D``; or a kind that only
+            measures on a robot. Letter case does not matter.
 
     Returns:
-        The sensor, as OpenRAVE has it where nothing is said about it; None, with a warning, for another name.
+        The sensor with OpenRAVE's defaults; None with a logged warning for an unknown name.
 
     Example:
         >>> laser = RaveCreateSensor(env, "BaseLaser2D")

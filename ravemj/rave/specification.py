@@ -1,4 +1,4 @@
-"""What the numbers of a configuration are, and goals of inverse kinematics, which are laid out by them."""
+"""Configuration specifications: the layout of the values of a configuration, and of goals of inverse kinematics."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Self
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class ConfigurationSpecification(ConfigurationData):
-    """What the numbers of a configuration are: named groups of joint values, poses, velocities, times.
+    """The layout of a configuration: named groups of joint values, poses, velocities and times.
 
     Example:
         >>> spec = robot.GetConfigurationSpecification("linear")
@@ -39,7 +39,7 @@ class ConfigurationSpecification(ConfigurationData):
         """Make a specification.
 
         Args:
-            spec: Another one, a group, or XML text, as ``repr`` shows it; None: no groups.
+            spec: A specification to copy, a group, or XML text, as ``repr`` shows it. By default there are no groups.
         """
         if isinstance(spec, str):
             self._groups = read_layout(spec)
@@ -57,32 +57,32 @@ class ConfigurationSpecification(ConfigurationData):
         return spec
 
     def GetGroups(self) -> list[Group]:
-        """Return the groups; copies, each with ``name``, ``offset``, ``dof`` and ``interpolation``."""
+        """Return copies of the groups, each with ``name``, ``offset``, ``dof`` and ``interpolation``."""
         return layout.copied(self._groups)
 
     def GetDOF(self) -> int:
-        """Return how many numbers a configuration has."""
+        """Return the number of values of a configuration."""
         return layout.count(self._groups)
 
     def IsValid(self) -> bool:
-        """Return whether each number is in just one group, and each name is used once."""
+        """Return whether each value belongs to exactly one group, and each name is used once."""
         return layout.flaw(self._groups) is None
 
     def Validate(self) -> None:
         """Check the specification.
 
         Raises:
-            ArgumentError: it is not valid; the message says why.
+            ArgumentError: the specification is not valid; the message says why.
         """
         wrong = layout.flaw(self._groups)
         if wrong is not None:
             raise ArgumentError(wrong, ErrorCode.Assert)
 
     def GetGroupFromName(self, name: str) -> Group:
-        """Return the group of that name, or else the one with the shortest name that starts so; a copy.
+        """Return a copy of the group of a name, or else of the group with the shortest name that begins with it.
 
         Raises:
-            ArgumentError: there is none.
+            ArgumentError: no group begins with the name.
         """
         group = layout.find_prefix(self._groups, name)
         if group is None:
@@ -90,17 +90,17 @@ class ConfigurationSpecification(ConfigurationData):
         return layout.copied([group])[0]
 
     def FindCompatibleGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return the group with values of the same kind and body; a copy, or None.
+        """Return a copy of the group with values of the same kind and body, or None.
 
         Args:
-            name: A group's name, or its beginning, for instance ``joint_values arm``.
+            name: The name of a group or the beginning of one, for instance ``joint_values arm``.
             exactmatch: Whether the names have to be equal.
         """
         found = layout.find_compatible(self._groups, name if isinstance(name, str) else name.name, exactmatch)
         return None if found is None else layout.copied([found])[0]
 
     def FindTimeDerivativeGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return the group with the time derivative of another; a copy, or None. See ``FindCompatibleGroup``.
+        """Return a copy of the group with the time derivative of another, or None. See ``FindCompatibleGroup``.
 
         Args:
             name: A group, or its name.
@@ -109,7 +109,7 @@ class ConfigurationSpecification(ConfigurationData):
         return self._shifted(name, 1, exactmatch)
 
     def FindTimeIntegralGroup(self, name: "str | Group", exactmatch: bool = False) -> Group | None:
-        """Return the group of which another is the time derivative; a copy, or None. See ``FindCompatibleGroup``.
+        """Return a copy of the group whose time derivative another group is, or None. See ``FindCompatibleGroup``.
 
         Args:
             name: A group, or its name.
@@ -123,18 +123,19 @@ class ConfigurationSpecification(ConfigurationData):
 
     @also_named(group="name")
     def AddGroup(self, name: "str | Group", dof: int = 0, interpolation: str = "") -> int:
-        """Add a group behind the others, unless it is there.
+        """Append a group, unless the specification has it.
 
         Args:
-            name: What the values are, for instance ``joint_values arm 0 1``; or a group, of which the rest is taken.
-            dof: How many values it has.
-            interpolation: How they change between waypoints.
+            name: The name, which says what the values are, for instance ``joint_values arm 0 1``; or a group, which
+                also has the other two arguments.
+            dof: The number of values.
+            interpolation: The interpolation between waypoints.
 
         Returns:
-            Its offset.
+            The offset of the group.
 
         Raises:
-            ArgumentError: there is another group of that kind for the same body.
+            ArgumentError: the specification has another group of that kind for the same body.
 
         Example:
             >>> spec.AddGroup("joint_values arm 0 1", 2, "linear")
@@ -146,15 +147,15 @@ class ConfigurationSpecification(ConfigurationData):
         return next(group.offset for group in self._groups if group.name == new.name)
 
     def AddDeltaTimeGroup(self) -> int:
-        """Add the time since the last waypoint [s], unless it is there; return its offset."""
+        """Append the time since the last waypoint [s], unless the specification has it, and return its offset."""
         return self.AddGroup(DELTATIME, 1)
 
     def AddDerivativeGroups(self, deriv: int, adddeltatime: bool = False) -> None:
-        """Add the derivatives of all positions, with the interpolations that fit to theirs.
+        """Append time derivatives of all positions, with the interpolations that fit those of the positions.
 
         Args:
             deriv: 1 for velocities, 2 for accelerations and so on.
-            adddeltatime: Whether to add the time since the last waypoint, too.
+            adddeltatime: Whether to append the time since the last waypoint as well.
         """
         self._groups = layout.with_derivatives(self._groups, checked_order(deriv, "deriv"), adddeltatime)
 
@@ -167,17 +168,17 @@ class ConfigurationSpecification(ConfigurationData):
 
         Args:
             groupname: The name of a group.
-            exactmatch: False: also groups whose names start so.
+            exactmatch: False also removes groups whose names begin with it.
 
         Returns:
-            How many are gone.
+            The number of removed groups.
         """
         before = len(self._groups)
         self._groups = layout.without(self._groups, groupname, exactmatch)
         return before - len(self._groups)
 
     def ResetGroupOffsets(self) -> None:
-        """Put the groups one behind the other, without gaps."""
+        """Set the offsets so that the groups follow one another without gaps."""
         self._groups = layout.packed(self._groups)
 
     def ConvertToVelocitySpecification(self) -> "ConfigurationSpecification":
@@ -185,7 +186,7 @@ class ConfigurationSpecification(ConfigurationData):
         return self.ConvertToDerivativeSpecification(1)
 
     def ConvertToDerivativeSpecification(self, timederivative: int) -> "ConfigurationSpecification":
-        """Return a specification with derivatives in place of positions: 1 for velocities, 2 for accelerations.
+        """Return a specification with time derivatives in place of positions.
 
         Args:
             timederivative: 0 for values, 1 for velocities, 2 for accelerations.
@@ -203,16 +204,16 @@ class ConfigurationSpecification(ConfigurationData):
     def ExtractIkParameterization(
         self, data: ArrayLike, timederivative: int = 0, robotname: str = "", manipulatorname: str = ""
     ) -> "IkParameterization | None":
-        """Return a goal of inverse kinematics in a configuration.
+        """Return the goal of inverse kinematics that a configuration contains.
 
         Args:
-            data: The configuration.
-            timederivative: 1 for velocities, 2 for accelerations and so on.
-            robotname: Whose goal; empty: that of any robot.
-            manipulatorname: The goal of which of its manipulators; empty: that of any.
+            data: The configuration, shape (dof,).
+            timederivative: 0 for the goal, 1 for its velocity, 2 for its acceleration.
+            robotname: The robot of the goal; empty for any.
+            manipulatorname: The manipulator of the goal; empty for any.
 
         Returns:
-            The first one that there is, or None.
+            The first such goal, or None.
         """
         values, order = self._checked(data), checked_order(timederivative)
         group = extraction.ik_group(self._groups, robotname, manipulatorname, order)
@@ -227,10 +228,10 @@ class ConfigurationSpecification(ConfigurationData):
         return {"groups": [dict(vars(group)) for group in sorted(self._groups, key=lambda group: group.offset)]}
 
     def DeserializeJSON(self, obj: dict[str, list[dict[str, Any]]]) -> None:
-        """Take the groups that ``SerializeJSON`` returned.
+        """Replace the groups by those that ``SerializeJSON`` returned.
 
         Args:
-            obj: What ``SerializeJSON`` returned.
+            obj: A result of ``SerializeJSON``.
         """
         self._groups = [Group(**group) for group in obj["groups"]]
 
@@ -242,11 +243,11 @@ class ConfigurationSpecification(ConfigurationData):
     __hash__ = None  # pyright: ignore[reportAssignmentType] - specifications change
 
     def __add__(self, other: "ConfigurationSpecification") -> "ConfigurationSpecification":
-        """Return a specification that holds the values of both; groups of one kind and body become one."""
+        """Return a specification with the groups of both. Two groups of one kind and body become one."""
         return self.of(layout.merged(self._groups, other._groups))
 
     def __iadd__(self, other: "ConfigurationSpecification") -> Self:
-        """Add the values of another specification."""
+        """Add the groups of another specification."""
         self._groups = layout.merged(self._groups, other._groups)
         return self
 
@@ -258,18 +259,18 @@ class ConfigurationSpecification(ConfigurationData):
 
 
 class IkParameterization(IkParameterizationData):
-    """A pose, a direction, a point or a ray that the tool of an arm shall reach.
+    """A goal of inverse kinematics: a pose, a direction, a point or a ray for the tool of an arm.
 
-    The numbers are, by type: ``Transform6D`` the pose [w, x, y, z, tx, ty, tz]; ``Rotation3D`` the quaternion;
-    ``Translation3D`` and ``Lookat3D`` the point; ``Direction3D`` the direction; ``Ray4D`` and
-    ``TranslationDirection5D`` direction and point; ``TranslationXY2D`` x and y, ``TranslationXYOrientation3D`` the
-    angle behind them; ``TranslationLocalGlobal6D`` a point of the tool and where it shall be; the types with
-    ``AxisAngle`` angle and point.
+    The type says what the values are. ``Transform6D``: the pose [w, x, y, z, tx, ty, tz]. ``Rotation3D``: the
+    quaternion. ``Translation3D`` and ``Lookat3D``: the point. ``Direction3D``: the direction. ``Ray4D`` and
+    ``TranslationDirection5D``: the direction, then the point. ``TranslationXY2D``: x and y.
+    ``TranslationXYOrientation3D``: x, y and the angle. ``TranslationLocalGlobal6D``: a point in the tool frame, then
+    its goal in the world. Types with ``AxisAngle``: the angle, then the point.
 
     Args:
-        value: What to reach: a 4x4 matrix or a pose, a quaternion, a vector, a ``Ray``, a pair of points, or a point
-            and an angle, as the type asks for; or another ``IkParameterization``, or the text of one.
-        type: The type, with a value.
+        value: The goal, as the type requires: a 4x4 matrix or a pose, a quaternion, a vector, a ``Ray``, a pair of
+            points, or a point and an angle. Or an ``IkParameterization`` to copy, or the text of one.
+        type: The type of the goal.
 
     Example:
         >>> goal = IkParameterization(T_world_tool, IkParameterization.Type.Transform6D)
@@ -296,7 +297,7 @@ class IkParameterization(IkParameterizationData):
         """Return the layout of a goal of a type in a trajectory.
 
         Args:
-            type: A type of goal.
+            type: The type of the goal.
             interpolation: How the values change between waypoints.
             robotname: Name of the robot; empty: any.
             manipname: Name of the arm; empty: any.
@@ -310,12 +311,12 @@ class IkParameterization(IkParameterizationData):
 def RaveGetAffineConfigurationSpecification(
     affinedofs: int, body: "KinBody | None" = None, interpolation: str = ""
 ) -> ConfigurationSpecification:
-    """Return the specification of parts of a pose.
+    """Return the layout of the components of a pose.
 
     Args:
-        affinedofs: ``DOFAffine`` values, combined.
-        body: Whose pose; None: a body called ``__dummy__``.
-        interpolation: How the values change between waypoints.
+        affinedofs: The components, ``DOFAffine`` combined with ``|``.
+        body: The body; None stands for a body called ``__dummy__``.
+        interpolation: The interpolation between waypoints.
     """
     return ConfigurationSpecification.of(
         body_groups("__dummy__" if body is None else body.GetName(), [], affinedofs, interpolation)

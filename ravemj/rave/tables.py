@@ -1,4 +1,4 @@
-"""Bodies and joints as tables for notebooks: bare HTML, so that themes choose the colours."""
+"""Tables of bodies and joints for notebooks. They are HTML without styles, so the notebook's theme sets the colours."""
 
 from collections.abc import Iterable
 from html import escape
@@ -14,7 +14,7 @@ Row = list[str]
 
 
 def body_table(body: "KinBody") -> str:
-    """Return the DOFs of a body with their values and limits, and its links, folded, with their masses."""
+    """Return a table of a body's DOFs with values and limits, and a folded table of its links with masses."""
     kind, links = "robot" if body.IsRobot() else "body", body.GetLinks()
     title = f"<b>{escape(body.GetName())}</b> ({kind}, {body.GetDOF()} DOF)"
     dofs = [row for joint in body.GetJoints() for row in _axes(joint)]
@@ -25,7 +25,7 @@ def body_table(body: "KinBody") -> str:
 
 
 def joint_table(joint: "Joint") -> str:
-    """Return the axes of a joint with their values and limits."""
+    """Return a table of a joint's axes with values and limits."""
     body = joint.GetParent()
     title = f"<b>{escape(joint.GetName())}</b> ({joint.GetType().name}, joint of {escape(body.GetName())})"
     return f"{title}{_table(_axes(joint))}"
@@ -38,7 +38,7 @@ def _axes(joint: "Joint") -> Iterable[Row]:
     """Return a row for each axis of a joint."""
     try:
         values = [f"{value:.4g}" for value in joint.GetValues()]
-    except RavemjError:  # a body that is not added has none
+    except RavemjError:  # a body outside of an environment has no joint values
         values = ["?"] * joint.GetDOF()
     first, (lower, upper) = joint.GetDOFIndex(), joint.GetLimits()
     for axis, value in enumerate(values):
@@ -49,7 +49,7 @@ def _axes(joint: "Joint") -> Iterable[Row]:
 
 
 def _table(rows: Iterable[Row], headings: Iterable[str] = _HEADINGS) -> str:
-    """Return a table of cells that are HTML already; nothing for no rows."""
+    """Return the HTML of a table whose cells are HTML already; an empty text for no rows."""
     head = "".join(f"<th>{heading}</th>" for heading in headings)
     body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>" if body else ""

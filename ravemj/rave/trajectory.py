@@ -30,7 +30,7 @@ Spec = ConfigurationSpecification | Group
 
 
 class Trajectory(Interface):
-    """Configurations over time; ``RaveCreateTrajectory`` makes it.
+    """A trajectory: configurations over time. ``RaveCreateTrajectory`` makes trajectories.
 
     Example:
         >>> spec = robot.GetConfigurationSpecificationIndices([0, 1], "linear")
@@ -53,12 +53,12 @@ class Trajectory(Interface):
         self._waypoints: Waypoints | None = None
 
     def GetXMLId(self) -> str:
-        """Return the name of the type, as it was spelled when the trajectory was made."""
+        """Return the name of the type, spelled as the caller of ``RaveCreateTrajectory`` spelled it."""
         return self._xmlid
 
     @also_named(group="spec")
     def Init(self, spec: Spec) -> None:
-        """Remove all waypoints, and set the specification of new ones.
+        """Remove all waypoints, and set the layout of new ones.
 
         Args:
             spec: A specification, or a group; it is copied.
@@ -73,7 +73,7 @@ class Trajectory(Interface):
 
     @property
     def waypoints(self) -> Waypoints:
-        """The waypoints, below the OpenRAVE API; there are none before ``Init``."""
+        """The waypoints as an object below OpenRAVE's API; ``Init`` makes it."""
         if self._waypoints is None:
             raise RavemjError("the trajectory has no specification yet; call Init(spec) first", ErrorCode.Assert)
         return self._waypoints
@@ -94,16 +94,16 @@ class Trajectory(Interface):
         """Insert waypoints.
 
         Args:
-            index: Before which waypoint; ``GetNumWaypoints()`` is behind all.
-            data: The waypoints, one behind the other, or one in each row.
-            spec: What their numbers are; None: as in the trajectory. What it lacks stays as it is in waypoints that
-                are there; in new ones, joints that are missing in a group get their present values, and missing groups
-                zeros. True and False stand for ``overwrite``.
-            overwrite: Whether to write over the waypoints from ``index`` on; what reaches beyond the last is appended.
-            group: A group in place of ``spec``.
+            index: The waypoint before which they are inserted; ``GetNumWaypoints()`` appends them.
+            data: The waypoints, one after the other, shape (n * dof,), or one in each row, shape (n, dof).
+            spec: The layout of the data; by default that of the trajectory. Values that it lacks stay as they are in
+                existing waypoints. In new waypoints, missing joints of a group get their current values, and missing
+                groups zeros. True and False stand for ``overwrite``.
+            overwrite: Whether to overwrite waypoints from ``index`` on. Data beyond the last waypoint is appended.
+            group: A group as the layout, in place of ``spec``.
 
         Raises:
-            ArgumentError: the number of numbers does not fit, or there is no such waypoint.
+            ArgumentError: the data does not fill whole waypoints, or the index is out of range.
 
         Example:
             >>> spec = robot.GetConfigurationSpecification()
@@ -131,11 +131,11 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def GetWaypoint(self, index: int, spec: Spec | None = None) -> Floats:
-        """Return a waypoint; a copy.
+        """Return a copy of a waypoint.
 
         Args:
-            index: Which; negative numbers count from the end.
-            spec: What its numbers should be; None: as in the trajectory.
+            index: The index; negative ones count from the end.
+            spec: The layout of the result; by default that of the trajectory.
 
         Returns:
             Shape (dof,).
@@ -152,32 +152,32 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def GetWaypoints(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
-        """Return the waypoints from ``startindex`` to before ``endindex``, one behind the other, shape (n * dof,).
+        """Return the waypoints from ``startindex`` to before ``endindex``, one after the other, shape (n * dof,).
 
         Args:
-            startindex: The first one.
-            endindex: The one behind the last.
-            spec: The layout of the answer; None: that of the trajectory.
+            startindex: The first waypoint.
+            endindex: The index after the last waypoint.
+            spec: The layout of the result; by default that of the trajectory.
         """
         return self.GetWaypoints2D(startindex, endindex, spec).ravel()
 
     @also_named(group="spec")
     def GetWaypoints2D(self, startindex: int, endindex: int, spec: Spec | None = None) -> Floats:
-        """Return the waypoints from ``startindex`` to before ``endindex``, shape (n, dof); a copy.
+        """Return a copy of the waypoints from ``startindex`` to before ``endindex``, shape (n, dof).
 
         Args:
-            startindex: The first one.
-            endindex: The one behind the last.
-            spec: The layout of the answer; None: that of the trajectory.
+            startindex: The first waypoint.
+            endindex: The index after the last waypoint.
+            spec: The layout of the result; by default that of the trajectory.
         """
         return self._as(self.waypoints.rows(startindex, endindex), spec)
 
     @also_named(group="spec")
     def GetAllWaypoints2D(self, spec: Spec | None = None) -> Floats:
-        """Return all waypoints, shape (n, dof); a copy.
+        """Return a copy of all waypoints, shape (n, dof).
 
         Args:
-            spec: What their numbers should be; None: as in the trajectory.
+            spec: The layout of the result; by default that of the trajectory.
         """
         return self.GetWaypoints2D(0, len(self.waypoints), spec)
 
@@ -185,33 +185,36 @@ class Trajectory(Interface):
         return rows if spec is None else self.waypoints.as_layout(rows, _groups(spec), self._env.simulation.body)
 
     def GetDuration(self) -> float:
-        """Return when the last waypoint is [s]; 0 without a group ``deltatime``."""
+        """Return the time of the last waypoint [s]; 0 without a group ``deltatime``."""
         return self.waypoints.duration()
 
     def GetFirstWaypointIndexAfterTime(self, time: float) -> int:
-        """Return the first waypoint at a time [s] or later; from the end on, the number of waypoints.
+        """Return the index of the first waypoint at a time or later, or the number of waypoints after the last one.
+
+        Args:
+            time: The time since the start [s].
 
         Raises:
-            ArgumentError: there is no group ``deltatime``.
+            ArgumentError: the trajectory has no group ``deltatime``.
         """
         return self.waypoints.first_after(time)
 
     @also_named(group="spec")
     def Sample(self, time: float, spec: Spec | None = None) -> Floats:
-        """Return the configuration at a time, interpolated as the groups say.
+        """Return the configuration at a time, with the interpolation of each group.
 
         Args:
-            time: Time since the start [s]; from the end on it is the last waypoint.
-            spec: What the numbers should be; None: as in the trajectory. What the trajectory lacks is the present
-                state of the bodies.
+            time: The time since the start [s]. After the end, the result is the last waypoint.
+            spec: The layout of the result; by default that of the trajectory. Values that the trajectory lacks are
+                those of the bodies' current configuration.
 
         Returns:
-            Shape (dof,). ``deltatime`` is the time since the last waypoint; with ``spec``, as in OpenRAVE, that of the
-            next waypoint.
+            The configuration, shape (dof,). Its ``deltatime`` is the time since the last waypoint; with ``spec`` it is
+            the ``deltatime`` of the next waypoint, as in OpenRAVE.
 
         Raises:
-            ArgumentError: the time is negative, there is no group ``deltatime``, no waypoint, or no velocities for an
-                interpolation that needs them.
+            ArgumentError: the time is negative, or the trajectory has no group ``deltatime``, no waypoints, or no
+                velocities for an interpolation that needs them.
 
         Example:
             >>> trajectory.Sample(0.5)
@@ -221,12 +224,12 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def SampleFromPrevious(self, data: ArrayLike, time: float, spec: Spec) -> Floats:
-        """Return the configuration at a time; what the trajectory lacks is taken from ``data``. See ``Sample``.
+        """Return the configuration at a time, with ``data`` for values that the trajectory lacks. See ``Sample``.
 
         Args:
-            data: Numbers of one configuration, shape (dof,).
-            time: Seconds from the start.
-            spec: The layout of the data.
+            data: A configuration, shape (dof,).
+            time: The time since the start [s].
+            spec: The layout of the data and of the result.
         """
         source = self.waypoints.sample(time, restamped=False, find_body=self._env.simulation.body)
         target = ConfigurationSpecification(spec)
@@ -234,11 +237,11 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def SamplePoints2D(self, times: ArrayLike, spec: Spec | None = None) -> Floats:
-        """Return the configurations at some times [s], shape (n, dof). See ``Sample``.
+        """Return the configurations at several times, shape (n, dof). See ``Sample``.
 
         Args:
-            times: Seconds from the start, shape (n,).
-            spec: The layout of the answer; None: that of the trajectory.
+            times: The times since the start [s], shape (n,).
+            spec: The layout of the result; by default that of the trajectory.
         """
         rows = [self.Sample(float(time), spec) for time in checked_numbers(times, "times").ravel()]
         dof = (self.GetConfigurationSpecification() if spec is None else ConfigurationSpecification(spec)).GetDOF()
@@ -246,11 +249,11 @@ class Trajectory(Interface):
 
     @also_named(group="spec")
     def SamplePointsSameDeltaTime2D(self, deltatime: float, ensurelastpoint: bool, spec: Spec | None = None) -> Floats:
-        """Return the configurations at equal distances of time.
+        """Return configurations at regular times.
 
         Args:
-            deltatime: The distance [s].
-            ensurelastpoint: Whether to return the end, too, where the distances do not reach it.
+            deltatime: The time between two configurations [s].
+            ensurelastpoint: Whether to append the end of the trajectory.
             spec: As for ``Sample``.
 
         Returns:
@@ -262,27 +265,28 @@ class Trajectory(Interface):
     def SampleRangeSameDeltaTime2D(
         self, deltatime: float, starttime: float, stoptime: float, ensurelastpoint: bool, spec: Spec | None = None
     ) -> Floats:
-        """Return the configurations at equal distances of time, from a time to before another.
+        """Return configurations at regular times, from one time to before another.
 
         Args:
-            deltatime: The distance [s].
+            deltatime: The time between two configurations [s].
             starttime: The first time [s].
-            stoptime: The time [s] before which they stop.
-            ensurelastpoint: Whether to return the end of the trajectory, too, whatever ``stoptime`` is.
+            stoptime: The time before which they stop [s].
+            ensurelastpoint: Whether to append the end of the trajectory, whatever ``stoptime`` is.
             spec: As for ``Sample``.
 
         Returns:
             Shape (n, dof).
         """
         if not deltatime > 0 or not stoptime >= starttime:
-            raise ArgumentError(f"deltatime: {deltatime} from {starttime} to {stoptime} is no range of times")
+            message = f"deltatime: is {deltatime}, from starttime {starttime} to stoptime {stoptime}"
+            raise ArgumentError(f"{message}; deltatime should be above 0, and stoptime not before starttime")
         times = starttime + deltatime * np.arange(math.ceil((stoptime - starttime) / deltatime))
         if ensurelastpoint:
             times = np.append(times, self.GetDuration())
         return self.SamplePoints2D(times, spec)
 
     def Clone(self, ref: "Trajectory", cloningoptions: int = 0) -> None:
-        """Take over the specification, the waypoints, the description and the data of users from another trajectory.
+        """Copy the layout, the waypoints, the description and the user data of another trajectory.
 
         Args:
             ref: The other trajectory.
@@ -293,7 +297,7 @@ class Trajectory(Interface):
         self._waypoints = None if known is None else Waypoints(known.groups, known.data)
 
     def Swap(self, traj: "Trajectory") -> None:
-        """Exchange specification and waypoints with another trajectory.
+        """Exchange layout and waypoints with another trajectory.
 
         Args:
             traj: The other trajectory.
@@ -313,27 +317,27 @@ class Trajectory(Interface):
         return to_text(stored, self._xmlid).encode() if (options or 0) & AS_TEXT else to_bytes(stored)
 
     def deserialize(self, data: bytes | str) -> Self:
-        """Take over what ``serialize`` returned, of either form.
+        """Replace this trajectory by one that ``serialize`` returned.
 
         Args:
-            data: What ``serialize`` returned.
+            data: A result of ``serialize``, binary or XML.
 
         Returns:
             The trajectory itself.
 
         Raises:
-            ArgumentError: that is no trajectory; nothing has changed then.
+            ArgumentError: the data is not a trajectory; this one stays as it is.
         """
         self._waypoints, description = read(data)
         self.SetDescription(description)
         return self
 
     def SaveToFile(self, filename: AnyPath, options: int | None = 0) -> None:
-        """Write the trajectory to a file, as ``serialize`` has it.
+        """Write the trajectory to a file, in the format of ``serialize``.
 
         Args:
             filename: The file.
-            options: 0x8000 for XML, else binary.
+            options: 0x8000 for XML; otherwise the file is binary.
 
         Raises:
             OutputError: the file cannot be written.
@@ -343,13 +347,13 @@ class Trajectory(Interface):
             path.write_bytes(content)
 
     def LoadFromFile(self, filename: AnyPath) -> None:
-        """Take over the trajectory in a file, of either form.
+        """Replace this trajectory by the one in a file, binary or XML.
 
         Args:
             filename: The file.
 
         Raises:
-            openrave_exception: the file cannot be read, or is no trajectory.
+            openrave_exception: the file cannot be read, or is not a trajectory.
         """
         try:
             content = Path(filename).read_bytes()
@@ -361,14 +365,14 @@ class Trajectory(Interface):
         return self.GetNumWaypoints()
 
     def __getitem__(self, index: int | slice) -> Floats:
-        """Return a waypoint, shape (dof,), or some of them, shape (n, dof)."""
+        """Return a waypoint, shape (dof,), or for a slice several, shape (n, dof)."""
         return self.GetAllWaypoints2D()[index] if isinstance(index, slice) else self.GetWaypoint(index)
 
     def __iter__(self) -> Iterator[Floats]:
         return iter(self.GetAllWaypoints2D())
 
     def __bool__(self) -> bool:
-        """Return True: a trajectory without waypoints is one, too."""
+        """Return True, also for a trajectory without waypoints, which ``len`` would make false."""
         return True
 
     def __repr__(self) -> str:

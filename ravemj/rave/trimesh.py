@@ -1,4 +1,4 @@
-"""Triangle meshes of users."""
+"""The triangle meshes that users read and pass in."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,11 +10,11 @@ from ravemj.model.scene import Mesh
 
 
 class TriMesh:
-    """Triangles.
+    """A triangle mesh.
 
     Attributes:
-        vertices: Shape (n, 3) [m]; None in a new mesh.
-        indices: Corners of each triangle, shape (m, 3); None in a new mesh.
+        vertices: The vertices [m], shape (n, 3); None in a new mesh.
+        indices: The indices of each triangle's three vertices, shape (m, 3); None in a new mesh.
 
     Example:
         >>> mesh = TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
@@ -43,15 +43,15 @@ class TriMesh:
 
 
 def trimesh_of(mesh: Mesh) -> TriMesh:
-    """Return a copy for users."""
+    """Return a mesh of the scene as a copy for users."""
     return TriMesh(mesh.vertices, mesh.triangles)
 
 
 def checked_mesh(trimesh: object, name: str) -> Mesh:
-    """Return the triangles of a ``TriMesh``; nothing for None.
+    """Return the mesh of a ``TriMesh``, checked. Arrays that are None count as empty.
 
     Raises:
-        ArgumentError: it is none, its arrays have a wrong shape, or a corner is not there.
+        ArgumentError: the object is not a ``TriMesh``, an array has the wrong shape, or an index is out of range.
     """
     if not isinstance(trimesh, TriMesh):
         raise ArgumentError(f"{name}: is a {type(trimesh).__name__}, and should be a TriMesh")

@@ -1,6 +1,6 @@
-"""Units of length, mass, angle and time, with OpenRAVE's numbers for them.
+"""Units of length, mass, angle and time, with OpenRAVE's numbers.
 
-ravemj computes in metres, kilograms, radians and seconds; the units here convert numbers of scripts.
+ravemj computes in metres, kilograms, radians and seconds. The units here convert the numbers of scripts.
 """
 
 from collections.abc import Mapping
@@ -111,7 +111,7 @@ def _written(unit: NamedInt) -> str:
 
 
 def _read(kind: type[Unit], text: str, default: Unit) -> Unit:
-    """Return the unit that a text names; the default for an empty one."""
+    """Return the unit that a text names, or the default for an empty text."""
     if not checked_kind(text, str, f"{kind.__name__}: the unit", "a text"):
         return default
     name = _OTHER_WORDS.get(kind, {}).get(text, text)
@@ -122,7 +122,7 @@ def _read(kind: type[Unit], text: str, default: Unit) -> Unit:
 
 
 def _per_standard(kind: type[Unit], unit: Unit | str) -> float:
-    """Return how many of a unit, or of what a text names, are the standard one."""
+    """Return how many of a unit make one standard unit."""
     chosen = _read(kind, unit, next(iter(kind))) if isinstance(unit, str) else kind(unit)
     return _PER_STANDARD[kind][chosen]
 

@@ -1,4 +1,4 @@
-"""What users attach to objects of an environment, and to the environment itself."""
+"""User data: objects that scripts attach to bodies, other interfaces and environments."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ from ravemj.core.api_object import ApiObject
 
 
 class Annotations:
-    """What users attach to an object: a description and data of their own, under names."""
+    """The description and the user data of one object."""
 
     def __init__(self) -> None:
         self.description = ""
@@ -14,34 +14,34 @@ class Annotations:
 
 
 class UserData(ApiObject):
-    """Keeps data of users."""
+    """The methods of objects that store user data."""
 
     _annotations: Annotations
 
     def SetUserData(self, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
-        """Attach an object of your own: ``SetUserData(data)`` or ``SetUserData(key, data)``.
+        """Attach an object of the user: ``SetUserData(data)`` or ``SetUserData(key, data)``.
 
-        It stays as long as the body does. ``GetUserData`` returns it.
+        The object lives as long as what it is attached to. ``GetUserData`` returns it.
 
         Args:
-            key: The name, or the object where it is the only argument.
+            key: The name; or the object itself, if it is the only argument.
             data: The object.
         """
         name, attached = ("", key) if data is ... else (key, data)
         self._annotations.data[str(name)] = attached
 
     def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
-        """Return what ``SetUserData`` attached under that name, or None.
+        """Return the object that ``SetUserData`` attached under a name, or None.
 
         Args:
-            key: The name; left out: the one without a name.
+            key: The name; without one, the object that has no name.
         """
         return self._annotations.data.get(key)
 
     def RemoveUserData(self, key: str = "") -> bool:
-        """Forget what is attached under a name; return whether there was something.
+        """Remove the object that is attached under a name, and return whether there was one.
 
         Args:
-            key: The name; left out: the one without a name.
+            key: The name; without one, the object that has no name.
         """
         return self._annotations.data.pop(key, None) is not None

@@ -1,4 +1,4 @@
-"""The module ``viewerrecorder``: videos of what goes on in an environment."""
+"""The module ``viewerrecorder``, which writes videos of an environment."""
 
 import time
 from collections.abc import Iterator
@@ -15,15 +15,16 @@ if TYPE_CHECKING:
 
 _FORMATS = ("mp4", "gif", "webp")
 _WAITING = 8
-"""Frames that may wait for the encoder."""
+"""The number of frames that may wait for the encoder; drawing waits for it when there are more."""
 _PATIENCE = 0.2
-"""How often [s] the encoder looks whether the script has ended without ``Stop``, so that the process can end."""
+"""The interval [s] at which the encoder checks whether the script has ended without ``Stop``. Without this check the
+encoder's thread would keep the process alive."""
 
 _TIMINGS = ("simtime", "realtime", "controller")
 
 
 class _Order(NamedTuple):
-    """What ``Start`` asks for."""
+    """The settings of a video, from the command ``Start``."""
 
     width: int
     height: int
@@ -33,12 +34,12 @@ class _Order(NamedTuple):
 
 
 class ViewerRecorder(Module):
-    """Writes videos of what the viewer shows; without a viewer, of what ``env.render`` does, but for shadows.
+    """Writes videos of the viewer's view; without a viewer, of the view of ``env.render``, without shadows.
 
-    ``Start WIDTH HEIGHT FPS codec NUMBER timing WHICH filename FILE`` begins: a frame is drawn when simulation time has
-    gone on by that of a frame (``simtime``, ``controller``), or real time (``realtime``). The suffix of the file, .mp4,
-    .gif or .webp, chooses the format, and not the number of the codec. ``Stop`` ends; the file is complete then.
-    A script that ends without ``Stop``, by an error for instance, completes it too. ``GetCodecs`` lists the formats.
+    ``Start WIDTH HEIGHT FPS codec NUMBER timing WHICH filename FILE`` begins a video. It has a frame for each 1/FPS of
+    simulation time (``simtime``, ``controller``) or of real time (``realtime``). The suffix of the file, .mp4, .gif or
+    .webp, selects the format; the number of the codec has no effect. ``Stop`` completes the file. A script that ends
+    without ``Stop``, for instance by an error, completes the file as well. ``GetCodecs`` lists the formats.
 
     Example:
         >>> recorder = ravemj.RaveCreateModule(env, "viewerrecorder")
@@ -64,10 +65,10 @@ class ViewerRecorder(Module):
         """Draw the frames that are due.
 
         Args:
-            timeelapsed: How long [s].
+            timeelapsed: The duration of the step [s].
 
         Returns:
-            Whether one was drawn.
+            Whether a frame was drawn.
         """
         if self._order is None:
             return False
@@ -82,7 +83,7 @@ class ViewerRecorder(Module):
         return self._drawn > before
 
     def _picture(self, width: int, height: int) -> Frame:
-        """Return what viewers show, without the shadows of ``env.render``, which take most of its time."""
+        """Return a frame like those of viewers. It has no shadows, which would take most of the time."""
         env = self._env
         return env.renderer.render(env.default_camera(width / height), env.background, Format(width, height))
 
@@ -90,7 +91,7 @@ class ViewerRecorder(Module):
         return self._thread is not None and self._thread.is_alive()
 
     def end(self) -> None:
-        """End the video that is under way."""
+        """Complete the current video."""
         if self._order is not None:
             self._stop("")
 
@@ -99,7 +100,7 @@ class ViewerRecorder(Module):
         from ravemj.graphics.video import check_target, write_frames  # noqa: PLC0415 - slow to import
 
         if self._order is not None:
-            raise RavemjError("Start: a video is under way already; send Stop first")
+            raise RavemjError("Start: a video is being recorded; send Stop first")
         order = _order_of(arguments)
         check_target(order.path)
 
@@ -132,7 +133,7 @@ class ViewerRecorder(Module):
         """End the video."""
         del arguments
         if self._order is None or self._thread is None:
-            raise RavemjError("Stop: no video is under way")
+            raise RavemjError("Stop: no video is being recorded; send Start first")
         self._order = None
         if self._thread.is_alive():
             self._frames.put(None)
@@ -149,7 +150,7 @@ class ViewerRecorder(Module):
 
 
 def _order_of(arguments: str) -> _Order:
-    """Return what the arguments of ``Start`` ask for."""
+    """Return the settings in the arguments of ``Start``."""
     before, found, after = arguments.partition("filename")
     words = before.split()
     try:

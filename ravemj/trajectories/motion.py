@@ -178,7 +178,7 @@ def _problems_in(file: str) -> Generator[None]:
         raise SourceError(error.message, Source(file)) from error
     except (OSError, ValueError) as error:  # ValueError: a path that holds a null byte
         reason = getattr(error, "strerror", None) or " ".join(str(error).split())
-        raise SourceError(f"cannot read the file: {reason}", Source(file)) from error
+        raise SourceError(f"cannot read the file: {reason[:1].lower()}{reason[1:]}", Source(file)) from error
 
 
 def _read_npz(file: str, dof: int) -> Motion:
@@ -279,7 +279,7 @@ def _number(cell: str, file: str, line: int) -> float:
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise SourceError(f"{reprlib.repr(cell)} is no finite number", Source(file, line))
+        raise SourceError(f"{reprlib.repr(cell)} is not a finite number", Source(file, line))
     return number
 
 

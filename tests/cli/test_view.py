@@ -65,7 +65,7 @@ def test_another_host_is_served_with_a_warning(folder):
 @pytest.mark.parametrize(
     ("options", "code", "message"),
     [
-        (["--port", "70000", "env.xml"], 2, "'70000' is no port from 0 to 65535"),
+        (["--port", "70000", "env.xml"], 2, "'70000' is not the number of a port, from 0 to 65535"),
         (["--web", "--host", "no.such.host.invalid", "env.xml"], 1, "no page can be served at port 0 of no.such.host"),
         (["missing.xml"], 1, "missing.xml"),
     ],

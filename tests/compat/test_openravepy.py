@@ -191,7 +191,7 @@ def test_openraves_own_plugins_say_what_is_missing(env, kind, name, capability):
 
 def test_modules_are_refused_and_none_is_there(env):
     for add in (env.AddModule, env.LoadProblem):
-        with pytest.raises(ravemj.openrave_exception, match="AddModule: module is None, as RaveCreateModule") as caught:
+        with pytest.raises(ravemj.openrave_exception, match="AddModule: module is None; RaveCreateModule") as caught:
             add(ravemj.RaveCreateModule(env, "urdf"), "")
         assert caught.value.GetCode() == "InvalidArguments"
         with pytest.raises(ravemj.openrave_exception, match="module: is a str"):

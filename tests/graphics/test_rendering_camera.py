@@ -227,10 +227,10 @@ def test_bad_camera_files(tmp_path, text, words):
 
 
 def test_missing_and_binary_camera_files(tmp_path):
-    with pytest.raises(SourceError, match=r"none\.json.*No such file"):
+    with pytest.raises(SourceError, match=r"none\.json.*no such file"):
         read_camera(tmp_path / "none.json")
     (tmp_path / "picture.png").write_bytes(b"\x89PNG\xff\xfe")
-    with pytest.raises(SourceError, match="no text file"):
+    with pytest.raises(SourceError, match="not a text file"):
         read_camera(tmp_path / "picture.png")
 
 

@@ -126,7 +126,7 @@ def test_what_is_refused_changes_nothing(env, robot):
         with pytest.raises(ravemj.openrave_exception):
             robot.AddConnectedBody(gripper(**wrong))
     tool = robot.AddConnectedBody(gripper())
-    with pytest.raises(ravemj.openrave_exception, match="taken"):
+    with pytest.raises(ravemj.openrave_exception, match="already"):
         robot.AddConnectedBody(gripper())
     other = robot.AddConnectedBody(gripper(_trelative=np.eye(4)), removeduplicate=True)
     assert robot.GetConnectedBodies() == [other]

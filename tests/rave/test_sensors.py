@@ -437,7 +437,7 @@ def test_nothing_is_half_configured():
     with pytest.raises(ravemj.openrave_exception, match="cannot measure"):
         robot_of_laser.AddAttachedSensor(info)
     info._sensorgeometry = ravemj.CameraGeomData()
-    with pytest.raises(ravemj.openrave_exception, match="says nothing about a BaseLaser2D"):
+    with pytest.raises(ravemj.openrave_exception, match="does not describe a BaseLaser2D"):
         robot_of_laser.AddAttachedSensor(info)
     assert len(robot_of_laser.GetAttachedSensors()) == 3
     camera = ravemj.CameraGeomData()

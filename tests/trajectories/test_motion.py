@@ -206,11 +206,11 @@ def test_csv_round_trip(read, motion, order):
         ("time,Arm0\n", 1, "no rows"),
         ("time,Arm0\n0,1\n\n# x\n1\n", 5, "expected 2 cells as in the first line, found 1"),
         ("time,Arm0\n0,1\n1,0,5\n", 3, "expected 2 cells as in the first line, found 3"),
-        ("time,Arm0\n0,1\n1,zwei\n", 3, "'zwei' is no finite number"),
-        ("time,Arm0\n0,1\n1,\n", 3, "'' is no finite number"),
-        ("time,Arm0\n0,nan\n", 2, "'nan' is no finite number"),
-        ("time,Arm0\n-inf,0\n", 2, "'-inf' is no finite number"),
-        ("time,Arm0\n0,1e999\n", 2, "'1e999' is no finite number"),
+        ("time,Arm0\n0,1\n1,zwei\n", 3, "'zwei' is not a finite number"),
+        ("time,Arm0\n0,1\n1,\n", 3, "'' is not a finite number"),
+        ("time,Arm0\n0,nan\n", 2, "'nan' is not a finite number"),
+        ("time,Arm0\n-inf,0\n", 2, "'-inf' is not a finite number"),
+        ("time,Arm0\n0,1e999\n", 2, "'1e999' is not a finite number"),
         ("time,Arm0\n0,1\n1,1\n1,1\n", 4, "times must increase, found 1.0 s after 1.0 s"),
         ("time,Arm0\n-1.7e308,1\n1.7e308,1\n", 0, "more than a float can hold"),
         ("time,Arm0\n0," + "1" * 200_000 + "\n", 2, "field larger than field limit"),
@@ -286,8 +286,8 @@ def test_files_that_are_none(tmp_path):
     (tmp_path / "folder.csv").mkdir()
     (tmp_path / "folder.npz").mkdir()
     for name, message in (
-        ("missing.csv", "No such file"),
-        ("missing.npz", "No such file"),
+        ("missing.csv", "no such file"),
+        ("missing.npz", "no such file"),
         ("folder.csv", "cannot read the file"),
         ("folder.npz", "cannot read the file"),
         ("nu\0ll.csv", "null"),

@@ -165,7 +165,10 @@ class _Document:
 
 
 def _is_urdf(root: Element) -> bool:
-    """Tell URDF's ``<robot>`` from OpenRAVE's: by joints whose parents are attributes, or by links without a body."""
+    """Return whether a ``<robot>`` is URDF's and not OpenRAVE's.
+
+    It is if a joint names its parent by an attribute, or if it has links and no ``<kinbody>``.
+    """
     if root.tag != "robot":
         return False
     parents = (
@@ -178,8 +181,8 @@ def _is_urdf(root: Element) -> bool:
 
 
 def _other_format(name: str, source: Source) -> SourceError:
-    hint = f"MuJoCo reads it: mujoco.MjModel.from_xml_path, or python -m mujoco.viewer --mjcf={source.file}"
-    return SourceError(f"this is {name}; ravemj reads OpenRAVE's XML and COLLADA", source, hint)
+    hint = f"MuJoCo opens it: mujoco.MjModel.from_xml_path, or python -m mujoco.viewer --mjcf={source.file}"
+    return SourceError(f"this is {name}, which ravemj does not read: it reads OpenRAVE's XML and COLLADA", source, hint)
 
 
 class _EnvironmentScope:

@@ -4,6 +4,7 @@ OpenRAVE's parser knows no namespaces, stops at the end tag of the root, and has
 error by the time it meets it. Expat shows all of that as it is, and where a tag starts.
 """
 
+import codecs
 import os
 from dataclasses import dataclass, field
 from typing import NamedTuple, NoReturn
@@ -133,8 +134,13 @@ class _Parser:
         return None
 
     def _explained(self, error: expat.ExpatError) -> SourceError:
-        """Return a syntax error in words; what expat calls an invalid token may be a byte of another encoding."""
+        """Return a syntax error in words. An invalid token may be a byte of another encoding, or no XML at all."""
         source = Source(self._path, error.lineno, self._included_from)
+        if not self._content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):  # half of whose bytes are 0
+            if b"\0" in self._content:
+                return SourceError("this is a binary file, not XML", Source(self._path, 0, self._included_from))
+            if not self._content.removeprefix(codecs.BOM_UTF8).lstrip().startswith(b"<"):
+                return SourceError("this is not XML, which begins with '<'", source)
         if self._encoding.lower() in {"", "utf-8", "utf8"}:
             try:
                 self._content.decode()

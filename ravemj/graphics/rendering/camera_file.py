@@ -25,9 +25,9 @@ def read_camera(path: str | Path) -> Camera:
     try:
         text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
-        raise SourceError(f"cannot read the camera: {error.strerror}", source) from None
+        raise SourceError(f"cannot read the camera: {str(error.strerror).lower()}", source, "check the path") from None
     except UnicodeDecodeError:
-        raise SourceError("cannot read the camera: this is no text file", source, _EXPECTED) from None
+        raise SourceError("cannot read the camera: this is not a text file", source, _EXPECTED) from None
     try:
         document = json.loads(text)
     except (RecursionError, ValueError):

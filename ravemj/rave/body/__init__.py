@@ -1,1 +1,1 @@
-"""The API of a body, in parts by topic; ``KinBody`` joins them."""
+"""The methods of bodies and robots, one class for each topic. ``KinBody`` and ``Robot`` inherit them."""

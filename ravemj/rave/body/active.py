@@ -1,4 +1,4 @@
-"""Active DOFs: the configuration space that planners and ``…Active…`` calls use."""
+"""Active DOFs: the configuration space of planners and of the ``…Active…`` methods."""
 
 # ruff: noqa: D102 - the docstrings of the last methods come from a table
 
@@ -23,12 +23,14 @@ from ravemj.trajectories.bodies import body_groups
 
 
 class ActiveChoice(NamedTuple):
-    """Which DOFs are active.
+    """The choice of active DOFs.
 
     Attributes:
-        dofs: Indices of the joints' DOFs in the order of their values, in an array that is never changed; None: all.
-        affine: The parts of the base's pose that come after them: ``DOFAffine`` as a plain number, which is faster.
-        axis: Axis of ``DOFAffine.RotationAxis``.
+        dofs: The DOF indices of the joints in the order of their values, in an array that is never changed; None for
+            all DOFs.
+        affine: The active components of the base's pose, whose values follow those of the joints: ``DOFAffine`` as a
+            plain number, which is faster than the flag.
+        axis: The axis of ``DOFAffine.RotationAxis``.
     """
 
     dofs: Ints | None = None
@@ -38,26 +40,26 @@ class ActiveChoice(NamedTuple):
 
 @with_affine_settings
 class ActiveDofs(BodyCollision, Dynamics, Configuration):
-    """The active DOFs of a robot: some of its joints, then parts of its base's pose, which move all of it."""
+    """The active DOFs of a robot: some of its joints, then components of its base's pose (affine DOFs)."""
 
     active_choice: ActiveChoice
-    """What ``SetActiveDOFs`` chose."""
+    """The choice of ``SetActiveDOFs``."""
     affine_kinds: dict[str, AffineKind]
-    """Limits, resolutions and weights of the parts of the base's pose."""
+    """Limits, resolutions and weights of the affine DOFs."""
     quaternion_limits: Floats
-    """What ``SetAffineRotationQuatLimits`` took."""
+    """The value of ``SetAffineRotationQuatLimits``."""
 
     def SetActiveDOFs(self, dofindices: ArrayLike, affine: int = 0, rotationaxis: ArrayLike | None = None) -> None:
         """Choose the DOFs that ``SetActiveDOFValues``, trajectories and planners use.
 
         Args:
-            dofindices: Joint DOFs, in the order in which their values will be given.
-            affine: Parts of the base's pose that follow them: ``DOFAffine`` combined with ``|``, always in the order
-                X, Y, Z, rotation.
-            rotationaxis: Axis of ``DOFAffine.RotationAxis`` in the world; None: z.
+            dofindices: The DOF indices of the joints, in the order in which values are given later.
+            affine: The active components of the base's pose, ``DOFAffine`` combined with ``|``. Their values follow
+                those of the joints, in the order X, Y, Z, rotation.
+            rotationaxis: The axis of ``DOFAffine.RotationAxis`` in the world, shape (3,); by default z.
 
         Raises:
-            ArgumentError: there is no such DOF. Nothing has changed then.
+            ArgumentError: there is no such DOF, or the axis is zero. The active DOFs stay as they were.
 
         Example:
             >>> robot.SetActiveDOFs([1, 0])
@@ -74,17 +76,17 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
             x, y, z = checked_vector(rotationaxis, 3, "SetActiveDOFs: rotationaxis").tolist()
             axis = (x, y, z)
             if affine & DOFAffine.RotationAxis and not any(axis):
-                raise ArgumentError("SetActiveDOFs: rotationaxis is zero, and should point somewhere")
+                raise ArgumentError("SetActiveDOFs: rotationaxis is 0 0 0, and should have a length")
         self.active_choice = ActiveChoice(dofs, int(DOFAffine(int(affine))), axis)
 
     def GetActiveDOF(self) -> int:
-        """Return the number of active values: all DOFs until ``SetActiveDOFs`` was called."""
+        """Return the number of active values. Until ``SetActiveDOFs`` is called, it is the number of DOFs."""
         chosen = self.active_choice
         joints = self.GetDOF() if chosen.dofs is None else len(chosen.dofs)
         return joints + len(self._affine_numbers("weight")) if chosen.affine else joints
 
     def GetActiveDOFIndices(self) -> Ints:
-        """Return the active joints' DOFs in the order of their values; affine ones are not among them."""
+        """Return the DOF indices of the active joints, in the order of their values; affine DOFs have no index."""
         chosen = self.active_choice.dofs
         return np.arange(self.GetDOF()) if chosen is None else chosen.copy()
 
@@ -94,17 +96,17 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         return self.GetActiveDOFIndices().tolist()
 
     def GetAffineDOF(self) -> int:
-        """Return the active parts of the base's pose, a ``DOFAffine``."""
+        """Return the active components of the base's pose, bits of ``DOFAffine``."""
         return self.active_choice.affine
 
     def GetAffineDOFIndex(self, index: int) -> int:
-        """Return where the value of a part of the base's pose is among the active values.
+        """Return the index that a component of the base's pose has among the active values.
 
         Args:
-            index: The part, one ``DOFAffine``.
+            index: The component, a single ``DOFAffine``.
 
         Raises:
-            ArgumentError: the part is not active.
+            ArgumentError: the component is not active.
         """
         affine = self.active_choice.affine
         if not index & affine:
@@ -136,12 +138,12 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         """Set the active values: joints [rad or m], then the base's X, Y, Z [m] and rotation.
 
         Args:
-            values: At least as many as there are active values; more are left out. NaN leaves a joint as it is.
-            checklimits: What to do with joint values outside the limits, as in ``SetDOFValues``; those of the base
-                are set as they are.
+            values: The values, shape (n,); further values are ignored. NaN leaves a joint as it is.
+            checklimits: What to do with joint values outside the limits, as in ``SetDOFValues``. Values of the base
+                are not limited.
 
         Raises:
-            ArgumentError: there are too few values, or one is infinite. Nothing has changed then.
+            ArgumentError: there are too few values, or one is infinite. The robot does not move.
 
         Example:
             >>> robot.SetActiveDOFs([1], ravemj.DOFAffine.X)
@@ -168,14 +170,15 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
             return np.concatenate([joints, self._affine_motion().rates(self._state.link_velocities()[0])])
 
     def SetActiveDOFVelocities(self, velocities: ArrayLike, checklimits: int = CheckLimitsAction.CheckLimits) -> None:
-        """Set the velocities of the active values; the other DOFs keep theirs.
+        """Set the velocities of the active values. The other DOFs keep their velocities.
 
         Args:
-            velocities: Those of the joints [rad/s or m/s], then those of the base's active parts.
+            velocities: The velocities of the joints [rad/s or m/s], then those of the active components of the base's
+                pose, shape (n,).
             checklimits: What to do with joint velocities outside the limits, as in ``SetDOFVelocities``.
 
         Raises:
-            ArgumentError: they are not as many as there are active values. Nothing has changed then.
+            ArgumentError: the number of velocities is wrong. The velocities stay as they were.
         """
         given = checked_vector(velocities, self.GetActiveDOF(), "SetActiveDOFVelocities")
         joints = self._active_dofs()
@@ -203,19 +206,19 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         return self._with_affine(self.GetDOFJerkLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFHardMaxVel(self) -> Floats:
-        """Return the velocities that planners never exceed, shape (n,); for the base its velocity limits."""
+        """Return the hard velocity limits of the active values, shape (n,); for the base its velocity limits."""
         return self._with_affine(self.GetDOFHardVelocityLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFHardMaxAccel(self) -> Floats:
-        """Return the accelerations that planners never exceed, shape (n,); for the base its velocity limits."""
+        """Return the hard acceleration limits of the active values, shape (n,); for the base its velocity limits."""
         return self._with_affine(self.GetDOFHardAccelerationLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFHardMaxJerk(self) -> Floats:
-        """Return the jerks that planners never exceed, shape (n,); for the base its velocity limits."""
+        """Return the hard jerk limits of the active values, shape (n,); for the base its velocity limits."""
         return self._with_affine(self.GetDOFHardJerkLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFResolutions(self) -> Floats:
-        """Return the steps of planners for the active values [rad or m], shape (n,)."""
+        """Return the steps in which planners test the active values for collisions [rad or m], shape (n,)."""
         return self._with_affine(self.GetDOFResolutions(self._active_dofs()), "resolution")
 
     def GetActiveDOFWeights(self) -> Floats:
@@ -226,14 +229,14 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         return np.concatenate([joints, self._affine_numbers(name)]) if self.active_choice.affine else joints
 
     def _affine_numbers(self, name: str) -> Floats:
-        """Return a setting of all active parts of the base's pose."""
+        """Return one setting of all active affine DOFs."""
         return affine_numbers(self.affine_kinds, self.active_choice.affine, self.active_choice.axis, name)
 
     def GetActiveConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
-        """Return the layout of the active values, as trajectories of them have it.
+        """Return the configuration specification of the active values.
 
         Args:
-            interpolation: How they change between waypoints, for instance ``linear``.
+            interpolation: The interpolation between waypoints, for instance ``linear``.
 
         Example:
             >>> trajectory = ravemj.RaveCreateTrajectory(env, "")
@@ -243,17 +246,17 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         return ConfigurationSpecification.of(groups)
 
     def SubtractActiveDOFValues(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
-        """Return the difference of active values; circular joints and the base's angle go the shorter way round.
+        """Return the difference of active values; that of circular joints and of the base's angle is in [-pi, pi].
 
         Args:
-            values0: Active values.
-            values1: Active values to subtract.
+            values0: Active values, shape (n,).
+            values1: The active values to subtract, shape (n,).
 
         Returns:
             ``values0 - values1``, shape (n,).
 
         Raises:
-            ArgumentError: they are not as many as there are active values.
+            ArgumentError: the number of values is wrong.
         """
         count, joints = self.GetActiveDOF(), self._active_dofs()
         minuend, subtrahend = (checked_vector(one, count, "SubtractActiveDOFValues") for one in (values0, values1))
@@ -265,14 +268,14 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         return difference
 
     def CalculateActiveJacobian(self, linkindex: int, offset: ArrayLike) -> Floats:
-        """Return how a point of a link moves with the active values.
+        """Return the Jacobian of the position of a link's point by the active values.
 
         Args:
             linkindex: Index of the link.
-            offset: The point, in world coordinates [m], shape (3,).
+            offset: The point in the world [m], shape (3,).
 
         Returns:
-            Derivative of the point's position in the world, shape (3, active dof).
+            The Jacobian in world axes, shape (3, active dof).
         """
         point = checked_vector(offset, 3, "offset")
         link = self._checked_link(linkindex)
@@ -288,13 +291,13 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         return jacobian if chosen is None else jacobian.take(chosen, 1)
 
     def CalculateActiveAngularVelocityJacobian(self, linkindex: int) -> Floats:
-        """Return the angular velocity of a link, in world axes, per unit of the active values' velocity.
+        """Return the Jacobian of a link's angular velocity by the active values.
 
         Args:
             linkindex: Index of the link.
 
         Returns:
-            Shape (3, active dof).
+            The Jacobian in world axes, shape (3, active dof).
         """
         with self._simulation.lock:
             joints = self._active_columns(self.ComputeJacobianAxisAngle(linkindex))
@@ -303,27 +306,27 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
             return np.hstack([joints, self._affine_motion().rotation_jacobian()])
 
     def CalculateActiveRotationJacobian(self, linkindex: int, quat: ArrayLike) -> Floats:
-        """Return how a quaternion turns with a link.
+        """Return the Jacobian of a quaternion that turns with a link, by the active values.
 
         Args:
             linkindex: Index of the link.
-            quat: The quaternion [w, x, y, z]: the link's orientation, or that of anything fixed to it.
+            quat: The quaternion [w, x, y, z]: the orientation of the link, or of anything fixed to it.
 
         Returns:
-            Its derivative by the active values, shape (4, active dof).
+            The Jacobian, shape (4, active dof).
         """
         rates = wxyz_jacobian(checked_vector(quat, 4, "quat").tolist())
         return rates @ self.CalculateActiveAngularVelocityJacobian(linkindex)
 
     def GetAffineRotationQuatLimits(self) -> Floats:
-        """Return how far the base may turn: a quaternion [w, x, y, z] times the largest angle from it, shape (4,)."""
+        """Return the limit of the base's rotation: a quaternion [w, x, y, z] times the largest angle, shape (4,)."""
         return self.quaternion_limits.copy()
 
     def SetAffineRotationQuatLimits(self, quatangle: ArrayLike) -> None:
-        """Set how far the base may turn; as in OpenRAVE it is only kept, and active limits stay -1 and 1.
+        """Set the limit of the base's rotation. As in OpenRAVE it has no effect: active limits stay -1 and 1.
 
         Args:
-            quatangle: A quaternion [w, x, y, z] times the largest angle from it [rad], shape (4,).
+            quatangle: A quaternion [w, x, y, z] times the largest angle from that rotation [rad], shape (4,).
         """
         self.quaternion_limits = checked_vector(quatangle, 4, "SetAffineRotationQuatLimits: quatangle")
 
@@ -332,11 +335,11 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         return AffineMotion(self._state.pose(), choice.affine, choice.axis)
 
     def active_dofs(self) -> tuple[int, ...]:
-        """Return the active joints' DOFs."""
+        """Return the DOF indices of the active joints."""
         return tuple(self._active_dofs())
 
     def moves_as_a_whole(self) -> bool:
-        """Return whether active DOFs move the robot's base."""
+        """Return whether affine DOFs are active, which move the robot as a whole."""
         return bool(self.active_choice.affine)
 
     # Settings of the affine DOFs, with bodies and docstrings from the table in ``affine``

@@ -1,4 +1,7 @@
-"""Limits, resolutions and weights of the affine DOFs: the parts of the base's pose that can be active."""
+"""Limits, resolutions and weights of the affine DOFs: the components of the base's pose that can be active.
+
+The 34 methods for them differ only in a kind of DOF and a setting, so they are made from two tables.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -19,7 +22,7 @@ Topic = TypeVar("Topic")
 
 @dataclass
 class AffineKind:
-    """Settings of one kind of affine DOFs, a value for each, shape (n,)."""
+    """The settings of one kind of affine DOFs, arrays of shape (n,)."""
 
     lower: Floats
     upper: Floats
@@ -33,7 +36,7 @@ class _WithKinds(Protocol):
 
 
 class _Kind(NamedTuple):
-    """OpenRAVE's defaults of one kind of affine DOFs, and its words."""
+    """OpenRAVE's defaults for one kind of affine DOFs, and the words of the docstrings."""
 
     size: int
     limit: float
@@ -57,7 +60,7 @@ _SETTINGS = {
     "Resolution": (("resolution",), "the planners' steps of the base's {values} [{unit}], shape ({size},)."),
     "Weights": (("weight",), "the weights of the base's {values} in distances, shape ({size},)."),
 }
-"""By the end of a method's name: the fields of ``AffineKind``, and what they are."""
+"""The end of a method's name, the fields of ``AffineKind`` that it handles, and the words of its docstring."""
 
 _ARGUMENTS = {
     "MaxVels": "\n\nArgs:\n    {argument}: Largest velocities.",
@@ -66,16 +69,17 @@ _ARGUMENTS = {
 
 
 def affine_numbers(kinds: Mapping[str, AffineKind], affine: int, axis: Vec3, name: str) -> Floats:
-    """Return a setting of some parts of a pose, shape (n,).
+    """Return one setting of several components of a pose, shape (n,).
 
     Args:
         kinds: The settings.
-        affine: The parts, ``DOFAffine``.
-        axis: Axis of ``DOFAffine.RotationAxis``.
+        affine: The components, bits of ``DOFAffine``.
+        axis: The axis of ``DOFAffine.RotationAxis``.
         name: The setting, a field of ``AffineKind``.
     """
     parts = [getattr(kinds["Translation"], name)[translation_columns(affine)]]
     if affine & DOFAffine.RotationAxis:
+        # OpenRAVE keeps four numbers for a rotation about an axis: for x, y, z, and for any other axis.
         number = next((number for number in range(3) if axis[number] == 1.0), 3)
         parts.append(getattr(kinds["RotationAxis"], name)[number : number + 1])
     elif affine & DOFAffine.Rotation3D:
@@ -86,7 +90,7 @@ def affine_numbers(kinds: Mapping[str, AffineKind], affine: int, axis: Vec3, nam
 
 
 def default_kinds() -> dict[str, AffineKind]:
-    """Return OpenRAVE's defaults, which it writes in single precision."""
+    """Return OpenRAVE's defaults, rounded to single precision as in OpenRAVE."""
     defaults = {name: (-one.limit, one.limit, *one[2:5]) for name, one in _KINDS.items()}
     return {
         name: AffineKind(*(np.full(_KINDS[name].size, float(np.float32(value))) for value in values))
@@ -95,10 +99,10 @@ def default_kinds() -> dict[str, AffineKind]:
 
 
 def with_affine_settings(topic: type[Topic]) -> type[Topic]:
-    """Give the methods for affine DOFs of a class, of which only the signatures are written, bodies and docstrings."""
+    """Fill in bodies and docstrings of the methods for affine DOFs, which the class declares by signature only."""
     for kind, about in _KINDS.items():
         for setting, (fields, what) in _SETTINGS.items():
-            if (kind, setting) == ("RotationQuat", "Limits"):  # a rotation and an angle, not two limits
+            if (kind, setting) == ("RotationQuat", "Limits"):  # one quaternion times an angle, not two limits
                 continue
             words = what.format(**about._asdict())
             get, set_ = (getattr(topic, f"{verb}Affine{kind}{setting}") for verb in ("Get", "Set"))

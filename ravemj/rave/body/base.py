@@ -1,4 +1,4 @@
-"""What the topics of a body's API share."""
+"""The base class of the topics of ``KinBody`` and ``Robot``."""
 
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -15,14 +15,14 @@ from ravemj.errors import ArgumentError
 
 @contextmanager
 def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
-    """Hold the locks of two environments; taken in the same order by all, so that nobody waits for one another."""
+    """Hold the locks of two environments. All callers take them in the same order, which prevents deadlocks."""
     first, second = sorted((one, other), key=id)
     with first.lock, second.lock:
         yield
 
 
 class BodyPart(ApiObject):
-    """Part of the API of a body, about one topic; ``KinBody`` joins the parts."""
+    """The base class of the topics of ``KinBody`` and ``Robot``."""
 
     _internal = ("simulation_state",)
 
@@ -30,7 +30,7 @@ class BodyPart(ApiObject):
     _simulation: Simulation
 
     def GetName(self) -> str:
-        """Return the body's name, unique in its environment.
+        """Return the name of the body, which is unique in its environment.
 
         Example:
             >>> [body.GetName() for body in env.GetBodies()]
@@ -39,9 +39,7 @@ class BodyPart(ApiObject):
         return self._state.scene.name
 
     def GetDOF(self) -> int:
-        """Return the number of degrees of freedom: the joint axes that ``SetDOFValues`` sets.
-
-        Passive joints are not counted.
+        """Return the number of degrees of freedom: the axes of all joints that are not passive.
 
         Example:
             >>> robot.GetDOF()
@@ -51,14 +49,14 @@ class BodyPart(ApiObject):
 
     @property
     def simulation_state(self) -> BodyState:
-        """The body below the OpenRAVE API: its scene and its kinematics."""
+        """The state of the body below OpenRAVE's API: its scene and its kinematics."""
         return self._state
 
     def _checked_link(self, index: int) -> int:
         return checked_index(index, len(self._state.scene.links), "linkindex")
 
     def _checked_many(self, numbers: ArrayLike, name: str) -> Floats:
-        """Return an array of shape (N, dof), which is the given one where that has numbers of the right kind."""
+        """Return finite numbers as an array of shape (N, dof); an array of float64 is not copied."""
         dof = self.GetDOF()
         try:
             checked = np.asarray(numbers, dtype=np.float64)
@@ -66,6 +64,7 @@ class BodyPart(ApiObject):
             raise ArgumentError(f"{name}: should be numbers of shape (N, {dof})") from None
         if checked.ndim != 2 or checked.shape[1] != dof:
             raise ArgumentError(f"{name}: has shape {checked.shape}, and should have (N, {dof})")
+        # The sum needs no memory and tells nearly always; finite numbers whose sum overflows are looked at one by one.
         if not np.isfinite(checked.sum()) and not all(np.isfinite(row).all() for row in checked):
             raise ArgumentError(f"{name}: should be finite")
         return checked

@@ -1,4 +1,4 @@
-"""Bodies made in code."""
+"""Methods that make a body from shapes or from descriptions."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -24,25 +24,25 @@ from ravemj.rave.trimesh import TriMesh, checked_mesh
 
 
 class Building(Structure):
-    """Methods that make the body anew, while it is in no environment."""
+    """Methods that replace the whole body, while it is in no environment."""
 
     _internal = ("extracted",)
 
     def InitFromBoxes(self, boxes: ArrayLike, draw: bool = True, uri: str = "") -> bool:
-        """Make the body one static link of boxes, in place of what it was.
+        """Replace the body by a single static link of boxes.
 
         Args:
-            boxes: A row for each box: centre x y z and half extents x y z [m], shape (n, 6). Or, for turned boxes,
-                centre, the unit vectors along the box's x, y and z axis, and half extents, shape (n, 15).
-            draw: False: the boxes collide, and are not drawn.
-            uri: What ``GetURI`` returns from then on.
+            boxes: One row for each box: centre x y z and half extents x y z [m], shape (n, 6). For rotated boxes:
+                centre, the unit vectors along the x, y and z axes of the box, and half extents, shape (n, 15).
+            draw: Whether the boxes are drawn. They collide either way.
+            uri: The result of later calls of ``GetURI``.
 
         Returns:
             True.
 
         Raises:
-            openrave_exception: the body is in an environment, or the rows are of another length.
-            TypeError: this is no array of rows.
+            openrave_exception: the body is in an environment, or the rows have another length.
+            TypeError: the argument is not a two-dimensional array.
 
         Example:
             >>> body = ravemj.RaveCreateKinBody(env, "")
@@ -54,80 +54,80 @@ class Building(Structure):
         return self._become(box_geometries(_rows(boxes, (6, 15), "InitFromBoxes: boxes"), visible=bool(draw)), uri)
 
     def InitFromSpheres(self, spherex: ArrayLike, draw: bool = True, uri: str = "") -> bool:
-        """Make the body one static link of spheres.
+        """Replace the body by a single static link of spheres.
 
         Args:
-            spherex: A row for each sphere: centre x y z and radius [m], shape (n, 4); the spelling is OpenRAVE's.
-            draw: False: the spheres collide, and are not drawn.
-            uri: What ``GetURI`` returns from then on.
+            spherex: One row for each sphere: centre x y z and radius [m], shape (n, 4); the spelling is OpenRAVE's.
+            draw: Whether the spheres are drawn. They collide either way.
+            uri: The result of later calls of ``GetURI``.
 
         Returns:
             True.
 
         Raises:
-            openrave_exception: the body is in an environment, or the rows are of another length.
-            TypeError: this is no array of rows.
+            openrave_exception: the body is in an environment, or the rows have another length.
+            TypeError: the argument is not a two-dimensional array.
         """
         return self._become(
             sphere_geometries(_rows(spherex, (4,), "InitFromSpheres: spherex"), visible=bool(draw)), uri
         )
 
     def InitFromTrimesh(self, trimesh: TriMesh, draw: bool = True, uri: str = "") -> bool:
-        """Make the body one static link with the triangles of a mesh; they stay as they are.
+        """Replace the body by a single static link with the triangles of a mesh.
 
         Args:
             trimesh: The triangles.
-            draw: False: the triangles collide, and are not drawn.
-            uri: What ``GetURI`` returns from then on.
+            draw: Whether the triangles are drawn. They collide either way.
+            uri: The result of later calls of ``GetURI``.
 
         Returns:
             True.
 
         Raises:
-            openrave_exception: the body is in an environment, or a triangle has a corner that is not there.
+            openrave_exception: the body is in an environment, or a triangle has a vertex index out of range.
         """
         mesh = checked_mesh(trimesh, "InitFromTrimesh: trimesh")
         return self._become([shape_geometry(Triangles(mesh), Pose(), visible=bool(draw))], uri)
 
     def InitFromGeometries(self, geometries: Sequence[GeometryInfo], uri: str = "") -> bool:
-        """Make the body one static link of shapes.
+        """Replace the body by a single static link of geometries.
 
         Args:
-            geometries: Their descriptions.
-            uri: What ``GetURI`` returns from then on.
+            geometries: The descriptions of the geometries.
+            uri: The result of later calls of ``GetURI``.
 
         Returns:
             True.
 
         Raises:
-            openrave_exception: the body is in an environment, or an info describes nothing that can be. Nothing has
-                changed then.
+            openrave_exception: the body is in an environment, or a description does not make a geometry. The body
+                stays as it is.
         """
         return self._become(geometries_of(geometries), uri)
 
     def Init(self, linkinfos: Sequence[LinkInfo], jointinfos: Sequence[JointInfo], uri: str = "") -> bool:
-        """Make the body of links and joints.
+        """Replace the body by links and joints.
 
         Args:
             linkinfos: The descriptions of the links; the first one is the root.
-            jointinfos: The descriptions of the joints; those with DOFs in DOF order.
-            uri: What ``GetURI`` returns from then on.
+            jointinfos: The descriptions of the joints; joints with DOFs stand in DOF order.
+            uri: The result of later calls of ``GetURI``.
 
         Returns:
             True.
 
         Raises:
-            openrave_exception: the body is in an environment, or an info describes nothing that can be. Nothing has
-                changed then.
+            openrave_exception: the body is in an environment, or the descriptions do not make a body. The body stays
+                as it is.
         """
         return self.InitFromKinBodyInfo(KinBodyInfo(_vLinkInfos=linkinfos, _vJointInfos=jointinfos, _uri=uri))
 
     def InitFromLinks(self, linkinfos: Sequence[LinkInfo], uri: str = "") -> bool:
-        """Make the body of links without joints.
+        """Replace the body by links without joints.
 
         Args:
             linkinfos: The descriptions of the links.
-            uri: What ``GetURI`` returns from then on.
+            uri: The result of later calls of ``GetURI``.
 
         Returns:
             True.
@@ -135,11 +135,11 @@ class Building(Structure):
         return self.Init(linkinfos, [], uri)
 
     def InitFromLinkInfos(self, linkInfos: Sequence[LinkInfo], uri: str = "") -> bool:
-        """Make the body of links without joints; the other name of ``InitFromLinks``.
+        """Replace the body by links without joints; another name of ``InitFromLinks``.
 
         Args:
             linkInfos: The descriptions of the links.
-            uri: What ``GetURI`` returns from then on.
+            uri: The result of later calls of ``GetURI``.
 
         Returns:
             True.
@@ -147,17 +147,17 @@ class Building(Structure):
         return self.InitFromLinks(linkInfos, uri)
 
     def InitFromKinBodyInfo(self, info: KinBodyInfo) -> bool:
-        """Make the body, its name included, of a description.
+        """Replace the body, including its name, by the one of a description.
 
         Args:
-            info: The description, for instance of ``ExtractInfo``.
+            info: The description, for instance a result of ``ExtractInfo``.
 
         Returns:
             True.
 
         Raises:
-            openrave_exception: the body is in an environment, or the info describes nothing that can be. Nothing has
-                changed then.
+            openrave_exception: the body is in an environment, or the description does not make a body. The body stays
+                as it is.
 
         Example:
             >>> copy = ravemj.RaveCreateKinBody(env, "")
@@ -173,14 +173,14 @@ class Building(Structure):
         return True
 
     def UpdateFromKinBodyInfo(self, info: KinBodyInfo) -> UpdateFromInfoResult:
-        """Become what an info describes, as far as a body in an environment can: its pose and joint values.
+        """Set the pose and the joint values of a description, which can be changed while a body is in an environment.
 
         Args:
-            info: The description, for instance of ``ExtractInfo`` of a body like this.
+            info: The description, for instance a result of ``ExtractInfo`` of a body of the same structure.
 
         Returns:
-            ``NoChange`` or ``Success``; ``RequireReinitialize`` where links, joints or the name differ, and nothing has
-            changed then: take the body out of the environment and call ``InitFromKinBodyInfo``.
+            ``NoChange`` or ``Success``. If links, joints or the name differ, the body stays as it is, and the result is
+            ``RequireReinitialize``: remove the body from the environment, and call ``InitFromKinBodyInfo``.
         """
         with self._simulation.lock:
             before = self.ExtractInfo()
@@ -196,29 +196,29 @@ class Building(Structure):
             return UpdateFromInfoResult.Success
 
     def SetZeroConfiguration(self) -> None:
-        """Make the present configuration the zero configuration: all joint values become 0, and nothing moves.
+        """Make the current configuration the zero configuration: all joint values become 0, and no link moves.
 
-        Limits keep their numbers, so they stand for other poses than before, as in OpenRAVE.
+        Limits keep their numbers, so they refer to other poses than before, as in OpenRAVE.
         """
         with self._simulation.lock:
             self._state.rezero()
 
     def ExtractInfo(self, options: int = ExtractInfoOptions.Everything) -> KinBodyInfo:
-        """Return the description of the body as it stands, a copy.
+        """Return the description of the body in its current state.
 
         Args:
-            options: What to take, ``ExtractInfoOptions``.
+            options: What to include, ``ExtractInfoOptions``.
 
         Returns:
-            A ``KinBodyInfo``; of a robot a ``RobotBaseInfo``.
+            A ``KinBodyInfo``; for a robot a ``RobotBaseInfo``.
         """
         return KinBodyInfo(**self.extracted(options))
 
     def extracted(self, options: int) -> dict[str, Any]:
-        """Return the fields of ``ExtractInfo``.
+        """Return the fields of the info of ``ExtractInfo``.
 
         Args:
-            options: What to take, ``ExtractInfoOptions``.
+            options: What to include, ``ExtractInfoOptions``.
         """
         with self._simulation.lock:
             joints = [joint.GetInfo() for joint in self.GetJoints()]

@@ -1,4 +1,4 @@
-"""Collision of a body, and the boxes and groups of its shapes."""
+"""Collision checks of a body, bounding boxes, and groups of geometries."""
 
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
@@ -25,9 +25,10 @@ if TYPE_CHECKING:
 
 
 class BodyCollision(Structure, Interface):
-    """Self-collision, enabled links, adjacent links, bounding boxes, and groups of shapes.
+    """Self-collision, enabled links, adjacent links, bounding boxes, and groups of geometries.
 
-    A group is a named set of shapes for each link, which can replace the link's own; see ``link.SetGroupGeometries``.
+    A group has a name and a list of geometries for each link, which can replace the link's own geometries; see
+    ``link.SetGroupGeometries``.
     """
 
     AdjacentOptions = AdjacentOptions
@@ -38,15 +39,15 @@ class BodyCollision(Structure, Interface):
     def CheckSelfCollision(
         self, report: "CollisionReport | None" = None, collisionchecker: "CollisionChecker | None" = None
     ) -> bool:
-        """Return whether links of the body collide with each other or with what it holds.
+        """Return whether links of the body collide with each other or with grabbed bodies.
 
-        Pairs of links do not count if a joint connects them, if the file calls them ``<adjacent>``, or if they touched
-        when the body was added.
+        Pairs of links do not count if a joint connects them, if the file declares them ``<adjacent>``, or if they
+        touched when the body was added.
 
         Args:
-            report: Filled with what is found.
-            collisionchecker: The checker whose options hold; None: that of ``SetSelfCollisionChecker``, or else of the
-                environment.
+            report: Receives the collisions.
+            collisionchecker: The checker, whose options apply. The default is that of ``SetSelfCollisionChecker``, or
+                else that of the environment.
 
         Example:
             >>> robot.SetDOFValues([0, 3.0])
@@ -57,10 +58,10 @@ class BodyCollision(Structure, Interface):
         return checker.CheckSelfCollision(self, report)
 
     def SetSelfCollisionChecker(self, collisionchecker: "CollisionChecker | None") -> None:
-        """Choose the checker of ``CheckSelfCollision``; None: that of the environment.
+        """Choose the checker of ``CheckSelfCollision``.
 
         Args:
-            collisionchecker: The checker; None: the environment's.
+            collisionchecker: The checker; None selects that of the environment.
         """
         self._self_checker = collisionchecker
 
@@ -69,15 +70,15 @@ class BodyCollision(Structure, Interface):
         return self._self_checker
 
     def batch_collides(self, values: ArrayLike, itself_too: bool = True) -> NDArray[np.bool_]:
-        """Return for each of many configurations whether the body collides there.
+        """Return for each of many configurations whether the body collides in it.
 
         Args:
-            values: A row of joint values for each [rad or m], shape (n, dof); limits are not checked.
-            itself_too: Whether collisions of the body with itself count.
+            values: The joint values of the configurations [rad or m], shape (n, dof); limits are not checked.
+            itself_too: Whether self-collisions count.
 
         Returns:
-            Shape (n,). The body is in its configuration again afterwards. Options and callbacks of collision checkers
-            make no difference.
+            Whether the body collides, shape (n,). Afterwards the body is back in its configuration. Options and
+            callbacks of collision checkers have no effect.
 
         Example:
             >>> lower, upper = robot.GetDOFLimits()
@@ -89,27 +90,27 @@ class BodyCollision(Structure, Interface):
             return batch_collides(self._state, rows, itself_too=itself_too)
 
     def active_dofs(self) -> tuple[int, ...]:
-        """Return the active joints' DOFs: all, where ``SetActiveDOFs`` has not chosen any."""
+        """Return the DOF indices of the active joints. Only robots can choose them; other bodies have all."""
         return tuple(range(self.GetDOF()))
 
     def moves_as_a_whole(self) -> bool:
-        """Return whether active DOFs move the body's base."""
+        """Return whether affine DOFs are active, which move the body as a whole; only robots can have them."""
         return False
 
     def Enable(self, enable: bool) -> None:
-        """Enable or disable all links for collision checking; nothing else changes.
+        """Enable or disable all links for collision checks.
 
         Args:
-            enable: Whether it takes part.
+            enable: False excludes the body from collision checks.
         """
         self._state.link_enabled = [bool(enable)] * len(self._state.link_enabled)
 
     def IsEnabled(self) -> bool:
-        """Return whether any link is enabled for collision checking."""
+        """Return whether any link takes part in collision checks."""
         return any(self._state.link_enabled)
 
     def GetLinkEnableStates(self) -> NDArray[np.uint8]:
-        """Return for each link 1 if it is enabled and else 0, shape (links,)."""
+        """Return for each link 1 if it is enabled, else 0, shape (links,)."""
         return np.array(self._state.link_enabled, dtype=np.uint8)
 
     def SetLinkEnableStates(self, enablestates: ArrayLike) -> None:
@@ -147,10 +148,10 @@ class BodyCollision(Structure, Interface):
         """Return the pairs of links, by index, that ``CheckSelfCollision`` tests.
 
         Args:
-            adjacentoptions: Which of them, ``AdjacentOptions`` combined with ``|``; 0: all.
+            adjacentoptions: The choice of pairs, ``AdjacentOptions`` combined with ``|``; 0 for all.
 
         Raises:
-            ArgumentError: ``ActiveDOFs`` are asked of a body that is no robot.
+            ArgumentError: ``ActiveDOFs`` is set, and the body is not a robot.
         """
         if adjacentoptions & AdjacentOptions.ActiveDOFs and not self._state.scene.is_robot:  # random-api-90
             raise ArgumentError(f"GetNonAdjacentLinks: '{self.GetName()}' is no robot, and so has no active DOFs")
@@ -165,7 +166,7 @@ class BodyCollision(Structure, Interface):
         return pairs
 
     def SetAdjacentLinks(self, linkindex0: int, linkindex1: int) -> None:
-        """Leave a pair of links out of ``CheckSelfCollision``.
+        """Exclude a pair of links from ``CheckSelfCollision``.
 
         Args:
             linkindex0: Index of a link.
@@ -177,7 +178,7 @@ class BodyCollision(Structure, Interface):
         self.SetAdjacentLinksPairs([(linkindex0, linkindex1)])
 
     def SetAdjacentLinksCombinations(self, linkIndices: Sequence[int]) -> None:
-        """Leave all pairs of some links out of ``CheckSelfCollision``.
+        """Exclude all pairs of several links from ``CheckSelfCollision``.
 
         Args:
             linkIndices: Indices of the links.
@@ -185,7 +186,14 @@ class BodyCollision(Structure, Interface):
         self.SetAdjacentLinksPairs([(a, b) for a in linkIndices for b in linkIndices if a < b])
 
     def SetAdjacentLinksPairs(self, pairs: Iterable[Sequence[int]]) -> None:
-        """Leave pairs of links out of ``CheckSelfCollision``; see ``SetAdjacentLinks``."""
+        """Exclude pairs of links from ``CheckSelfCollision``; see ``SetAdjacentLinks``.
+
+        Args:
+            pairs: Pairs of link indices.
+
+        Raises:
+            openrave_exception: a pair names a link that the body does not have, or the same link twice.
+        """
         count, added = len(self._state.scene.links), set(self._state.scene.adjacent)
         for first, second in pairs:
             if not (0 <= first < count and 0 <= second < count and first != second):
@@ -195,27 +203,24 @@ class BodyCollision(Structure, Interface):
                 raise RavemjError(message, ErrorCode.Assert)
             added.add((min(first, second), max(first, second)))
         with self._simulation.lock:
-            self._simulation.forget_model()  # it excludes these pairs, too
+            self._simulation.forget_model()  # the compiled model has a list of the excluded pairs
             self._state.edit(adjacent=tuple(sorted(added)))
 
     def SetNonCollidingConfiguration(self) -> None:
-        """Declare the present pose free of self-collision: links that touch now are never tested again.
-
-        Nothing moves.
-        """
+        """Declare the current configuration free of self-collisions: links that touch now are never tested again."""
         with self._simulation.lock:
             self._state.rest_poses = self._state.link_transforms()
             self._simulation.collision_stamp += 1
 
     def ComputeAABB(self, enabledOnlyLinks: bool = False) -> AABB:
-        """Return the smallest box along the world's axes that holds all geometries.
+        """Return the axis-aligned bounding box of all geometries in the world.
 
         Args:
-            enabledOnlyLinks: Whether disabled links are left out.
+            enabledOnlyLinks: Whether to ignore disabled links.
 
         Returns:
-            The box, with methods ``pos()``, its centre, and ``extents()``, half its edge lengths. Of a body without
-            geometries it is the point where its first link is.
+            The box; ``pos()`` is its centre, ``extents()`` its half extents [m]. Without geometries it is a point at
+            the origin of the first link.
 
         Example:
             >>> box = robot.ComputeAABB()
@@ -224,43 +229,44 @@ class BodyCollision(Structure, Interface):
         return self._bounds(self._poses(), enabledOnlyLinks)
 
     def ComputeAABBFromTransform(self, transform: ArrayLike, enabledOnlyLinks: bool = False) -> AABB:
-        """Return the box of ``ComputeAABB`` for the body standing elsewhere, with its present joint values.
+        """Return the bounding box of ``ComputeAABB`` for another pose of the body and its current joint values.
 
         Args:
             transform: ``T_world_link0``, as ``SetTransform`` takes it.
-            enabledOnlyLinks: Whether disabled links are left out.
+            enabledOnlyLinks: Whether to ignore disabled links.
         """
         T_world_body = checked_transform(transform, "ComputeAABBFromTransform: transform")
         return self._bounds(self._poses(T_world_body), enabledOnlyLinks)
 
     def ComputeLocalAABB(self, enabledOnlyLinks: bool = False) -> AABB:
-        """Return the box of ``ComputeAABB`` along the axes of the first link and in its frame.
+        """Return the bounding box of all geometries in the frame of the first link.
 
         Args:
-            enabledOnlyLinks: Whether to leave out links that are not enabled.
+            enabledOnlyLinks: Whether to ignore disabled links.
         """
         return self.ComputeAABBFromTransform(np.eye(4), enabledOnlyLinks)
 
     def ComputeOBBOnAxes(self, transform: ArrayLike, enabledOnlyLinks: bool = False) -> OrientedBox:
-        """Return the smallest box along the axes of a frame that holds all geometries, where the body stands.
+        """Return the bounding box of all geometries along the axes of a given frame.
 
         Args:
-            transform: ``T_world_frame``, whose axes the box has: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
-            enabledOnlyLinks: Whether disabled links are left out.
+            transform: ``T_world_frame``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
+            enabledOnlyLinks: Whether to ignore disabled links.
         """
         T_world_frame = checked_transform(transform, "ComputeOBBOnAxes: transform")
         local = self._bounds(inverse(T_world_frame) @ self._poses(), enabledOnlyLinks)
         return OrientedBoxFromAABB(local, T_world_frame)
 
     def SetLinkGroupGeometries(self, name: str, linkgeometries: Sequence[Sequence[GeometryInfo]]) -> None:
-        """Keep a set of shapes for every link under one name.
+        """Store a group of geometries for every link under one name.
 
         Args:
             name: The name of the group.
-            linkgeometries: For each link, in order, the descriptions of its shapes.
+            linkgeometries: The descriptions of the geometries of each link, in the order of ``GetLinks()``.
 
         Raises:
-            openrave_exception: there are not as many lists as links, or an info describes nothing that can be.
+            openrave_exception: the number of lists differs from the number of links, or a description does not make a
+                geometry.
         """
         links = self.GetLinks()
         if len(linkgeometries) != len(links):
@@ -270,28 +276,28 @@ class BodyCollision(Structure, Interface):
             link.SetGroupGeometries(name, infos)
 
     def SetLinkGeometriesFromGroup(self, name: str, propagateGroupNameToSelfCollisionChecker: bool = True) -> None:
-        """Give every link the shapes of a group in place of its own.
+        """Replace the geometries of every link by those of a group.
 
         Args:
-            name: The name of the group; ``self`` brings their own shapes back.
-            propagateGroupNameToSelfCollisionChecker: Not used: collisions always look at the shapes that links have.
+            name: The name of the group; ``self`` restores the links' own geometries.
+            propagateGroupNameToSelfCollisionChecker: Not used: collision checks always use the current geometries.
 
         Raises:
-            openrave_exception: a link has no such group. Nothing has changed then.
+            openrave_exception: a link has no such group. All links stay as they are.
         """
         del propagateGroupNameToSelfCollisionChecker
         with self._simulation.lock:
             for link in self.GetLinks():
-                link.GetGeometriesFromGroup(name)
+                link.GetGeometriesFromGroup(name)  # raises before any link has changed
             for link in self.GetLinks():
                 link.SetGeometriesFromGroup(name)
 
     def ComputeAABBForGeometryGroup(self, geomgroupname: str, enabledOnlyLinks: bool = False) -> AABB:
-        """Return the box of ``ComputeAABB`` around the shapes of a group; links without the group are left out.
+        """Return the bounding box of ``ComputeAABB`` for a group of geometries. Links without the group do not count.
 
         Args:
-            geomgroupname: The name of the group; ``self``: the links' own shapes.
-            enabledOnlyLinks: Whether disabled links are left out.
+            geomgroupname: The name of the group; ``self`` is the group of the links' own geometries.
+            enabledOnlyLinks: Whether to ignore disabled links.
         """
         with self._simulation.lock:
             T_world_link0 = self._state.link_transform(0) if self._state.scene.links else np.eye(4)
@@ -300,12 +306,12 @@ class BodyCollision(Structure, Interface):
     def ComputeAABBForGeometryGroupFromTransform(
         self, geomgroupname: str, transform: ArrayLike, enabledOnlyLinks: bool = False
     ) -> AABB:
-        """Return the box of ``ComputeAABBForGeometryGroup`` for the body standing elsewhere.
+        """Return the bounding box of ``ComputeAABBForGeometryGroup`` for another pose of the body.
 
         Args:
             geomgroupname: The name of the group.
             transform: ``T_world_link0``, as ``SetTransform`` takes it.
-            enabledOnlyLinks: Whether disabled links are left out.
+            enabledOnlyLinks: Whether to ignore disabled links.
         """
         T_world_body = checked_transform(transform, "ComputeAABBForGeometryGroupFromTransform: transform")
         links = [
@@ -318,16 +324,16 @@ class BodyCollision(Structure, Interface):
         return enclosing_box(links_bounds([link for link, _ in links], [pose for _, pose in links]), T_world_body)
 
     def ComputeLocalAABBForGeometryGroup(self, geomgroupname: str, enabledOnlyLinks: bool = False) -> AABB:
-        """Return the box of ``ComputeAABBForGeometryGroup`` along the axes of the first link and in its frame.
+        """Return the bounding box of a group of geometries in the frame of the first link.
 
         Args:
             geomgroupname: The name of the group.
-            enabledOnlyLinks: Whether disabled links are left out.
+            enabledOnlyLinks: Whether to ignore disabled links.
         """
         return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, np.eye(4), enabledOnlyLinks)
 
     def _poses(self, T_world_body: Floats | None = None) -> Floats:
-        """Return the poses of the links, shape (links, 4, 4), or what they would be with the first link elsewhere."""
+        """Return the poses of the links for the current or a given pose of the first link, shape (links, 4, 4)."""
         with self._simulation.lock:
             poses = self._state.link_transforms()
         return poses if T_world_body is None or not len(poses) else T_world_body @ inverse(poses[0]) @ poses

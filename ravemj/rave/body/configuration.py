@@ -1,4 +1,4 @@
-"""The configuration of a body, joint values and poses, and its velocities."""
+"""The configuration of a body (joint values and pose) and its velocities."""
 
 from collections.abc import Sequence
 from types import EllipsisType
@@ -28,20 +28,22 @@ _UNLIMITED = int(CheckLimitsAction.Nothing)  # looking up a member of an enum ta
 
 
 class Configuration(Limits):
-    """Joint values, the poses of the body and its links, both as one vector with its specification, and velocities.
+    """Joint values, the poses of the body and of its links, and velocities.
 
-    Velocities move nothing, but accelerations and inverse dynamics depend on them. The body keeps the velocities of its
-    links and computes those of the DOFs from them, as OpenRAVE does. So set joint values first, then velocities.
+    Velocities move nothing without physics, but accelerations and inverse dynamics depend on them. As in OpenRAVE, the
+    body stores the velocities of its links, and computes those of the DOFs from them. So set joint values first, then
+    velocities.
     """
 
     def GetDOFValues(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
         """Return the joint values.
 
         Args:
-            indices: Which DOFs, in which order; left out: all. None and [] are no DOFs, as in OpenRAVE.
+            indices: The DOF indices, in the order of the result; by default all. None and [] select no DOFs, as in
+                OpenRAVE.
 
         Returns:
-            Values [rad, for sliders m] in DOF order: that of the joints in the file, shape (dof,); a copy.
+            A copy of the values [rad; m for sliders], shape (dof,), in the order of the joints in the file.
 
         Raises:
             IndexError: there is no such DOF.
@@ -63,20 +65,21 @@ class Configuration(Limits):
         dofindices: "ArrayLike | EllipsisType | None" = ...,
         checklimits: int = CheckLimitsAction.CheckLimits,
     ) -> None:
-        """Set joint values and place all links by them: forward kinematics.
+        """Set joint values, and move all links to the poses of forward kinematics.
 
         The body moves at once, without dynamics, and viewers show it.
 
         Args:
-            values: Joint values [rad, for sliders m], as many as there are DOFs, or as there are indices. NaN leaves
-                a joint as it is, and [] with indices all of them.
-            dofindices: Which DOFs to set, in which order; left out: all. With None further values do not count.
+            values: Joint values [rad; m for sliders], one for each DOF or for each index. NaN leaves a joint as it is;
+                [] with indices leaves all joints as they are.
+            dofindices: The DOF indices that ``values`` refer to; by default all DOFs. With None, values beyond the
+                number of DOFs are ignored.
             checklimits: What to do with values outside the limits, a ``CheckLimitsAction``: by default they are
                 moved to the limit with a warning. Circular joints have no limits.
 
         Raises:
-            ArgumentError: the number of values is wrong or one is infinite; with ``CheckLimitsThrow``, one is outside
-                its limits. Nothing has changed then.
+            ArgumentError: the number of values is wrong, or one is infinite; with ``CheckLimitsThrow``, one is outside
+                its limits. The body does not move.
             IndexError: there is no such DOF.
 
         Example:
@@ -109,15 +112,15 @@ class Configuration(Limits):
 
     @property
     def qpos_indices(self) -> Ints:
-        """Where each DOF is in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld."""
+        """The index of each DOF in MuJoCo's ``qpos``, shape (dof,); -1 for the DOF of a weld."""
         with self._simulation.lock:
             return self._simulation.compiled().qpos_indices(self._state)
 
     def GetTransform(self) -> Floats:
-        """Return the body's pose: that of its first link, not of the file's origin.
+        """Return the pose of the body, which is that of its first link.
 
         Returns:
-            ``T_world_link0``, shape (4, 4); a copy. The identity for a body without links.
+            A copy of ``T_world_link0``, shape (4, 4); the identity for a body without links.
 
         Example:
             >>> position = robot.GetTransform()[:3, 3]
@@ -131,15 +134,15 @@ class Configuration(Limits):
         return pose_of(self.GetTransform()).numbers()
 
     def SetTransform(self, transform: ArrayLike) -> None:
-        """Move the whole body rigidly; joint values stay as they are.
+        """Move the whole body. Joint values stay as they are.
 
-        What the body holds moves along. A body that is not in the environment can be moved as well.
+        Grabbed bodies move along. A body outside of an environment can be moved as well.
 
         Args:
             transform: ``T_world_link0``, the new pose of the first link: 4x4, 3x4, or [w, x, y, z, tx, ty, tz].
 
         Raises:
-            ArgumentError: this is no rigid transform. Nothing has moved then.
+            ArgumentError: the transform is not rigid. The body does not move.
 
         Example:
             >>> T = body.GetTransform()
@@ -161,7 +164,7 @@ class Configuration(Limits):
             checklimits: As in ``SetDOFValues``.
 
         Raises:
-            openrave_exception: there are too few or too many values. Nothing has changed then.
+            openrave_exception: the number of values is wrong. The body does not move.
         """
         checked = checked_transform(transform, "SetTransformWithDOFValues: transform")
         if np.size(values) != self.GetDOF():
@@ -181,8 +184,8 @@ class Configuration(Limits):
         """Return the poses of all links in the world.
 
         Args:
-            returndoflastvlaues: Whether to return the joint values, too, as ``SetLinkTransformations`` takes them
-                (the spelling is OpenRAVE's). Those of sliders are 0, since poses show them without.
+            returndoflastvlaues: Whether to return the joint values as well, as ``SetLinkTransformations`` takes them
+                (the spelling is OpenRAVE's). Those of sliders are 0, since poses determine them.
 
         Returns:
             ``T_world_link`` of shape (4, 4) for each link, in the order of ``GetLinks()``; copies.
@@ -197,17 +200,18 @@ class Configuration(Limits):
     def SetLinkTransformations(
         self, transforms: Sequence[ArrayLike], doflastsetvalues: ArrayLike | None = None
     ) -> None:
-        """Put every link at a pose; joints get the values that the poses show.
+        """Set the pose of every link. Joints then have the values that fit the poses.
 
         Args:
-            transforms: ``T_world_link`` for each link, in the order of ``GetLinks()``: 4x4, 3x4 or 7 numbers each.
-            doflastsetvalues: Joint values as ``GetLinkTransformations(True)`` returns them, shape (dof,): poses look
-                alike full turns apart, and each hinge gets the value next to this one; left out: next to its present
-                one.
+            transforms: ``T_world_link`` for each link, in the order of ``GetLinks()``: 4x4, 3x4 or
+                [w, x, y, z, tx, ty, tz] each.
+            doflastsetvalues: Joint values as ``GetLinkTransformations(True)`` returns them, shape (dof,). A pose
+                determines the angle of a hinge up to full turns; the hinge gets the angle nearest to this value, or by
+                default nearest to its current value.
 
         Raises:
-            openrave_exception: there are more or fewer poses than links, one is not rigid, or joint values are given
-                and the body is not in the environment. Nothing has moved then.
+            openrave_exception: the number of poses differs from the number of links, a pose is not rigid, or joint
+                values are given for a body outside of an environment. The body does not move.
         """
         count = len(self._state.scene.links)
         if len(transforms) != count:
@@ -221,10 +225,10 @@ class Configuration(Limits):
             self._state.place_links(checked.reshape(-1, 4, 4), last)
 
     def link_transforms(self) -> Floats:
-        """Return the poses of all links in one array: the fast form of ``GetLinkTransformations``.
+        """Return the poses of all links in one array, faster than ``GetLinkTransformations``.
 
         Returns:
-            ``T_world_link`` in the order of ``GetLinks()``, shape (links, 4, 4); a copy.
+            A copy of ``T_world_link`` in the order of ``GetLinks()``, shape (links, 4, 4).
         """
         with self._simulation.lock:
             return self._state.link_transforms()
@@ -234,10 +238,10 @@ class Configuration(Limits):
         return self._state.stamp
 
     def GetConfigurationSpecification(self, interpolation: str = "") -> ConfigurationSpecification:
-        """Return the specification of the body's configuration: its joint values, then its pose.
+        """Return the layout of the body's configuration: its joint values, then its pose.
 
         Args:
-            interpolation: How they change between waypoints, for instance ``linear``.
+            interpolation: The interpolation between waypoints, for instance ``linear``.
         """
         groups = body_groups(self.GetName(), range(self.GetDOF()), DOFAffine.Transform, interpolation)
         return ConfigurationSpecification.of(groups)
@@ -245,11 +249,11 @@ class Configuration(Limits):
     def GetConfigurationSpecificationIndices(
         self, indices: ArrayLike, interpolation: str = ""
     ) -> ConfigurationSpecification:
-        """Return the specification of the values of some joints.
+        """Return the layout of the values of some joints.
 
         Args:
-            indices: Which DOFs, in which order.
-            interpolation: How they change between waypoints, for instance ``linear``.
+            indices: The DOF indices, in the order of the values.
+            interpolation: The interpolation between waypoints, for instance ``linear``.
 
         Raises:
             ArgumentError: there is no such DOF.
@@ -268,23 +272,24 @@ class Configuration(Limits):
         """Set the joint values and the pose.
 
         Args:
-            values: As ``GetConfigurationValues`` returns them, shape (dof + 7,).
-            checklimits: As for ``SetDOFValues``.
+            values: Joint values and pose as ``GetConfigurationValues`` returns them, shape (dof + 7,).
+            checklimits: What to do with joint values outside the limits, as in ``SetDOFValues``.
 
         Raises:
-            ArgumentError: there are more or fewer values.
+            ArgumentError: the number of values is wrong.
         """
         joint_values, pose = split_configuration(checked_numbers(values, "values"), self.GetDOF())
         self.SetTransformWithDOFValues(pose.matrix(), joint_values, checklimits)
 
     def GetDOFVelocities(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the joint velocities that the velocities of the links show.
+        """Return the joint velocities, which follow from the velocities of the links.
 
         Args:
-            indices: Which DOFs, in which order; left out: all. None and [] are no DOFs, as in OpenRAVE.
+            indices: The DOF indices, in the order of the result; by default all. None and [] select no DOFs, as in
+                OpenRAVE.
 
         Returns:
-            Velocities [rad/s, for sliders m/s], shape (dof,); a copy.
+            A copy of the velocities [rad/s; m/s for sliders], shape (dof,).
 
         Raises:
             IndexError: there is no such DOF.
@@ -301,24 +306,26 @@ class Configuration(Limits):
         checklimits: int = CheckLimitsAction.CheckLimits,
         indices: "ArrayLike | None" = None,
     ) -> None:
-        """Set the joint velocities: the links get the velocities that follow, and so does what they hold.
+        """Set the joint velocities. They determine the velocities of the links and of grabbed bodies.
 
         OpenRAVE has three forms: ``(dofvelocities)``, ``(dofvelocities, checklimits, indices)`` and
         ``(dofvelocities, linear, angular, checklimits)``. In the first two the base keeps its velocity.
 
         Args:
-            dofvelocities: Velocities [rad/s, for sliders m/s], as many as there are DOFs, or as there are indices;
-                without indices further numbers do not count.
-            linear: Velocity of the first link's origin in the world [m/s], shape (3,); a number is ``checklimits``.
-            angular: Angular velocity of the first link in the world [rad/s], shape (3,); behind a number it is
-                ``indices``.
+            dofvelocities: Velocities [rad/s; m/s for sliders], one for each DOF or for each index; without indices,
+                further numbers are ignored.
+            linear: The velocity of the first link's origin in world axes [m/s], shape (3,). A single number is taken as
+                ``checklimits``.
+            angular: The angular velocity of the first link in world axes [rad/s], shape (3,). If ``linear`` is a single
+                number, this is taken as ``indices``.
             checklimits: What to do with values outside the velocity limits, a ``CheckLimitsAction``.
-            indices: Which DOFs, in which order; None: all. As in OpenRAVE only the first DOFs count, as many as there
-                are indices: of them those that are not chosen keep their velocities, and all others stop. So name all.
+            indices: The DOF indices that ``dofvelocities`` refer to; by default all. OpenRAVE has a mistake here that
+                ravemj repeats: with k indices, only the first k DOFs count. Those of them that no index names keep
+                their velocities, and all other DOFs stop. So name all DOFs.
 
         Raises:
-            ArgumentError: the number of velocities is wrong or one is infinite; with ``CheckLimitsThrow``, one is
-                outside its limits. Nothing has changed then.
+            ArgumentError: the number of velocities is wrong, or one is infinite; with ``CheckLimitsThrow``, one is
+                outside its limits. The velocities stay as they were.
             IndexError: there is no such DOF.
 
         Example:
@@ -344,19 +351,20 @@ class Configuration(Limits):
         """Return the velocities of all links, in world axes.
 
         Returns:
-            For each link that of its origin [m/s] and the angular one [rad/s], shape (links, 6); a copy.
+            For each link the velocity of its origin [m/s], then its angular velocity [rad/s], shape (links, 6).
         """
         with self._simulation.lock:
             return self._state.link_velocities()
 
     def SetLinkVelocities(self, velocities: ArrayLike) -> None:
-        """Set the velocities of all links, in world axes; those of the DOFs follow from the differences.
+        """Set the velocities of all links, in world axes. The velocities of DOFs follow from the differences.
 
         Args:
-            velocities: For each link that of its origin [m/s] and the angular one [rad/s], shape (links, 6).
+            velocities: For each link the velocity of its origin [m/s], then its angular velocity [rad/s], shape
+                (links, 6).
 
         Raises:
-            ArgumentError: the shape is wrong, or something is infinite. Nothing has changed then.
+            ArgumentError: the shape is wrong, or a number is not finite. The velocities stay as they were.
         """
         shape = (len(self._state.scene.links), 6)
         checked = checked_numbers(velocities, "SetLinkVelocities")
@@ -366,11 +374,11 @@ class Configuration(Limits):
             self._state.set_link_velocities(checked)
 
     def SetVelocity(self, linear: ArrayLike, angular: ArrayLike) -> bool:
-        """Let the whole body move as one, with its joints at rest.
+        """Set the velocity of the whole body, with its joints at rest.
 
         Args:
-            linear: Velocity of the first link's origin in the world [m/s], shape (3,).
-            angular: Angular velocity in the world [rad/s], shape (3,).
+            linear: The velocity of the first link's origin in world axes [m/s], shape (3,).
+            angular: The angular velocity in world axes [rad/s], shape (3,).
 
         Returns:
             False for a body without links.

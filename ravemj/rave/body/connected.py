@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 class Connected(Building):
-    """Bodies that are part of the robot while they are active and it is in an environment."""
+    """Connected bodies: bodies that are parts of the robot while they are active and it is in an environment."""
 
     active_choice: ActiveChoice
     _grippers: tuple[GripperInfo, ...]
     _connected: tuple[ConnectedBody, ...] = ()
     _own_parts: RobotBaseInfo | None = None
-    """The robot without connected bodies, while some are parts of it."""
+    """The description of the robot alone, while connected bodies are parts of it."""
 
     def GetConnectedBodies(self) -> list[ConnectedBody]:
         """Return the bodies that can be connected, active or not."""
@@ -57,18 +57,18 @@ class Connected(Building):
             body.SetActive(active)
 
     def AddConnectedBody(self, connectedbodyinfo: ConnectedBodyInfo, removeduplicate: bool = False) -> ConnectedBody:
-        """Add a body that can be connected; it is where its description says so, from the next ``env.Add`` on.
+        """Add a body that can be connected. If it is active, the next ``env.Add`` makes it a part of the robot.
 
         Args:
-            connectedbodyinfo: Its description.
-            removeduplicate: Whether it replaces one of the same name.
+            connectedbodyinfo: The description of the body.
+            removeduplicate: Whether it replaces a connected body of the same name.
 
         Returns:
             The body.
 
         Raises:
-            openrave_exception: the robot is in an environment (``InvalidState``); the description has no name, or that
-                of another, or names no link of the robot. Nothing has changed then.
+            openrave_exception: the robot is in an environment (``InvalidState``); or the description has no name, has
+                the name of another connected body, or names no link of the robot.
 
         Example:
             >>> env.Remove(robot)
@@ -81,7 +81,8 @@ class Connected(Building):
         info = checked_kind(connectedbodyinfo, ConnectedBodyInfo, "AddConnectedBody: connectedbodyinfo")
         self._check_removed("AddConnectedBody")
         if not info._name or (self.GetConnectedBody(info._name) is not None and not removeduplicate):
-            raise ArgumentError(f"AddConnectedBody: a body cannot be called '{info._name}': that is empty, or taken")
+            problem = f"has a connected body '{info._name}' already" if info._name else "needs a name for the body"
+            raise ArgumentError(f"AddConnectedBody: '{self.GetName()}' {problem}; set another _name")
         if info._linkname not in {link.name for link in self._state.scene.links}:
             raise ArgumentError(f"AddConnectedBody: '{self.GetName()}' has no link '{info._linkname}'")
         added = ConnectedBody(cast("Robot", self), info)
@@ -89,7 +90,7 @@ class Connected(Building):
         return added
 
     def RemoveConnectedBody(self, connectedbody: ConnectedBody) -> bool:
-        """Forget a body that can be connected; return whether it was there.
+        """Remove a body that can be connected, and return whether the robot had it.
 
         Args:
             connectedbody: The body.
@@ -103,11 +104,11 @@ class Connected(Building):
         return len(self._connected) < before
 
     def InitFromKinBodyInfo(self, info: KinBodyInfo) -> bool:
-        """Make the robot, its name included, of a description.
+        """Replace the robot, including its name, by the one of a description.
 
         Args:
-            info: The description, for instance of ``ExtractInfo``; a ``RobotBaseInfo`` has grippers and connected
-                bodies, too.
+            info: The description, for instance a result of ``ExtractInfo``. A ``RobotBaseInfo`` has grippers and
+                connected bodies as well.
 
         Returns:
             True.
@@ -119,7 +120,7 @@ class Connected(Building):
         return True
 
     def connect(self) -> None:
-        """Make the active connected bodies parts of the robot; the environment calls this before it adds it."""
+        """Make the active connected bodies parts of the robot. The environment calls this before it adds the robot."""
         active = [body.GetInfo() for body in self._connected if body.IsActive() == 1]
         if active and self._own_parts is None:
             own = cast("Robot", self).ExtractInfo()
@@ -127,7 +128,7 @@ class Connected(Building):
             self._own_parts = own
 
     def disconnect(self) -> None:
-        """Take the parts of connected bodies away; the environment calls this after it removed the robot."""
+        """Remove the parts of connected bodies. The environment calls this after it has removed the robot."""
         if self._own_parts is not None:
             own = cast("Robot", self).ExtractInfo()
             self._own_parts = None

@@ -1,4 +1,4 @@
-"""Jacobians and dynamics of a body, in its configuration and for many configurations at once."""
+"""Jacobians and dynamics of a body, for its configuration and for many configurations at once."""
 
 from collections.abc import Mapping
 from typing import Literal, overload
@@ -16,9 +16,9 @@ from ravemj.rave.body.base import BodyPart
 class Dynamics(BodyPart):
     """Jacobians, Hessians, accelerations and inverse dynamics.
 
-    Methods that start with ``batch_`` take arrays of joint values and leave the state of the body as it is. Besides the
-    result they need little memory, for any number of configurations. If the result itself is too large, hand in parts
-    of the joint values, or an ``out`` that lies on disk (``numpy.memmap``).
+    Methods whose names begin with ``batch_`` take arrays of joint values, and do not move the body. Besides the result
+    they need little memory, whatever the number of configurations is. If the result itself is too large, pass the
+    joint values in parts, or an ``out`` that lies on disk (``numpy.memmap``).
     """
 
     def GetCenterOfMass(self) -> Floats:
@@ -27,10 +27,10 @@ class Dynamics(BodyPart):
             return self._state.inertias.center_of_mass(self._state.link_transforms())
 
     def com_jacobian(self) -> Floats:
-        """Return how the body's centre of mass moves with the joint values.
+        """Return the Jacobian of the body's centre of mass.
 
         Returns:
-            Derivative of ``GetCenterOfMass()`` by the DOF values, shape (3, dof).
+            The derivative of ``GetCenterOfMass()`` by the DOF values, in world axes, shape (3, dof).
         """
         with self._simulation.lock:
             return self._state.dynamics.com_jacobian()
@@ -38,18 +38,19 @@ class Dynamics(BodyPart):
     def ComputeJacobianTranslation(
         self, linkindex: int, position: ArrayLike, indices: "ArrayLike | None" = None
     ) -> Floats:
-        """Return how a point of a link moves with the joint values.
+        """Return the Jacobian of the position of a link's point.
 
         Args:
             linkindex: Index of the link.
-            position: The point, in world coordinates [m], shape (3,).
-            indices: The columns, in this order; None and []: all. As in OpenRAVE, an index of no DOF gives zeros.
+            position: The point in the world [m], shape (3,).
+            indices: The DOF indices of the columns; None and [] select all. As in OpenRAVE, an index that is not a DOF
+                gives a column of zeros.
 
         Returns:
-            Derivative of the point's position in the world by the DOF values, shape (3, dof).
+            The derivative of the point's position by the DOF values, in world axes, shape (3, dof).
 
         Raises:
-            ArgumentError: there is no such link, or the point is none.
+            ArgumentError: there is no such link, or the point is not three finite numbers.
 
         Example:
             >>> tip = robot.GetLink("Arm1").GetTransform()[0:3, 3]
@@ -61,14 +62,14 @@ class Dynamics(BodyPart):
         return jacobian if indices is None else _columns(jacobian, indices)
 
     def ComputeJacobianAxisAngle(self, linkindex: int, indices: "ArrayLike | None" = None) -> Floats:
-        """Return how a link turns with the joint values.
+        """Return the Jacobian of a link's angular velocity.
 
         Args:
             linkindex: Index of the link.
-            indices: The columns, as in ``ComputeJacobianTranslation``.
+            indices: The DOF indices of the columns, as in ``ComputeJacobianTranslation``.
 
         Returns:
-            Angular velocity of the link, in world axes, per unit of DOF velocity, shape (3, dof).
+            The derivative of the angular velocity by the DOF velocities, in world axes, shape (3, dof).
         """
         link = self._checked_link(linkindex)
         with self._simulation.lock:
@@ -93,14 +94,14 @@ class Dynamics(BodyPart):
         return self.ComputeJacobianAxisAngle(linkindex)
 
     def CalculateRotationJacobian(self, linkindex: int, quat: ArrayLike) -> Floats:
-        """Return how a quaternion turns with a link.
+        """Return the Jacobian of a quaternion that turns with a link.
 
         Args:
             linkindex: Index of the link.
-            quat: The quaternion [w, x, y, z]: the link's orientation, or that of anything fixed to it.
+            quat: The quaternion [w, x, y, z]: the orientation of the link, or of anything fixed to it.
 
         Returns:
-            Its derivative by the DOF values, shape (4, dof).
+            The derivative of the quaternion by the DOF values, shape (4, dof).
         """
         rates = wxyz_jacobian(checked_vector(quat, 4, "quat").tolist())
         return rates.dot(self.ComputeJacobianAxisAngle(linkindex))  # faster than @ for small matrices
@@ -108,30 +109,30 @@ class Dynamics(BodyPart):
     def ComputeHessianTranslation(
         self, linkindex: int, position: ArrayLike, indices: "ArrayLike | None" = None
     ) -> Floats:
-        """Return the second derivatives of a link's point by the joint values.
+        """Return the Hessian of the position of a link's point.
 
         Args:
             linkindex: Index of the link.
-            position: The point, in world coordinates [m], shape (3,).
-            indices: Which DOFs, as in ``ComputeJacobianTranslation``.
+            position: The point in the world [m], shape (3,).
+            indices: The DOF indices, as in ``ComputeJacobianTranslation``.
 
         Returns:
-            Shape (dof, 3, dof): ``[i, :, j]`` is the derivative by DOFs i and j. Twice contracted with the joint
-            velocities it is the part of the point's acceleration that the velocities make.
+            Shape (dof, 3, dof): ``[i, :, j]`` is the second derivative by DOFs i and j. Contracted twice with the joint
+            velocities, it is the velocity-dependent part of the point's acceleration.
         """
         return _both_columns(self._hessian(linkindex, position)[0], indices)
 
     def ComputeHessianAxisAngle(self, linkindex: int, indices: "ArrayLike | None" = None) -> Floats:
-        """Return the derivatives of a link's angular velocity, in OpenRAVE's symmetric form.
+        """Return the derivatives of the Jacobian of a link's angular velocity, in OpenRAVE's symmetric form.
 
         Args:
             linkindex: Index of the link.
-            indices: Which DOFs, as in ``ComputeJacobianTranslation``.
+            indices: The DOF indices, as in ``ComputeJacobianTranslation``.
 
         Returns:
             Shape (dof, 3, dof): ``[i, :, j]`` is the derivative of the Jacobian's column j by DOF i plus that of
-            column i by DOF j. Twice contracted with the joint velocities it is twice the part of the angular
-            acceleration that the velocities make.
+            column i by DOF j. Contracted twice with the joint velocities, it is twice the velocity-dependent part of
+            the angular acceleration.
         """
         derivatives = self._hessian(linkindex, np.zeros(3))[1]
         return _both_columns(derivatives + derivatives.transpose(2, 1, 0), indices)
@@ -144,20 +145,20 @@ class Dynamics(BodyPart):
     def GetLinkAccelerations(
         self, dofaccelerations: "ArrayLike | None", externalaccelerations: "Mapping[int, ArrayLike] | None" = None
     ) -> Floats:
-        """Return the accelerations of the links at the present values and velocities, without gravity.
+        """Return the accelerations of the links for the current values and velocities, without gravity.
 
-        A link that no joint places keeps its angular velocity: its origin accelerates by ``w x v``. OpenRAVE errs
-        about joints that follow others; ravemj does not.
+        A root link keeps its angular velocity, and its origin accelerates by ``w x v``. OpenRAVE computes wrong
+        accelerations for mimic joints; ravemj does not.
 
         Args:
-            dofaccelerations: Accelerations of the DOFs [rad/s^2, for sliders m/s^2], shape (dof,); further numbers do
-                not count. None and []: none.
-            externalaccelerations: Further accelerations of the first link, and of others that no joint places: link
-                index to [linear, angular], six numbers in world axes.
+            dofaccelerations: Accelerations of the DOFs [rad/s^2; m/s^2 for sliders], shape (dof,); further numbers are
+                ignored. None and [] stand for zeros.
+            externalaccelerations: Additional accelerations of root links: link index to [linear, angular], six numbers
+                in world axes.
 
         Returns:
-            For each link the acceleration of its origin [m/s^2] and the angular one [rad/s^2], in world axes, shape
-            (links, 6).
+            For each link the acceleration of its origin [m/s^2], then its angular acceleration [rad/s^2], in world
+            axes, shape (links, 6).
         """
         accelerations = self._checked_accelerations(dofaccelerations, "GetLinkAccelerations")
         pushes = self._checked_pushes(externalaccelerations, "externalaccelerations")
@@ -192,30 +193,30 @@ class Dynamics(BodyPart):
         externalforcetorque: "Mapping[int, ArrayLike] | None" = None,
         returncomponents: bool = False,
     ) -> Floats | tuple[Floats, Floats, Floats]:
-        """Return the joint torques that give the body the wanted accelerations.
+        """Return the joint torques that produce given accelerations.
 
-        The torques are those at the present values and velocities, the base's included, and against the environment's
-        gravity; they include the inertia of rotors and the friction of motors.
+        The torques are those for the current values and velocities, including the velocity of the base, and for the
+        environment's gravity. They include the inertia of rotors and the friction of motors.
 
-        OpenRAVE divides the forces of sliders by 2 pi, leaves out part of the load of joints that others follow, and
-        refuses spherical joints; ravemj computes all of them correctly.
+        OpenRAVE divides the forces of sliders by 2 pi, leaves out a part of the load of mimic joints, and refuses
+        spherical joints. ravemj computes all of them correctly.
 
         Args:
-            dofaccelerations: Accelerations [rad/s^2, for sliders m/s^2], shape (dof,); further numbers do not count.
-                None and []: none.
-            externalforcetorque: What acts on links besides: link index to [force, torque], six numbers [N, N m] in
-                world axes, at the link's centre of mass. As in OpenRAVE it is added like the weight of a mass: to hold
-                against a push, give it with the opposite sign.
-            returncomponents: Whether to return the parts.
+            dofaccelerations: Accelerations [rad/s^2; m/s^2 for sliders], shape (dof,); further numbers are ignored.
+                None and [] stand for zeros.
+            externalforcetorque: External forces: link index to [force, torque], six numbers [N, N m] in world axes, at
+                the link's centre of mass. As in OpenRAVE they count as loads that the joints exert on the links, so
+                a push from outside has the opposite sign.
+            returncomponents: Whether to return the three components.
 
         Returns:
-            Torques [N m, for sliders N], shape (dof,). In parts they are three such arrays, which add up to the whole:
-            of the accelerations (``M qdd``), of the joint velocities (Coriolis and centrifugal forces), and of gravity,
-            external forces and the velocity of the base.
+            Torques [N m; N for sliders], shape (dof,). As components, three such arrays that add up to the torques:
+            those of the accelerations (``M qdd``), those of the joint velocities (Coriolis and centrifugal forces), and
+            those of gravity, external forces and the velocity of the base.
 
         Raises:
-            openrave_exception: a joint without DOFs moves by itself, since it follows no other (``Assert``): no torques
-                of DOFs determine how. ``batch_inverse_dynamics`` takes it as fixed.
+            openrave_exception: a passive joint is neither a weld nor a mimic joint (``Assert``), so torques of DOFs do
+                not determine its motion. ``batch_inverse_dynamics`` takes it as fixed.
 
         Example:
             >>> robot.ComputeInverseDynamics([0, 0])  # torques that hold the robot against gravity
@@ -225,7 +226,7 @@ class Dynamics(BodyPart):
         pushes = self._checked_pushes(externalforcetorque, "externalforcetorque") if externalforcetorque else {}
         for joint in self._state.scene.passive_joints:
             if joint.mimic is None and not joint.static:  # random api-5000-92; graph-5000-102 where it closes a loop
-                message = f"joint '{joint.name}' has no DOF and follows no other, so no torques determine its motion"
+                message = f"joint '{joint.name}' has no DOF and mimics no other, so no torques determine its motion"
                 raise RavemjError(
                     f"ComputeInverseDynamics: {message}; batch_inverse_dynamics takes it as fixed", ErrorCode.Assert
                 )
@@ -237,7 +238,7 @@ class Dynamics(BodyPart):
 
     def _checked_accelerations(self, accelerations: "ArrayLike | None", name: str) -> Floats:
         dof = self._state.dof
-        if type(accelerations) is np.ndarray and accelerations.shape == (dof,):  # most often, and soon seen
+        if type(accelerations) is np.ndarray and accelerations.shape == (dof,):  # the usual case, and a cheap test
             return checked_vector(accelerations, dof, name)
         count = 0 if accelerations is None else np.size(accelerations)
         if accelerations is None or not count:
@@ -249,23 +250,23 @@ class Dynamics(BodyPart):
     def _checked_pushes(self, pushes: "Mapping[int, ArrayLike] | None", name: str) -> dict[int, Floats]:
         if not pushes:
             return {}
-        checked_kind(pushes, (dict, Mapping), name, "a dictionary")  # dict first, since it is faster to see
+        checked_kind(pushes, (dict, Mapping), name, "a dictionary")  # dict first: a test against an ABC is slow
         return {self._checked_link(link): checked_vector(push, 6, name) for link, push in pushes.items()}
 
     def batch_link_transforms(self, values: ArrayLike, out: Floats | None = None) -> Floats:
-        """Return the poses of all links for many joint values, several times faster than a loop.
+        """Return the poses of all links for many configurations, several times faster than a loop.
 
-        Joint limits do not count, except that joints that follow others stop at theirs.
+        Joint limits do not count, except that mimic joints stop at theirs.
 
         Args:
-            values: Joint values [rad, for sliders m], shape (N, dof).
-            out: Takes the result: float64, shape (N, links, 4, 4); None: a new array.
+            values: Joint values [rad; m for sliders], shape (N, dof).
+            out: An array for the result, float64, shape (N, links, 4, 4); by default a new one.
 
         Returns:
             ``T_world_link`` in the order of ``GetLinks()``, shape (N, links, 4, 4).
 
         Raises:
-            ArgumentError: a shape is wrong, or a value is infinite or no number.
+            ArgumentError: a shape is wrong, or a value is not finite.
 
         Example:
             >>> lower, upper = robot.GetDOFLimits()
@@ -281,20 +282,20 @@ class Dynamics(BodyPart):
     def batch_jacobians(
         self, values: ArrayLike, linkindex: int, position_in_link: ArrayLike, out: Floats | None = None
     ) -> Floats:
-        """Return the Jacobians of a link for many joint values.
+        """Return the Jacobians of a link for many configurations.
 
         Args:
-            values: Joint values [rad, for sliders m], shape (N, dof).
+            values: Joint values [rad; m for sliders], shape (N, dof).
             linkindex: Index of the link.
-            position_in_link: The point whose motion is asked for, in the link's frame [m], shape (3,).
-            out: Takes the result: float64, shape (N, 6, dof); None: a new array.
+            position_in_link: The point of the link, in the link frame [m], shape (3,).
+            out: An array for the result, float64, shape (N, 6, dof); by default a new one.
 
         Returns:
             Shape (N, 6, dof): the first three rows are ``ComputeJacobianTranslation``, the others
             ``ComputeJacobianAxisAngle``.
 
         Raises:
-            ArgumentError: a shape is wrong, there is no such link, or a value is infinite or no number.
+            ArgumentError: a shape is wrong, there is no such link, or a value is not finite.
         """
         checked = self._checked_many(values, "values")
         link = self._checked_link(linkindex)
@@ -307,25 +308,26 @@ class Dynamics(BodyPart):
     def batch_inverse_dynamics(
         self, values: ArrayLike, velocities: ArrayLike, accelerations: ArrayLike, out: Floats | None = None
     ) -> Floats:
-        """Return ``ComputeInverseDynamics`` for many joint values, velocities and accelerations, with the base at rest.
+        """Return ``ComputeInverseDynamics`` for many values, velocities and accelerations, with the base at rest.
 
         Args:
-            values: Joint values [rad, for sliders m], shape (N, dof).
+            values: Joint values [rad; m for sliders], shape (N, dof).
             velocities: Joint velocities [rad/s or m/s], shape (N, dof).
             accelerations: Joint accelerations [rad/s^2 or m/s^2], shape (N, dof).
-            out: Takes the result: float64, shape (N, dof); None: a new array.
+            out: An array for the result, float64, shape (N, dof); by default a new one.
 
         Returns:
-            Torques [N m, for sliders N], shape (N, dof).
+            Torques [N m; N for sliders], shape (N, dof).
 
         Raises:
-            ArgumentError: a shape is wrong, or a value is infinite or no number.
+            ArgumentError: a shape is wrong, or a value is not finite.
         """
         given = {"values": values, "velocities": velocities, "accelerations": accelerations}
         checked = [self._checked_many(numbers, name) for name, numbers in given.items()]
         if len({len(numbers) for numbers in checked}) > 1:
             raise ArgumentError(
-                f"there are {[len(numbers) for numbers in checked]} configurations; give as many of all"
+                f"values, velocities and accelerations have {[len(numbers) for numbers in checked]} rows; "
+                f"give the same number of each"
             )
         result = _checked_out(out, checked[0].shape)
         with self._simulation.lock:
@@ -335,7 +337,7 @@ class Dynamics(BodyPart):
 
 
 def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
-    """Return columns of a Jacobian, along the last axis; zeros for an index of no DOF."""
+    """Return columns of a Jacobian, along its last axis; zeros for an index that is not a DOF."""
     chosen = np.array([] if indices is None else indices, dtype=np.int_).reshape(-1)
     if not chosen.size:
         return jacobian

@@ -1,4 +1,4 @@
-"""Joint values and velocities as users give them: some or all, within the limits or not."""
+"""Completes and limits the joint values and velocities that users give."""
 
 from types import EllipsisType
 
@@ -14,10 +14,10 @@ from ravemj.model.scene import KinBody
 from ravemj.rave.enums import CheckLimitsAction
 
 _VALUE_ROUNDING = 2e-10
-"""How far outside its limits [rad or m] OpenRAVE moves a value without a warning."""
+"""The tolerance of limits [rad or m], which is OpenRAVE's: it moves a value from so far outside without a warning."""
 
 _VELOCITY_ROUNDING = 1e-10
-"""How far beyond its limit [rad/s or m/s] a velocity counts as within."""
+"""The tolerance of velocity limits [rad/s or m/s]."""
 
 
 def full_values(
@@ -26,13 +26,13 @@ def full_values(
     """Return a value for each DOF, in DOF order.
 
     Args:
-        body: The body, whose name messages are about.
-        kinematics: Its kinematics, which has the values of the other DOFs.
-        values: Values that a user gave.
-        dofindices: Which DOFs they are of; None: all.
+        body: The body, for error messages.
+        kinematics: The kinematics of the body, which has the values of the other DOFs.
+        values: The values that the user gave.
+        dofindices: The DOF indices of these values; None for all.
 
     Raises:
-        ArgumentError: they are too few or too many.
+        ArgumentError: the number of values is wrong.
     """
     given, dof = checked_numbers(values, "SetDOFValues"), kinematics.dof
     if dofindices is None or dofindices is ...:
@@ -55,10 +55,10 @@ def full_values(
 
 
 def full_velocities(state: BodyState, velocities: ArrayLike, indices: "ArrayLike | None") -> Floats:
-    """Return a velocity for each DOF.
+    """Return a velocity for each DOF, with OpenRAVE's mistake about indices.
 
-    Only the first DOFs count, as many as there are indices: of them those that are not chosen keep their velocities,
-    and all others stop.
+    With k indices, only the first k DOFs count. Those of them that no index names keep their velocities, and all other
+    DOFs stop.
     """
     dof = state.dof
     if indices is None:
@@ -72,16 +72,16 @@ def full_velocities(state: BodyState, velocities: ArrayLike, indices: "ArrayLike
 
 
 def settled_values(body: KinBody, kinematics: BodyKinematics, target: Floats, checklimits: int) -> Floats:
-    """Return joint values with the present ones in place of NaN and, as ``checklimits`` says, within the limits.
+    """Return joint values with NaN replaced by current values, and limited as ``checklimits`` says.
 
     Args:
-        body: The body, whose name and joints messages are about.
-        kinematics: Its kinematics, which has limits and present values.
+        body: The body, for error messages.
+        kinematics: The kinematics of the body, which has limits and current values.
         target: Joint values [rad or m], shape (dof,).
         checklimits: A ``CheckLimitsAction``.
 
     Raises:
-        ArgumentError: a value is infinite, or, with ``CheckLimitsThrow``, outside its limits.
+        ArgumentError: a value is infinite; with ``CheckLimitsThrow``, a value is outside its limits.
     """
     if np.isinf(target).any():
         raise ArgumentError(f"SetDOFValues: values are {target}, and should be finite")
@@ -99,20 +99,20 @@ def settled_values(body: KinBody, kinematics: BodyKinematics, target: Floats, ch
 
 
 def limited_velocities(body: KinBody, limits: Floats, velocities: Floats, checklimits: int) -> Floats:
-    """Return joint velocities, as ``checklimits`` says within the limits.
+    """Return joint velocities, limited as ``checklimits`` says.
 
     Args:
-        body: The body, whose joints messages are about.
+        body: The body, for error messages.
         limits: Velocity limits [rad/s or m/s], shape (dof,).
         velocities: Joint velocities, shape (dof,).
         checklimits: A ``CheckLimitsAction``.
 
     Raises:
-        ArgumentError: with ``CheckLimitsThrow``, one is outside its limits.
+        ArgumentError: with ``CheckLimitsThrow``, a velocity is outside its limits.
     """
     if checklimits == CheckLimitsAction.Nothing:
         return velocities
-    if np.count_nonzero(np.abs(velocities) <= limits) == len(velocities):  # most often, and faster than what follows
+    if np.count_nonzero(np.abs(velocities) <= limits) == len(velocities):  # the usual case, and cheaper than clipping
         return velocities
     limited = np.clip(velocities, -limits, limits)
     outside = np.flatnonzero(np.abs(velocities - limited) > _VELOCITY_ROUNDING)
@@ -124,7 +124,7 @@ def limited_velocities(body: KinBody, limits: Floats, velocities: Floats, checkl
 
 
 def _report(body: KinBody, dof: int, message: str, effect: str, checklimits: int) -> None:
-    """Warn about a value outside its limits, or raise, or do neither, as ``checklimits`` says."""
+    """Send a warning about a value outside its limits, raise an error, or do nothing, as ``checklimits`` says."""
     if checklimits == CheckLimitsAction.CheckLimitsSilent:
         return
     joint = body.joint_of_dof(dof)

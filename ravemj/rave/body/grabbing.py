@@ -1,4 +1,4 @@
-"""What bodies hold, as ``GrabbedInfo``, and whether they can."""
+"""Checks and descriptions of grabbed bodies."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -12,10 +12,10 @@ from ravemj.rave.infos import GrabbedInfo
 
 
 def link_index(state: BodyState, link: int | str) -> int:
-    """Return the index of a link that is given by its index or name.
+    """Return the index of a link, given by its index or its name.
 
     Raises:
-        ArgumentError: there is none.
+        ArgumentError: the body has no such link.
     """
     names = [one.name for one in state.scene.links]
     if isinstance(link, str) and link in names:
@@ -26,10 +26,11 @@ def link_index(state: BodyState, link: int | str) -> int:
 
 
 def check_holdable(state: BodyState, held: BodyState) -> None:
-    """Check that a body can hold another.
+    """Check that a body can grab another one.
 
     Raises:
-        RavemjError: it is not in its environment, or the other one was made for another one, or holds it.
+        RavemjError: the body is not in its environment; or the other body was made for another environment, or holds
+            this one.
     """
     if not state.simulation.holds(state):
         message = f"Grab: '{state.scene.name}' is not in this environment; add it first"
@@ -46,20 +47,20 @@ def _check_not_carried_by(state: BodyState, held: BodyState) -> None:
 
 
 def grab_of(state: BodyState, held: BodyState) -> GrabbedBody | None:
-    """Return how a body holds another, or None."""
+    """Return the grab by which a body holds another one, or None."""
     return next((grab for grab in state.grabs if grab.body is held), None)
 
 
 def grabbed_infos(state: BodyState) -> list[GrabbedInfo]:
-    """Return how a body holds others, for ``ResetGrabbed``."""
+    """Return the infos of all grabs of a body, for ``ResetGrabbed``."""
     return [GrabbedInfo.of(state.scene, grab) for grab in state.grabs]
 
 
 def described_grab(state: BodyState, info: GrabbedInfo) -> GrabbedBody:
-    """Return how a body shall hold another.
+    """Return the grab that an info describes.
 
     Raises:
-        ArgumentError: a body or link is not there, or the body is held by the other one.
+        ArgumentError: the grabbed body or a link does not exist, or the grabbed body holds the other one.
     """
     held = state.simulation.body(info._grabbedname)
     if held is None:

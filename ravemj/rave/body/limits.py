@@ -15,10 +15,11 @@ from ravemj.rave.body.base import BodyPart
 
 
 class Limits(BodyPart):
-    """Limits, weights and resolutions. Setting them moves nothing."""
+    """Limits, weights and resolutions of the DOFs. Setting them does not move the body."""
 
     _known: tuple[tuple[Joint, ...], dict[str, Floats]] | None = None
-    """Fields of all axes as arrays, by name, and the joints that they are of, which are replaced, never changed."""
+    """A cache: the joints, and fields of all their axes as arrays, by name. A change replaces the tuple of joints, so
+    the cache holds as long as the scene has this very tuple."""
 
     def GetDOFLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> tuple[Floats, Floats]:
         """Return the joint limits.
@@ -39,15 +40,15 @@ class Limits(BodyPart):
         return self._of_axes("lower", indices), self._of_axes("upper", indices)
 
     def SetDOFLimits(self, lower: ArrayLike, upper: ArrayLike, indices: "ArrayLike | None" = None) -> None:
-        """Set joint limits. Nothing moves, not even a joint that is outside now; the next ``SetDOFValues`` limits it.
+        """Set joint limits. The body does not move, even if a joint is outside now; ``SetDOFValues`` applies limits.
 
         Args:
-            lower: Lower limits [rad or m], as many as there are DOFs, or as there are indices.
-            upper: Upper limits, as many.
-            indices: Which DOFs, in which order; None: all.
+            lower: Lower limits [rad or m], one for each DOF or for each index.
+            upper: Upper limits [rad or m], likewise.
+            indices: The DOF indices of the limits; None for all.
 
         Raises:
-            openrave_exception: there are too few or too many limits. Nothing has changed then.
+            openrave_exception: the number of limits is wrong. The limits stay as they were.
             IndexError: there is no such DOF.
         """
         self._set_axes("SetDOFLimits", {"lower": lower, "upper": upper}, indices)
@@ -93,7 +94,7 @@ class Limits(BodyPart):
         self._set_axes("SetDOFJerkLimits", {"max_jerk": limits})
 
     def GetDOFHardVelocityLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the velocities that planners never exceed [rad/s or m/s], shape (dof,); 0 if none is set.
+        """Return the hard velocity limits, which planners never exceed [rad/s or m/s], shape (dof,); 0 for none.
 
         Args:
             indices: Which DOFs, in which order; left out: all.
@@ -101,15 +102,15 @@ class Limits(BodyPart):
         return self._of_axes("hard_max_velocity", indices)
 
     def SetDOFHardVelocityLimits(self, limits: ArrayLike) -> None:
-        """Set the velocities that planners never exceed.
+        """Set the hard velocity limits, which planners never exceed.
 
         Args:
-            limits: Limits [rad/s or m/s], shape (dof,); 0: none.
+            limits: Limits [rad/s or m/s], shape (dof,); 0 for none.
         """
         self._set_axes("SetDOFHardVelocityLimits", {"hard_max_velocity": limits})
 
     def GetDOFHardAccelerationLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the accelerations that planners never exceed [rad/s^2 or m/s^2], shape (dof,); 0 if none is set.
+        """Return the hard acceleration limits of planners [rad/s^2 or m/s^2], shape (dof,); 0 for none.
 
         Args:
             indices: Which DOFs, in which order; left out: all.
@@ -117,15 +118,15 @@ class Limits(BodyPart):
         return self._of_axes("hard_max_acceleration", indices)
 
     def SetDOFHardAccelerationLimits(self, limits: ArrayLike) -> None:
-        """Set the accelerations that planners never exceed.
+        """Set the hard acceleration limits, which planners never exceed.
 
         Args:
-            limits: Limits [rad/s^2 or m/s^2], shape (dof,); 0: none.
+            limits: Limits [rad/s^2 or m/s^2], shape (dof,); 0 for none.
         """
         self._set_axes("SetDOFHardAccelerationLimits", {"hard_max_acceleration": limits})
 
     def GetDOFHardJerkLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the jerks that planners never exceed [rad/s^3 or m/s^3], shape (dof,); 0 if none is set.
+        """Return the hard jerk limits, which planners never exceed [rad/s^3 or m/s^3], shape (dof,); 0 for none.
 
         Args:
             indices: Which DOFs, in which order; left out: all.
@@ -133,24 +134,24 @@ class Limits(BodyPart):
         return self._of_axes("hard_max_jerk", indices)
 
     def SetDOFHardJerkLimits(self, limits: ArrayLike) -> None:
-        """Set the jerks that planners never exceed.
+        """Set the hard jerk limits, which planners never exceed.
 
         Args:
-            limits: Limits [rad/s^3 or m/s^3], shape (dof,); 0: none.
+            limits: Limits [rad/s^3 or m/s^3], shape (dof,); 0 for none.
         """
         self._set_axes("SetDOFHardJerkLimits", {"hard_max_jerk": limits})
 
     def GetDOFDynamicAccelerationJerkLimits(
         self, dofPositions: ArrayLike, dofVelocities: ArrayLike
     ) -> tuple[Floats, Floats]:
-        """Return limits that depend on the configuration, which no body here has.
+        """Return limits that depend on the configuration. ravemj has none.
 
         Args:
             dofPositions: Joint values [rad or m], shape (dof,).
             dofVelocities: Joint velocities [rad/s or m/s], shape (dof,).
 
         Returns:
-            Two empty arrays: the limits of ``GetDOFAccelerationLimits`` and ``GetDOFJerkLimits`` hold everywhere.
+            Two empty arrays: the limits of ``GetDOFAccelerationLimits`` and ``GetDOFJerkLimits`` apply everywhere.
         """
         for values, name in ((dofPositions, "dofPositions"), (dofVelocities, "dofVelocities")):
             checked_vector(values, self.GetDOF(), f"GetDOFDynamicAccelerationJerkLimits: {name}")
@@ -185,13 +186,13 @@ class Limits(BodyPart):
             weights: Weights, all positive, shape (dof,).
 
         Raises:
-            openrave_exception: there are too few or too many weights (``Failed``), or one is not positive
-                (``InvalidArguments``). Nothing has changed then.
+            openrave_exception: the number of weights is wrong (``Failed``), or one is not positive
+                (``InvalidArguments``). The weights stay as they were.
         """
         self._set_axes("SetDOFWeights", {"weight": weights}, positive=True)
 
     def GetDOFResolutions(self, indices: "ArrayLike | EllipsisType | None" = ...) -> Floats:
-        """Return the steps of planners [rad or m], shape (dof,).
+        """Return the steps in which planners test for collisions [rad or m], shape (dof,).
 
         Args:
             indices: Which DOFs, in which order; left out: all.
@@ -199,7 +200,7 @@ class Limits(BodyPart):
         return self._of_axes("resolution", indices)
 
     def SetDOFResolutions(self, resolutions: ArrayLike) -> None:
-        """Set the steps of planners.
+        """Set the steps in which planners test for collisions.
 
         Args:
             resolutions: Steps [rad or m], all positive, shape (dof,).
@@ -219,7 +220,7 @@ class Limits(BodyPart):
     def _set_axes(
         self, caller: str, fields: dict[str, ArrayLike], indices: "ArrayLike | None" = None, *, positive: bool = False
     ) -> None:
-        """Set one or more fields of axes, all or nothing."""
+        """Set fields of axes. If one number is wrong, none is set."""
         dof = self.GetDOF()
         chosen = checked_indices(... if indices is None else indices, dof)
         given: dict[str, list[float]] = {}
@@ -240,16 +241,16 @@ class Limits(BodyPart):
     def SubtractDOFValues(
         self, values0: ArrayLike, values1: ArrayLike, indices: "ArrayLike | EllipsisType | None" = ...
     ) -> Floats:
-        """Return the difference of joint values: the way from the second to the first.
+        """Return the difference of joint values.
 
         Args:
-            values0: Joint values [rad or m], as many as there are DOFs, or as there are indices.
-            values1: Joint values to subtract, as many.
-            indices: Which DOFs the values are for; left out: all.
+            values0: Joint values [rad or m], one for each DOF or for each index.
+            values1: The joint values to subtract, likewise.
+            indices: The DOF indices of the values; by default all.
 
         Returns:
-            ``values0 - values1``; for circular joints the shorter way round, from -pi to pi, but as in OpenRAVE not
-            for those that a static link carries.
+            ``values0 - values1``. For circular joints the difference is in [-pi, pi], except for joints on a static
+            link, as in OpenRAVE.
         """
         chosen = checked_indices(indices, self.GetDOF())
         minuend, subtrahend = (checked_numbers(values, "SubtractDOFValues") for values in (values0, values1))

@@ -1,4 +1,4 @@
-"""The manipulators of a robot, which one is active, and the descriptions of its grippers."""
+"""The manipulators of a robot, the active one among them, and the descriptions of its grippers."""
 
 from typing import TYPE_CHECKING, cast
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
 
 class Manipulators(BodyPart):
-    """The arms of a robot. Calls that name none refer to the active one, which is the first until another is set.
+    """The manipulators of a robot. Methods without a manipulator use the active one, which at first is the first.
 
-    Descriptions of grippers, which manipulators name, are only kept.
+    Robots also store descriptions of grippers, which have no effect.
     """
 
     _active_manipulator: str | None
-    """Name of the active one; None: the first."""
+    """The name of the active manipulator; None for the first, empty for none."""
     ik_solvers: "dict[str, IkSolver]"
-    """Solvers of inverse kinematics, by the names of their arms."""
+    """The IK solvers, by the names of their manipulators."""
 
     _manipulators: tuple[Manipulator, ...] = ()
 
@@ -38,7 +38,7 @@ class Manipulators(BodyPart):
         """Return the manipulators, in the order of the file.
 
         Args:
-            manipname: Return the one of that name only.
+            manipname: A name; the result then has only the manipulator of this name.
         """
         arms = self._state.scene.manipulators
         if len(self._manipulators) != len(arms):  # they are made once, as links are
@@ -50,15 +50,15 @@ class Manipulators(BodyPart):
         return [one for one, arm in zip(self._manipulators, arms, strict=True) if arm.name == manipname]
 
     def GetManipulator(self, manipname: str) -> Manipulator | None:
-        """Return a manipulator, or None where there is none of that name.
+        """Return the manipulator of a name, or None.
 
         Args:
-            manipname: Its name.
+            manipname: The name.
         """
         return next(iter(self.GetManipulators(manipname)), None)
 
     def GetActiveManipulator(self) -> Manipulator | None:
-        """Return the manipulator that calls without one refer to, or None.
+        """Return the active manipulator, or None.
 
         Example:
             >>> T_world_tool = robot.GetActiveManipulator().GetTransform()
@@ -74,15 +74,15 @@ class Manipulators(BodyPart):
         *,
         limits: bool = True,
     ) -> IkBatch:
-        """Return all joint values that take the tool of the active arm to many goals; see ``Manipulator.ik``.
+        """Return all solutions of inverse kinematics of the active manipulator for many goals; see ``Manipulator.ik``.
 
         Args:
-            goals: ``T_world_tool``, shape (N, 4, 4) or (4, 4); for other types the numbers of goals, shape (N, k).
-            iktype: The type of goal.
+            goals: ``T_world_tool``, shape (N, 4, 4) or (4, 4); for other types the values of the goals, shape (N, k).
+            iktype: The type of the goals.
             limits: Whether only solutions within the limits are valid.
 
         Raises:
-            openrave_exception: no arm is active, or it is none that can be solved.
+            openrave_exception: no manipulator is active, or it has no inverse kinematics.
         """
         arm = self.GetActiveManipulator()
         if arm is None:
@@ -90,27 +90,27 @@ class Manipulators(BodyPart):
         return arm.ik(goals, iktype, limits=limits)
 
     def GetRobotStructureHash(self) -> str:
-        """Return a text that is the same for robots of the same structure, arms and sensors: 32 hexadecimal digits."""
+        """Return a hash of the robot's structure, manipulators and sensors, 32 hexadecimal digits."""
         return hashes.of_robot(self._state.scene)
 
     def GetActiveManipulatorIndex(self) -> int:
-        """Return the active manipulator's place in ``GetManipulators()``; -1 without one."""
+        """Return the index of the active manipulator in ``GetManipulators()``; -1 without one."""
         active = self.GetActiveManipulator()
         return -1 if active is None else self.GetManipulators().index(active)
 
     def AddManipulator(self, manipinfo: ManipulatorInfo, removeduplicate: bool = False) -> Manipulator:
-        """Add an arm; it does not become the active one, unless there was none.
+        """Add a manipulator. It becomes the active one only if the robot had none.
 
         Args:
-            manipinfo: Its description.
-            removeduplicate: Whether it replaces one of the same name.
+            manipinfo: The description of the manipulator.
+            removeduplicate: Whether it replaces a manipulator of the same name.
 
         Returns:
             The new manipulator.
 
         Raises:
-            openrave_exception: there is one of that name, or a joint of the arm does not move the effector. Nothing
-                has changed then.
+            openrave_exception: the robot has a manipulator of that name, or a joint of the arm does not move the end
+                effector. The robot stays as it is.
 
         Example:
             >>> info = robot.GetManipulators()[0].GetInfo()
@@ -134,13 +134,13 @@ class Manipulators(BodyPart):
         return self.GetManipulators()[index]
 
     def RemoveManipulator(self, manip: Manipulator) -> bool:
-        """Remove an arm; the ones behind it move up. If it was the active one, none is active then.
+        """Remove a manipulator. If it was the active one, none is active afterwards.
 
         Args:
-            manip: The arm.
+            manip: The manipulator.
 
         Returns:
-            Whether it was there.
+            Whether the robot had it.
         """
         arms = self.GetManipulators()
         if manip not in arms:
@@ -160,16 +160,17 @@ class Manipulators(BodyPart):
 
     @also_named(manip="manipname")
     def SetActiveManipulator(self, manipname: Manipulator | str | int | None) -> Manipulator | None:
-        """Choose the manipulator that calls without one refer to. The active DOFs stay as they are.
+        """Choose the active manipulator. The active DOFs stay as they are.
 
         Args:
-            manipname: Its name, the manipulator, or its place in ``GetManipulators()``; '' or None: none.
+            manipname: The name, the manipulator, or its index in ``GetManipulators()``; '' for none.
 
         Returns:
             The active manipulator, or None.
 
         Raises:
-            ArgumentError: there is no such manipulator. Nothing has changed then.
+            ArgumentError: the robot has no such manipulator. The active one stays as it was.
+            openrave_exception: the name is None.
 
         Example:
             >>> manipulator = robot.SetActiveManipulator("arm")
@@ -196,7 +197,7 @@ class Manipulators(BodyPart):
         """Return the description of a gripper, or None.
 
         Args:
-            name: Its name.
+            name: The name of the gripper.
         """
         return next((info for info in self._grippers if info._name == name), None)  # pyright: ignore[reportPrivateUsage] - OpenRAVE's field
 
@@ -205,26 +206,27 @@ class Manipulators(BodyPart):
 
         Args:
             gripperInfo: The description.
-            removeduplicate: Whether it replaces one of the same name.
+            removeduplicate: Whether it replaces a description of the same name.
 
         Returns:
             True.
 
         Raises:
-            openrave_exception: there is one of that name, or it has none. Nothing has changed then.
+            openrave_exception: the description has no name, or that of another gripper.
         """
         name = checked_kind(gripperInfo, GripperInfo, "AddGripperInfo: gripperInfo")._name  # pyright: ignore[reportPrivateUsage] - as above
         if not name or (self.GetGripperInfo(name) is not None and not removeduplicate):
-            raise ArgumentError(f"AddGripperInfo: a gripper cannot be called '{name}': that is empty, or taken")
+            problem = f"has a gripper '{name}' already" if name else "needs a name for the gripper"
+            raise ArgumentError(f"AddGripperInfo: '{self.GetName()}' {problem}; set another _name")
         self.RemoveGripperInfo(name)
         self._grippers = (*self._grippers, gripperInfo)
         return True
 
     def RemoveGripperInfo(self, name: str) -> bool:
-        """Forget the description of a gripper; return whether it was there.
+        """Remove the description of a gripper, and return whether the robot had it.
 
         Args:
-            name: Its name.
+            name: The name of the gripper.
         """
         gone = self.GetGripperInfo(name)
         self._grippers = tuple(info for info in self._grippers if info is not gone)

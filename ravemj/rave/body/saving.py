@@ -1,4 +1,4 @@
-"""State savers, which bring a body back to its earlier state."""
+"""State savers, which restore an earlier state of a body."""
 
 from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 Restorer = Callable[["KinBody"], None]
-"""Gives a body, the saved one or one like it, a part of its state back."""
+"""A function that restores a part of the saved state, on the saved body or on one of the same structure."""
 
-# Plain numbers, since ``&`` of two flags takes as long as saving a pose.
+# These are plain numbers, because ``&`` of two flags takes as long as saving a pose.
 _TRANSFORMATION, _ENABLE = int(SaveParameters.LinkTransformation), int(SaveParameters.LinkEnable)
 _VELOCITIES, _GRABBED = int(SaveParameters.LinkVelocities), int(SaveParameters.GrabbedBodies)
 _AXIS_FIELDS = {
@@ -32,7 +32,7 @@ _AXIS_FIELDS = {
 
 
 def body_restorers(state: BodyState, options: int) -> list[Restorer]:
-    """Return what gives a body, or one like it, the present state of this one back.
+    """Return functions that restore the current state of a body, on it or on one of the same structure.
 
     Args:
         state: The body.
@@ -60,7 +60,10 @@ def body_restorers(state: BodyState, options: int) -> list[Restorer]:
 
 
 class StateSaver(ApiObject):
-    """Keeps a state of a body; ``body.CreateKinBodyStateSaver()`` and ``robot.CreateRobotStateSaver()`` make it."""
+    """Saves the state of a body, and restores it on leaving a ``with`` block.
+
+    ``body.CreateKinBodyStateSaver()`` and ``robot.CreateRobotStateSaver()`` make state savers.
+    """
 
     def __init__(self, body: "KinBody", options: int | None = None) -> None:
         checked_kind(body, BodyPart, "StateSaver: body", "a KinBody")
@@ -75,10 +78,10 @@ class StateSaver(ApiObject):
         return self._body
 
     def Restore(self, body: "KinBody | None" = None) -> None:
-        """Restore the state; this can be done several times.
+        """Restore the state. This can be done several times.
 
         Args:
-            body: Another body of the same structure that should get the state; None: the body itself.
+            body: The body that gets the state, which has the same structure; by default the saved body.
         """
         target = self._body if body is None else body
         checked_kind(target, BodyPart, "Restore: body", "a KinBody")
@@ -90,7 +93,7 @@ class StateSaver(ApiObject):
                 restore(target)
 
     def Release(self) -> None:
-        """Forget the state: the saver restores nothing any more."""
+        """Discard the state: the saver restores nothing from now on."""
         self._restorers = []
 
     Close = Release
@@ -101,7 +104,7 @@ class StateSaver(ApiObject):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        """Bring the state back."""
+        """Restore the state."""
         self.Restore()
 
     def __repr__(self) -> str:
@@ -123,4 +126,4 @@ def _set_axes(body: BodyPart, kept: Mapping[str, Sequence[float]]) -> None:
 
 
 KinBodyStateSaver = RobotStateSaver = StateRestoreContext = StateSaver
-"""The names that OpenRAVE has for it."""
+"""OpenRAVE's names of the class."""

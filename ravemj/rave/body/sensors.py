@@ -18,7 +18,7 @@ class Sensors(BodyPart):
     """The sensors that a robot carries."""
 
     _devices: dict[str, Sensor]
-    """The devices that were asked for, by the names of their places."""
+    """The sensors that were used, by the names of their attached sensors; others are not made."""
     _internal = ("device", "forget_sensors", "step_sensors", "take_sensors")
 
     def GetAttachedSensors(self) -> list[AttachedSensor]:
@@ -27,10 +27,10 @@ class Sensors(BodyPart):
         return [AttachedSensor(robot, self._state, index) for index in range(len(self._state.scene.sensors))]
 
     def GetAttachedSensor(self, sensorname: str) -> AttachedSensor | None:
-        """Return an attached sensor, or None where there is none of that name.
+        """Return the attached sensor of a name, or None.
 
         Args:
-            sensorname: Its name.
+            sensorname: The name.
         """
         return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == sensorname), None)
 
@@ -43,20 +43,22 @@ class Sensors(BodyPart):
         """Attach a sensor to a link.
 
         Args:
-            attachedsensorinfo: Its description.
-            removeduplicate: Whether it replaces one of the same name.
+            attachedsensorinfo: The description of the sensor.
+            removeduplicate: Whether it replaces an attached sensor of the same name.
 
         Returns:
             The new attached sensor.
 
         Raises:
-            openrave_exception: there is one of that name, or no such link. Nothing has changed then.
+            openrave_exception: the robot has a sensor of that name, or no such link, or the sensor cannot measure with
+                these properties. The robot stays as it is.
         """
         body = self._state.scene
         info = checked_kind(attachedsensorinfo, AttachedSensorInfo, "AddAttachedSensor: attachedsensorinfo")
         made = info.sensor([link.name for link in body.links])
         if made.link is None:
-            message = f"'{body.name}' has no such link as {info!r} names"
+            known = ", ".join(link.name for link in body.links)
+            message = f"'{body.name}' has no link '{info._linkname}'; it has {known}"  # pyright: ignore[reportPrivateUsage] - OpenRAVE's field
             raise ArgumentError(f"AddAttachedSensor: {message}")
         sensors, names = list(body.sensors), [sensor.name for sensor in body.sensors]
         index = names.index(made.name) if made.name in names else len(names)
@@ -73,13 +75,13 @@ class Sensors(BodyPart):
         return self.GetAttachedSensors()[index]
 
     def RemoveAttachedSensor(self, attsensor: AttachedSensor) -> bool:
-        """Take a sensor off; those behind it move up.
+        """Remove a sensor from the robot.
 
         Args:
             attsensor: The attached sensor.
 
         Returns:
-            Whether it was there.
+            Whether the robot had it.
         """
         if attsensor not in self.GetAttachedSensors():
             return False
@@ -90,7 +92,7 @@ class Sensors(BodyPart):
         return True
 
     def device(self, attached: AttachedSensor) -> Sensor | None:
-        """Return the one object that users have for the device of an attached sensor; None for a mere frame."""
+        """Return the sensor of an attached sensor, always the same object; None for a frame without a sensor."""
         name, description = attached.GetName(), attached.description
         if description.type is None:
             return None
@@ -100,7 +102,7 @@ class Sensors(BodyPart):
             return self._devices[name]
 
     def step_sensors(self, timestep: float, stamp: int) -> None:
-        """Let the sensors measure in a step of time [s] that ends at a stamp [microseconds]; others are not made."""
+        """Advance the sensors by a time step [s] that ends at a stamp [microseconds]. Unused sensors are not made."""
         for attached in self.GetAttachedSensors():
             if attached.GetName() in self._devices or attached.description.is_on:
                 sensor = attached.GetSensor()
@@ -108,7 +110,7 @@ class Sensors(BodyPart):
                     sensor.advance(timestep, stamp)
 
     def take_sensors(self, other: "Sensors") -> None:
-        """Let the devices go on like those of another robot of the same description; see ``Sensor.take_state``."""
+        """Copy the state of the sensors of another robot of the same description; see ``Sensor.take_state``."""
         self.forget_sensors()
         for name, device in other._devices.items():
             attached = self.GetAttachedSensor(name)
@@ -117,7 +119,7 @@ class Sensors(BodyPart):
                 sensor.take_state(device)
 
     def forget_sensors(self, name: str | None = None) -> None:
-        """Switch a device off and forget it, with what is drawn of it; None: all."""
+        """Switch off and discard one sensor and its drawings; without a name, all of them."""
         for known in [*self._devices] if name is None else [name]:
             sensor = self._devices.pop(known, None)
             if sensor is not None:

@@ -46,7 +46,7 @@ class Structure(BodyPart):
         """Return the links in the order of the file; the first one is the root.
 
         Args:
-            indices: Which links; None: all.
+            indices: The link indices; by default all.
 
         Example:
             >>> [link.GetName() for link in robot.GetLinks()]
@@ -58,14 +58,14 @@ class Structure(BodyPart):
         return [links[index] for index in checked_indices(indices, len(links), "indices").tolist()]
 
     def _all_links(self) -> tuple[Link, ...]:
-        """Return the links, which are made once: they are numbers of links, whatever the body is built of."""
+        """Return the links. They are made once, since they only hold an index, valid whatever the body is."""
         count = len(self._state.scene.links)
         if len(self._links) != count:
             self._links = tuple(Link(self._body, self._state, index) for index in range(count))
         return self._links
 
     def GetLink(self, name: str) -> Link | None:
-        """Return the link of that name, or None.
+        """Return the link of a name, or None.
 
         Example:
             >>> T_world_link = robot.GetLink("Arm1").GetTransform()
@@ -82,7 +82,7 @@ class Structure(BodyPart):
         """Return the joints that have DOFs, in DOF order.
 
         Args:
-            indices: Which joints; None: all.
+            indices: The joint indices; by default all.
         """
         joints = self._all_joints()[: len(self._state.scene.joints)]
         if indices is None:
@@ -98,11 +98,11 @@ class Structure(BodyPart):
         return self._joints
 
     def set_following(self, index: int, equations: Equations) -> None:
-        """Let a joint follow others, or none; see ``Joint.SetMimicEquations``.
+        """Make a joint a mimic joint, or an ordinary one; see ``Joint.SetMimicEquations``.
 
         Args:
-            index: Its index among the active joints followed by the passive ones.
-            equations: How it follows.
+            index: The index of the joint among the active joints followed by the passive ones.
+            equations: The mimic equations.
         """
         from ravemj.model.following import with_equations  # noqa: PLC0415 - slow to import, and rarely wanted
 
@@ -132,7 +132,7 @@ class Structure(BodyPart):
         """Return the joint that a DOF belongs to.
 
         Args:
-            dofindex: Position in the vectors of DOF values.
+            dofindex: The index in the vectors of DOF values.
 
         Raises:
             IndexError: there is no such DOF.
@@ -143,15 +143,15 @@ class Structure(BodyPart):
         return self._all_joints()[next(index for index, end in enumerate(behind) if dof < end)]
 
     def GetAdjacentLinks(self) -> set[tuple[int, int]]:
-        """Return the pairs of links, by index, that self-collision leaves out."""
+        """Return the pairs of links, by index, that self-collision checks ignore."""
         return adjacent_pairs(self._state.scene)
 
     def GetJointIndex(self, name: str) -> int:
-        """Return the place in ``GetJoints()`` of the joint of that name, or -1."""
+        """Return the index in ``GetJoints()`` of the joint of a name, or -1."""
         return next((joint.GetJointIndex() for joint in self.GetJoints() if joint.GetName() == name), -1)
 
     def IsDOFRevolute(self, dofindex: int) -> bool:
-        """Return whether a DOF turns.
+        """Return whether a DOF is an angle.
 
         Args:
             dofindex: Index of the DOF.
@@ -159,7 +159,7 @@ class Structure(BodyPart):
         return self.GetJointFromDOFIndex(dofindex).IsRevolute()
 
     def IsDOFPrismatic(self, dofindex: int) -> bool:
-        """Return whether a DOF slides.
+        """Return whether a DOF is a length.
 
         Args:
             dofindex: Index of the DOF.
@@ -167,7 +167,7 @@ class Structure(BodyPart):
         return self.GetJointFromDOFIndex(dofindex).IsPrismatic()
 
     def IsDOFInChain(self, linkindex1: int, linkindex2: int, dofindex: int) -> bool:
-        """Return whether a DOF moves two links against each other.
+        """Return whether a DOF moves two links relative to each other.
 
         Args:
             linkindex1: Index of a link.
@@ -178,7 +178,7 @@ class Structure(BodyPart):
         return first != second
 
     def DoesAffect(self, jointindex: int, linkindex: int) -> int:
-        """Return 1 if a joint moves a link, directly or through joints that follow it, else 0.
+        """Return 1 if a joint moves a link, directly or through mimic joints, else 0.
 
         Args:
             jointindex: Index of the joint, not of a DOF.
@@ -192,7 +192,7 @@ class Structure(BodyPart):
         return self.DoesDOFAffectLink(joints[jointindex].GetDOFIndex(), linkindex)
 
     def DoesDOFAffectLink(self, dofindex: int, linkindex: int) -> int:
-        """Return 1 if a DOF moves a link, directly or through joints that follow it, else 0.
+        """Return 1 if a DOF moves a link, directly or through mimic joints, else 0.
 
         Args:
             dofindex: Index of the DOF.
@@ -210,16 +210,16 @@ class Structure(BodyPart):
     @overload
     def GetChain(self, linkindex1: int, linkindex2: int, returnjoints: Literal[False]) -> list[Link]: ...
     def GetChain(self, linkindex1: int, linkindex2: int, returnjoints: bool = True) -> list[Joint] | list[Link]:
-        """Return the shortest way from one link to another.
+        """Return the chain of joints, or of links, from one link to another.
 
         Args:
             linkindex1: Index of the link to start from.
             linkindex2: Index of the link to reach.
-            returnjoints: Whether to return the joints on the way, passive ones too; else the links, both ends
-                included.
+            returnjoints: Whether to return the joints of the chain, including passive ones; otherwise its links,
+                including both ends.
 
         Returns:
-            Joints or links in order; none where no joints lead there, or the links are the same.
+            Joints or links in order. The list is empty if no joints connect the links, or if they are the same.
 
         Raises:
             ArgumentError: there is no such link.
@@ -236,7 +236,7 @@ class Structure(BodyPart):
         return [every[index] for index in joints]
 
     def GetDependencyOrderedJoints(self) -> list[Joint]:
-        """Return the joints that have DOFs, each behind those that move it."""
+        """Return the joints that have DOFs, each one after those that move it."""
         return self.GetJoints(chains.dependency_order(self._state.scene))
 
     def GetClosedLoops(self) -> list[list[tuple[Link, Joint]]]:
@@ -247,7 +247,7 @@ class Structure(BodyPart):
         ]
 
     def GetRigidlyAttachedLinks(self, linkindex: int) -> list[Link]:
-        """Return a link and those that never move against it; the link is the first.
+        """Return a link, then all links that no joint moves relative to it.
 
         Args:
             linkindex: Index of the link.
@@ -256,7 +256,7 @@ class Structure(BodyPart):
         return self.GetLinks(chains.rigidly_attached(self._state.scene, linkindex))
 
     def GetKinematicsGeometryHash(self) -> str:
-        """Return a text that is the same for bodies of the same links, shapes and joints: 32 hexadecimal digits.
+        """Return a hash of the body's links, geometries and joints, 32 hexadecimal digits.
 
         Pose, joint values, limits and names do not matter.
         """
@@ -269,25 +269,25 @@ class Structure(BodyPart):
         return sum(link.GetMass() for link in self.GetLinks())
 
     def IsVisible(self) -> bool:
-        """Return whether any shape of the body is drawn."""
+        """Return whether any geometry of the body is drawn."""
         return any(link.IsVisible() for link in self.GetLinks())
 
     def SetVisible(self, visible: bool) -> bool:
-        """Draw all shapes of the body, or none; they collide all the same.
+        """Draw all geometries of the body, or none. Collision checks do not depend on it.
 
         Args:
             visible: Whether to draw them.
 
         Returns:
-            Whether that changed something.
+            Whether the visibility of any geometry has changed.
         """
         with self._simulation.lock:
             return any([link.SetVisible(visible) for link in self.GetLinks()])
 
     def GetURI(self) -> str:
-        """Return the file that the body was read from, as ``file:/path``; empty where it was made in code.
+        """Return the file that the body was read from, as ``file:/path``; empty for a body made in code.
 
-        What ``InitFromBoxes`` and the like were given as ``uri`` is returned as it is.
+        For ``InitFromBoxes`` and its like, it is their argument ``uri``.
         """
         if self._uri is not None:
             return self._uri
@@ -297,18 +297,18 @@ class Structure(BodyPart):
     GetXMLFilename = GetURI
 
     def GetReferenceURI(self) -> str:
-        """Return the file that the body refers to in OpenRAVE's JSON: empty, since none is read."""
+        """Return the file that the body refers to in OpenRAVE's JSON. It is empty, since ravemj reads no such files."""
         return ""
 
     def GetAssociatedFileEntries(self) -> None:
-        """Return the files of a database that the body came with: None."""
+        """Return None. In OpenRAVE these are the files of a database that the body comes from."""
 
     def GetId(self) -> str:
-        """Return the text of ``SetId``; empty in a new body."""
+        """Return the id that ``SetId`` set; empty in a new body."""
         return self._id
 
     def SetId(self, id: str) -> None:  # OpenRAVE's name of the argument
-        """Give the body an id, for scripts that use ids; the environment still identifies bodies by name.
+        """Set the id of the body, for scripts that use ids. The environment identifies bodies by name.
 
         Args:
             id: The text.
@@ -316,20 +316,20 @@ class Structure(BodyPart):
         self._id = str(id)
 
     def GetRevisionId(self) -> int:
-        """Return the revision of the body in a database: 0."""
+        """Return 0. In OpenRAVE this is the revision of the body in a database."""
         return 0
 
     def GetLastModifiedAtUS(self) -> int:
-        """Return when the body was last changed in a database: 0."""
+        """Return 0. In OpenRAVE this is the time of the last change in a database."""
         return 0
 
     def GetManageData(self) -> None:
-        """Return what a sensor system keeps about the body: None, since there is no sensor system."""
+        """Return None, since ravemj has no sensor systems."""
 
     def serialize(self, options: int) -> str:
-        """Return a text that is the same for bodies with the same links, shapes and joints.
+        """Return a text that determines the links, geometries and joints of the body.
 
-        ``GetKinematicsGeometryHash`` is its hash. It is not the text that OpenRAVE writes.
+        ``GetKinematicsGeometryHash`` is the hash of this text. OpenRAVE writes another text.
 
         Args:
             options: Not used: what counts is always the same.

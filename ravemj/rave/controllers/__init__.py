@@ -29,15 +29,15 @@ _KINDS: dict[str, type[Controller]] = {
 
 
 def RaveCreateController(env: "Environment", name: str) -> Controller | None:
-    """Make a controller; ``robot.SetController`` gives it to a robot.
+    """Make a controller for ``robot.SetController``.
 
     Args:
         env: The environment of the robot.
-        name: ``IdealController``, ``IdealVelocityController`` or ``odevelocity``; upper and lower case are the same.
-            Arguments may follow after a space; none has a meaning here.
+        name: ``IdealController``, ``IdealVelocityController`` or ``odevelocity``; letter case does not matter.
+            Arguments after a space are ignored.
 
     Returns:
-        The controller, or None where the name is not known.
+        The controller; None for an unknown name.
 
     Example:
         >>> controller = RaveCreateController(env, "IdealController")
@@ -51,14 +51,14 @@ def RaveCreateController(env: "Environment", name: str) -> Controller | None:
 
 
 def RaveCreateMultiController(env: "Environment", name: str = "") -> MultiController | None:
-    """Make a controller that shares the DOFs of a robot out to others.
+    """Make a controller that distributes the DOFs of a robot among other controllers.
 
     Args:
         env: The environment of the robot.
-        name: ``GenericMultiController``, or nothing.
+        name: ``GenericMultiController``, or empty.
 
     Returns:
-        The controller, or None where the name is not known.
+        The controller; None for an unknown name.
     """
     checked_environment(env, "RaveCreateMultiController")
     word = name.strip() or "GenericMultiController"

@@ -1,4 +1,4 @@
-"""Base class of controllers."""
+"""The base class of controllers."""
 
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Controller(Interface):
-    """Moves a robot in time; ``robot.GetController()`` or ``RaveCreateController`` makes it."""
+    """A controller: it moves a robot over time. ``robot.GetController()`` returns the controller of a robot."""
 
     _interface_type = InterfaceType.controller
 
@@ -34,16 +34,16 @@ class Controller(Interface):
         self._time = 0.0
 
     def GetXMLId(self) -> str:
-        """Return the name of the kind of controller, as it was spelt when it was made."""
+        """Return the name of the controller, spelled as the caller of ``RaveCreateController`` spelled it."""
         return self._xml_id
 
     def Init(self, robot: "Robot", dofindices: ArrayLike | None = None, controltransform: int = 1) -> bool:
-        """Tell the controller what it moves; ``robot.SetController`` calls this.
+        """Set the robot and the DOFs that the controller moves; ``robot.SetController`` calls this.
 
         Args:
             robot: The robot.
-            dofindices: Which of its DOFs, in which order; None: all.
-            controltransform: Whether it moves the robot's base, too.
+            dofindices: The DOF indices, in the order of the values that the controller takes; None for all.
+            controltransform: Whether the controller also moves the robot's base.
 
         Returns:
             True.
@@ -57,22 +57,22 @@ class Controller(Interface):
     @property
     def _robot(self) -> "Robot":
         if self._attached_robot is None:
-            message = f"the {type(self).__name__} has no robot yet; give it to one with robot.SetController"
+            message = f"the {type(self).__name__} has no robot yet; call robot.SetController(controller) first"
             raise RavemjError(message, ErrorCode.NotInitialized)
         return self._attached_robot
 
     def GetRobot(self) -> "Robot | None":
-        """Return the robot that the controller moves, or None before it is given to one."""
+        """Return the robot that the controller moves, or None."""
         return self._attached_robot
 
     def GetControlDOFIndices(self) -> Ints:
-        """Return which DOFs of the robot the controller moves, in the order of the values that it takes."""
+        """Return the DOF indices that the controller moves, in the order of the values that it takes."""
         if self._dofs is not None:
             return self._dofs.copy()
         return np.arange(0 if self._attached_robot is None else self._attached_robot.GetDOF())
 
     def IsControlTransformation(self) -> int:
-        """Return 1 if the controller moves the robot's base, too, else 0."""
+        """Return 1 if the controller also moves the robot's base, else 0."""
         return int(self._moves_base)
 
     def IsDone(self) -> bool:
@@ -85,30 +85,32 @@ class Controller(Interface):
         return self._is_done
 
     def GetTime(self) -> float:
-        """Return the time along the path that is played [s]."""
+        """Return the time along the current path [s]."""
         return self._time
 
     def Reset(self, options: int = 0) -> None:
-        """Drop the present command; the robot stays where it is, and the controller is done.
+        """Cancel the current command. The robot stays in place, and the controller is done.
 
         Args:
-            options: OpenRAVE has no meaning for them.
+            options: Not used.
         """
         del options
         self._is_done = True
 
     def SetDesired(self, values: ArrayLike, transform: ArrayLike | None = None) -> bool:
-        """Tell the controller where the robot should be.
+        """Command a configuration of the robot.
 
         Args:
-            values: One value for each of ``GetControlDOFIndices()`` [rad or m]; for velocity controllers, velocities.
-            transform: ``T_world_link0``, the pose of the robot's base, if the controller moves it; None: as it is.
+            values: One value for each of ``GetControlDOFIndices()`` [rad or m]; for velocity controllers a velocity
+                [rad/s or m/s].
+            transform: ``T_world_link0``, the pose of the robot's base, if the controller moves it; None leaves the base
+                in place.
 
         Returns:
             True.
 
         Raises:
-            ArgumentError: the number of values is wrong. Nothing has moved then.
+            ArgumentError: the number of values is wrong. The robot does not move.
         """
         checked = checked_vector(values, len(self._robot_dofs()), "SetDesired: values")
         T_world_base = None if transform is None else checked_transform(transform, "SetDesired: transform")
@@ -121,7 +123,7 @@ class Controller(Interface):
         raise self._cannot("take single values")
 
     def SetPath(self, traj: Trajectory | None) -> bool:
-        """Play a trajectory in simulation time, from its first point on; return True.
+        """Play a trajectory in simulation time from its first waypoint on, and return True.
 
         Args:
             traj: The trajectory; it is copied.
@@ -130,25 +132,25 @@ class Controller(Interface):
         raise self._cannot("play paths")
 
     def SimulationStep(self, timestep: float) -> None:
-        """Act for a step of time [s]; ``StepSimulation`` and the thread of simulation time call this.
+        """Advance the controller by a time step; ``StepSimulation`` and the thread of simulation time call this.
 
         Args:
-            timestep: How long [s].
+            timestep: The duration of the step [s].
         """
 
     def GetVelocity(self) -> Floats:
-        """Return the present velocities of the DOFs that the controller moves [rad/s or m/s], shape (n,)."""
+        """Return the current velocities of the DOFs that the controller moves [rad/s or m/s], shape (n,)."""
         return self._robot.GetDOFVelocities()[self._robot_dofs()]
 
     def GetTorque(self) -> Floats:
-        """Return the torques that the controller applies [N m or N], shape (n,): none, for it places the robot."""
+        """Return the torques that the controller applies [N m or N], shape (n,): zeros, since it sets joint values."""
         return np.zeros(len(self._robot_dofs()))
 
     def _robot_dofs(self) -> Ints:
-        """Return the DOFs that the controller moves.
+        """Return the DOF indices that the controller moves.
 
         Raises:
-            RavemjError: it has no robot.
+            RavemjError: the controller has no robot.
         """
         assert self._robot is not None
         return self.GetControlDOFIndices()

@@ -1,4 +1,4 @@
-"""A controller that puts the robot where it should be."""
+"""A controller that sets the commanded joint values exactly."""
 
 import logging
 from typing import ClassVar, NamedTuple
@@ -18,18 +18,18 @@ from ravemj.trajectories.groups import joint_indices
 _LOG = logging.getLogger("ravemj")
 
 _SLACK = 1e-6
-"""How far [rad or m] beyond its speed limit a joint may move in a step; OpenRAVE's number."""
+"""How much farther than its speed limit allows a joint may move in a step [rad or m]; the number is OpenRAVE's."""
 
 
 class _Path(NamedTuple):
-    """A trajectory, and the part of it that moves the robot.
+    """A trajectory, and the values of it that move the robot.
 
     Attributes:
-        trajectory: A copy of the user's.
-        columns: Where the joint values are in its points.
-        dofs: The DOFs that they are for.
-        moves_base: Whether it has a pose of the robot's base.
-        grabs: What it still has to grab and to release.
+        trajectory: A copy of the user's trajectory.
+        columns: The columns of its waypoints that hold joint values.
+        dofs: The DOF indices of these values.
+        moves_base: Whether its waypoints have a pose of the robot's base.
+        grabs: The bodies that it has still to grab and to release.
     """
 
     trajectory: Trajectory
@@ -40,18 +40,18 @@ class _Path(NamedTuple):
 
 
 class IdealController(Controller):
-    """Puts the robot where it should be, at once and exactly: the controller that robots have from the start.
+    """The controller that robots have from the start: it sets the commanded values at once and exactly.
 
-    ``SetDesired`` moves the robot at once, and is done with the next step of time. ``SetPath`` plays a trajectory:
-    the first step shows its first point, and the path is done one step after its last point. A group
+    ``SetDesired`` moves the robot at once, and is done with the next simulation step. ``SetPath`` plays a trajectory:
+    the first step sets its first waypoint, and the path is done one step after its last waypoint. A group
     ``grab ROBOT LINK`` of the trajectory grabs the body whose ``GetEnvironmentBodyIndex()`` is its value with the link
     of this index, and releases it where the value is negative.
 
-    Joints that move faster than their limits allow are a problem, and so are joints outside their limits; after
-    ``SendCommand("SetCheckCollisions 1")`` also collisions of the robot. The first problem of each command is logged
-    as a warning. After ``SendCommand("SetThrowExceptions 1")`` each raises an ``openrave_exception`` (``Assert``), out
-    of ``SetDesired`` or of the step of simulation time, and ends the command. ``SendCommand("Pause 1")`` lets the robot
-    wait until ``Pause 0``; ``SetEnableLogging 1`` logs each path.
+    The controller reports joints that exceed their velocity limits or their limits and, after
+    ``SendCommand("SetCheckCollisions 1")``, collisions of the robot. It logs the first problem of each command as a
+    warning. After ``SendCommand("SetThrowExceptions 1")``, each problem raises an ``openrave_exception`` (``Assert``)
+    in ``SetDesired`` or in the simulation step, and ends the command. ``SendCommand("Pause 1")`` pauses the robot until
+    ``Pause 0``; ``SetEnableLogging 1`` logs each path.
 
     Example:
         >>> controller = robot.GetController()
@@ -71,10 +71,10 @@ class IdealController(Controller):
     _logs = False
 
     def Reset(self, options: int = 0) -> None:
-        """Drop the present command; the robot stays where it is, and the controller is done.
+        """Cancel the current command. The robot stays in place, and the controller is done.
 
         Args:
-            options: OpenRAVE has no meaning for them.
+            options: Not used.
         """
         with self._env.simulation.lock:
             self._path = self._desired = None
@@ -89,18 +89,19 @@ class IdealController(Controller):
         self._is_done = False
 
     def SetPath(self, traj: Trajectory | None) -> bool:
-        """Play a trajectory in simulation time, in place of the command before.
+        """Play a trajectory in simulation time. It replaces the current command.
 
-        The trajectory is copied. Joints that it does not name stay; one for another robot moves nothing.
+        The trajectory is copied. Joints that it does not name stay in place; a trajectory of another robot moves
+        nothing.
 
         Args:
-            traj: A trajectory with times, as ``planningutils.RetimeActiveDOFTrajectory`` makes it.
+            traj: A trajectory with times, for instance from ``planningutils.RetimeActiveDOFTrajectory``.
 
         Returns:
             True.
 
         Raises:
-            openrave_exception: it is None, has no points, or no times. The path before goes on then.
+            openrave_exception: the trajectory is None, or has no waypoints or no times. The current path goes on.
 
         Example:
             >>> robot.GetController().SetPath(trajectory)
@@ -111,10 +112,10 @@ class IdealController(Controller):
         if traj is None:
             raise RavemjError("SetPath: traj is None; Reset() stops a path")
         if not checked_kind(traj, Trajectory, "SetPath: traj").GetNumWaypoints():
-            raise ArgumentError("SetPath: traj has no points")
+            raise ArgumentError("SetPath: traj has no waypoints")
         with self._robot.simulation_state.simulation.lock:
             path = self._prepared(traj)
-            path.trajectory.Sample(0.0)
+            path.trajectory.Sample(0.0)  # raises for a trajectory without times, before anything has changed
             self._path, self._desired = path, None
             self._time, self._is_done = 0.0, False
             self._last_timestep, self._has_problem = 0.0, False
@@ -136,10 +137,10 @@ class IdealController(Controller):
         return _Path(copy, columns, dofs, has_base and self._moves_base, grab_changes(copy.waypoints, name))
 
     def SimulationStep(self, timestep: float) -> None:
-        """Go on by a step of time [s]; ``StepSimulation`` and the thread of simulation time call this.
+        """Advance the controller by a time step; ``StepSimulation`` and the thread of simulation time call this.
 
         Args:
-            timestep: How long [s].
+            timestep: The duration of the step [s].
         """
         if self._is_paused:
             return
@@ -150,7 +151,10 @@ class IdealController(Controller):
             self._desired, self._is_done = None, True
 
     def _play(self, path: _Path, timestep: float) -> None:
-        """Show the point of the path at the present time, which is then moved on."""
+        """Set the values of the path at the controller's time, then advance that time.
+
+        In this order, as in OpenRAVE, the first step sets the first waypoint.
+        """
         duration = path.trajectory.GetDuration()
         is_over = self._time > duration
         self._time = min(self._time, duration)
@@ -185,13 +189,13 @@ class IdealController(Controller):
         self._place(path.dofs, point[path.columns], T_world_base, elapsed)
 
     def _place(self, dofs: Ints, values: Floats, T_world_base: Floats | None, elapsed: float = 0.0) -> None:
-        """Put some of the joints, and the base, where they should be, at rest.
+        """Set joint values and the pose of the base, with all velocities zero.
 
         Args:
-            dofs: DOFs of the joints.
-            values: Their values [rad or m].
-            T_world_base: Pose of the base; None: as it is.
-            elapsed: How long the motion takes [s]; 0: at once, at any speed.
+            dofs: The DOF indices.
+            values: The joint values [rad or m].
+            T_world_base: The pose of the base; None leaves it in place.
+            elapsed: The duration of the motion, for the velocity limits [s]; 0 allows any speed.
         """
         robot = self._robot
         if len(dofs):
@@ -227,7 +231,7 @@ class IdealController(Controller):
             self._complain(f"moves joint '{joint.GetName()}' by {moved[first]:.6g}; its speed limit is {allowed}")
 
     def _complain(self, problem: str) -> None:
-        """Log a problem, or raise if the user asked for that."""
+        """Log a problem, or raise an error after ``SetThrowExceptions 1``."""
         message = f"robot '{self._robot.GetName()}' {problem} (controller time {self._time:g} s)"
         if self._throws_exceptions:
             self.Reset()

@@ -1,4 +1,4 @@
-"""A controller made of others."""
+"""A controller that distributes DOFs among other controllers."""
 
 from typing import NamedTuple
 
@@ -13,11 +13,11 @@ from ravemj.rave.trajectory import Trajectory
 
 
 class _Part(NamedTuple):
-    """One of the controllers.
+    """One of the other controllers.
 
     Attributes:
         controller: The controller.
-        places: Where its DOFs are among those of the whole.
+        places: The indices of its values among those of the ``MultiController``.
     """
 
     controller: Controller
@@ -25,7 +25,9 @@ class _Part(NamedTuple):
 
 
 class MultiController(Controller):
-    """Distributes the DOFs of a robot among several controllers; ``RaveCreateMultiController`` makes it.
+    """A controller that distributes the DOFs of a robot among several controllers.
+
+    ``RaveCreateMultiController`` makes it.
 
     Example:
         >>> multi = RaveCreateMultiController(env)
@@ -38,19 +40,19 @@ class MultiController(Controller):
     _parts: tuple[_Part, ...] = ()
 
     def AttachController(self, controller: Controller, dofindices: ArrayLike, controltransform: int) -> bool:
-        """Give some of the DOFs to a controller.
+        """Assign DOFs to a controller.
 
         Args:
             controller: The controller; it is initialised here.
-            dofindices: Which DOFs of the robot it moves.
-            controltransform: Whether it moves the robot's base, too.
+            dofindices: The DOF indices that it moves.
+            controltransform: Whether it also moves the robot's base.
 
         Returns:
             True.
 
         Raises:
-            ArgumentError: a DOF is not among those of this controller, or another controller has it; or there are two
-                for the base.
+            ArgumentError: this controller does not move such a DOF, another controller has it, or another controller
+                moves the base.
         """
         robot = self._robot
         dofs = checked_indices(dofindices, robot.GetDOF())
@@ -68,7 +70,11 @@ class MultiController(Controller):
         return True
 
     def RemoveController(self, controller: Controller) -> None:
-        """Take a controller's DOFs away from it; nothing moves them then."""
+        """Remove a controller. Its DOFs then have none.
+
+        Args:
+            controller: The controller.
+        """
         self._parts = tuple(part for part in self._parts if part.controller is not controller)
 
     def GetController(self, dof: int) -> Controller | None:
@@ -84,13 +90,13 @@ class MultiController(Controller):
         """Reset all controllers.
 
         Args:
-            options: Handed on to them.
+            options: Passed to each controller.
         """
         for part in self._parts:
             part.controller.Reset(options)
 
     def SetPath(self, traj: Trajectory | None) -> bool:
-        """Let each controller play its part of a trajectory; return True. See ``IdealController.SetPath``.
+        """Have each controller play its part of a trajectory, and return True. See ``IdealController.SetPath``.
 
         Args:
             traj: The trajectory; it is copied.
@@ -102,10 +108,10 @@ class MultiController(Controller):
             part.controller.SetDesired(values[part.places], T_world_base)
 
     def SimulationStep(self, timestep: float) -> None:
-        """Let all controllers act for a step of time [s].
+        """Advance all controllers by a time step.
 
         Args:
-            timestep: How long [s].
+            timestep: The duration of the step [s].
         """
         for part in self._parts:
             part.controller.SimulationStep(timestep)
@@ -115,7 +121,7 @@ class MultiController(Controller):
         return all(part.controller.IsDone() for part in self._parts)
 
     def GetTime(self) -> float:
-        """Return the time along the path that is played [s]."""
+        """Return the time along the current path [s]."""
         return max((part.controller.GetTime() for part in self._parts), default=0.0)
 
     def GetTorque(self) -> Floats:

@@ -8,10 +8,11 @@ from ravemj.rave.enums import CheckLimitsAction
 
 
 class VelocityController(Controller):
-    """Keeps joint velocities until it is told others: OpenRAVE's ``IdealVelocityController`` and ``odevelocity``.
+    """A controller of joint velocities: OpenRAVE's ``IdealVelocityController`` and ``odevelocity``.
 
-    Where the environment has physics, motors at the joints reach the velocities, with no more than the torque limits;
-    else the joints move by them, and stop at their limits. It is done at any time.
+    It keeps the commanded velocities until the next command. With physics, motors at the joints drive them to the
+    velocities, within the torque limits. Without physics, the joints move at the velocities and stop at their limits.
+    ``IsDone()`` is always True.
 
     Example:
         >>> controller = RaveCreateController(env, "odevelocity")
@@ -27,7 +28,7 @@ class VelocityController(Controller):
         """Stop driving the joints.
 
         Args:
-            options: OpenRAVE has no meaning for them.
+            options: Not used.
         """
         with self._env.simulation.lock:
             super().Reset(options)
@@ -49,10 +50,10 @@ class VelocityController(Controller):
                 loads.motor = None if velocities is None else Motor(self._robot_dofs(), velocities)
 
     def SimulationStep(self, timestep: float) -> None:
-        """Move the joints for a step of time [s], unless physics does.
+        """Move the joints by a time step, unless physics moves them.
 
         Args:
-            timestep: How long [s].
+            timestep: The duration of the step [s].
         """
         if self._velocities is None:
             return

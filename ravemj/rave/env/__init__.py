@@ -1,1 +1,1 @@
-"""The API of an environment, in parts by topic; ``Environment`` joins them."""
+"""The methods of environments, one class for each topic. ``Environment`` inherits them."""

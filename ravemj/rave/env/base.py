@@ -1,4 +1,4 @@
-"""Base class of the parts of ``Environment``."""
+"""The base class of the topics of ``Environment``."""
 
 from typing import TYPE_CHECKING
 
@@ -12,22 +12,22 @@ if TYPE_CHECKING:
 
 
 class EnvironmentPart(UserData):
-    """State that the parts of ``Environment`` share."""
+    """The base class of the topics of ``Environment``, with the state that they share."""
 
     def __init__(self) -> None:
         self._simulation = Simulation()
         self._renderer = SimulationRenderer(self._simulation)
         self._viewers: list[Viewer] = []
-        self._found: dict[Diagnostic, None] = {}  # as ordered sets, which loading a file again does not let grow
+        self._found: dict[Diagnostic, None] = {}  # ordered sets: loading a file again adds nothing
         self._files: dict[str, None] = {}
         self._annotations = Annotations()
         self._is_destroyed = False
 
     def _check_alive(self) -> None:
-        """Check that the environment was not destroyed.
+        """Check that the environment has not been destroyed.
 
         Raises:
-            RavemjError: it was.
+            RavemjError: the environment has been destroyed.
         """
         if self._is_destroyed:
             raise RavemjError(f"{self!r} is destroyed; make a new Environment", ErrorCode.InvalidState)

@@ -1,4 +1,4 @@
-"""Collision checking of an environment, and its shapes as triangles."""
+"""Collision checks of an environment, and its geometries as triangles."""
 
 from collections.abc import Callable
 
@@ -19,15 +19,15 @@ from ravemj.rave.report import CollisionReport
 from ravemj.rave.trimesh import TriMesh
 
 CollisionCallback = Callable[[CollisionReport, bool], int]
-"""A function of a report of one collision and of whether physics asks; it returns a ``CollisionAction``."""
+"""A function of a report of one collision, and of whether physics has found it; it returns a ``CollisionAction``."""
 
 
 class CollisionCallbackHandle(Handle):
-    """Keeps a function registered; it is not called any more once this is closed or gone."""
+    """Keeps a function registered until the handle is closed or deleted."""
 
 
 class Collision(Contents):
-    """Collision checking: what touches what, and what rays hit; and the triangles of all shapes."""
+    """Collision checks of bodies, links and rays, and the triangles of geometries."""
 
     TriangulateOptions = TriangulateOptions
     SelectionOptions = TriangulateOptions
@@ -45,16 +45,16 @@ class Collision(Contents):
         self._checker: CollisionChecker | None = None
 
     def GetCollisionChecker(self) -> CollisionChecker:
-        """Return the collision checker, which answers ``CheckCollision``; never None."""
+        """Return the collision checker, which ``CheckCollision`` uses; never None."""
         if self._checker is None:
             self._checker = CollisionChecker(self._environment)
         return self._checker
 
     def SetCollisionChecker(self, collisionchecker: CollisionChecker | None) -> bool:
-        """Choose the collision checker, which answers ``CheckCollision``.
+        """Choose the collision checker, which ``CheckCollision`` uses.
 
         Args:
-            collisionchecker: A checker of this environment; None: one for which nothing collides.
+            collisionchecker: A checker of this environment; with None, nothing collides from now on.
 
         Returns:
             True.
@@ -68,28 +68,30 @@ class Collision(Contents):
         return True
 
     def CheckCollision(self, *arguments: object, report: CollisionReport | None = None, **named: object) -> bool:
-        """Return whether things touch or overlap.
+        """Return whether bodies, links or rays collide.
 
-        The forms are OpenRAVE's; ``report`` may also be the last argument:
+        The arguments have OpenRAVE's forms, and ``report`` may also be the last of them:
 
-        - ``(body)``, ``(link)``: against all other bodies.
-        - ``(body, body2)``, ``(link, body)``, ``(link, link2)``: against each other, two links of one body as well.
-        - ``(body, bodyexcluded, linkexcluded)`` or a link in its place: against all but the bodies and links of two
-          lists.
-        - ``(ray)``, ``(ray, body)``: a ray against all, or against one body. The length of its direction is its range.
+        - ``(body)``, ``(link)``: test a body or a link against all other bodies.
+        - ``(body, body2)``, ``(link, body)``, ``(link, link2)``: test the two against each other; two links may belong
+          to the same body.
+        - ``(body, bodyexcluded, linkexcluded)``, or with a link first: test against all bodies and links except those
+          of two lists.
+        - ``(ray)``, ``(ray, body)``: test a ray against all bodies, or against one. The length of its direction is its
+          range.
 
-        A body is tested together with what it holds, but not against it. Disabled bodies and links never collide.
+        A body is tested together with the bodies that it holds, but not against them. Disabled links never collide.
         ``body.CheckSelfCollision`` tests a body against itself.
 
         Args:
             arguments: One of these forms; by name they are ``body``, ``link``, ``body1``, ``body2``, ``link1``,
                 ``link2``, ``ray``, ``bodyexcluded``, ``linkexcluded``.
-            report: Filled with what is found, as ``GetCollisionChecker().SetCollisionOptions`` asks for it.
+            report: Receives the collisions, in the detail of ``GetCollisionChecker().SetCollisionOptions``.
             named: See ``arguments``.
 
         Raises:
-            openrave_exception: an argument is None (``Assert``) or something else (``InvalidArguments``); one of two
-                bodies is not in the environment.
+            openrave_exception: an argument is None (``Assert``) or has a wrong type (``InvalidArguments``), or one of
+                two bodies is not in the environment.
 
         Example:
             >>> env.CheckCollision(robot)
@@ -107,16 +109,16 @@ class Collision(Contents):
     def CheckCollisionRays(
         self, rays: ArrayLike, body: KinBody | None = None, front_facing_only: bool = False
     ) -> tuple[NDArray[np.bool_], Floats]:
-        """Return where many rays first hit something.
+        """Return the first hits of many rays.
 
         Args:
-            rays: A row for each: start, and direction with the range as its length [m], shape (n, 6).
-            body: The only body that they can hit; None: any.
-            front_facing_only: Whether hits from behind, on the inside of a surface, are left out.
+            rays: One row for each ray: its start, and its direction, whose length is the range [m], shape (n, 6).
+            body: The body that the rays are tested against; by default all bodies.
+            front_facing_only: Whether to ignore hits from behind, on the inside of a surface.
 
         Returns:
-            Which rays hit something, shape (n,); and point and outward normal of each hit, shape (n, 6), zeros for a
-            miss.
+            Whether each ray hits, shape (n,); and the point and the outward normal of each hit in the world, shape
+            (n, 6), zeros for rays without a hit.
 
         Example:
             >>> hits, points = env.CheckCollisionRays([[0, 0, 5, 0, 0, -10], [1, 0, 5, 0, 0, -10]])
@@ -139,35 +141,35 @@ class Collision(Contents):
         """Register a function that decides about each collision.
 
         Args:
-            callback: Takes a report with one pair, and False; returns a ``CollisionAction``. What it ignores does not
-                count.
+            callback: A function of a report with one pair, and of False. It returns a ``CollisionAction``; collisions
+                that it ignores do not count.
 
         Returns:
-            A handle: keep it as long as the function should be called.
+            A handle. The function is called as long as the handle exists.
         """
         self.collision_callbacks.append(callback)
         return CollisionCallbackHandle(self.collision_callbacks.remove, callback)
 
     def HasRegisteredCollisionCallbacks(self) -> bool:
-        """Return whether there are functions of ``RegisterCollisionCallback``."""
+        """Return whether functions of ``RegisterCollisionCallback`` are registered."""
         return bool(self.collision_callbacks)
 
     def Triangulate(self, body: KinBody) -> TriMesh:
-        """Return all shapes of a body as triangles, in the world as the body stands now.
+        """Return all geometries of a body as triangles, in the world and at its current pose.
 
         Args:
-            body: The body; what it holds is left out.
+            body: The body. Grabbed bodies are not included.
         """
         checked_kind(body, KinBody, "Triangulate: body")
         with self._simulation.lock:
             return triangles([body.simulation_state])
 
     def TriangulateScene(self, options: int = TriangulateOptions.Everything, name: str = "") -> TriMesh:
-        """Return the shapes of several bodies as triangles, in the world as they stand now.
+        """Return the geometries of several bodies as triangles, in the world and at their current poses.
 
         Args:
-            options: Which bodies, a ``TriangulateOptions``.
-            name: The name that ``Body`` and ``AllExceptBody`` mean.
+            options: The choice of bodies, a ``TriangulateOptions``.
+            name: The name of the body, for ``Body`` and ``AllExceptBody``.
         """
         with self._simulation.lock:
             return triangles(chosen(self._simulation.bodies, TriangulateOptions(options), name))

@@ -25,7 +25,7 @@ BodyCallback = Callable[[KinBody, int], object]
 
 
 class BodyCallbackHandle(Handle):
-    """Keeps a function registered; it is not called any more once this is closed or gone."""
+    """Keeps a function registered until the handle is closed or deleted."""
 
 
 class Contents(EnvironmentPart):
@@ -35,18 +35,20 @@ class Contents(EnvironmentPart):
 
     def __init__(self) -> None:
         super().__init__()
+        # The environment keeps the API object of each body in it, so that active DOFs and user data stay. The objects
+        # of other bodies go with the script's last reference.
         self._objects: WeakValueDictionary[BodyState, KinBody] = WeakValueDictionary()
-        self._kept_objects: dict[BodyState, KinBody] = {}  # of bodies that are in the environment
+        self._kept_objects: dict[BodyState, KinBody] = {}
         self._body_callbacks: list[BodyCallback] = []
         self._modules: list[Module] = []
-        self._sensors: list[Sensor] = []  # those that no robot carries
+        self._sensors: list[Sensor] = []  # sensors without a robot
 
     @property
     def _environment(self) -> "Environment":
         return cast("Environment", self)
 
     def wrap(self, state: BodyState) -> KinBody:
-        """Return the one object that users have for a body."""
+        """Return the API object of a body, always the same one."""
         with self._simulation.lock:
             found = self._kept_objects.get(state) or self._objects.get(state)
             if found is None:
@@ -57,7 +59,7 @@ class Contents(EnvironmentPart):
             return found
 
     def _remove_all(self) -> None:
-        """Take all bodies and sensors out of the environment."""
+        """Remove all bodies and sensors from the environment."""
         for body in self._kept_objects.values():
             if isinstance(body, Robot):
                 body.forget_sensors()
@@ -72,23 +74,23 @@ class Contents(EnvironmentPart):
             self._tell_of_body(body, 0)
 
     def _tell_of_body(self, body: KinBody, action: int) -> None:
-        """Call the functions of ``RegisterBodyCallback``: 1, a body was added; 0, it was removed."""
+        """Call the functions of ``RegisterBodyCallback``; ``action`` is 1 if the body was added, 0 if removed."""
         for callback in tuple(self._body_callbacks):
             callback(body, action)
 
     @also_named(anonymous="addMode")
     def Add(self, interface: Interface, addMode: Any = None, cmdargs: str = "") -> None:  # noqa: ANN401 - OpenRAVE's
-        """Add a body or robot to the environment, in the pose that it has.
+        """Add a body, a robot, a sensor or a module to the environment.
 
         Args:
-            interface: What to add; it was made for this environment.
-            addMode: What to do if the name is taken: None, False or ``InterfaceAddMode.StrictNameChecking`` raises,
-                True or ``AllowRenaming`` gives it a name of its own. OpenRAVE 0.9 calls the argument ``anonymous``.
-            cmdargs: Arguments of modules, the name of a robot first.
+            interface: The object, made for this environment. A body keeps its pose.
+            addMode: What to do if the name is taken: None, False or ``InterfaceAddMode.StrictNameChecking`` raise,
+                True or ``AllowRenaming`` give it another name. OpenRAVE 0.9 calls the argument ``anonymous``.
+            cmdargs: The arguments of a module, the name of a robot first.
 
         Raises:
-            openrave_exception: another body has the name (``BodyNameConflict``), the name is empty, or this is no
-                body of this environment. Nothing has changed then.
+            openrave_exception: the name is taken (``BodyNameConflict``) or empty, or the object is of another kind or
+                of another environment.
 
         Example:
             >>> box = ravemj.RaveCreateKinBody(env, "")
@@ -107,11 +109,11 @@ class Contents(EnvironmentPart):
             self.AddKinBody(interface, addMode)
 
     def _add_other(self, interface: object) -> None:
-        """Accept a viewer of this environment, which is attached already; refuse anything else that is no body."""
+        """Accept a viewer of this environment, which is attached already; raise an error for anything else."""
         if any(interface is viewer for viewer in self._viewers):
             return
         kind = "None" if interface is None else type(interface).__name__
-        raise ArgumentError(f"Add: takes a body or robot, not {kind}")
+        raise ArgumentError(f"Add: takes a body, a robot, a sensor or a module, not {kind}")
 
     @also_named(anonymous="addMode", robot="body")
     def AddKinBody(self, body: KinBody, addMode: Any = None) -> None:  # noqa: ANN401 - a number or an enumeration
@@ -119,7 +121,7 @@ class Contents(EnvironmentPart):
 
         Args:
             body: The body.
-            addMode: As ``anonymous`` of ``Add``.
+            addMode: As for ``Add``.
         """
         self._check_alive()
         self._check_ours(body, "Add")
@@ -127,7 +129,7 @@ class Contents(EnvironmentPart):
         with self._simulation.lock:
             if self._simulation.holds(state):
                 return
-            if _renames(addMode):  # also where there is no name: pymanoid does so, though OpenRAVE 0.149 refuses it
+            if _renames(addMode):  # also an empty name: pymanoid adds such bodies, though OpenRAVE 0.149 refuses them
                 self._simulation.rename(state, self._simulation.free_name(state.scene.name))
             elif not body.GetName():
                 raise RavemjError("Add: the body has no name; give it one with SetName", ErrorCode.Failed)
@@ -145,25 +147,24 @@ class Contents(EnvironmentPart):
     AddRobot = AddKinBody
 
     def AddViewer(self, sensor: "Viewer", anonymous: bool = False) -> None:  # the argument's name is OpenRAVE's
-        """Accept a viewer of this environment, which is attached from the start; see ``RaveCreateViewer``.
+        """Do nothing for a viewer of this environment, which is attached from the start; see ``RaveCreateViewer``.
 
         Args:
             sensor: The viewer.
-            anonymous: Without meaning.
+            anonymous: Not used.
         """
         del anonymous
         self._add_other(sensor)
 
     def AddSensor(self, sensor: object, anonymous: bool = False) -> None:
-        """Add a sensor that no robot carries, so that it measures as time passes.
+        """Add a sensor without a robot. Simulation steps then advance it.
 
         Args:
-            sensor: What ``RaveCreateSensor`` made for this environment; it has a name.
-            anonymous: Whether it gets another name if this one is taken.
+            sensor: A sensor that ``RaveCreateSensor`` has made for this environment, with a name.
+            anonymous: Whether the sensor gets another name if its name is taken.
 
         Raises:
-            openrave_exception: another sensor has the name (``SensorNameConflict``), the name is empty, or this is no
-                sensor of this environment that no robot carries. Nothing has changed then.
+            openrave_exception: the name is taken (``SensorNameConflict``) or empty, or a robot carries the sensor.
 
         Example:
             >>> laser = ravemj.RaveCreateSensor(env, "BaseLaser2D")
@@ -189,15 +190,15 @@ class Contents(EnvironmentPart):
 
     @also_named(obj="interface", body="interface", prob="interface")
     def Remove(self, interface: object) -> bool:
-        """Take a body or robot out of the environment.
+        """Remove a body, a robot, a module, a sensor or a viewer from the environment.
 
-        The body stays usable outside of an environment, and can be added again. All grabs by it and of it end.
+        A removed body can be used outside of the environment and added again. All grabs by it and of it end.
 
         Args:
-            interface: A body, a robot, a module, a sensor or a viewer.
+            interface: The object.
 
         Returns:
-            False if it was not there.
+            Whether it was in the environment.
 
         Example:
             >>> env.Remove(env.GetKinBody("Pendulum"))
@@ -224,21 +225,21 @@ class Contents(EnvironmentPart):
     RemoveKinBody = RemoveProblem = Remove
 
     def RemoveKinBodyByName(self, name: str) -> bool:
-        """Take a body or robot out of the environment; see ``Remove``.
+        """Remove the body or robot of a name; see ``Remove``.
 
         Args:
-            name: Its name.
+            name: The name.
 
         Returns:
-            False if there is none of that name.
+            Whether there was such a body.
         """
         body = self.GetKinBody(name)
         return body is not None and self.Remove(body)
 
     def _remove_other(self, interface: object) -> bool:
-        """End and remove a module or a viewer; return whether it was there."""
+        """Remove a module, a sensor or a viewer, and return whether it was in the environment."""
         if interface is None:
-            raise ArgumentError("Remove: takes a body or robot, not None", ErrorCode.Failed)
+            raise ArgumentError("Remove: takes a body, a sensor, a module or a viewer, not None", ErrorCode.Failed)
         if isinstance(interface, Module) and interface in self._modules:
             self._modules.remove(interface)
             interface.end()
@@ -261,14 +262,13 @@ class Contents(EnvironmentPart):
             raise ArgumentError(f"{caller}: '{body.GetName()}' was made for {body.GetEnv()!r}, not for {self!r}")
 
     def GetBodies(self, checkname: str | None = None) -> list[KinBody]:
-        """Return all bodies, robots included.
+        """Return all bodies, including robots.
 
         Args:
-            checkname: Return the body of that name only.
+            checkname: A name; the result then has only the body of this name.
 
         Returns:
-            A new list in the order in which they were added; one that was added after another was removed has that
-            one's place.
+            The bodies in the order in which they were added; an added body fills the place of a removed one.
 
         Example:
             >>> robots = [body for body in env.GetBodies() if body.IsRobot()]
@@ -277,14 +277,14 @@ class Contents(EnvironmentPart):
         return bodies if checkname is None else [body for body in bodies if body.GetName() == checkname]
 
     def GetNumBodies(self) -> int:
-        """Return the number of bodies, robots included."""
+        """Return the number of bodies, including robots."""
         return len(self._simulation.bodies)
 
     def GetRobots(self, checkname: str | None = None) -> list[Robot]:
         """Return the robots, in the order of ``GetBodies``.
 
         Args:
-            checkname: Return the robot of that name only.
+            checkname: A name; the result then has only the robot of this name.
 
         Example:
             >>> robot = env.GetRobots()[0]
@@ -292,7 +292,7 @@ class Contents(EnvironmentPart):
         return [body for body in self.GetBodies(checkname) if isinstance(body, Robot)]
 
     def GetKinBody(self, name: str) -> KinBody | None:
-        """Return the body or robot of that name, or None.
+        """Return the body or robot of a name, or None.
 
         Example:
             >>> body = env.GetKinBody("Pendulum")
@@ -303,7 +303,7 @@ class Contents(EnvironmentPart):
         return None if state is None else self.wrap(state)
 
     def GetRobot(self, name: str) -> Robot | None:
-        """Return the robot of that name, or None.
+        """Return the robot of a name, or None.
 
         Example:
             >>> robot = env.GetRobot("Pendulum")
@@ -312,19 +312,19 @@ class Contents(EnvironmentPart):
         return body if isinstance(body, Robot) else None
 
     def GetSensors(self) -> list[Sensor]:
-        """Return the sensors on all robots, then those that no robot carries; see ``robot.GetAttachedSensors``."""
+        """Return the sensors of all robots, then the sensors without a robot; see ``robot.GetAttachedSensors``."""
         found = (attached.GetSensor() for robot in self.GetRobots() for attached in robot.GetAttachedSensors())
         return [*(sensor for sensor in found if sensor is not None), *self._sensors]
 
     def GetSensor(self, name: str) -> Sensor | None:
-        """Return the sensor of that name, ``robot:sensor`` where a robot carries it, or None."""
+        """Return the sensor of a name, or None. The name of a robot's sensor is ``robot:sensor``."""
         return next((sensor for sensor in self.GetSensors() if sensor.GetName() == name), None)
 
     def GetBodyFromEnvironmentBodyIndex(self, bodyIndex: int) -> KinBody | None:
-        """Return the body with that number, as ``body.GetEnvironmentBodyIndex()`` gives it, or None.
+        """Return the body with an index of ``body.GetEnvironmentBodyIndex()``, or None.
 
         Args:
-            bodyIndex: The number, from 1.
+            bodyIndex: The index, from 1.
         """
         state = self._simulation.body_at(bodyIndex)
         return None if state is None else self.wrap(state)
@@ -332,29 +332,29 @@ class Contents(EnvironmentPart):
     GetBodyFromEnvironmentId = GetBodyFromEnvironmentBodyIndex
 
     def GetBodiesFromEnvironmentBodyIndices(self, bodyIndex: Iterable[int]) -> list[KinBody | None]:
-        """Return the bodies with several numbers, None where there is none.
+        """Return the bodies with several indices, with None for an index that no body has.
 
         Args:
-            bodyIndex: The numbers, as of ``GetBodyFromEnvironmentBodyIndex``.
+            bodyIndex: The indices, as in ``GetBodyFromEnvironmentBodyIndex``.
         """
         return [self.GetBodyFromEnvironmentBodyIndex(int(index)) for index in bodyIndex]
 
     def GetMaxEnvironmentBodyIndex(self) -> int:
-        """Return the largest number of a body; 0 without bodies."""
+        """Return the largest index of a body; 0 without bodies."""
         return max((body.index for body in self._simulation.bodies), default=0)
 
     def AddModule(self, module: Module | None, args: str = "") -> int:
         """Add a module and start it.
 
         Args:
-            module: What ``RaveCreateModule`` returned.
-            args: What the module starts with, the name of a robot first.
+            module: A module from ``RaveCreateModule``.
+            args: The arguments that the module starts with, the name of a robot first.
 
         Returns:
             0.
 
         Raises:
-            openrave_exception: it is no module of this environment.
+            openrave_exception: the argument is not a module, or was made for another environment.
 
         Example:
             >>> module = RaveCreateModule(env, "BaseManipulation")
@@ -362,7 +362,7 @@ class Contents(EnvironmentPart):
             0
         """
         if module is None:
-            raise ArgumentError("AddModule: module is None, as RaveCreateModule returns for names that no plugin has")
+            raise ArgumentError("AddModule: module is None; RaveCreateModule returns that for an unknown name")
         checked_kind(module, Module, "AddModule: module", "what RaveCreateModule returned")
         self._check_alive()
         if module.GetEnv() is not self:
@@ -375,7 +375,7 @@ class Contents(EnvironmentPart):
     LoadProblem = AddModule
 
     def GetModules(self) -> list[Module]:
-        """Return the modules that were added."""
+        """Return the added modules."""
         return list(self._modules)
 
     GetLoadedProblems = GetModules
@@ -384,17 +384,17 @@ class Contents(EnvironmentPart):
         """Register a function that is called when bodies are added and removed.
 
         Args:
-            callback: Takes the body, and 1 when it was added or 0 when it was removed.
+            callback: A function of the body, and of 1 if it was added or 0 if it was removed.
 
         Returns:
-            A handle: keep it as long as the function should be called.
+            A handle. The function is called as long as the handle exists.
         """
         self._body_callbacks.append(callback)
         return BodyCallbackHandle(self._body_callbacks.remove, callback)
 
 
 def _renames(mode: object) -> bool:
-    """Return whether a taken name is changed: True, or a mode without strict checking of names."""
+    """Return whether ``addMode`` allows another name: True, or a mode without strict checking of names."""
     if mode is None or isinstance(mode, bool):
         return bool(mode)
     return not InterfaceAddMode(int(cast("int", mode))) & InterfaceAddMode.StrictNameChecking

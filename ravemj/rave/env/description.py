@@ -1,4 +1,4 @@
-"""Environments as infos and as OpenRAVE's JSON; their names, notes and units."""
+"""Environments as infos and as OpenRAVE's JSON; their names, descriptions and units."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -36,7 +36,7 @@ Json = Mapping[str, Any]
 
 
 class Description(Simulating):
-    """Name, description, keywords and numbers of an environment, its units, and all of it as an info or as JSON."""
+    """Name, description, keywords, parameters and units of an environment, and the environment as an info or JSON."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -47,19 +47,19 @@ class Description(Simulating):
         self._units = UnitInfo()
 
     def GetName(self) -> str:
-        """Return the name that ``Environment(name)`` gave; else empty."""
+        """Return the name given in ``Environment(name)``; empty without one."""
         return self._name
 
     def GetNameId(self) -> str:
-        """Return name and number, which no other environment has."""
+        """Return the name and the id of the environment, which no other environment has."""
         return f"{self._name}({self._environment.GetId()})"
 
     def GetDescription(self) -> str:
-        """Return the text of ``SetDescription``."""
+        """Return the description that ``SetDescription`` set."""
         return self._description
 
     def SetDescription(self, sceneDescription: str) -> None:
-        """Attach a text.
+        """Set a description for people.
 
         Args:
             sceneDescription: The text.
@@ -67,32 +67,32 @@ class Description(Simulating):
         self._description = str(sceneDescription)
 
     def GetKeywords(self) -> list[str]:
-        """Return the words of ``SetKeywords``."""
+        """Return the keywords that ``SetKeywords`` set."""
         return list(self._keywords)
 
     def SetKeywords(self, sceneKeywords: Iterable[str]) -> None:
-        """Attach words.
+        """Set keywords.
 
         Args:
-            sceneKeywords: The words.
+            sceneKeywords: The keywords.
         """
         self._keywords = [str(word) for word in sceneKeywords]
 
     def GetRevision(self) -> int:
-        """Return the revision of the environment in a database: 0."""
+        """Return 0. In OpenRAVE this is the revision of the environment in a database."""
         return 0
 
     def GetUInt64Parameter(self, parameterName: str, defaultValue: int) -> int:
-        """Return a number of ``SetUInt64Parameter``.
+        """Return an integer that ``SetUInt64Parameter`` set.
 
         Args:
-            parameterName: Its name.
-            defaultValue: What stands for one that was not set.
+            parameterName: The name.
+            defaultValue: The result if there is no integer of that name.
         """
         return self._numbers.get(parameterName, int(defaultValue))
 
     def SetUInt64Parameter(self, parameterName: str, value: int) -> None:
-        """Attach a whole number under a name.
+        """Set an integer under a name.
 
         Args:
             parameterName: The name.
@@ -101,30 +101,30 @@ class Description(Simulating):
         self._numbers[str(parameterName)] = int(value)
 
     def RemoveUInt64Parameter(self, parameterName: str) -> bool:
-        """Forget a number; return whether it was there.
+        """Remove the integer of a name, and return whether there was one.
 
         Args:
-            parameterName: Its name.
+            parameterName: The name.
         """
         return self._numbers.pop(parameterName, None) is not None
 
     def GetHomeDirectory(self) -> str:
-        """Return the folder for what is kept between runs, that of ``RaveGetHomeDirectory``."""
+        """Return the folder for files that are kept between runs, that of ``RaveGetHomeDirectory``."""
         return RaveGetHomeDirectory()
 
     def GetUnit(self) -> tuple[str, float]:
-        """Return the unit of length and how many metres it is."""
+        """Return the unit of length, and its length in metres."""
         return GetLengthUnitString(self._units.lengthUnit), 1 / self._metre
 
     def SetUnit(self, unitname: str, unitmult: float) -> None:
-        """Say in which unit lengths are; see ``SetUnitInfo``.
+        """Set the unit of length; see ``SetUnitInfo``.
 
         Args:
-            unitname: Name of the unit of length.
-            unitmult: How many metres it is.
+            unitname: The name of the unit.
+            unitmult: The length of the unit [m].
 
         Raises:
-            openrave_exception: there is no such unit, or it is not that long.
+            openrave_exception: there is no such unit, or it has another length.
         """
         unit = GetLengthUnitFromString(unitname, LengthUnit.m)
         metres = GetLengthUnitConversionScale(unit, LengthUnit.m)
@@ -133,20 +133,20 @@ class Description(Simulating):
         self._units.lengthUnit = unit
 
     def GetUnitInfo(self) -> UnitInfo:
-        """Return the units, a copy."""
+        """Return a copy of the units."""
         return replace(self._units)
 
     def SetUnitInfo(self, unitInfo: UnitInfo) -> None:
-        """Say in which unit lengths are.
+        """Set the unit of length.
 
-        As in OpenRAVE, all that is there keeps its numbers. Lengths in COLLADA files and in JSON are converted when
-        they are loaded from then on; gravity and the numbers of XML files stay as they are.
+        As in OpenRAVE, the numbers of existing bodies stay as they are. From now on, loading converts lengths in
+        COLLADA and JSON files to this unit; it does not convert gravity and the numbers of XML files.
 
         Args:
             unitInfo: The units.
 
         Raises:
-            UnsupportedError: another unit than kilograms, radians and seconds.
+            UnsupportedError: the units of mass, angle and time are not kilograms, radians and seconds.
         """
         checked_kind(unitInfo, UnitInfo, "SetUnitInfo: unitInfo")
         if unitInfo.lengthUnit not in set(LengthUnit):
@@ -158,11 +158,11 @@ class Description(Simulating):
 
     @property
     def _metre(self) -> float:
-        """Length of a metre in the environment's unit."""
+        """The length of a metre in the environment's unit."""
         return GetLengthUnitStandardValue(self._units.lengthUnit)
 
     def ExtractInfo(self) -> EnvironmentBaseInfo:
-        """Return the description of the environment as it stands, a copy."""
+        """Return the description of the environment in its current state."""
         with self._simulation.lock:
             return EnvironmentBaseInfo(
                 _vBodyInfos=[body.ExtractInfo() for body in self.GetBodies()],
@@ -176,17 +176,17 @@ class Description(Simulating):
     def UpdateFromInfo(
         self, info: EnvironmentBaseInfo, updateMode: int = UpdateFromInfoMode.Exact
     ) -> tuple[list[KinBody], list[KinBody], list[KinBody]]:
-        """Change the environment into what an info describes: add, change and remove bodies.
+        """Make the environment match a description: add, change and remove bodies.
 
         Args:
             info: The description.
-            updateMode: Whether bodies that it does not name go, an ``UpdateFromInfoMode``.
+            updateMode: Whether to remove bodies that the description does not name, an ``UpdateFromInfoMode``.
 
         Returns:
-            The bodies that were added, those that were changed, and those that were removed.
+            The added, the changed and the removed bodies.
 
         Raises:
-            openrave_exception: a body is described by nothing that can be.
+            openrave_exception: a description does not make a body.
         """
         checked_kind(info, EnvironmentBaseInfo, "UpdateFromInfo: info")
         added: list[KinBody] = []
@@ -241,11 +241,11 @@ class Description(Simulating):
         atts: Mapping[str, str] | None = None,
         uri: str = "",
     ) -> bool:
-        """Take over an environment in OpenRAVE's JSON; see ``UpdateFromInfo``.
+        """Make the environment match a description in OpenRAVE's JSON; see ``UpdateFromInfo``.
 
         Args:
-            envInfo: The environment, as a dict.
-            updateMode: As there.
+            envInfo: The description, as a dict.
+            updateMode: As for ``UpdateFromInfo``.
             atts: Not used.
             uri: Not used.
 
@@ -263,7 +263,7 @@ class Description(Simulating):
         return True
 
     def _read_json(self, info: EnvironmentBaseInfo, content: Json) -> None:
-        """Fill an info with what JSON has, in the environment's unit of length."""
+        """Set the fields of an info from JSON, in the environment's unit of length."""
         info._unitInfo = self.GetUnitInfo()
         info.DeserializeJSON({"unitInfo": content.get("unitInfo", {})})
         scale = self._metre / GetLengthUnitStandardValue(info._unitInfo.lengthUnit)
@@ -271,12 +271,12 @@ class Description(Simulating):
         info._unitInfo = self.GetUnitInfo()
 
     def ReadKinBodyJSON(self, envInfo: Json, atts: Mapping[str, str] | None = None, uri: str = "") -> KinBody | None:
-        """Return the first body of an environment in OpenRAVE's JSON, without adding it; None where it has none.
+        """Return the first body of a description in OpenRAVE's JSON, without adding it; None without bodies.
 
         Args:
-            envInfo: The environment, as a dict.
+            envInfo: The description, as a dict.
             atts: Not used.
-            uri: What the body's ``GetURI`` returns.
+            uri: The result of the body's ``GetURI``.
         """
         del atts
         info = EnvironmentBaseInfo()
@@ -290,12 +290,12 @@ class Description(Simulating):
         return body
 
     def ReadRobotJSON(self, envInfo: Json, atts: Mapping[str, str] | None = None, uri: str = "") -> Robot | None:
-        """Return the first robot of an environment in OpenRAVE's JSON, without adding it; None where it has none.
+        """Return the first robot of a description in OpenRAVE's JSON, without adding it; None without robots.
 
         Args:
-            envInfo: The environment, as a dict.
+            envInfo: The description, as a dict.
             atts: Not used.
-            uri: What the robot's ``GetURI`` returns.
+            uri: The result of the robot's ``GetURI``.
         """
         bodies = cast("Sequence[Json]", envInfo.get("bodies", ()))
         robots = [one for one in bodies if one.get("isRobot")]

@@ -1,4 +1,4 @@
-"""Draw calls."""
+"""Drawings of scripts: points, lines, arrows, boxes, planes, triangles and labels."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,17 +13,17 @@ from ravemj.model.drawing import Primitives
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.graph_handle import GraphHandle
 
-_DEFAULT_COLOR = (1.0, 0.5, 0.5, 1.0)
+_DEFAULT_COLOR = (1.0, 0.5, 0.5, 1.0)  # OpenRAVE's pink
 _LABEL_POINT = 4.0
 """Size of the point of a label [pixels]."""
 
 
 class Drawing(EnvironmentPart):
-    """Drawings beside the bodies: points, lines, arrows, boxes, planes and triangles.
+    """Drawings beside the bodies: points, lines, arrows, boxes, planes, triangles and labels.
 
-    Colours are red, green and blue from 0 to 1, and alpha if there is a fourth number; where nothing is given they are
-    OpenRAVE's pink (1, 0.5, 0.5). Without a viewer all calls check their arguments and return None, as in OpenRAVE;
-    ``env.SetViewer('offscreen')`` is enough for drawings to be in ``env.render()`` and in videos.
+    Colours are red, green and blue from 0 to 1, with alpha as an optional fourth number; the default is OpenRAVE's pink
+    (1, 0.5, 0.5). Without a viewer, all methods check their arguments and return None, as in OpenRAVE. To have drawings
+    in ``env.render()`` and in videos, ``env.SetViewer('offscreen')`` is enough.
     """
 
     def _draw(self, primitives: Primitives, text: str = "") -> GraphHandle | None:
@@ -36,7 +36,7 @@ class Drawing(EnvironmentPart):
 
         Args:
             points: One point (3,), or (N, 3), or a flat list of 3 N numbers, in the world [m].
-            pointsize: Width on the screen [pixels]; with ``drawstyle=1`` the radius [m].
+            pointsize: The width on the screen [pixels]; with ``drawstyle=1`` the radius [m].
             colors: One colour for all, or one for each point: (3,), (4,), (N, 3) or (N, 4).
             drawstyle: 0 for points of constant size on the screen, 1 for spheres.
 
@@ -60,13 +60,13 @@ class Drawing(EnvironmentPart):
     def drawlinestrip(
         self, points: ArrayLike, linewidth: float, colors: ArrayLike | None = None, drawstyle: int = 0
     ) -> GraphHandle | None:
-        """Draw a line from point to point.
+        """Draw a line from each point to the next.
 
         Args:
             points: (N, 3) or a flat list, in the world [m].
-            linewidth: Width on the screen [pixels].
-            colors: One colour, or one for each point, which run into each other.
-            drawstyle: Without meaning, as in OpenRAVE.
+            linewidth: The width on the screen [pixels].
+            colors: One colour, or one for each point, with a gradient between them.
+            drawstyle: Not used, as in OpenRAVE.
 
         Returns:
             The handle that keeps the drawing; None without a viewer.
@@ -82,13 +82,13 @@ class Drawing(EnvironmentPart):
     def drawlinelist(
         self, points: ArrayLike, linewidth: float, colors: ArrayLike | None = None, drawstyle: int = 0
     ) -> GraphHandle | None:
-        """Draw a line between the first two points, one between the next two, and so on.
+        """Draw one line between the first two points, another between the next two, and so on.
 
         Args:
-            points: (N, 3) or a flat list, in the world [m]; a last point that is alone draws nothing.
-            linewidth: Width on the screen [pixels].
-            colors: One colour, or one for each point, which run into each other.
-            drawstyle: Without meaning, as in OpenRAVE.
+            points: (N, 3) or a flat list, in the world [m]. If N is odd, the last point is ignored.
+            linewidth: The width on the screen [pixels].
+            colors: One colour, or one for each point, with a gradient between them.
+            drawstyle: Not used, as in OpenRAVE.
 
         Returns:
             The handle that keeps the drawing; None without a viewer.
@@ -107,9 +107,9 @@ class Drawing(EnvironmentPart):
         """Draw an arrow.
 
         Args:
-            p1: Where it starts, (3,) [m].
-            p2: Where its tip is, (3,) [m].
-            linewidth: Radius of the shaft [m].
+            p1: The start, in the world [m], (3,).
+            p2: The tip, in the world [m], (3,).
+            linewidth: The radius of the shaft [m].
             color: One colour.
 
         Returns:
@@ -129,8 +129,8 @@ class Drawing(EnvironmentPart):
         """Draw a box along the axes of the world.
 
         Args:
-            pos: Centre, (3,) [m].
-            extents: Half of its sides, (3,) [m].
+            pos: The centre, in the world [m], (3,).
+            extents: The half extents [m], (3,).
             color: One colour.
 
         Returns:
@@ -143,11 +143,11 @@ class Drawing(EnvironmentPart):
         return self._draw(drawing.box(center, half, _checked_colors(color, 1)[0]))
 
     def drawboxarray(self, pos: ArrayLike, extents: ArrayLike, color: ArrayLike | None = None) -> GraphHandle | None:
-        """Draw boxes of one size along the axes of the world.
+        """Draw boxes of equal size along the axes of the world.
 
         Args:
-            pos: Their centres, (N, 3) [m].
-            extents: Half of their sides, (3,) [m].
+            pos: The centres, in the world [m], (N, 3).
+            extents: The half extents of each box [m], (3,).
             color: One colour.
 
         Returns:
@@ -159,7 +159,7 @@ class Drawing(EnvironmentPart):
     def drawaabb(
         self, aabb: AABB, transform: ArrayLike, color: ArrayLike | None = None, transparency: float = 0.0
     ) -> GraphHandle | None:
-        """Draw a box in a frame.
+        """Draw a box that is axis-aligned in a given frame.
 
         Args:
             aabb: The box, along the axes of the frame.
@@ -194,12 +194,14 @@ class Drawing(EnvironmentPart):
     def drawlabel(
         self, label: str, worldPosition: ArrayLike, color: ArrayLike | None = None, height: float = 0.05
     ) -> GraphHandle | None:
-        """Write a text beside a point. Windows and pages show it, in letters of their size; pictures show the point.
+        """Draw a point with a text beside it.
+
+        Windows and pages show the text, in a font of fixed size; pictures and videos show the point only.
 
         Args:
             label: The text.
             worldPosition: The point [m], (3,).
-            color: One colour, of the point.
+            color: One colour, for the point.
             height: Not used.
 
         Returns:
@@ -214,13 +216,14 @@ class Drawing(EnvironmentPart):
         return self._draw(drawing.points(position, _LABEL_POINT, _checked_colors(color, 1)), text)
 
     def drawplane(self, transform: ArrayLike, extents: ArrayLike, texture: ArrayLike) -> GraphHandle | None:
-        """Draw an image on a rectangle, in at most 64 x 64 cells of one colour.
+        """Draw an image on a rectangle, reduced to at most 64 x 64 cells.
 
         Args:
-            transform: Frame of the rectangle, which lies in its plane of x and y around its origin: 4x4, 3x4 or a pose.
-            extents: Half of its sides along x and y, (2,) [m]; a third number means nothing.
-            texture: Image (H, W), (H, W, 1), (H, W, 3) or (H, W, 4): integers up to 255, or floats from 0 to 1. Columns
-                run along x and rows along y.
+            transform: ``T_world_rectangle``: 4x4, 3x4 or a pose. The rectangle is centred at the origin of this frame,
+                in its xy plane.
+            extents: The half extents along x and y [m], (2,); a third number is ignored.
+            texture: An image (H, W), (H, W, 1), (H, W, 3) or (H, W, 4): integers up to 255, or floats from 0 to 1.
+                Columns run along x and rows along y.
 
         Returns:
             The handle that keeps the drawing; None without a viewer.
@@ -236,19 +239,19 @@ class Drawing(EnvironmentPart):
     def drawtrimesh(
         self, points: ArrayLike, indices: ArrayLike | None = None, colors: ArrayLike | None = None
     ) -> GraphHandle | None:
-        """Draw triangles; both of their sides show.
+        """Draw triangles, which are visible from both sides.
 
         Args:
-            points: Corners, (N, 3) or a flat list, in the world [m].
-            indices: Three corners for each triangle, (M, 3) or a flat list of integers; None: corners 0, 1, 2, then
-                3, 4, 5, and so on.
-            colors: One colour, or one for each corner: (3,), (4,), (N, 3) or (N, 4).
+            points: The vertices, (N, 3) or a flat list, in the world [m].
+            indices: Three vertices for each triangle, (M, 3) or a flat list of integers. By default vertices 0, 1, 2
+                make a triangle, then 3, 4, 5, and so on.
+            colors: One colour, or one for each vertex: (3,), (4,), (N, 3) or (N, 4).
 
         Returns:
             The handle that keeps the drawing; None without a viewer.
 
         Raises:
-            ArgumentError: there are no points, a shape or a number is wrong, or an index has no point.
+            ArgumentError: there are no points, a shape or a number is wrong, or an index is out of range.
         """
         corners = _checked_points(points)
         rgba = _checked_colors(colors, len(corners))

@@ -1,4 +1,4 @@
-"""Files in OpenRAVE's JSON: an environment as infos write and read it."""
+"""Saves and loads environments in OpenRAVE's JSON format, which infos write and read."""
 
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -25,7 +25,7 @@ _Given = Callable[[KinBodyInfo], None]
 
 
 def is_json(path: str) -> bool:
-    """Tell whether a file holds JSON, by the end of its name."""
+    """Return whether a file is JSON, by the suffix of its name."""
     return path.lower().endswith(SUFFIX)
 
 
@@ -33,15 +33,15 @@ class JsonFiles(Description):
     """Saves and loads environments in OpenRAVE's JSON."""
 
     def _save_json(self, path: str, names: Collection[str], skipped: Sequence[str]) -> None:
-        """Write bodies, with what else there is to say about the environment.
+        """Write bodies and the properties of the environment to a file.
 
         Args:
             path: The file.
-            names: Names of the bodies.
-            skipped: What is left out, words of ``skipwrite``.
+            names: The names of the bodies.
+            skipped: The parts to leave out, words of ``skipwrite``.
 
         Raises:
-            OutputError: The file cannot be written, or a number is not finite; nothing is changed then.
+            OutputError: The file cannot be written, or a number is not finite. An existing file stays as it is.
         """
         info = self.ExtractInfo()
         info._vBodyInfos = [body for body in info._vBodyInfos if body._name in names]
@@ -65,10 +65,10 @@ class JsonFiles(Description):
             file.write_text(text + "\n", encoding="utf-8", newline="\n")
 
     def _load_json(self, path: str) -> None:
-        """Take over the environment of a file; see ``LoadJSON``.
+        """Load the environment of a file; see ``LoadJSON``.
 
         Raises:
-            SourceError: The file is missing or broken; what was read before is there.
+            SourceError: The file is missing or broken. Bodies before the error are in the environment.
         """
         self._check_alive()
         content = self._content(path)
@@ -76,12 +76,12 @@ class JsonFiles(Description):
             self.LoadJSON(content)
 
     def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
-        """Return the first body of a file, which is not added.
+        """Return the first body of a file, without adding it.
 
         Args:
             path: The file.
-            into: A body to make anew, or None.
-            is_robot: Whether it becomes a robot, whatever the file calls it.
+            into: An existing body to replace, or None for a new one.
+            is_robot: Whether to make a robot, whatever the file says.
 
         Raises:
             SourceError: The file is missing or broken, or has no body.
@@ -100,7 +100,7 @@ class JsonFiles(Description):
         return body
 
     def _content(self, path: str) -> dict[str, Any]:
-        """Return what a file holds, and note that it was read.
+        """Return the content of a file, and note that it was read.
 
         Raises:
             SourceError: The file is missing or broken.
@@ -117,7 +117,7 @@ class JsonFiles(Description):
 
 @contextmanager
 def _placed_errors(path: str) -> Generator[None]:
-    """Let errors about values name the file that they stand in."""
+    """Turn errors about values into errors that name the file."""
     try:
         yield
     except SourceError:
@@ -126,15 +126,15 @@ def _placed_errors(path: str) -> Generator[None]:
         raise SourceError(str(error), Source(path)) from error
     except (ArithmeticError, RecursionError) as error:
         raise SourceError("a number in the file is too large to compute with", Source(path)) from error
-    except (TypeError, ValueError, LookupError) as error:  # values of wrong kinds, in any of a hundred places
+    except (TypeError, ValueError, LookupError) as error:  # a hundred places convert values; any can meet a wrong type
         raise SourceError(f"a value in the file is of a wrong kind: {error}", Source(path)) from error
 
 
 def _parsed(path: str) -> dict[str, Any]:
-    """Return the object that a file holds.
+    """Return the JSON object in a file.
 
     Raises:
-        SourceError: There is none.
+        SourceError: The file cannot be read, or does not contain an object with a list of bodies.
     """
     try:
         with open(path, encoding="utf-8") as file:
@@ -147,25 +147,25 @@ def _parsed(path: str) -> dict[str, Any]:
         raise SourceError(f"cannot be read: {error}", Source(path)) from error
     bodies = cast("dict[str, Any]", content).get("bodies") if isinstance(content, dict) else None
     if not isinstance(bodies, list):
-        message = "OpenRAVE's JSON is an object with a list of bodies, and here is none"
+        message = 'the file has no list of bodies ("bodies"), which OpenRAVE\'s JSON has'
         raise SourceError(message, Source(path))
     return cast("dict[str, Any]", content)
 
 
 def _warn_of_losses(diagnostics: Diagnostics, path: str, bodies: Iterable[scene.KinBody]) -> None:
-    """Warn of what OpenRAVE's JSON cannot say of bodies."""
+    """Warn about properties of bodies that OpenRAVE's JSON cannot store."""
     for body in bodies:
         if not body.joined_links_adjacent:
-            message = f"that links of '{body.name}' can collide at their joints is left out; JSON cannot say it"
+            message = f"JSON cannot store that joined links of '{body.name}' can collide; they are adjacent in the file"
             diagnostics.warn("not-written", message, Source(path))
         drawn = [part for link in body.links for part in link.geometries if part.display is not None]
         if drawn:
-            message = f"meshes that '{body.name}' draws in place of its shapes are left out; JSON cannot say them"
+            message = f"JSON cannot store the meshes that '{body.name}' draws in place of its shapes; they are left out"
             diagnostics.warn("not-written", message, Source(path))
 
 
 def _refuse(word: str) -> None:
-    raise ValueError(f"{word} is no number in JSON")
+    raise ValueError(f"{word} is not a number in JSON")
 
 
 def _skip_geometry(body: KinBodyInfo) -> None:

@@ -1,4 +1,4 @@
-"""Loading of models, from files and from text."""
+"""Loads models from files and from text."""
 
 import logging
 import os
@@ -42,7 +42,7 @@ _LOG = logging.getLogger("ravemj")
 
 
 class Loading(JsonFiles):
-    """Loads models."""
+    """The methods that load models."""
 
     _internal = ("add_file",)
 
@@ -50,19 +50,20 @@ class Loading(JsonFiles):
         """Add the content of a model file to the environment.
 
         Args:
-            filename: An OpenRAVE XML file with an environment, a robot or a kinbody, a COLLADA file (``.dae``,
-                ``.zae``), OpenRAVE's JSON (``.json``, see ``LoadJSON``), or a mesh file. It is looked for in the
-                working folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
-            atts: Attributes as of a ``<Robot>``: ``name`` in place of the body's, ``prefix`` before the names of its
-                parts, ``skipgeometry`` ("1": without shapes), ``scalegeometry`` ("2" or "2 3 4"; lengths times that,
-                but sizes of boxes, spheres and cylinders of XML as they are). They act on a robot, a kinbody, a
-                COLLADA file or a mesh, and not on what stands in an ``<Environment>``. Ignored attributes are warnings.
+            filename: An OpenRAVE XML file with an environment, a robot or a kinbody; a COLLADA file (``.dae``,
+                ``.zae``); OpenRAVE's JSON (``.json``, see ``LoadJSON``); or a mesh file. Relative paths are searched in
+                the working folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
+            atts: Attributes as those of a ``<Robot>``: ``name`` replaces the name of the body, ``prefix`` is put before
+                the names of its parts, ``skipgeometry`` "1" leaves out its shapes, ``scalegeometry`` ("2" or "2 3 4")
+                multiplies its lengths, except the sizes of boxes, spheres and cylinders of XML. Attributes apply to
+                files of one robot, kinbody or mesh, and to COLLADA files, but not to an ``<Environment>``. Attributes
+                that have no effect are reported as warnings.
 
         Returns:
-            False where OpenRAVE's ``Load`` is False: the file is missing or broken, refers to what is not there, or
-            has a body of a name that is taken. The reason is logged, and what was read before is in the environment
-            all the same. ``ravemj.load`` raises instead. Bodies of COLLADA and of mesh files get other names where
-            theirs are taken.
+            Whether the whole file was loaded. As in OpenRAVE, the result is False if the file is missing or broken,
+            refers to a missing file, or has a body whose name is taken. The reason is logged, and the bodies before the
+            error are in the environment; ``ravemj.load`` raises an error instead. Bodies of COLLADA and mesh files get
+            another name if theirs is taken.
 
         Raises:
             openrave_exception: a body of the file has no name (``Failed``).
@@ -87,13 +88,13 @@ class Loading(JsonFiles):
     LoadURI = Load
 
     def add_file(self, path: str) -> str:
-        """Add a file that people chose, all of it or nothing; bodies get other names where theirs are taken.
+        """Add a file that a person has chosen, all of it or nothing. Bodies whose names are taken get other names.
 
         Args:
-            path: The file, one that ``Load`` reads.
+            path: A file in a format of ``Load``.
 
         Returns:
-            What is wrong with it, with file and line; empty where it is in the environment now.
+            The error with file and line; empty if the file was added.
         """
         try:
             if is_json(path):
@@ -104,7 +105,7 @@ class Loading(JsonFiles):
             if reading.failure is not None or broken:
                 return str(reading.failure or broken[0])
             if not reading.scene.bodies:
-                return f"{path}: there is no body in it"
+                return f"{path}: the file has no body"
             self._add(replace(reading, renames=True))
         except RavemjError as error:
             return str(error)
@@ -120,18 +121,18 @@ class Loading(JsonFiles):
         return True
 
     def LoadData(self, data: str | bytes, atts: Attributes | None = None) -> bool:
-        """Add the content of a model that is given as text, as ``Load`` adds that of a file.
+        """Add a model that is given as text, as ``Load`` adds a file.
 
         Args:
-            data: An OpenRAVE XML or COLLADA document; files that it names are looked for in the working folder.
-            atts: Attributes that act on its body; see ``Load``.
+            data: An OpenRAVE XML or COLLADA document. Files that it names are searched in the working folder.
+            atts: Attributes for its body; see ``Load``.
 
         Returns:
-            False where the text is broken or refers to what is not there, as ``Load`` does.
+            Whether the whole text was loaded; False if it is broken or refers to a missing file.
 
         Raises:
-            openrave_exception: a body of that name is in the environment already (``BodyNameConflict``); that of a
-                COLLADA document gets another name instead. Or a body has no name (``Failed``).
+            openrave_exception: the environment has a body of the same name (``BodyNameConflict``), or a body has no
+                name (``Failed``). Bodies of COLLADA documents get another name if theirs is taken.
 
         Example:
             >>> env.LoadData('<KinBody name="a"><Body><Geom type="sphere"><radius>1</radius></Geom></Body></KinBody>')
@@ -181,7 +182,7 @@ class Loading(JsonFiles):
     def _hold(
         self, holder: BodyState, grabs: Sequence[Grab], added: Mapping[str, BodyState], diagnostics: Diagnostics
     ) -> None:
-        """Let a body hold those that its file says it holds."""
+        """Make a body grab the bodies that its file says it holds."""
         for grab in grabs:
             held = added.get(grab.body)
             if held is None or held is holder:
@@ -197,12 +198,12 @@ class Loading(JsonFiles):
         self._found.update(dict.fromkeys(reading.diagnostics))
 
     def ReadKinBodyURI(self, *arguments: _Argument, **named: _Argument) -> KinBody | None:
-        """Read a body from a file without adding it: ``ReadKinBodyURI(filename[, atts])``.
+        """Return a body from a file without adding it: ``ReadKinBodyURI(filename[, atts])``.
 
-        Also ``ReadKinBodyURI(body, filename[, atts])``, which makes that body anew. ``atts`` are as for ``Load``.
+        The form ``ReadKinBodyURI(body, filename[, atts])`` replaces an existing body. ``atts`` are as for ``Load``.
 
         Returns:
-            The body, for ``env.Add``; None, with the reason in the log, if there is none in the file.
+            The body, for ``env.Add``; None with a logged reason if the file is missing, broken or has no body.
 
         Example:
             >>> mug = env.ReadKinBodyURI("mug.kinbody.xml")
@@ -223,7 +224,7 @@ class Loading(JsonFiles):
     def ReadRobotURI(self, *arguments: _Argument, **named: _Argument) -> Robot | None:
         """Return a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
 
-        A body that the file does not call a robot becomes one.
+        A kinbody of the file becomes a robot.
         """
         into, filename, given = _read_arguments("ReadRobotURI", arguments, named)
         robot = self._read_uri(filename, given, into, is_robot=True)
@@ -251,11 +252,11 @@ class Loading(JsonFiles):
             return None
 
     def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
-        """Make a body of what was read, that is not added; the first one counts."""
+        """Return the first body that was read, without adding it."""
         self._note(reading)
         send_warnings(reading.diagnostics)
         if reading.failure is not None or not reading.scene.bodies:
-            _LOG.error("%s", reading.failure or "there is no body in it")
+            _LOG.error("%s", reading.failure or "the file has no body")
             return None
         scene = reading.scene.bodies[0]
         scene = replace(scene, is_robot=scene.is_robot or is_robot)
@@ -266,15 +267,15 @@ class Loading(JsonFiles):
         return into
 
     def ReadTrimeshURI(self, filename: str, atts: Attributes | None = None) -> TriMesh | None:
-        """Read a mesh file: all its triangles, in metres and in the frame of the file.
+        """Return all triangles of a mesh file, in metres and in the frame of the file.
 
         Args:
-            filename: The file. It is looked for in the working folder, then in the folders of the environment variable
+            filename: The file. It is searched in the working folder, then in the folders of the environment variable
                 ``OPENRAVE_DATA``.
-            atts: ``scalegeometry`` ("2" or "2 3 4") scales them; others have no meaning here.
+            atts: ``scalegeometry`` ("2" or "2 3 4") scales the triangles; other attributes have no effect.
 
         Returns:
-            The triangles, or None, with the reason in the log, where there is no such file or it is broken.
+            The triangles; None with a logged reason if the file is missing or broken.
         """
         from ravemj.formats.meshes import read_mesh  # noqa: PLC0415 - slow to import
         from ravemj.formats.readers import find  # noqa: PLC0415
@@ -294,12 +295,12 @@ class Loading(JsonFiles):
     ReadTrimeshFile = ReadTrimeshURI
 
     def ReadTrimeshData(self, data: str | bytes, formathint: str, atts: Attributes | None = None) -> TriMesh | None:
-        """Return the triangles in the content of a mesh file; see ``ReadTrimeshURI``.
+        """Return the triangles of a mesh that is given as the content of a file; see ``ReadTrimeshURI``.
 
         Args:
             data: The content.
-            formathint: The suffix of the file that it would be, for instance ``stl``.
-            atts: As there.
+            formathint: The suffix of the format, for instance ``stl``.
+            atts: As for ``ReadTrimeshURI``.
         """
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, f"mesh.{formathint.lstrip('.')}")
@@ -308,14 +309,14 @@ class Loading(JsonFiles):
             return self.ReadTrimeshURI(path, atts)
 
     def ReadInterfaceURI(self, filename: Text, atts: Attributes | None = None) -> KinBody | None:
-        """Read a robot or a body from a file without adding it; other interfaces stand in no file here.
+        """Return a robot or a body from a file without adding it. ravemj reads no other interfaces from files.
 
         Args:
             filename: The file; see ``Load``.
-            atts: Attributes that act on it; see ``Load``.
+            atts: Attributes for the body; see ``Load``.
 
         Returns:
-            The robot or body; None, with the reason in the log, if there is none in the file.
+            The robot or body; None with a logged reason if the file is missing, broken or has no body.
         """
         return self._read_uri(filename, _checked_attributes(atts, "ReadInterfaceURI"), None, is_robot=False)
 
@@ -323,27 +324,27 @@ class Loading(JsonFiles):
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What was found in the loaded files and, once the model is compiled, in their translation."""
+        """All warnings and errors about the loaded files and, once the model is compiled, about their translation."""
         return (*self._found, *self._simulation.diagnostics)
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Paths of all files that were read: models, what they include, and meshes."""
+        """The paths of all files that were read: models, included files, and meshes."""
         return tuple(self._files)
 
 
 def _warn_of_attributes(path: str, given: Attributes) -> None:
-    """Warn of attributes for a JSON file, which has a name for everything already."""
+    """Warn about attributes for a JSON file, where they have no effect."""
     diagnostics = Diagnostics()
     for name in given:
-        diagnostics.warn("unknown-attribute", f"nothing reads '{name}' for a JSON file", Source(path))
+        diagnostics.warn("unknown-attribute", f"the attribute '{name}' has no effect on a JSON file", Source(path))
     send_warnings(diagnostics)
 
 
 def _read_arguments(
     caller: str, arguments: tuple[_Argument, ...], named: dict[str, _Argument]
 ) -> tuple[KinBody | None, str | bytes, Attributes]:
-    """Return the body to fill, if one is given, the file or text, and the attributes."""
+    """Return the body to replace or None, the file or text, and the attributes."""
     given = [*arguments, *(named.pop(name) for name in ("filename", "data", "atts") if name in named)]
     if named:
         raise TypeError(f"{caller}: has no argument {', '.join(named)}")
@@ -355,10 +356,10 @@ def _read_arguments(
 
 
 def _checked_attributes(atts: object, caller: str) -> Attributes:
-    """Return attributes that a user gave, with their names in lower case.
+    """Return the attributes of a user, with their names in lower case.
 
     Raises:
-        ArgumentError: they are no texts by names.
+        ArgumentError: the attributes are not a dictionary of texts.
     """
     if atts is None:
         return {}

@@ -1,4 +1,4 @@
-"""Saving of the environment's bodies in files."""
+"""Saves the bodies of an environment to files."""
 
 import os
 import tempfile
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ravemj.formats.writers import ModelFormat
 
 SaveArguments = str | Mapping[str, str] | Sequence[tuple[str, str]]
-"""What ``Save`` is told beside the selection: the name of a body, or texts by name, of which some may come twice."""
+"""The argument ``atts`` of ``Save``: the name of a body, or texts by name; in pairs a name may occur twice."""
 
 _CHOICES: dict[SelectionOptions, Callable[[KinBody, Sequence[str]], bool]] = {
     SelectionOptions.NoRobots: lambda body, targets: not body.is_robot,
@@ -52,7 +52,7 @@ _NO_EFFECT = {
     "openravescheme": "references are relative to the file",
     "reusesimilar": "each body is written by itself",
 }
-"""OpenRAVE's options that change nothing about what is read again."""
+"""Options of OpenRAVE that do not change what ``Load`` reads back, with the reason that a warning gives."""
 
 _FILE_TYPES = {"collada": ".dae", "json": ".json"}
 
@@ -60,7 +60,7 @@ _VALUES = {"skipwrite": tuple(_PARTS), "format": ("collada", "openrave", "json")
 
 
 class Saving(JsonFiles):
-    """Saves models."""
+    """The methods that save models."""
 
     SelectionOptions = SelectionOptions
 
@@ -70,27 +70,28 @@ class Saving(JsonFiles):
         options: int = SelectionOptions.Everything,
         atts: SaveArguments | None = None,
     ) -> None:
-        """Write bodies to a file, as they are now: with their values, poses, limits, colours and disabled links.
+        """Write bodies to a file in their current state: joint values, poses, limits, colours, disabled links.
 
         Args:
-            filename: The file. It gets COLLADA 1.5 with OpenRAVE's extras, whatever its name; one that ends in ``.zae``
-                gets a zip archive of it, one that ends in ``.json`` OpenRAVE's JSON. ``Load`` reads all of them.
-            options: Which bodies, a ``SelectionOptions``.
-            atts: The name of a body, for ``SelectionOptions.Body`` and ``AllExceptBody``, or a dict or pairs of
+            filename: The file. The format is COLLADA 1.5 with OpenRAVE's extensions; with the suffix ``.zae`` a zip
+                archive of that, with the suffix ``.json`` OpenRAVE's JSON. ``Load`` reads all of them.
+            options: The choice of bodies, a ``SelectionOptions``.
+            atts: The name of a body, for ``SelectionOptions.Body`` and ``AllExceptBody``; or a dict or pairs of
 
-                * ``target``: a body; several pairs name several;
-                * ``skipwrite``: words for what is left out: ``geometry`` or ``visual``, ``physics`` (masses),
+                * ``target``: the name of a body; several pairs name several bodies;
+                * ``skipwrite``: the parts to leave out: ``geometry`` or ``visual``, ``physics`` (masses),
                   ``sensors``, ``manipulators``, ``readable``;
-                * ``format``: ``openrave`` for OpenRAVE XML, with meshes in the folder ``meshes`` beside the file;
-                  ``collada`` and ``json``;
+                * ``format``: ``openrave`` for OpenRAVE XML, with meshes in the folder ``meshes`` beside the file,
+                  ``collada`` or ``json``;
                 * ``externalref``: names of bodies, or ``*`` for all. In COLLADA they become references to the COLLADA
-                  files that they were read from, with their poses, their values and what they hold. A body that is
-                  otherwise not as its file says stands in the new file itself, with a warning (``not-referred``);
-                * ``meshes``: the kind of these, ``stl`` or ``obj``.
+                  files that they were read from, with their poses, joint values and grabbed bodies. A body with other
+                  changes is written to the new file itself, with a warning (``not-referred``);
+                * ``meshes``: the format of the meshes, ``stl`` or ``obj``.
 
         Raises:
             openrave_exception: there is no such body, or an argument is wrong.
-            OutputError: the file cannot be written, or a name cannot stand in it; nothing is changed then.
+            OutputError: the file cannot be written, or its format does not allow a name. An existing file stays as it
+                is.
 
         Example:
             >>> env.Load("models/env.xml")
@@ -133,7 +134,7 @@ class Saving(JsonFiles):
     def WriteToMemory(
         self, filetype: str, options: int = SelectionOptions.Everything, atts: SaveArguments | None = None
     ) -> bytes:
-        """Return what ``Save`` writes to a file.
+        """Return the content that ``Save`` writes to a file.
 
         Args:
             filetype: ``collada``, or ``json`` for OpenRAVE's JSON.
@@ -141,7 +142,7 @@ class Saving(JsonFiles):
             atts: As for ``Save``.
 
         Raises:
-            openrave_exception: as ``Save``, or there is no such type.
+            openrave_exception: there is no such type, or an argument is wrong; see ``Save``.
         """
         if filetype not in _FILE_TYPES:
             known = ", ".join(_FILE_TYPES)
@@ -183,7 +184,7 @@ def _check_words(name: str, value: str) -> None:
 
 
 def _external_names(given: Sequence[tuple[str, str]], names: Collection[str]) -> set[str]:
-    """Return the names of the bodies that references are asked for.
+    """Return the names of the bodies that the option ``externalref`` names.
 
     Raises:
         ArgumentError: No body of a name is saved.

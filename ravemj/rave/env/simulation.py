@@ -17,13 +17,14 @@ State = dict[str, Any]
 
 
 class Simulating(Contents):
-    """Simulation time: each step runs physics, then controllers, then sensors.
+    """Simulation time. Each step runs physics, then controllers and modules, then sensors.
 
-    Time passes by itself from the first command to a controller, or the first question for the time, until
-    ``StopSimulation``; before that no thread runs. While ``with env:`` holds the environment, it stands still.
+    Time starts to pass in a thread with the first command to a controller, or with the first call of
+    ``GetSimulationTime`` or ``IsSimulationRunning``; before that, no thread runs. It passes until ``StopSimulation``,
+    and stands still while a script locks the environment (``with env:``).
 
-    What is published are copies of poses and joint values, for those who do not take the lock:
-    ``UpdatePublishedBodies`` makes them and, always, time that runs.
+    Published bodies are copies of poses and joint values, for readers that do not take the lock.
+    ``UpdatePublishedBodies`` makes them, and so does each step of running time.
     """
 
     _internal = ("clock",)
@@ -39,17 +40,17 @@ class Simulating(Contents):
         """Run simulation time in a thread.
 
         Args:
-            timestep: Length of the steps [s].
-            realtime: Whether a second of simulation takes a second; else as fast as it can be computed.
+            timestep: The duration of a step [s].
+            realtime: Whether a second of simulation takes a second; False runs it as fast as possible.
         """
         self._check_alive()
         self._clock.start(_checked_step(timestep, "StartSimulation", least=1e-6), realtime=realtime)
 
     def StopSimulation(self, shutdownthread: int = 1) -> None:
-        """Stop simulation time until ``StartSimulation``; ``StepSimulation`` still works.
+        """Stop simulation time until ``StartSimulation``. ``StepSimulation`` still works.
 
         Args:
-            shutdownthread: Whether to wait for the end of a step that is under way.
+            shutdownthread: Whether to wait for the end of a running step.
         """
         self._clock.stop(wait=bool(shutdownthread))
 
@@ -57,7 +58,7 @@ class Simulating(Contents):
         """Run one step of simulation time: physics, controllers, sensors.
 
         Args:
-            timestep: How long [s].
+            timestep: The duration of the step [s].
 
         Example:
             >>> env.StopSimulation()
@@ -74,7 +75,7 @@ class Simulating(Contents):
         return self._clock.is_allowed
 
     def GetSimulationTime(self) -> int:
-        """Return the simulation time [microseconds] since it began to pass."""
+        """Return the simulation time that has passed [microseconds]."""
         self._clock.wake()
         return self._clock.now
 
@@ -82,8 +83,8 @@ class Simulating(Contents):
         """Choose the physics engine.
 
         Args:
-            physics: What ``RaveCreatePhysicsEngine`` made; None: nothing falls. A name stands for a new engine with
-                the gravity that the environment has now.
+            physics: An engine from ``RaveCreatePhysicsEngine``; None for no physics. A name makes a new engine with the
+                environment's current gravity.
 
         Returns:
             True.
@@ -107,23 +108,23 @@ class Simulating(Contents):
     def _new_engine(self, name: str | None) -> PhysicsEngine:
         engine = RaveCreatePhysicsEngine(self._environment, name or "GenericPhysicsEngine")
         if engine is None:
-            raise RavemjError(f"there is no physics engine '{name}'; there are ode, mujoco and GenericPhysicsEngine")
+            known = "ode, bullet, mujoco and GenericPhysicsEngine"
+            raise RavemjError(f"SetPhysicsEngine: there is no physics engine '{name}'; there are {known}")
         if name is not None:
             engine.SetGravity(self._engine.GetGravity())
         return engine
 
     def GetPhysicsEngine(self) -> PhysicsEngine:
-        """Return the physics engine, which holds gravity and moves bodies; never None."""
+        """Return the physics engine, which has gravity and advances bodies in time; never None."""
         return self._engine
 
     def UpdatePublishedBodies(self, timeout: float = 0.0) -> None:
         """Publish the state of the bodies for ``GetPublishedBodies``.
 
-        Viewers show every change at once. While a script has the environment, pages show what is published, by this or
-        by a step of simulation time.
+        Viewers show every change at once. While a script locks the environment, pages show the published state.
 
         Args:
-            timeout: Without meaning.
+            timeout: Not used.
         """
         del timeout
         with self._simulation.lock:
@@ -133,16 +134,16 @@ class Simulating(Contents):
     def GetPublishedBodies(self, timeout: float = 0.0) -> list[State]:
         """Return the published state of all bodies.
 
-        While time runs by itself (see ``StopSimulation``), it is the present one; else that of the last
+        While simulation time runs in its thread, this is the current state; otherwise that of the last call of
         ``UpdatePublishedBodies``.
 
         Args:
-            timeout: Without meaning.
+            timeout: Not used.
 
         Returns:
-            For each body a dict: ``body``, ``name``, ``uri``, ``environmentid``, ``updatestamp``, ``jointvalues``
-            [rad or m], and ``linktransforms``, a list of ``T_world_link``; of a robot also ``activeManipulatorName``
-            and ``activeManipulatorTransform``.
+            For each body a dict with ``body``, ``name``, ``uri``, ``environmentid``, ``updatestamp``, ``jointvalues``
+            [rad or m], and ``linktransforms``, a list of ``T_world_link``; for a robot also with
+            ``activeManipulatorName`` and ``activeManipulatorTransform``.
         """
         del timeout
         if self._clock.is_allowed:  # OpenRAVE's thread publishes at each of its steps
@@ -153,8 +154,8 @@ class Simulating(Contents):
         """Return the published state of one body, as in ``GetPublishedBodies``, or None.
 
         Args:
-            name: Its name.
-            timeout: Without meaning.
+            name: The name of the body.
+            timeout: Not used.
         """
         return next((state for state in self.GetPublishedBodies(timeout) if state["name"] == name), None)
 
@@ -162,29 +163,32 @@ class Simulating(Contents):
         """Return the published joint values of one body [rad or m], shape (dof,), or None.
 
         Args:
-            name: Its name.
-            timeout: Without meaning.
+            name: The name of the body.
+            timeout: Not used.
         """
         state = self.GetPublishedBody(name, timeout)
         return None if state is None else state["jointvalues"]
 
     def GetPublishedBodyTransformsMatchingPrefix(self, prefix: str, timeout: float = 0.0) -> dict[str, Any]:
-        """Return the published ``T_world_body`` of the bodies whose names start with a text, by their names.
+        """Return the published ``T_world_body`` of all bodies whose names begin with a prefix, by name.
 
         Args:
-            prefix: The text.
-            timeout: Without meaning.
+            prefix: The beginning of the names.
+            timeout: Not used.
         """
         states = (state for state in self.GetPublishedBodies(timeout) if state["name"].startswith(prefix))
         return {state["name"]: state["linktransforms"][0] for state in states if state["linktransforms"]}
 
     @property
     def clock(self) -> Clock:
-        """The clock of simulation time; below the OpenRAVE API."""
+        """The clock of simulation time, an object below OpenRAVE's API."""
         return self._clock
 
     def _advance(self, timestep: float) -> None:
-        """Run one step of simulation time; the clock holds the lock."""
+        """Run one step of simulation time. The clock holds the lock.
+
+        Sensors come last, so that they measure the state at the end of the step.
+        """
         self._engine.SimulateStep(timestep)
         for body in map(self.wrap, self._simulation.bodies):
             if isinstance(body, Robot):
@@ -202,7 +206,8 @@ class Simulating(Contents):
 
 def _checked_step(timestep: float, name: str, least: float = 0.0) -> float:
     if not (math.isfinite(timestep) and timestep >= least):
-        raise ArgumentError(f"{name}: timestep is {timestep}, and should be a time in seconds")
+        wanted = f"at least {least:g} s" if least else "0 s or more"
+        raise ArgumentError(f"{name}: timestep is {timestep}, and should be a finite number, {wanted}")
     return float(timestep)
 
 

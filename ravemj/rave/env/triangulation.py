@@ -1,4 +1,4 @@
-"""Bodies of an environment as triangles."""
+"""Converts the bodies of an environment to triangles."""
 
 from collections.abc import Callable, Iterable
 
@@ -18,18 +18,18 @@ _CHOICES: dict[TriangulateOptions, Callable[[KinBody, str], bool]] = {
 
 
 def chosen(bodies: Iterable[BodyState], options: TriangulateOptions, name: str) -> list[BodyState]:
-    """Return the bodies that options mean.
+    """Return the bodies that options select.
 
     Args:
         bodies: All bodies.
-        options: Which of them.
-        name: The name that ``Body`` and ``AllExceptBody`` mean.
+        options: The options.
+        name: The name of the body, for ``Body`` and ``AllExceptBody``.
     """
     takes = _CHOICES[options]
     return [state for state in bodies if takes(state.scene, name)]
 
 
 def triangles(bodies: Iterable[BodyState]) -> TriMesh:
-    """Return all shapes of bodies in the world."""
+    """Return the triangles of all geometries of bodies, in the world."""
     parts = [links_triangles(body.scene.links, body.link_transforms()) for body in bodies]
     return trimesh_of(Mesh.merged(parts))

@@ -1,4 +1,4 @@
-"""Viewers and pictures."""
+"""Viewers of an environment, and pictures."""
 
 import os
 import weakref
@@ -23,30 +23,30 @@ if TYPE_CHECKING:
 
 
 class Viewing(EnvironmentPart):
-    """Viewers of the environment, and pictures without one."""
+    """The viewers of an environment, and pictures, which need no viewer."""
 
     _internal = ("open_viewer", "renderer")
 
     def SetViewer(self, viewername: str, showviewer: bool = True) -> bool:
-        """Attach a viewer, in place of those before; ``RaveCreateViewer`` attaches further ones.
+        """Attach a viewer, which replaces earlier ones. ``RaveCreateViewer`` attaches additional viewers.
 
-        With a display a window opens and shows every change from then on, while the script goes on; in a notebook, a
-        page in the cell does. Without either, as on a server, the viewer draws when it is asked for pictures, so that
-        scripts run there just the same.
+        With a display, a window opens; it shows every change while the script runs on. In a notebook, a page in the
+        cell does so. Without either, as on a server, the viewer only draws pictures on request, so the same script runs
+        there as well.
 
-        The camera starts with the view that the loaded file asks for, else from above; ``GetViewer().SetCamera``
-        moves it.
+        The camera starts with the view of the loaded file, else with a view from above; ``GetViewer().SetCamera`` moves
+        it.
 
         Args:
-            viewername: ``'window'``: a window; a warning says so where there is no display for it. ``'web'``: a page
-                for a browser on this machine, at ``GetViewer().url``. ``'offscreen'``: neither. One of OpenRAVE's
-                names, such as ``'qtcoin'``: a window if there is a display, else a page in a notebook, else neither;
-                the log says which. On macOS the page stands for windows. ``''`` removes the viewer.
-            showviewer: False: never a window.
+            viewername: ``'window'`` opens a window, or logs a warning if there is no display. ``'web'`` serves a page
+                for a browser on this machine, at ``GetViewer().url``. ``'offscreen'`` does neither. OpenRAVE's names,
+                such as ``'qtcoin'``, select a window if there is a display, else a page in a notebook, else
+                ``'offscreen'``; the log says which. On macOS a page replaces windows. ``''`` removes the viewer.
+            showviewer: False never opens a window.
 
         Returns:
-            False for ``''``. True for every other name, as in OpenRAVE; a name that nobody knows is logged as an error,
-            and the viewers before stay.
+            False for ``''``. True for every other name, as in OpenRAVE; an unknown name is logged as an error, and the
+            earlier viewers stay.
 
         Example:
             >>> env.SetViewer("qtcoin")
@@ -65,7 +65,7 @@ class Viewing(EnvironmentPart):
         return bool(viewername)
 
     def open_viewer(self, name: str, show: bool) -> "Viewer | None":
-        """Attach a further viewer and return it; None for a name that is no viewer's."""
+        """Attach an additional viewer and return it; None for an unknown name."""
         from ravemj.gui.viewers import open_viewer  # noqa: PLC0415 - slow to import
 
         self._check_alive()
@@ -75,21 +75,22 @@ class Viewing(EnvironmentPart):
         return viewer
 
     def serve_viewer(self, host: str = "127.0.0.1", port: int = 0, token: str | None = None) -> "WebViewer":
-        """Attach a viewer for browsers, as ``SetViewer('web')`` does, at a port of your choice.
+        """Attach a viewer for browsers, as ``SetViewer('web')`` does, at a given port.
 
         Args:
-            host: Name or address of the interface that browsers come to. Others than the default let those of other
-                machines in: whoever knows the address of the page sees and moves everything, and nothing is encrypted.
-            port: Number of the port; 0: any that is free.
-            token: The secret in the address, so that a page finds a viewer again that was ended and started anew at
-                the same port: 8 to 64 letters, digits, ``-`` and ``_``. None: a new one.
+            host: The network interface to listen at, a name or an address. The default admits browsers of this machine
+                only. Others admit other machines: whoever knows the address of the page can see and move everything,
+                and the connection is not encrypted.
+            port: The number of the port; 0 for any free port.
+            token: The secret in the address, 8 to 64 letters, digits, ``-`` and ``_``; by default a new one. With a
+                fixed token, an open page finds the viewer again after a restart.
 
         Returns:
             The viewer; ``url`` is the address of its page.
 
         Raises:
-            RenderingError: this port cannot be had; the viewers before stay.
-            ArgumentError: the token is too short, or has other letters.
+            RenderingError: the port is not available. Earlier viewers stay.
+            ArgumentError: the token has a wrong length, or other characters.
 
         Example:
             >>> print(env.serve_viewer(port=8080).url)
@@ -113,10 +114,10 @@ class Viewing(EnvironmentPart):
             self._viewers.pop().close()
 
     def SetDefaultViewer(self, showviewer: bool = True) -> bool:
-        """Attach the viewer that the variable ``OPENRAVE_DEFAULT_VIEWER`` names, else the best that works here.
+        """Attach the viewer that the variable ``OPENRAVE_DEFAULT_VIEWER`` names, else a window or a page.
 
         Args:
-            showviewer: False: never a window.
+            showviewer: False never opens a window.
 
         Returns:
             What ``SetViewer`` returns.
@@ -124,11 +125,10 @@ class Viewing(EnvironmentPart):
         return self.SetViewer(os.environ.get("OPENRAVE_DEFAULT_VIEWER") or "qtcoin", showviewer)
 
     def GetViewer(self, name: str | None = None) -> "Viewer | None":
-        """Return a viewer, or None where there is none.
+        """Return a viewer, or None.
 
         Args:
-            name: None or empty: the first one. Else the first one that ``SetViewer`` or ``RaveCreateViewer`` made by
-                this name.
+            name: The name given to ``SetViewer`` or ``RaveCreateViewer``; by default the first viewer is returned.
 
         Example:
             >>> viewer = env.GetViewer()
@@ -148,18 +148,18 @@ class Viewing(EnvironmentPart):
         """Draw a picture, with or without a display.
 
         Args:
-            width: Columns [pixels].
-            height: Rows [pixels].
-            camera: ``T_world_camera``, 4x4, z forward and y down; None: the viewer's camera if there is a viewer, else
-                the file's, else a view of the whole scene.
-            background: Red, green, blue from 0 to 1; None: the viewer's, else the file's, else white.
+            width: The width of the picture [pixels].
+            height: The height of the picture [pixels].
+            camera: ``T_world_camera``, 4x4, z forward and y down. The default is the viewer's camera, else the file's,
+                else a view of the whole scene.
+            background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else white.
 
         Returns:
             The picture, shape (height, width, 3), uint8, top row first.
 
         Raises:
-            ArgumentError: the camera is no rigid transform, or the background no colour.
-            RenderingError: nothing can draw here; ``ravemj doctor`` says why.
+            ArgumentError: the camera is not a rigid transform, or the background is not a colour.
+            RenderingError: no renderer works on this machine; ``ravemj doctor`` says why.
 
         Example:
             >>> import imageio.v3
@@ -179,18 +179,19 @@ class Viewing(EnvironmentPart):
         camera: ArrayLike | None = None,
         background: ArrayLike | None = None,
     ) -> "Animation":
-        """Return a page that plays a motion, and turns and zooms without a server; notebooks show it.
+        """Return an HTML page that plays a motion and can be turned and zoomed without a server.
 
-        The page draws with WebGL, in the browser. Drawings of scripts are in it and stand still.
+        Notebooks show the page. It draws with WebGL, in the browser. Drawings of scripts are part of it, and do not
+        move.
 
         Args:
-            motion: Joint values over time; values outside the limits are moved to them, with a warning. The robot
-                stays at the motion's end. None: a still scene.
-            robot: Which body moves; None: the first robot with joints.
-            fps: Poses in a second; the page draws as many pictures as the screen shows, and mixes the poses.
-            camera: ``T_world_camera`` at first, 4x4, z forward and y down; None: the viewer's, else the file's, else a
-                view of the whole motion.
-            background: Red, green, blue from 0 to 1; None: the viewer's, else the file's, else white.
+            motion: Joint values over time. Values outside the limits are set to the limits, with a warning. Afterwards
+                the robot is at the end of the motion. Without a motion, the page shows the scene as it is.
+            robot: The body that moves; by default the first robot with joints.
+            fps: Poses stored for each second. The page interpolates between them at the rate of the screen.
+            camera: The first ``T_world_camera``, 4x4, z forward and y down. The default is the viewer's, else the
+                file's, else a view of the whole motion.
+            background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else white.
 
         Returns:
             The page: ``save("swing.html")`` writes it, ``html`` is its text.
@@ -221,10 +222,10 @@ class Viewing(EnvironmentPart):
 
         Args:
             path: The file.
-            motion: See ``animation``, as for the other arguments.
-            robot: Which body moves.
-            fps: Poses in a second.
-            camera: ``T_world_camera`` at first.
+            motion: Joint values over time; see ``animation`` for this and the other arguments.
+            robot: The body that moves.
+            fps: Poses stored for each second.
+            camera: The first ``T_world_camera``.
             background: Red, green, blue from 0 to 1.
 
         Returns:
@@ -232,23 +233,23 @@ class Viewing(EnvironmentPart):
 
         Raises:
             ArgumentError: an argument is wrong.
-            OutputError: the file cannot be written; nothing is left behind then.
+            OutputError: the file cannot be written; no partial file is left behind.
         """
         check_file(path)
         page = self.animation(motion, robot=robot, fps=fps, camera=camera, background=background)
         return page.save(path)
 
     def default_camera(self, aspect: float = 4 / 3) -> Camera:
-        """Return the camera of pictures that name none: the viewer's, else the file's, else one that shows all.
+        """Return the default camera of pictures: the viewer's, else the file's, else one that shows the whole scene.
 
         Args:
-            aspect: Width of the picture divided by its height.
+            aspect: The width of the picture divided by its height.
         """
         return self._renderer.camera_for_stills(aspect) if self._viewer is None else self._viewer.camera
 
     @property
     def background(self) -> tuple[float, float, float]:
-        """The background of pictures that name none: the viewer's, else the file's, else white."""
+        """The default background of pictures: the viewer's, else the file's, else white."""
         return self._simulation.view.background if self._viewer is None else self._viewer.background
 
     @property

@@ -1,7 +1,7 @@
-"""Descriptions that scripts read, change, and make bodies of.
+"""Infos: descriptions of bodies that scripts read, change, and make bodies from.
 
-The fields have the names that OpenRAVE gives them; numbers may be lists or arrays. ``SerializeJSON`` and
-``DeserializeJSON`` turn them into OpenRAVE's JSON and back.
+Their fields have OpenRAVE's names; numbers may be lists or arrays. ``SerializeJSON`` and ``DeserializeJSON`` convert
+infos to OpenRAVE's JSON and back.
 """
 
 from ravemj.rave.infos.body import ExtractInfoOptions, KinBodyInfo, RobotBaseInfo, body_of

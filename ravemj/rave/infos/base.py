@@ -1,4 +1,4 @@
-"""Base classes of infos, and checks of the numbers in their fields."""
+"""The base classes of infos, and checks of the numbers in their fields."""
 
 # Users put anything into fields, which have the names that OpenRAVE gives them.
 # pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportPrivateUsage=false
@@ -24,12 +24,12 @@ T = TypeVar("T")
 
 
 class FieldOfClass:
-    """What stands on the class for a field of its objects, which scripts and ``dir`` look for there."""
+    """A class attribute for a field that has no default value, so that ``dir(Class)`` and scripts find it there."""
 
 
 @dataclass_transform(eq_default=False, field_specifiers=(field,))
 def info_class(cls: type[T]) -> type[T]:
-    """Make a dataclass of fields that show on the class, too."""
+    """Make a class a dataclass whose fields can be found on the class as well."""
     made = dataclass(eq=False, repr=False)(cls)
     for one in fields(cast("Any", made)):
         if not hasattr(made, one.name):
@@ -39,10 +39,10 @@ def info_class(cls: type[T]) -> type[T]:
 
 @info_class
 class Info(ApiObject):
-    """An info: it compares by its fields, and prints as the expression that makes it, without default values."""
+    """The base class of infos. They compare by their fields, and print as the expression that makes them."""
 
     _called: ClassVar[str]
-    """The class as users write it."""
+    """The class as users write it, for ``repr`` and error messages."""
     _internal: ClassVar[tuple[str, ...]] = (
         *("of", "geometry", "draw", "link", "adjacent", "joint", "motor", "manipulator", "sensor", "camera"),
         *("named_values", "transform", "values_by_axis", "same_structure", "parameters", "with_parameters"),
@@ -62,11 +62,11 @@ class Info(ApiObject):
         return f"{self._called}({', '.join(changed)})"
 
     def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
-        """Return the info as OpenRAVE's JSON has it: dicts, lists, numbers and texts.
+        """Return the info in OpenRAVE's JSON format: dicts, lists, numbers and texts.
 
         Args:
-            unitScale: Factor for all lengths.
-            options: OpenRAVE's; not used.
+            unitScale: Multiplies all lengths.
+            options: Not used.
         """
         del options
         new = type(self)()
@@ -78,15 +78,15 @@ class Info(ApiObject):
         return written
 
     def DeserializeJSON(self, obj: Json, unitScale: float = 1.0, options: object = None) -> None:
-        """Take over what JSON has; fields whose keys are not there stay as they are.
+        """Set fields from OpenRAVE's JSON format. Fields whose keys are missing keep their values.
 
         Args:
-            obj: What ``SerializeJSON`` returns, or a part of it.
-            unitScale: Factor for all lengths.
-            options: OpenRAVE's; not used.
+            obj: A result of ``SerializeJSON``, or a part of one.
+            unitScale: Multiplies all lengths.
+            options: Not used.
 
         Raises:
-            openrave_exception: something in it is wrong.
+            ArgumentError: a value has the wrong type or shape.
         """
         del options
         checked_kind(obj, Mapping, f"{self._called}.DeserializeJSON: obj", "a dict")
@@ -97,7 +97,7 @@ class Info(ApiObject):
                 raise ArgumentError(f"{self._called}.DeserializeJSON: {key}: {error}") from None
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        """Return the table of the keys; ``obj`` is what is about to be read."""
+        """Return the table of the JSON keys; ``obj`` is the JSON to be read, or None for writing."""
         raise NotImplementedError
 
     def __dir__(self) -> list[str]:
@@ -107,21 +107,21 @@ class Info(ApiObject):
 
 @info_class
 class ParameterFields(Info):
-    """The fields of links and joints that hold parameters."""
+    """The parameters that users attach to links and joints: numbers, integers and texts by name."""
 
     _mapFloatParameters: Mapping[str, ArrayLike] = field(default_factory=dict[str, ArrayLike])
     _mapIntParameters: Mapping[str, ArrayLike] = field(default_factory=dict[str, ArrayLike])
     _mapStringParameters: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def with_parameters(self, parameters: Parameters) -> Self:
-        """Take over parameters; return this object."""
+        """Set the fields from parameters, and return this object."""
         self._mapFloatParameters = {name: np.array(values) for name, values in parameters.floats}
         self._mapIntParameters = {name: np.array(values, dtype=np.int_) for name, values in parameters.integers}
         self._mapStringParameters = dict(parameters.texts)
         return self
 
     def parameters(self) -> Parameters:
-        """Return the parameters that the fields hold."""
+        """Return the parameters of the fields."""
         floats = {name: checked_numbers(values, name).ravel() for name, values in self._mapFloatParameters.items()}
         integers = {name: checked_numbers(values, name).ravel() for name, values in self._mapIntParameters.items()}
         return Parameters(
@@ -136,7 +136,7 @@ PARAMETERS_JSON = (
     Entry("intParameters", "_mapIntParameters", parameters("values"), optional=True),
     Entry("stringParameters", "_mapStringParameters", parameters("value"), optional=True),
 )
-"""The keys of ``ParameterFields``."""
+"""The JSON keys of ``ParameterFields``."""
 
 
 def identity() -> Floats:
@@ -145,12 +145,16 @@ def identity() -> Floats:
 
 
 def filled(value: float, count: int = 3) -> Callable[[], Floats]:
-    """Return what makes a new array of equal numbers."""
+    """Return a function that makes an array of ``count`` equal numbers, as the default of a field."""
     return lambda: np.full(count, float(value))
 
 
 def vector(values: ArrayLike, name: str) -> Vec3:
-    """Return the first three numbers of a field."""
+    """Return the first three numbers of a field.
+
+    Raises:
+        ArgumentError: there are fewer numbers, or one is not finite.
+    """
     numbers = checked_numbers(values, name).ravel()
     if len(numbers) < 3 or not np.isfinite(numbers[:3]).all():
         raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be three finite numbers")
@@ -164,7 +168,11 @@ def pose(values: ArrayLike, name: str) -> Pose:
 
 
 def per_axis(values: ArrayLike | None, count: int, default: float, name: str) -> list[float]:
-    """Return a number for each axis of a joint; where the field has too few, the default."""
+    """Return one number for each axis of a joint; the default stands for missing numbers.
+
+    Raises:
+        ArgumentError: a number is NaN.
+    """
     numbers = np.zeros(0) if values is None else checked_numbers(values, name).ravel()
     if np.isnan(numbers).any():
         raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be numbers")
@@ -180,7 +188,7 @@ _ROUNDING = 1e-14
 
 
 def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put into fields
-    """Return whether two values are the same numbers, texts and infos."""
+    """Return whether two values are equal, arrays and lists compared element by element."""
     if isinstance(first, TriMesh) and isinstance(second, TriMesh):
         return _same(first.toDict(), second.toDict())
     if isinstance(first, Mapping) and isinstance(second, Mapping):
@@ -196,7 +204,7 @@ def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put
 
 
 def _written(value: object) -> str:
-    """Return the text of a value, without ``array`` and what else has to be imported."""
+    """Return a value as an expression that needs no imports: arrays as lists."""
     if isinstance(value, Enum):
         return f"{type(value).__name__}.{value.name}"
     if isinstance(value, np.ndarray | np.generic):

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-_NEAR = 1e-12
+_NEAR = 1e-12  # the rounding of numbers that went through a file
 
 
 class ExtractInfoOptions(NamedFlag):
@@ -41,7 +41,7 @@ class ExtractInfoOptions(NamedFlag):
 
     Everything = 0
     SkipDOFValues = 1
-    """Leave the joint values out."""
+    """Leave out the joint values."""
 
 
 @info_class
@@ -49,12 +49,12 @@ class KinBodyInfo(Info):
     """The description of a body.
 
     Attributes:
-        _name: Its name.
-        _vLinkInfos: Its links, a list of ``LinkInfo``.
-        _vJointInfos: Its joints, a list of ``JointInfo``; those with DOFs in DOF order.
-        _transform: ``T_world_link0``; the identity leaves the links where their infos say.
-        _dofValues: Joint values that differ from ``JointInfo._vcurrentvalues``: a list of ((name, axis), value).
-        _isRobot: Whether it is a robot.
+        _name: The name of the body.
+        _vLinkInfos: The links, a list of ``LinkInfo``.
+        _vJointInfos: The joints, a list of ``JointInfo``. Joints with DOFs stand in DOF order.
+        _transform: ``T_world_link0``. The identity leaves all links at the poses of their infos.
+        _dofValues: Joint values that replace ``JointInfo._vcurrentvalues``: a list of ((name, axis), value).
+        _isRobot: Whether the body is a robot.
     """
 
     _called = "KinBody.KinBodyInfo"
@@ -71,16 +71,16 @@ class KinBodyInfo(Info):
     _id: str = ""
 
     def transform(self) -> Floats | None:
-        """Return ``T_world_link0``, or None where the links stay as they are described."""
+        """Return ``T_world_link0``, or None if the links stay at the poses of their infos."""
         T_world_link0 = checked_transform(self._transform, "KinBodyInfo._transform")
         return None if np.array_equal(T_world_link0, np.eye(4)) else T_world_link0
 
     def same_structure(self, other: "KinBodyInfo") -> bool:
-        """Return whether two infos describe the same links and joints, wherever these stand."""
+        """Return whether two infos describe the same links and joints; poses and joint values do not count."""
         return _alike(self._standing().SerializeJSON(), other._standing().SerializeJSON())
 
     def _standing(self) -> "KinBodyInfo":
-        """Return the info without pose and joint values."""
+        """Return a copy of the info without poses, joint values and held bodies."""
         links = [replace(link, _t=np.eye(4)) for link in self._vLinkInfos]
         joints = [replace(joint, _vcurrentvalues=None) for joint in self._vJointInfos]
         return replace(
@@ -92,7 +92,7 @@ class KinBodyInfo(Info):
         return _BODY_JSON
 
     def values_by_axis(self) -> dict[tuple[str, int], float]:
-        """Return the joint values that are asked for, by the joint's name and the axis."""
+        """Return the joint values of ``_dofValues`` by joint name and axis."""
         return {(str(name), int(axis)): float(value) for (name, axis), value in self._dofValues}
 
 
@@ -101,10 +101,10 @@ class RobotBaseInfo(KinBodyInfo):
     """The description of a robot.
 
     Attributes:
-        _vManipInfos: Its arms, a list of ``ManipulatorInfo``.
-        _vAttachedSensorInfos: Its sensors, a list of ``AttachedSensorInfo``.
-        _vConnectedBodyInfos: Bodies that can be connected to it, a list of ``ConnectedBodyInfo``.
-        _vGripperInfos: Its grippers, a list of ``GripperInfo``.
+        _vManipInfos: The manipulators, a list of ``ManipulatorInfo``.
+        _vAttachedSensorInfos: The sensors, a list of ``AttachedSensorInfo``.
+        _vConnectedBodyInfos: The bodies that can be connected to the robot, a list of ``ConnectedBodyInfo``.
+        _vGripperInfos: The grippers, a list of ``GripperInfo``.
     """
 
     _called = "Robot.RobotBaseInfo"
@@ -147,7 +147,7 @@ _ROBOT_JSON = (
 
 
 def _alike(first: object, second: object) -> bool:
-    """Tell whether two values of JSON are the same, with numbers as near as poses are after going through files."""
+    """Return whether two JSON values are equal, with a tolerance for numbers that went through a file."""
     if first == second:
         return True
     if isinstance(first, dict) and isinstance(second, dict):
@@ -160,14 +160,15 @@ def _alike(first: object, second: object) -> bool:
 
 
 def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
-    """Return the body that an info describes.
+    """Make the body that an info describes.
 
     Args:
         info: The description.
-        like: Says whether it is a robot, and the name where the info has none.
+        like: An existing body, which says whether to make a robot, and gives the name if the info has none.
 
     Raises:
-        RavemjError: something is described by a thing of another kind, has no name, or cannot be.
+        RavemjError: a list of the info contains an object of another class, two links share a name, or the links and
+            joints do not make a body.
     """
     from ravemj.model.builder import BodyBuilder, SensorBuilder  # noqa: PLC0415 - slow to import
 
@@ -176,7 +177,7 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
         builder.links.append(one.link())
     names = [link.name for link in builder.links]
     if len(set(names)) < len(names):
-        raise ArgumentError(f"the links are called {', '.join(names)}; each should have a name of its own")
+        raise ArgumentError(f"the links are called {', '.join(names)}; each link needs a name of its own")
     for index, one in enumerate(info._vLinkInfos):
         builder.adjacent += [(index, other) for other in one.adjacent(names)]
     builder.joints = [one.joint(builder.links) for one in _checked(info._vJointInfos, JointInfo)]
@@ -201,7 +202,7 @@ def _checked(infos: Sequence[T], kind: type[T]) -> Sequence[T]:
 
 
 def _asked(builder: "BodyBuilder", values: dict[tuple[str, int], float]) -> list[float] | None:
-    """Return the value of each DOF; None where none is asked for."""
+    """Return the value of each DOF, or None if the info asks for no values."""
     active = [joint for joint in builder.joints if joint.active]
     if not values:
         return None

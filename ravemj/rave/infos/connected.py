@@ -1,4 +1,4 @@
-"""Descriptions of bodies that are held or connected."""
+"""Descriptions of bodies that a robot holds, or that are connected to it."""
 
 # JSON and users put anything into the fields that the functions of forms take.
 # pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
@@ -22,19 +22,19 @@ from ravemj.rave.infos.robot import AttachedSensorInfo, GripperInfo, Manipulator
 
 @info_class
 class ConnectedBodyInfo(Info):
-    """A body that can be connected to a link of a robot, and is part of it then.
+    """A body that can be connected to a link of a robot. Once connected, it is part of the robot.
 
     Attributes:
-        _name: Its name, which stands with an underscore before the names of its parts.
-        _linkname: Name of the robot's link that carries it.
+        _name: The name of the body. With an underscore, it is the prefix of the names of its parts.
+        _linkname: The name of the robot's link that carries the body.
         _trelative: ``T_link_body``, shape (4, 4).
-        _uri: The file that it comes from; not read.
-        _linkInfos: Its links; the first one is fixed to the robot.
-        _jointInfos: Its joints.
-        _manipulatorInfos: Its arms.
-        _attachedSensorInfos: Its sensors.
-        _gripperInfos: Its grippers.
-        _bIsActive: Whether it is connected: 1, or 0 for no, -1 for undecided.
+        _uri: The file that the description comes from; ravemj does not read it.
+        _linkInfos: The links; the first one is fixed to the robot.
+        _jointInfos: The joints.
+        _manipulatorInfos: The manipulators.
+        _attachedSensorInfos: The sensors.
+        _gripperInfos: The grippers.
+        _bIsActive: Whether the body is connected: 1 yes, 0 no, -1 undecided.
     """
 
     _called = "ConnectedBodyInfo"
@@ -73,14 +73,14 @@ _CONNECTED_JSON = (
 
 @info_class
 class GrabbedInfo(Info):
-    """What ``ResetGrabbed`` needs to hold a body as before.
+    """A grabbed body, and how its holder holds it; ``ResetGrabbed`` restores it from this.
 
     Attributes:
-        _grabbedname: Name of the held body.
-        _robotlinkname: Name of the link that holds it.
+        _grabbedname: The name of the held body.
+        _robotlinkname: The name of the link that holds it.
         _trelative: ``T_link_body``, shape (4, 4).
-        _setIgnoreRobotLinkNames: Names of the holder's links that the held body does not collide with.
-        _grabbedUserData: Anything that JSON can hold; only kept.
+        _setIgnoreRobotLinkNames: The names of the holder's links that are not tested against the held body.
+        _grabbedUserData: Data of the user, anything that JSON can hold. ravemj only stores it.
     """
 
     _called = "GrabbedInfo"
@@ -94,13 +94,13 @@ class GrabbedInfo(Info):
 
     @classmethod
     def of(cls, holder: scene.KinBody, grab: GrabbedBody) -> Self:
-        """Return how a body holds another one."""
+        """Return the info of one body that ``holder`` holds."""
         links = [link.name for link in holder.links]
         ignored = sorted(links[index] for index in grab.ignored)
         return cls(grab.body.scene.name, links[grab.link], grab.T_link_body.copy(), ignored)
 
     def GetGrabbedInfoHash(self) -> str:
-        """Return a text that is the same for infos that say the same: 32 hexadecimal digits."""
+        """Return a hash of the info, 32 hexadecimal digits; equal infos have equal hashes."""
         return hashes.of_text(repr(self.SerializeJSON()))
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:

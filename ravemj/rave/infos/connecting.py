@@ -1,4 +1,4 @@
-"""Descriptions of robots with the bodies that are connected to them."""
+"""Merges the descriptions of connected bodies into the description of their robot."""
 
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -23,10 +23,12 @@ Rename = Callable[[str | None], str]
 
 
 def with_connected(robot: RobotBaseInfo, bodies: Iterable[ConnectedBodyInfo]) -> RobotBaseInfo:
-    """Return a robot with the parts of bodies, whose names begin with that of their body and an underscore.
+    """Return a robot with the parts of connected bodies.
+
+    The names of these parts begin with the name of their body and an underscore.
 
     Raises:
-        ArgumentError: the robot has no link of the name that a body asks for, or a body has no links.
+        ArgumentError: the robot does not have the link that should carry a body, or a body has no links.
     """
     for body in bodies:
         robot = _with_one(robot, body)
@@ -34,7 +36,7 @@ def with_connected(robot: RobotBaseInfo, bodies: Iterable[ConnectedBodyInfo]) ->
 
 
 def only_parts_of(robot: RobotBaseInfo, own: RobotBaseInfo) -> RobotBaseInfo:
-    """Return a robot with the parts that another description names."""
+    """Return a robot reduced to the parts whose names another description contains."""
     kept = {name: {one._name for one in getattr(own, name)} for name in _LISTS}
     return replace(robot, **{name: [one for one in getattr(robot, name) if one._name in kept[name]] for name in _LISTS})
 
@@ -50,7 +52,7 @@ def _with_one(robot: RobotBaseInfo, body: ConnectedBodyInfo) -> RobotBaseInfo:
     lists = (body._linkInfos, body._jointInfos, body._gripperInfos)
     names = {one._name for infos in lists for one in infos}
 
-    def own(name: str | None) -> str:  # names of the robot's parts stay
+    def own(name: str | None) -> str:  # only the body's own parts get the prefix; they may refer to parts of the robot
         return f"{body._name}_{name}" if name in names else name or ""
 
     links = [
@@ -90,13 +92,14 @@ def _with_one(robot: RobotBaseInfo, body: ConnectedBodyInfo) -> RobotBaseInfo:
 
 
 def _renamed(joint: JointInfo, own: Rename) -> JointInfo:
+    # Equations contain the names of joints: every word that is one gets the prefix, functions and numbers do not.
     mimic = [one and [_WORD.sub(lambda word: own(word[0]), equation) for equation in one] for one in joint._vmimic]
     linkname0, linkname1 = own(joint._linkname0), own(joint._linkname1)
     return replace(joint, _name=own(joint._name), _linkname0=linkname0, _linkname1=linkname1, _vmimic=mimic)
 
 
 def _weld(body: ConnectedBodyInfo, carrier: str, root: str) -> JointInfo:
-    """Return the joint that fixes a body to the robot, under OpenRAVE's name for it."""
+    """Return the joint without DOFs that fixes a body to the robot, under OpenRAVE's name for it."""
     return JointInfo(
         _name=f"{body._name}___dummyconnectedbody__",
         _type=JointType.Prismatic,

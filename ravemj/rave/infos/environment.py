@@ -22,10 +22,10 @@ class EnvironmentBaseInfo(Info):
     """The description of an environment.
 
     Attributes:
-        _vBodyInfos: Its bodies, a list of ``KinBodyInfo`` and ``RobotBaseInfo``.
-        _gravity: Acceleration of free fall [m/s^2], shape (3,).
-        _description: A text; ``_keywords`` are words.
-        _uInt64Parameters: Whole numbers by name.
+        _vBodyInfos: The bodies, a list of ``KinBodyInfo`` and ``RobotBaseInfo``.
+        _gravity: The gravitational acceleration in the world frame [m/s^2], shape (3,).
+        _description: A text for people; ``_keywords`` is a list of words.
+        _uInt64Parameters: Integers of the user by name.
         _unitInfo: The units, a ``UnitInfo``.
     """
 

@@ -1,4 +1,4 @@
-"""The description of a shape."""
+"""The description of a collision geometry."""
 
 # The fields have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
@@ -32,30 +32,31 @@ _VECTORS = ("_vGeomData", "_vGeomData2", "_vGeomData3", "_vGeomData4")
 
 @info_class
 class GeometryInfo(GeometrySizes):
-    """A shape of a link.
+    """The description of a collision geometry of a link.
 
     Attributes:
-        _type: The kind of shape, a ``GeometryType``.
+        _type: The type of the shape, a ``GeometryType``.
         _t: ``T_link_geometry``, shape (4, 4).
-        _vGeomData: Half extents of a box; radius of a sphere; radius and height, along z, of a cylinder or capsule;
-            outer size of a container; height of a prism [m].
-        _vGeomData2: Inner size of a container [m].
-        _vGeomData3: Size of the cross on a container's bottom [m].
-        _vGeomData4: Size of the plate on a container's bottom [m].
-        _vCrossSection: Corners x y of a prism [m], shape (n, 2).
-        _vSideWalls: Walls of a cage, and ``_vAxialSlices`` radii of a round shape: only kept, since ravemj makes no
-            bodies of these.
-        _meshcollision: The triangles of a trimesh, a ``TriMesh``; of another shape those that ``SetCollisionMesh`` set.
-        _vDiffuseColor: Red, green, blue from 0 to 1.
-        _vAmbientColor: The same in the shade.
-        _fTransparency: 0 is opaque, 1 invisible.
-        _bVisible: Whether it is drawn.
-        _bModifiable: Whether planners may change it.
-        _name: Its name, or None.
-        _filenamerender: A mesh file that is drawn in its place, or None.
-        _filenamecollision: The mesh file of a trimesh that has no ``_meshcollision``, or None.
-        _vRenderScale: Factors along x, y, z for the one file.
-        _vCollisionScale: Factors for the other.
+        _vGeomData: The sizes [m]: half extents of a box; radius of a sphere; radius and height along z of a cylinder or
+            capsule; outer extents of a container; height of a prism.
+        _vGeomData2: The inner extents of a container [m].
+        _vGeomData3: The size of the cross on a container's bottom [m].
+        _vGeomData4: The size of the plate on a container's bottom [m].
+        _vCrossSection: The corners (x, y) of a prism [m], shape (n, 2).
+        _vSideWalls: The walls of a cage, and ``_vAxialSlices`` the radii of a shape of revolution. They are stored, but
+            ravemj cannot make bodies with these shapes.
+        _meshcollision: The triangles of a trimesh, a ``TriMesh``. For another shape, the triangles that
+            ``SetCollisionMesh`` set.
+        _vDiffuseColor: The diffuse colour, red, green, blue from 0 to 1.
+        _vAmbientColor: The ambient colour, likewise.
+        _fTransparency: The transparency: 0 is opaque, 1 invisible.
+        _bVisible: Whether the shape is drawn.
+        _bModifiable: Whether planners may change the geometry.
+        _name: The name, or None.
+        _filenamerender: A mesh file that is drawn in place of the shape, or None.
+        _filenamecollision: The mesh file of a trimesh without ``_meshcollision``, or None.
+        _vRenderScale: Factors along x, y, z for the drawn mesh.
+        _vCollisionScale: Factors along x, y, z for the collision mesh.
 
     Example:
         >>> info = ravemj.KinBody.GeometryInfo()
@@ -94,7 +95,7 @@ class GeometryInfo(GeometrySizes):
 
     @classmethod
     def of(cls, geometry: scene.Geometry) -> Self:
-        """Return the description of a shape."""
+        """Return the description of an existing geometry."""
         render, collision = geometry.render_file, geometry.collision_file
         info = cls(
             _type=TYPES[type(geometry.shape)],
@@ -116,7 +117,7 @@ class GeometryInfo(GeometrySizes):
         return info
 
     def _take(self, shape: scene.Shape) -> None:
-        """Take over the sizes of a shape: each vector fills a field, numbers share the first one."""
+        """Set the fields of the sizes: each vector of a shape fills a field, and its scalars share the first one."""
         vectors, numbers = iter(_VECTORS), list[float]()
         for size in shape.sizes():
             value = getattr(shape, size.name)
@@ -132,13 +133,13 @@ class GeometryInfo(GeometrySizes):
             self._vGeomData = _four(*numbers)
 
     def geometry(self, *, visible: bool = True) -> scene.Geometry:
-        """Return what the fields describe.
+        """Make the geometry that the fields describe.
 
         Args:
-            visible: False hides it.
+            visible: False hides the geometry, whatever its field says.
 
         Raises:
-            RavemjError: a number is wrong, a file cannot be read, or there is no such kind of shape here.
+            RavemjError: a field has wrong numbers, a mesh file cannot be read, or ravemj lacks the type of shape.
         """
         shape = self._shape()
         own_mesh = None if isinstance(shape, scene.TriMesh) else self._meshcollision
@@ -159,7 +160,7 @@ class GeometryInfo(GeometrySizes):
         )
 
     def _shape(self) -> scene.Shape:
-        """Return the shape with the sizes that the fields give, see ``_take``."""
+        """Return the shape with the sizes of the fields, in the order of ``_take``."""
         kind = _SHAPES.get(GeometryType(self._type))
         if kind is None:
             message = f"GeometryInfo: a shape of type {GeometryType(self._type).name} cannot be made here"
@@ -187,7 +188,7 @@ class GeometryInfo(GeometrySizes):
         return numbers[:count].tolist()
 
     def _mesh(self) -> scene.Mesh:
-        """Return the given triangles, else those of the mesh files."""
+        """Return the triangles of ``_meshcollision``, else those of the mesh files."""
         if self._meshcollision is not None:
             return checked_mesh(self._meshcollision, "GeometryInfo._meshcollision")
         collision = _file(self._filenamecollision, self._vCollisionScale)
@@ -195,10 +196,11 @@ class GeometryInfo(GeometrySizes):
         return scene.Mesh.merged(part.mesh for part in _parts(file)) if file else scene.Mesh.merged([])
 
     def ComputeAABB(self, transform: ArrayLike) -> AABB:
-        """Return the smallest box along the axes that holds the shape, its link standing at a pose.
+        """Return the axis-aligned bounding box of the shape, for a pose of its link.
 
         Args:
-            transform: ``T_a_link``: 4x4, 3x4 or 7 numbers.
+            transform: ``T_a_link``, the pose of the link in the frame of the box: 4x4, 3x4 or
+                [w, x, y, z, tx, ty, tz].
         """
         low, high = geometry_bounds(self.geometry(), checked_transform(transform, "ComputeAABB: transform"))
         return AABB((low + high) / 2, (high - low) / 2)
@@ -208,11 +210,14 @@ class GeometryInfo(GeometrySizes):
         return trimesh_of(self.geometry().triangulated())
 
     def draw(self, filename: str) -> None:
-        """Draw a mesh file in place of the shape; '' draws the shape itself."""
+        """Draw a mesh file in place of the shape; an empty name draws the shape itself."""
         self._filenamerender, self._drawn = filename or None, (None, None)
 
     def _display(self) -> tuple[scene.Surface, ...] | None:
-        """Return what is drawn in place of the shape: what the shape that this describes had, or that of a file."""
+        """Return the surfaces that are drawn in place of the shape, or None if the shape itself is drawn.
+
+        They are those of the geometry that this info was made from, unless another file was set since.
+        """
         name, surfaces = self._drawn
         file = _file(self._filenamerender, self._vRenderScale)
         if file is None or name == file.name:

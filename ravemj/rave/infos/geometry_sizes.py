@@ -1,4 +1,4 @@
-"""The sizes of a described shape by name, and the JSON of shapes."""
+"""Getters and setters for the sizes of a ``GeometryInfo``, and its JSON format."""
 
 # JSON and users put anything into the fields that the functions of forms take.
 # pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
@@ -21,7 +21,7 @@ from ravemj.rave.trimesh import TriMesh
 
 
 class SideWallType(NamedInt):
-    """Which side of a cage a wall is on: towards negative or positive x or y."""
+    """The side of a cage that a wall stands on: towards negative or positive x or y."""
 
     NX = 0
     PX = 1
@@ -35,8 +35,8 @@ class SideWall:
 
     Attributes:
         transf: ``T_cage_wall``, shape (4, 4).
-        vExtents: Half its edge lengths [m], shape (3,).
-        type: Which side it is on.
+        vExtents: The half extents of the wall [m], shape (3,).
+        type: The side of the cage.
     """
 
     transf: ArrayLike = ((1.0, 0, 0, 0), (0, 1.0, 0, 0), (0, 0, 1.0, 0), (0, 0, 0, 1.0))
@@ -46,7 +46,7 @@ class SideWall:
 
 @dataclass
 class AxialSlice:
-    """The radius of a round shape at a height.
+    """The radius of a shape of revolution at one height.
 
     Attributes:
         zOffset: The height [m].
@@ -58,7 +58,7 @@ class AxialSlice:
 
 
 class GeometrySizes(Info):
-    """Sizes of a shape by name. As in OpenRAVE, all are read from the same numbers, whatever the type."""
+    """The sizes of a shape by name. As in OpenRAVE, getters read the same numbers, whatever the type is."""
 
     _type: GeometryType
     _t: ArrayLike
@@ -152,16 +152,17 @@ class GeometrySizes(Info):
         return float(_first(self._vGeomData)[0])
 
     def ComputeInnerEmptyVolume(self) -> tuple[Floats | None, Floats | None]:
-        """Return the box that is free inside of a container.
+        """Return the empty box inside a container.
 
         Returns:
-            The pose of its centre in the link, shape (4, 4), and half its edge lengths [m], shape (3,); None and None
-            for shapes of other types.
+            ``T_link_box`` of the box's centre, shape (4, 4), and the half extents [m], shape (3,); None and None for
+            other types of shapes.
         """
         if GeometryType(self._type) != GeometryType.Container:
             return None, None
         outer, inner = self.GetContainerOuterExtents(), self.GetContainerInnerExtents()
         T_link_box = np.array(self._t, dtype=float)
+        # The frame of a container is at the centre of its bottom, and the empty box reaches up to its rim.
         T_link_box[:3, 3] += T_link_box[:3, 2] * (outer[2] - inner[2] / 2)
         return T_link_box, inner / 2
 
@@ -207,7 +208,7 @@ _EXTENTS = Form(
 
 
 def _number(place: int) -> Form:
-    """Return the form of one of the numbers of a field."""
+    """Return the JSON form of one number of a field with several."""
 
     def read(value: float, scale: float, present: Any) -> Floats:  # noqa: ANN401 - what users put into the field
         numbers = np.array([*_first(present), 0.0])

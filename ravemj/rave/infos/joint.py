@@ -60,34 +60,37 @@ _AXIS_FIELDS = (
     ("_vupperlimit", "upper", 0.0),
     ("_bIsCircular", "circular", 0.0),
 )
-"""Fields with a number for each axis, their names in ``scene.Axis``, and what stands for numbers that are missing."""
+"""Fields with one number for each axis: their names here, their names in ``scene.Axis``, and OpenRAVE's defaults."""
 
 _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 @info_class
 class JointInfo(ParameterFields):
-    """A joint between two links. Fields with a number for each axis may be longer than there are axes.
+    """The description of a joint between two links.
+
+    Fields with one number for each axis may be longer than the number of axes.
 
     Attributes:
-        _type: The kind of joint, a ``JointType``: Hinge, Slider, Hinge2, Spherical, RP, PR or PP.
-        _name: Its name.
-        _linkname0: Name of the one link; anchor and axes are in its frame.
-        _linkname1: Name of the other.
-        _vanchor: A point on the axis [m], shape (3,).
-        _vaxes: The directions of the axes, a list of three numbers each.
-        _vcurrentvalues: The values at which the links stand where their infos say [rad or m]; None: 0.
-        _vlowerlimit: Lower limits [rad or m]; where they equal the upper ones, the joint is a weld.
-        _vupperlimit: Upper limits.
-        _vmaxvel: Velocity limits; _vmaxaccel, _vmaxjerk, _vmaxtorque, _vweights and _vresolution likewise.
-        _vhardmaxvel: Velocities that are never exceeded, 0 for none; _vhardmaxaccel and _vhardmaxjerk likewise.
+        _type: The type of the joint, a ``JointType``: Hinge, Slider, Hinge2, Spherical, RP, PR or PP.
+        _name: The name.
+        _linkname0: The name of the first link; anchor and axes are in its frame.
+        _linkname1: The name of the second link.
+        _vanchor: A point on the axis, in the frame of the first link [m], shape (3,).
+        _vaxes: The directions of the axes in the frame of the first link, a list of vectors of shape (3,).
+        _vcurrentvalues: The joint values at the link poses of the infos [rad or m]; None stands for 0.
+        _vlowerlimit: Lower limits [rad or m]. A joint whose lower limits equal its upper limits is a weld.
+        _vupperlimit: Upper limits [rad or m].
+        _vmaxvel: Velocity limits [rad/s or m/s]; _vmaxaccel, _vmaxjerk, _vmaxtorque, _vweights and _vresolution
+            likewise.
+        _vhardmaxvel: Velocity limits that planners never exceed, 0 for none; _vhardmaxaccel and _vhardmaxjerk likewise.
         _voffsets: See ``Joint.SetWrapOffset``.
-        _bIsCircular: Whether the axis turns without end; limits do not count then.
-        _bIsActive: Whether it has DOFs.
-        _vmimic: How it follows others: a list with the equations of position, velocity and acceleration for each axis.
-        _infoElectricMotor: Its motor, or None.
-        _controlMode: Who drives it, a ``JointControlMode``; ``_jci_robotcontroller``, ``_jci_io`` and
-            ``_jci_externaldevice`` say more. Only kept.
+        _bIsCircular: Whether the axis turns without end; then limits do not count.
+        _bIsActive: Whether the joint has DOFs.
+        _vmimic: The equations of a mimic joint: for each axis a list with those of position, velocity and acceleration.
+        _infoElectricMotor: The motor, or None.
+        _controlMode: The hardware that drives the joint, a ``JointControlMode``; ``_jci_robotcontroller``, ``_jci_io``
+            and ``_jci_externaldevice`` have its details. ravemj only stores them.
 
     Example:
         >>> info = ravemj.KinBody.JointInfo()
@@ -132,11 +135,11 @@ class JointInfo(ParameterFields):
 
     @classmethod
     def of(cls, body: scene.KinBody, index: int, values: Sequence[float]) -> Self:
-        """Return the description of a joint with its links at some values.
+        """Return the description of an existing joint, with its links at given joint values.
 
         Args:
             body: The body.
-            index: Index of the joint among the active joints followed by the passive ones.
+            index: The index of the joint among the active joints followed by the passive ones.
             values: The values of its axes [rad or m].
         """
         joint = body.all_joints[index]
@@ -159,10 +162,10 @@ class JointInfo(ParameterFields):
         ).with_parameters(joint.parameters)
 
     def GetDOF(self) -> int:
-        """Return the number of axes of a joint of this type; 0 where the type is not set.
+        """Return the number of axes of a joint of this type; 0 if the type is not set.
 
         Raises:
-            openrave_exception: there is no such type.
+            openrave_exception: OpenRAVE has no such type.
         """
         kind = JointType(self._type)
         return _SPECIAL_AXES[kind] if kind in _SPECIAL_AXES else int(kind) & 0xF
@@ -172,33 +175,33 @@ class JointInfo(ParameterFields):
         return _joint_json(kind == JointType.Prismatic)
 
     def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
-        """Return the joint as OpenRAVE's JSON has it, see ``Info``; lists have a number for each axis.
+        """Return the joint in OpenRAVE's JSON format, see ``Info``. Its lists have one number for each axis.
 
         Args:
-            unitScale: Factor for all lengths: of a slider also of its limits.
-            options: OpenRAVE's; not used.
+            unitScale: Multiplies all lengths; for a slider these include its limits.
+            options: Not used.
         """
         written = super().SerializeJSON(unitScale, options)
         return {key: value[: self.GetDOF()] if key in _OF_AXES else value for key, value in written.items()}
 
     def named_values(self) -> list[tuple[tuple[str, int], float]]:
-        """Return the present values, each with the joint's name and the axis."""
+        """Return the current values, each as ((joint name, axis), value)."""
         values = np.ravel(() if self._vcurrentvalues is None else self._vcurrentvalues)
         return [((self._name or "", axis), float(value)) for axis, value in enumerate(values)]
 
     def joint(self, links: "Sequence[LinkBuilder]") -> "JointBuilder":
-        """Return what the fields describe.
+        """Make the joint that the fields describe.
 
         Args:
-            links: The links of the body; two of them are named.
+            links: The links of the body, which contain the two that the joint names.
 
         Raises:
-            RavemjError: a link is not there, a number is wrong, or there is no such kind of joint here.
+            RavemjError: a named link is missing, a field has wrong numbers, or ravemj lacks the type of joint.
         """
         kind = _KINDS.get(JointType(self._type))
         if kind is None:
             message = (
-                f"joint '{self._name}' is of type {JointType(self._type).name}; ravemj has {', '.join(scene.AXES)}"
+                f"joint '{self._name}' has the type {JointType(self._type).name}; ravemj has {', '.join(scene.AXES)}"
             )
             raise RavemjError(message, ErrorCode.NotImplemented)
         names = [link.name for link in links]
@@ -210,6 +213,7 @@ class JointInfo(ParameterFields):
         axes = self._made_axes(kind, values)
         anchor = vector(self._vanchor, "JointInfo._vanchor")
         T_first_second = links[first].pose.inverse() @ links[second].pose
+        # The builder wants the pose of the second link at value 0, and the infos give it at the current values.
         if kind == "spherical":
             T_first_second = about(anchor, wxyz_from_rotation_vector((values[0], values[1], values[2]))).inverse() @ (
                 T_first_second
@@ -258,12 +262,12 @@ class JointInfo(ParameterFields):
 
 
 def _motor_of(axis: scene.Axis) -> ElectricMotorActuatorInfo | None:
-    """Return a motor without a gear that has the inertia of an axis; None for none."""
+    """Return a motor with the armature inertia of an axis and a gear ratio of 1; None without armature inertia."""
     return ElectricMotorActuatorInfo(gear_ratio=1.0, rotor_inertia=axis.armature) if axis.armature else None
 
 
 def type_of(kind: scene.JointKind) -> JointType:
-    """Return OpenRAVE's type of a kind of joint."""
+    """Return OpenRAVE's number for a kind of joint."""
     return next(number for number, known in _KINDS.items() if known == kind)
 
 
@@ -287,11 +291,11 @@ _MIMICS = Form(
 _OF_AXES = {f"{kind}{quantity}" for kind in ("max", "hardMax") for quantity in ("Vel", "Accel", "Jerk")} | {
     *("maxTorque", "maxInertia", "resolutions", "weights", "offsets", "lowerLimit", "upperLimit", "isCircular"),
 }
-"""Keys whose lists have as many numbers as the joint has axes."""
+"""JSON keys whose lists have one number for each axis."""
 
 
 def _joint_json(slides: bool) -> Sequence[Entry]:
-    """Return the table of a joint; the values of one that slides are lengths."""
+    """Return the JSON table of a joint. The values of a sliding joint are lengths, which unit scales multiply."""
     value = LENGTHS if slides else PLAIN
     return (
         Entry("type", "_type", _WORDS),
@@ -330,12 +334,12 @@ def _joint_json(slides: bool) -> Sequence[Entry]:
 def _unit(direction: Vec3) -> Vec3:
     length = math.sqrt(dot(direction, direction))
     if length == 0.0:
-        raise ArgumentError("JointInfo._vaxes: an axis is 0 0 0, and should point somewhere")
+        raise ArgumentError("JointInfo._vaxes: an axis is 0 0 0, and should be a direction")
     return scale(direction, 1 / length)
 
 
 def _directions(body: scene.KinBody, joint: scene.Joint, values: Sequence[float]) -> list[Vec3]:
     """Return the directions of the axes at some values, in the frame of the first link."""
-    if joint.static and body.joints:  # the builder turns those of a weld
+    if joint.static and body.joints:  # the builder turns the axes of a weld into the frame of its second link
         return [rotate(conjugate(joint.T_parent_child.wxyz), axis.direction) for axis in joint.axes]
     return directions_at(joint, values)

@@ -1,6 +1,6 @@
-"""OpenRAVE's JSON of infos: which key holds which field, and how.
+"""OpenRAVE's JSON format of infos: which key holds which field, and in which form.
 
-Each class of infos has a table of entries. Lengths are multiplied by a scale both ways, poses are
+Each class of infos has a table of entries. Writing and reading both multiply lengths by a given scale. Poses are
 [w, x, y, z, tx, ty, tz], and arrays are lists.
 """
 
@@ -23,23 +23,23 @@ Json = dict[str, Any]
 
 
 class Described(Protocol):
-    """An info."""
+    """An object that converts itself to JSON and back: an info."""
 
     def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
-        """Return it as JSON."""
+        """Return the object as JSON."""
         ...
 
     def DeserializeJSON(self, obj: Json, unitScale: float = 1.0, options: object = None) -> None:
-        """Take over JSON."""
+        """Set the fields from JSON."""
         ...
 
 
 class Form(NamedTuple):
-    """How a field stands in JSON.
+    """The conversion of a field to JSON and back.
 
     Attributes:
-        write: Takes the field and the scale; returns what JSON has.
-        read: Takes what JSON has, the scale and the present field; returns the new one.
+        write: A function of the field and the scale that returns the JSON value.
+        read: A function of the JSON value, the scale and the current field that returns the new field.
     """
 
     write: Callable[[Any, float], Any]
@@ -47,13 +47,13 @@ class Form(NamedTuple):
 
 
 class Entry(NamedTuple):
-    """A key of JSON.
+    """A JSON key and its field.
 
     Attributes:
         key: The key.
-        field: The field that it holds.
-        form: How.
-        optional: Whether the key is left out where the field is None, empty or has its default value.
+        field: The name of the field.
+        form: The conversion.
+        optional: Whether the key is left out if the field is None or has its default value.
     """
 
     key: str
@@ -63,7 +63,7 @@ class Entry(NamedTuple):
 
 
 def plain(value: Any) -> Any:  # noqa: ANN401 - what JSON can hold
-    """Return a value as lists, numbers and texts."""
+    """Return a value made of lists, dicts, numbers and texts."""
     if isinstance(value, Enum):
         return plain(value.value)
     if isinstance(value, np.ndarray | np.generic):
@@ -76,7 +76,7 @@ def plain(value: Any) -> Any:  # noqa: ANN401 - what JSON can hold
 
 
 def lengths(power: int = 1) -> Form:
-    """Return the form of numbers [m^power]."""
+    """Return the form of numbers with the unit m^power."""
 
     def scaled(values: Any, scale: float) -> Any:  # noqa: ANN401 - a number or an array
         return plain(np.asarray(values, dtype=float) * scale**power)
@@ -85,7 +85,7 @@ def lengths(power: int = 1) -> Form:
 
 
 def _array(value: Any) -> Any:  # noqa: ANN401 - what JSON holds
-    """Return lists of numbers as arrays, anything else as it is."""
+    """Return a list of numbers as an array, and anything else unchanged."""
     is_numbers = isinstance(value, list) and value and all(type(one) in {int, float} for one in value)
     return np.array(value, dtype=float) if is_numbers else value
 
@@ -100,7 +100,7 @@ def _read_pose(numbers: Sequence[float], scale: float, present: object) -> Any: 
     del present
     pose = np.array(numbers, dtype=float)
     if pose.shape != (7,):
-        raise ArgumentError(f"transform: is {plain(numbers)}, and should be seven numbers")
+        raise ArgumentError(f"transform: is {plain(numbers)}, and should be seven numbers [w, x, y, z, tx, ty, tz]")
     pose[4:] *= scale
     return matrixFromPose(pose)
 
@@ -119,7 +119,7 @@ def _read_parameters(items: Sequence[Json], key: str, present: Mapping[str, Any]
 
 
 def parameters(key: str) -> Form:
-    """Return the form of values by name; each is behind a key."""
+    """Return the form of named values: a list of dicts, each with ``id`` and with the value under ``key``."""
     return Form(
         lambda values, scale: [{"id": name, key: plain(value)} for name, value in values.items()],
         lambda items, scale, present: _read_parameters(items, key, present),
@@ -127,7 +127,7 @@ def parameters(key: str) -> Form:
 
 
 def info(kind: Callable[[], Described]) -> Form:
-    """Return the form of one info, or None."""
+    """Return the form of a field that holds one info or None."""
 
     def read(value: Json | None, scale: float, present: Described | None) -> Described | None:
         if value is None:
@@ -142,11 +142,11 @@ def info(kind: Callable[[], Described]) -> Form:
 def infos(kind: Callable[[Json], Described]) -> Form:
     """Return the form of a list of infos.
 
-    Reading changes those that have the same id, or else the same name; others are added, and one with ``__deleted__``
-    goes.
+    Reading changes the info of the list that has the same id, or else the same name. Without one, it adds an info. An
+    item with ``__deleted__`` removes its info.
 
     Args:
-        kind: Makes an empty info for an item.
+        kind: A function of an item that makes an empty info of its class.
     """
 
     def read(items: Sequence[Json], scale: float, present: Sequence[Described]) -> list[Described]:
@@ -172,8 +172,8 @@ def _is_called(one: Described, item: Json) -> bool:
 
 
 def named(names: Mapping[Any, str]) -> Form:
-    """Return the form of an enumeration by its words."""
-    values = {word: value for value, word in reversed(list(names.items()))}
+    """Return the form of an enumeration; ``names`` are the words that JSON has for its members."""
+    values = {word: value for value, word in reversed(list(names.items()))}  # the first of two equal words wins
 
     def read(word: str, scale: float, present: object) -> Any:  # noqa: ANN401 - a member of the enumeration
         del scale, present

@@ -29,21 +29,21 @@ if TYPE_CHECKING:
 
 @info_class
 class LinkInfo(ParameterFields):
-    """A link of a body.
+    """The description of a link.
 
     Attributes:
-        _name: Its name.
+        _name: The name.
         _t: ``T_world_link``, shape (4, 4).
-        _mass: Mass [kg].
-        _tMassFrame: Frame of the principal axes of inertia at the centre of mass, in the link, shape (4, 4).
-        _vinertiamoments: Moments of inertia about these axes [kg m^2], shape (3,).
-        _vgeometryinfos: Its shapes, a list of ``GeometryInfo``.
-        _mapExtraGeometries: Other sets of shapes by name, each a list of ``GeometryInfo``.
-        _vForcedAdjacentLinks: Names of links that it is never tested against.
-        _mapFloatParameters: Numbers of your own, by name; ``_mapIntParameters`` and ``_mapStringParameters`` likewise.
-        _bStatic: Whether it is called static.
-        _bIsEnabled: Whether collision checking looks at it.
-        _bVisible: False hides all its shapes.
+        _mass: The mass [kg].
+        _tMassFrame: ``T_link_mass``, shape (4, 4): the centre of mass and the principal axes of inertia.
+        _vinertiamoments: The principal moments of inertia [kg m^2], shape (3,).
+        _vgeometryinfos: The collision geometries, a list of ``GeometryInfo``.
+        _mapExtraGeometries: Other groups of geometries by name, each a list of ``GeometryInfo``.
+        _vForcedAdjacentLinks: The names of links that collision checks never test against this one.
+        _mapFloatParameters: The user's numbers by name; ``_mapIntParameters`` and ``_mapStringParameters`` likewise.
+        _bStatic: Whether the link is marked as static.
+        _bIsEnabled: Whether the link takes part in collision checks.
+        _bVisible: False hides all geometries.
     """
 
     _called = "KinBody.LinkInfo"
@@ -64,7 +64,7 @@ class LinkInfo(ParameterFields):
 
     @classmethod
     def of(cls, body: scene.KinBody, index: int, T_world_link: Floats, *, enabled: bool) -> Self:
-        """Return the description of a link as it stands."""
+        """Return the description of an existing link at its current pose."""
         link = body.links[index]
         pairs = [pair for pair in body.adjacent if pair[0] == index]
         return cls(
@@ -85,10 +85,10 @@ class LinkInfo(ParameterFields):
         ).with_parameters(link.parameters)
 
     def link(self) -> "LinkBuilder":
-        """Return what the fields describe.
+        """Make the link that the fields describe.
 
         Raises:
-            RavemjError: it has no name, or a number is wrong.
+            RavemjError: the link has no name, or a field has wrong numbers.
         """
         if not self._name:
             raise ArgumentError("LinkInfo._name: is empty, and should name the link")
@@ -115,7 +115,7 @@ class LinkInfo(ParameterFields):
         return _LINK_JSON
 
     def adjacent(self, names: Sequence[str]) -> list[int]:
-        """Return the indices of the links that it is never tested against."""
+        """Return the indices of the links that collision checks never test against this one."""
         return [names.index(name) for name in self._vForcedAdjacentLinks if name in names]
 
 
@@ -142,10 +142,14 @@ _LINK_JSON = (
 
 
 def geometries_of(infos: Sequence[GeometryInfo], *, visible: bool = True) -> tuple[scene.Geometry, ...]:
-    """Return the shapes that some infos describe; hidden if the link is.
+    """Make the geometries that infos describe.
+
+    Args:
+        infos: The descriptions.
+        visible: False hides them, as a hidden link does.
 
     Raises:
-        ArgumentError: one is no ``GeometryInfo``, or describes nothing that can be.
+        ArgumentError: an object is not a ``GeometryInfo``, or its fields do not make a geometry.
     """
     found: list[scene.Geometry] = []
     for info in infos:

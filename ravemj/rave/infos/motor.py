@@ -1,4 +1,4 @@
-"""What drives a joint: electric motors, and how controllers of hardware know it."""
+"""Descriptions of what drives a joint: its electric motor, and the hardware that commands it."""
 
 from collections.abc import Sequence
 from dataclasses import field, fields
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 
 def _camel(name: str) -> str:
-    """Return the key of JSON for a field: ``gearRatio`` for ``gear_ratio``."""
+    """Return the JSON key of a field: ``gearRatio`` for ``gear_ratio``."""
     first, *rest = name.split("_")
     return first + "".join(word.capitalize() for word in rest)
 
 
 class JointControlMode(NamedInt):
-    """Who drives a joint of a real robot."""
+    """The hardware that drives a joint of a real robot."""
 
     JCM_None = 0
     JCM_RobotController = 1
@@ -29,15 +29,15 @@ class JointControlMode(NamedInt):
 
 @info_class
 class ElectricMotorActuatorInfo(Info):
-    """An electric motor behind a gear. Its torque wins over ``JointInfo._vmaxtorque``.
+    """An electric motor with a gear. Its maximum torque replaces ``JointInfo._vmaxtorque``.
 
     Attributes:
-        gear_ratio: Turns of the motor for one of the joint.
-        max_instantaneous_torque: Torque of the motor for a moment [N m].
-        nominal_torque: Torque of the motor for long [N m]; taken where the other is 0.
-        rotor_inertia: Inertia of the rotor [kg m^2].
-        coloumb_friction: Friction at any speed of the joint [N m].
-        viscous_friction: Friction per speed of the joint [N m s/rad].
+        gear_ratio: Turns of the motor for one turn of the joint.
+        max_instantaneous_torque: The peak torque of the motor [N m].
+        nominal_torque: The continuous torque of the motor [N m], used if the peak torque is 0.
+        rotor_inertia: The inertia of the rotor [kg m^2].
+        coloumb_friction: The Coulomb friction at the joint [N m]; the spelling is OpenRAVE's.
+        viscous_friction: The viscous friction at the joint [N m s/rad].
     """
 
     _called = "ElectricMotorActuatorInfo"
@@ -66,7 +66,7 @@ class ElectricMotorActuatorInfo(Info):
         return _MOTOR_JSON
 
     def motor(self) -> "Motor":
-        """Return torque, inertia and friction at the joint."""
+        """Return the torque limit, inertia and friction that the motor has at the joint."""
         from ravemj.formats.openrave_xml.actuator import ACTUATOR_TAGS, motor_of  # noqa: PLC0415 - rarely wanted
 
         return motor_of({name: float(getattr(self, name)) for name in ACTUATOR_TAGS})
@@ -77,15 +77,15 @@ _MOTOR_JSON = tuple(Entry(_camel(one.name), one.name, PLAIN) for one in fields(E
 
 @info_class
 class JointControlInfo_RobotController(Info):  # noqa: N801 - OpenRAVE's name
-    """A joint that the controller of a robot drives. It is only kept: ravemj drives no hardware.
+    """The controller that drives a joint of a real robot. ravemj stores it only, since it drives no hardware.
 
     Attributes:
-        controllerType: Kind of the controller.
-        robotControllerAxisIndex: For each axis of the joint its number there; -1: none.
-        robotControllerAxisMult: Factor from the joint's value to the controller's.
-        robotControllerAxisOffset: What is added then.
-        robotControllerAxisManufacturerCode: Maker of each axis' drive.
-        robotControllerAxisProductCode: Its product.
+        controllerType: The type of the controller.
+        robotControllerAxisIndex: For each axis of the joint its number in the controller; -1 if it has none.
+        robotControllerAxisMult: The factor from the joint's value to the controller's.
+        robotControllerAxisOffset: The offset that is added after the factor.
+        robotControllerAxisManufacturerCode: The manufacturer of each axis' drive.
+        robotControllerAxisProductCode: The product code of each axis' drive.
     """
 
     _called = "JointControlInfo_RobotController"
@@ -104,15 +104,15 @@ class JointControlInfo_RobotController(Info):  # noqa: N801 - OpenRAVE's name
 
 @info_class
 class JointControlInfo_IO(Info):  # noqa: N801 - OpenRAVE's name
-    """A joint that inputs and outputs drive, such as a gripper's. It is only kept.
+    """The inputs and outputs that drive a joint, for instance that of a gripper. ravemj stores it only.
 
     Attributes:
-        deviceType: Kind of the device.
-        moveIONames: For each axis the outputs that move it.
-        upperLimitIONames: The inputs that tell of the upper limit.
-        upperLimitSensorIsOn: What they say there.
-        lowerLimitIONames: The inputs that tell of the lower limit.
-        lowerLimitSensorIsOn: What they say there.
+        deviceType: The type of the device.
+        moveIONames: For each axis the names of the outputs that move it.
+        upperLimitIONames: For each axis the names of the inputs of its upper limit switch.
+        upperLimitSensorIsOn: The values of these inputs at the upper limit.
+        lowerLimitIONames: For each axis the names of the inputs of its lower limit switch.
+        lowerLimitSensorIsOn: The values of these inputs at the lower limit.
     """
 
     _called = "JointControlInfo_IO"
@@ -131,10 +131,10 @@ class JointControlInfo_IO(Info):  # noqa: N801 - OpenRAVE's name
 
 @info_class
 class JointControlInfo_ExternalDevice(Info):  # noqa: N801 - OpenRAVE's name
-    """A joint that some other device drives. It is only kept.
+    """Another device that drives a joint. ravemj stores it only.
 
     Attributes:
-        externalDeviceType: Kind of the device.
+        externalDeviceType: The type of the device.
     """
 
     _called = "JointControlInfo_ExternalDevice"

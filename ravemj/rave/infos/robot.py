@@ -29,18 +29,19 @@ def _ahead() -> ArrayLike:
 
 @info_class
 class ManipulatorInfo(Info):
-    """An arm of a robot.
+    """The description of a manipulator: a chain of links with a tool at its end.
 
     Attributes:
-        _name: Its name.
-        _sBaseLinkName: Name of the link that it starts from.
-        _sEffectorLinkName: Name of the link that carries the tool.
+        _name: The name.
+        _sBaseLinkName: The name of the link that the chain starts from.
+        _sEffectorLinkName: The name of the link that carries the tool.
         _tLocalTool: ``T_effector_tool``, shape (4, 4).
-        _vdirection: Where the tool points, in its own frame, shape (3,).
-        _vGripperJointNames: Names of the gripper's joints.
-        _vChuckingDirection: For each of their DOFs the sign of closing; OpenRAVE 0.9 calls it ``_vClosingDirection``.
-        _sIkSolverXMLId: Name of an IK solver; not used.
-        _grippername: Name of the ``GripperInfo`` that describes the gripper.
+        _vdirection: The direction in which the tool points, in the tool frame, shape (3,).
+        _vGripperJointNames: The names of the gripper's joints.
+        _vChuckingDirection: For each DOF of these joints the sign of closing; OpenRAVE 0.9 calls the field
+            ``_vClosingDirection``.
+        _sIkSolverXMLId: The name of an IK solver; not used.
+        _grippername: The name of the ``GripperInfo`` that describes the gripper.
     """
 
     _called = "Robot.ManipulatorInfo"
@@ -66,7 +67,7 @@ class ManipulatorInfo(Info):
 
     @classmethod
     def of(cls, body: scene.KinBody, arm: scene.Manipulator) -> Self:
-        """Return the description of an arm."""
+        """Return the description of an existing manipulator."""
         return cls(
             _name=arm.name,
             _sBaseLinkName="" if arm.base is None else body.links[arm.base].name,
@@ -79,10 +80,10 @@ class ManipulatorInfo(Info):
         )
 
     def manipulator(self) -> "ManipulatorBuilder":
-        """Return what the fields describe.
+        """Make the manipulator that the fields describe.
 
         Raises:
-            ArgumentError: it has no name, or a number is wrong.
+            ArgumentError: the manipulator has no name, or a field has wrong numbers.
         """
         if not self._name:
             raise ArgumentError("ManipulatorInfo._name: is empty, and should name the manipulator")
@@ -121,14 +122,15 @@ _MANIPULATOR_JSON = (
 
 @info_class
 class AttachedSensorInfo(Info):
-    """A sensor on a link.
+    """The description of a sensor on a link.
 
     Attributes:
-        _name: Its name.
-        _linkname: Name of the link that carries it.
+        _name: The name.
+        _linkname: The name of the link that carries the sensor.
         _trelative: ``T_link_sensor``, shape (4, 4).
-        _sensorname: OpenRAVE's name of the kind of sensor, for instance ``BaseCamera``; empty for a mere frame.
-        _sensorgeometry: What is fixed about it: of a camera a ``CameraGeomData``; None: OpenRAVE's defaults.
+        _sensorname: OpenRAVE's name for the kind of sensor, for instance ``BaseCamera``; empty for a frame without a
+            sensor.
+        _sensorgeometry: The constant properties, for a camera a ``CameraGeomData``; None for OpenRAVE's defaults.
     """
 
     _called = "Robot.AttachedSensorInfo"
@@ -142,7 +144,7 @@ class AttachedSensorInfo(Info):
 
     @classmethod
     def of(cls, body: scene.KinBody, sensor: scene.AttachedSensor) -> Self:
-        """Return the description of a sensor."""
+        """Return the description of an existing sensor."""
         return cls(
             _name=sensor.name,
             _linkname="" if sensor.link is None else body.links[sensor.link].name,
@@ -152,20 +154,20 @@ class AttachedSensorInfo(Info):
         )
 
     def sensor(self, links: Sequence[str]) -> scene.AttachedSensor:
-        """Return what the fields describe.
+        """Make the sensor that the fields describe.
 
         Args:
             links: The names of the robot's links.
 
         Raises:
-            ArgumentError: the geometry is of another kind of sensor, or holds something else than numbers.
+            ArgumentError: ``_sensorgeometry`` belongs to another kind of sensor, or has wrong numbers.
         """
         geometry, kind = self._sensorgeometry, scene.sensor_kind(self._sensorname or "")
         device = None if kind is None else kind.device
         if device is not None and geometry is not None:
             device = device_of(geometry, device)
             if device is None:
-                message = f"a {type(geometry).__name__} says nothing about a {self._sensorname}"
+                message = f"is a {type(geometry).__name__}, which does not describe a {self._sensorname}"
                 raise ArgumentError(f"AttachedSensorInfo._sensorgeometry: {message}")
         return scene.AttachedSensor(
             name=self._name or "",
@@ -193,12 +195,12 @@ _SENSOR_JSON = (
 
 @info_class
 class GripperInfo(Info):
-    """The gripper of an arm; manipulators name it in ``ManipulatorInfo._grippername``.
+    """The description of a gripper. Manipulators name it in ``ManipulatorInfo._grippername``.
 
     Attributes:
-        _name: Its name.
-        _grippertype: Its kind, any text.
-        _gripperJointNames: Names of its joints.
+        _name: The name.
+        _grippertype: The type of the gripper, any text.
+        _gripperJointNames: The names of its joints.
     """
 
     _called = "GripperInfo"

@@ -1,4 +1,4 @@
-"""What is fixed about sensors: resolutions, ranges, calibration."""
+"""The constant properties of sensors: resolution, range, calibration."""
 
 from collections.abc import Sequence
 from dataclasses import field
@@ -16,13 +16,13 @@ from ravemj.rave.infos.json import PLAIN, TEXT, Entry, Json, info
 
 @info_class
 class CameraIntrinsics(Info):
-    """A pinhole camera: its matrix, and the distortion of its lens, which pictures here do not have.
+    """The intrinsics of a camera: its matrix and the distortion of its lens. Rendered pictures have no distortion.
 
     Attributes:
-        K: Camera matrix [pixels], shape (3, 3).
-        distortion_model: Name of the model of distortion; empty: none.
-        distortion_coeffs: Its numbers.
-        focal_length: Focal length of the lens [m].
+        K: The camera matrix [pixels], shape (3, 3).
+        distortion_model: The name of the distortion model; empty for none.
+        distortion_coeffs: The coefficients of the distortion model.
+        focal_length: The focal length of the lens [m].
     """
 
     _called = "Sensor.CameraIntrinsics"
@@ -37,23 +37,23 @@ class CameraIntrinsics(Info):
         return _INTRINSICS_JSON
 
     def SerializeJSON(self, unitScale: float = 1.0, options: object = None) -> Json:
-        """Return the camera as OpenRAVE's JSON has it, see ``Info``.
+        """Return the intrinsics in OpenRAVE's JSON format, see ``Info``.
 
         Args:
-            unitScale: Factor for all lengths.
-            options: OpenRAVE's; not used.
+            unitScale: Multiplies all lengths.
+            options: Not used.
         """
         matrix = np.asarray(self.K, dtype=float)
         numbers = {"fx": matrix[0, 0], "fy": matrix[1, 1], "cx": matrix[0, 2], "cy": matrix[1, 2]}
         return {key: float(number) for key, number in numbers.items()} | super().SerializeJSON(unitScale, options)
 
     def DeserializeJSON(self, obj: Json, unitScale: float = 1.0, options: object = None) -> None:
-        """Take over what JSON has, see ``Info``.
+        """Set fields from OpenRAVE's JSON format, see ``Info``.
 
         Args:
-            obj: What ``SerializeJSON`` returns, or a part of it.
-            unitScale: Factor for all lengths.
-            options: OpenRAVE's; not used.
+            obj: A result of ``SerializeJSON``, or a part of one.
+            unitScale: Multiplies all lengths.
+            options: Not used.
         """
         super().DeserializeJSON(obj, unitScale, options)
         matrix = np.array(self.K, dtype=float)
@@ -78,10 +78,10 @@ _PINHOLE_JSON = (
 
 @info_class
 class SensorGeometry(Info):
-    """What is fixed about a sensor of any kind; each kind of sensor has its own class.
+    """The base class of the constant properties of sensors. Each kind of sensor has a class of its own.
 
     Attributes:
-        hardware_id: What its maker calls it.
+        hardware_id: The manufacturer's identifier.
     """
 
     _called = "SensorGeometry"
@@ -110,15 +110,15 @@ class SensorGeometry(Info):
 
 @info_class
 class CameraGeomData(SensorGeometry):
-    """Image size and intrinsics of a camera.
+    """The image size and the intrinsics of a camera.
 
     Attributes:
         intrinsics: The camera matrix and the lens.
-        width: Columns [pixels].
-        height: Rows [pixels].
-        measurement_time: How long it takes a picture [s].
-        gain: Amplification.
-        target_region: Name of the region that it looks at.
+        width: The width of the image [pixels].
+        height: The height of the image [pixels].
+        measurement_time: The exposure time [s].
+        gain: The gain.
+        target_region: The name of the region that the camera looks at.
     """
 
     _called = "CameraGeomData"
@@ -152,14 +152,14 @@ class CameraGeomData(SensorGeometry):
 
 @info_class
 class LaserGeomData(SensorGeometry):
-    """Field of view and range of a laser scanner.
+    """The field of view and the range of a laser scanner.
 
     Attributes:
-        min_angle: Where a scan begins [rad], of the first and the second axis.
-        max_angle: Where it ends.
-        min_range: Least distance that is measured [m].
-        max_range: Greatest distance [m].
-        resolution: Step of the angles [rad].
+        min_angle: The first angle of a scan [rad], about the first and the second axis.
+        max_angle: The last angle of a scan [rad], likewise.
+        min_range: The smallest distance that is measured [m].
+        max_range: The greatest distance that is measured [m].
+        resolution: The step of the angles [rad], likewise.
         time_increment: Time between two measurements [s].
         time_scan: Time between two scans [s].
     """
@@ -183,12 +183,14 @@ class LaserGeomData(SensorGeometry):
 
 @info_class
 class SpinningLaserGeomData(LaserGeomData):
-    """A laser scanner whose plane turns about a second axis, ``BaseSpinningLaser2D``; OpenRAVE has it in XML only.
+    """A laser scanner whose plane turns about a second axis, ``BaseSpinningLaser2D``.
+
+    OpenRAVE reads its properties from XML only, and has no class for them.
 
     Attributes:
-        spin_axis: The axis, in the sensor's frame.
-        spin_position: A point on it [m].
-        spin_speed: How fast the plane turns [rad/s].
+        spin_axis: The direction of the axis, in the sensor frame.
+        spin_position: A point on the axis, in the sensor frame [m].
+        spin_speed: The angular velocity of the plane [rad/s].
     """
 
     _called = "SpinningLaserGeomData"
@@ -204,12 +206,14 @@ class SpinningLaserGeomData(LaserGeomData):
 
 @info_class
 class FlashLidarGeomData(LaserGeomData):
-    """A camera that measures distances, ``BaseFlashLidar3D``; OpenRAVE has it in XML only. Angles mean nothing here.
+    """A camera that measures distances, ``BaseFlashLidar3D``. The angles of laser scanners do not apply.
+
+    OpenRAVE reads its properties from XML only, and has no class for them.
 
     Attributes:
-        intrinsics: The camera matrix [rays].
-        width: Columns.
-        height: Rows.
+        intrinsics: The camera matrix, in units of rays.
+        width: The number of columns of rays.
+        height: The number of rows of rays.
     """
 
     _called = "FlashLidarGeomData"
@@ -224,10 +228,10 @@ class FlashLidarGeomData(LaserGeomData):
 
 @info_class
 class JointEncoderGeomData(SensorGeometry):
-    """Steps of a joint's encoders.
+    """The resolution of the encoders of a joint.
 
     Attributes:
-        resolution: For each DOF of the joint its step [rad or m].
+        resolution: The step of each DOF of the joint [rad or m].
     """
 
     _called = "JointEncoderGeomData"
@@ -239,11 +243,11 @@ class JointEncoderGeomData(SensorGeometry):
 
 @info_class
 class Force6DGeomData(SensorGeometry):
-    """Calibration of a sensor of forces and torques.
+    """The calibration of a force-torque sensor.
 
     Attributes:
-        polarity: Sign of what it measures: 1 or -1.
-        correction_matrix: What multiplies its six numbers, 36 numbers by rows.
+        polarity: The sign of the measurements, 1 or -1.
+        correction_matrix: The 6x6 matrix that multiplies a measurement, 36 numbers row by row.
     """
 
     _called = "Force6DGeomData"
@@ -256,7 +260,7 @@ class Force6DGeomData(SensorGeometry):
 
 @info_class
 class IMUGeomData(SensorGeometry):
-    """Timing of an inertial measurement unit.
+    """The timing of an inertial measurement unit.
 
     Attributes:
         time_measurement: Time between two measurements [s].
@@ -271,10 +275,10 @@ class IMUGeomData(SensorGeometry):
 
 @info_class
 class OdometryGeomData(SensorGeometry):
-    """What an odometry sensor follows.
+    """The body whose motion an odometry sensor measures.
 
     Attributes:
-        targetid: Name of the body.
+        targetid: The name of the body.
     """
 
     _called = "OdometryGeomData"
@@ -286,10 +290,10 @@ class OdometryGeomData(SensorGeometry):
 
 @info_class
 class TactileGeomData(SensorGeometry):
-    """Shape of a tactile sensor.
+    """The shape of a tactile sensor.
 
     Attributes:
-        thickness: Thickness of its skin [m].
+        thickness: The thickness of the skin [m].
     """
 
     _called = "TactileGeomData"
@@ -301,17 +305,17 @@ class TactileGeomData(SensorGeometry):
 
 @info_class
 class ActuatorGeomData(SensorGeometry):
-    """Limits of an actuator.
+    """The limits of an actuator.
 
     Attributes:
-        maxtorque: Torque [N m].
-        maxcurrent: Current [A].
-        nominalcurrent: Current for long [A].
-        maxvelocity: Velocity [rad/s].
-        maxacceleration: Acceleration [rad/s^2].
-        maxjerk: Jerk [rad/s^3].
-        staticfriction: Torque to start [N m].
-        viscousfriction: Torque per velocity [N m s/rad].
+        maxtorque: The maximum torque [N m].
+        maxcurrent: The maximum current [A].
+        nominalcurrent: The continuous current [A].
+        maxvelocity: The maximum velocity [rad/s].
+        maxacceleration: The maximum acceleration [rad/s^2].
+        maxjerk: The maximum jerk [rad/s^3].
+        staticfriction: The static friction [N m].
+        viscousfriction: The viscous friction [N m s/rad].
     """
 
     _called = "ActuatorGeomData"

@@ -1,4 +1,4 @@
-"""Descriptions of sensors for what scenes have, and back."""
+"""Converts the sensors of a scene to infos, and back."""
 
 # Users put anything into the fields of infos.
 # pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportUnknownMemberType=false
@@ -33,27 +33,27 @@ from ravemj.rave.infos.sensor import (
 
 
 def geometry_of(device: scene.Device) -> SensorGeometry:
-    """Return the description of a device, a copy."""
+    """Return the constant properties of a device as a new info."""
     return _CONVERSIONS[type(device)].write(device)
 
 
 def sensor_type(device: scene.Device) -> SensorType:
-    """Return OpenRAVE's type of a device."""
+    """Return OpenRAVE's sensor type of a device."""
     return _CONVERSIONS[type(device)].described.sensor_type()
 
 
 def device_of(geometry: SensorGeometry, before: scene.Device) -> scene.Device | None:
-    """Return a device as a description has it.
+    """Return a device with the properties of an info.
 
     Args:
-        geometry: The description.
-        before: The device so far, or one of its kind; what the description has no field for stays.
+        geometry: The info.
+        before: The device so far, or one of its kind. It keeps the properties that the info has no field for.
 
     Returns:
-        The device; None if the description is of another kind of sensor.
+        The device; None if the info describes another kind of sensor.
 
     Raises:
-        ArgumentError: a field holds something else than numbers.
+        ArgumentError: a field has wrong numbers.
     """
     conversion = _CONVERSIONS[type(before)]
     return conversion.read(geometry, before) if isinstance(geometry, conversion.described) else None
@@ -100,7 +100,7 @@ def _laser(geometry: LaserGeomData, before: scene.Laser) -> scene.Laser | None:
 
 
 def intrinsics_of(camera: scene.Intrinsics | scene.FlashLidar) -> CameraIntrinsics:
-    """Return the camera matrix of a device, wrapped."""
+    """Return the camera matrix of a device as ``CameraIntrinsics``."""
     return CameraIntrinsics(np.array([[camera.fx, 0, camera.cx], [0, camera.fy, camera.cy], [0, 0, 1]]))
 
 
@@ -113,7 +113,7 @@ def _pinhole(geometry: CameraGeomData | FlashLidarGeomData) -> tuple[float, floa
 
 
 def _reach(geometry: LaserGeomData) -> tuple[float, float, float]:
-    """Return where rays begin and end [m], and the time between scans [s]."""
+    """Return the smallest and greatest distance that rays measure [m], and the time between scans [s]."""
     least, greatest = _number(geometry.min_range, "min_range"), _number(geometry.max_range, "max_range")
     return least, greatest, _number(geometry.time_scan, "time_scan")
 
@@ -137,12 +137,12 @@ def _count(value: float, name: str) -> int:
 
 
 class _Conversion(NamedTuple):
-    """How devices of one class are described.
+    """The conversion between devices of one class and their infos.
 
     Attributes:
-        described: The class of their descriptions.
-        write: Takes a device; returns its description.
-        read: Takes a description and the device so far; returns the new device, or None.
+        described: The class of the infos.
+        write: A function of a device that returns its info.
+        read: A function of an info and the device so far that returns the new device, or None.
     """
 
     described: type[SensorGeometry]

@@ -1,7 +1,7 @@
-"""Modules, under OpenRAVE's names: what plans and executes motions.
+"""Modules, under OpenRAVE's names: they plan and execute motions.
 
-``motions`` plans and executes, ``base_manipulation`` and ``task_manipulation`` say what, ``commands`` and ``tokens``
-are the same as text, and ``module`` takes commands.
+``motions`` plans and executes a motion; ``base_manipulation`` and ``task_manipulation`` are the motions of the modules
+of these names. ``commands`` offers them as text commands, which ``tokens`` parses.
 """
 
 import logging
@@ -29,19 +29,19 @@ MODULES = ("BaseManipulation", "TaskManipulation", "logging", "viewerrecorder")
 
 
 def base_module(env: "Environment", xmlid: str = "BaseManipulation") -> tuple[Module, BaseManipulation]:
-    """Make a module that moves arms, and return it with what it runs."""
+    """Make a module that moves arms; return it, and the object that plans its motions."""
     manipulation = BaseManipulation(env)
     return _module(env, xmlid, manipulation, answering(BaseCommands(manipulation).named())), manipulation
 
 
 def task_module(env: "Environment", xmlid: str = "TaskManipulation") -> tuple[Module, TaskManipulation]:
-    """Make a module that moves grippers, and return it with what it runs."""
+    """Make a module that moves grippers; return it, and the object that plans its motions."""
     manipulation = TaskManipulation(env)
     return _module(env, xmlid, manipulation, answering(TaskCommands(manipulation).named())), manipulation
 
 
 def made_module(env: "Environment", name: str) -> Module | None:
-    """Return a new module of a name, whose letter case does not count, or None."""
+    """Return a new module of a name, in any letter case, or None."""
     checked_environment(env, "RaveCreateModule")
     word = next(iter(checked_kind(name, str, "RaveCreateModule: name", "a text").split()), "")
     if word.lower() == "viewerrecorder":
@@ -66,6 +66,6 @@ def _module(env: "Environment", xmlid: str, manipulation: Manipulation, commands
             elif name == "maxvelmult":
                 manipulation.maxvelmult = tokens.number()
             else:
-                _LOG.warning("module %s: '%s' is no argument of it", xmlid, name)
+                _LOG.warning("module %s: unknown argument '%s'; it takes a robot, planner, maxvelmult", xmlid, name)
 
     return Module(env, xmlid, start, commands)

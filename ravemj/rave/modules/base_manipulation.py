@@ -21,16 +21,16 @@ from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
 
 _LARGEST_JUMP = 0.5
-"""How far a joint may move [rad or m] in one step of the tool along a straight line."""
+"""The largest step of a joint [rad or m] in one step of the tool along a line; a larger one is another IK branch."""
 
 
 class SearchOptions(NamedTuple):
-    """How long to search, and how far aside of starts and goals.
+    """The effort of a search.
 
     Attributes:
-        tries: How often the planner is asked.
-        iterations: How many iterations it has.
-        jitter: How far each value of a start or goal in collision may be moved [rad or m].
+        tries: The number of calls of the planner, with other random numbers each time.
+        iterations: The maximum number of iterations of each call.
+        jitter: The largest change of each value of a start or goal in collision [rad or m].
     """
 
     tries: int = 2
@@ -39,7 +39,7 @@ class SearchOptions(NamedTuple):
 
 
 HAND_SEARCH = SearchOptions(tries=3, jitter=0.03)
-"""OpenRAVE's for motions to poses of the tool."""
+"""OpenRAVE's defaults for motions to poses of the tool."""
 
 
 class BaseManipulation(Manipulation):
@@ -57,14 +57,14 @@ class BaseManipulation(Manipulation):
         """Return a motion of the active DOFs to one of several goals.
 
         Args:
-            goals: The goals.
-            search: How long to search.
-            starts: Where it may start; none: where the robot is.
-            postprocessing: Smoother and its parameters; None: OpenRAVE's.
-            more: Further goals, which are asked for while it is planned.
+            goals: The goals, each of shape (active dof,).
+            search: The effort of the search.
+            starts: The possible starts; by default the current configuration.
+            postprocessing: The smoother and its parameters; by default OpenRAVE's.
+            more: A source of further goals while the planner works.
 
         Raises:
-            PlanningError: there is none.
+            PlanningError: no motion was found.
         """
         dof = self.robot.GetActiveDOF()
         if not len(goals):
@@ -78,11 +78,11 @@ class BaseManipulation(Manipulation):
         """Return a motion of the joints of the active manipulator's arm to one of several goals.
 
         Args:
-            goals: The goals.
-            search: How long to search.
+            goals: The goals, each of shape (arm dof,).
+            search: The effort of the search.
 
         Raises:
-            PlanningError: there is none.
+            PlanningError: no motion was found.
         """
         with self.keeping_active():
             self.robot.SetActiveDOFs(self.arm().GetArmIndices())
@@ -92,7 +92,7 @@ class BaseManipulation(Manipulation):
         """Return the active manipulator.
 
         Raises:
-            PlanningError: the robot has none.
+            PlanningError: the robot has no active manipulator.
         """
         manip = self.robot.GetActiveManipulator()
         if manip is None:
@@ -110,19 +110,19 @@ class BaseManipulation(Manipulation):
         starts: Sequence[Floats] = (),
         postprocessing: Postprocessing | None = None,
     ) -> Trajectory:
-        """Return a motion of the arm that takes its tool to one of several goals.
+        """Return a motion of the arm that moves its tool to one of several goals.
 
         Args:
-            goals: The goals.
-            search: How long to search.
-            first: How many solutions of inverse kinematics are goals from the start.
-            samples: How many are goals at most.
-            probability: The part of the iterations in which a further one is asked for.
-            starts: Values of the arm where it may start; none: where it is.
-            postprocessing: Smoother and its parameters; None: OpenRAVE's.
+            goals: The goals of the tool.
+            search: The effort of the search.
+            first: The number of IK solutions that are goals from the start.
+            samples: The largest number of IK solutions that are goals.
+            probability: The fraction of the iterations that ask for a further IK solution.
+            starts: The possible starts of the arm; by default its current values.
+            postprocessing: The smoother and its parameters; by default OpenRAVE's.
 
         Raises:
-            PlanningError: there is none.
+            PlanningError: no motion was found.
         """
         manip = self._solvable()
         stream = (row for goal in goals for row in solutions(manip, goal, IkFilterOptions.CheckEnvCollisions))
@@ -151,18 +151,18 @@ class BaseManipulation(Manipulation):
         start: Floats | None = None,
         ignored: float = 0.1,
     ) -> Trajectory:
-        """Return a motion of the arm that takes its tool along a straight line, as far as it goes.
+        """Return a motion of the arm that moves its tool along a straight line, as far as the arm can follow.
 
         Args:
-            direction: Where to, in the world; its length does not count, shape (3,).
-            step: Distance of the poses that the tool goes through [m].
-            least: How many steps there are at least.
-            most: How many at most.
-            start: ``T_world_tool`` where it starts; None: where it is.
-            ignored: Way at the start in which collisions do not count [m].
+            direction: The direction of the line in the world, of any length, shape (3,).
+            step: The distance between consecutive poses of the tool [m].
+            least: The smallest number of steps.
+            most: The largest number of steps.
+            start: ``T_world_tool`` at the start; by default the current pose.
+            ignored: The length of the line, from its start, in which collisions do not count [m].
 
         Raises:
-            PlanningError: it does not get that far.
+            PlanningError: the arm can follow for less than ``least`` steps.
         """
         length = float(np.linalg.norm(direction))
         if not (np.isfinite(length) and length > 0 and step > 0):
@@ -194,7 +194,7 @@ class BaseManipulation(Manipulation):
     def next_solution(
         self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool, jumps: bool
     ) -> Floats | None:
-        """Return the solution next to joint values, or None where there is none nearby without collisions."""
+        """Return the IK solution nearest to joint values, or None if none is near them and free of collisions."""
         self.robot.SetDOFValues(before, manip.GetArmIndices())
         options = IkFilterOptions.CheckEnvCollisions if check else IkFilterOptions.IgnoreSelfCollisions
         goal = IkParameterization(pose, IkParameterization.Type.Transform6D)
@@ -207,19 +207,19 @@ class BaseManipulation(Manipulation):
     def move_unsync_joints(
         self, hand: Floats, indices: Sequence[int], *, tries: int = 1, divisions: int = 10, planner: str = "BasicRRT"
     ) -> Trajectory:
-        """Return a motion of the active DOFs to where other joints can move to values without collisions.
+        """Return a motion of the active DOFs to a place where other joints can reach given values without collisions.
 
-        The other joints are not moved.
+        The other joints themselves are not moved.
 
         Args:
-            hand: Values of the other joints.
-            indices: Their DOF indices.
-            tries: How often a place is looked for.
-            divisions: In how many steps the motion of the other joints is tested.
-            planner: The planner of the motion.
+            hand: The values for the other joints.
+            indices: The DOF indices of the other joints.
+            tries: The number of attempts.
+            divisions: The number of steps in which the motion of the other joints is tested.
+            planner: The name of the planner.
 
         Raises:
-            PlanningError: there is none.
+            PlanningError: no motion was found.
         """
         robot = self.robot
         if not np.isfinite(hand).all() or divisions < 1:
@@ -266,14 +266,14 @@ class BaseManipulation(Manipulation):
             self.planner = old
 
     def jitter_active(self, tries: int = 5000, jitter: float = 0.03) -> tuple[Floats, Trajectory]:
-        """Return active values nearby that are without collisions, and the straight motion to them.
+        """Return a nearby configuration of the active DOFs without collisions, and the straight motion to it.
 
         Args:
-            tries: How many others are tried.
-            jitter: How far each value may move [rad or m].
+            tries: The number of random configurations to test.
+            jitter: The largest change of each value [rad or m].
 
         Raises:
-            PlanningError: there are none.
+            PlanningError: no tested configuration is free of collisions.
         """
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)

@@ -34,7 +34,7 @@ def reply(manipulation: Manipulation, traj: Trajectory, options: Mapping[str, An
 
 
 def search_options(options: Mapping[str, Any], default: SearchOptions) -> SearchOptions:
-    """Return how long options say to search."""
+    """Return the effort of a search that options ask for."""
     names = {"maxiter": "iterations", "maxtries": "tries", "jitter": "jitter"}
     return default._replace(**{names[name]: value for name, value in options.items() if name in names})
 
@@ -43,7 +43,7 @@ Named = Mapping[str, Callable[[str], str | None]]
 
 
 def answering(named: Named) -> dict[str, Command]:
-    """Return commands that answer None where no motion is found, as OpenRAVE's do."""
+    """Return commands that return None if no motion is found, as OpenRAVE's do."""
     return {name: _or_none(command) for name, command in named.items()}
 
 
@@ -206,7 +206,7 @@ class TaskCommands(_Commands[TaskManipulation]):
         return reply(self._manipulation, plan.traj, options, before)
 
     def evaluate_constraints(self, arguments: str) -> str:
-        """Projects configurations onto a constraint of the tool; tells after how many steps each is on it."""
+        """Projects configurations onto a constraint of the tool, and returns the number of steps for each."""
         dof = self._manipulation.robot.GetActiveDOF()
         configurations: list[Floats] = []
         readers: dict[str, Reader] = {name: Tokens.matrix for name in ("constraintmatrix", "constrainttaskmatrix")}
@@ -244,7 +244,7 @@ def straight(manipulation: BaseManipulation, options: Mapping[str, Any]) -> Traj
 
 
 def unsync(manipulation: BaseManipulation, hand: Floats, indices: list[int], options: Mapping[str, Any]) -> Trajectory:
-    """Return the motion to where other joints can move that options ask for."""
+    """Return the motion of ``MoveUnsyncJoints`` that options ask for."""
     names = {"maxtries": "tries", "maxdivision": "divisions", "planner": "planner"}
     given = {names[name]: value for name, value in options.items() if name in names}
     return manipulation.move_unsync_joints(hand, indices, **given)
@@ -295,7 +295,7 @@ _QUERY = {
     "randomgrasps": "random_grasps",
     "randomdests": "random_places",
 }
-"""Arguments of ``GraspPlanning``, and what they are in a ``GraspQuery``."""
+"""Arguments of ``GraspPlanning``, and their fields in a ``GraspQuery``."""
 
 _GRASPS: Mapping[str, Reader] = {
     **dict.fromkeys(GRASP_COLUMNS, Tokens.integer),

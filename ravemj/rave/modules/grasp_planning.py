@@ -20,10 +20,10 @@ from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
 
 _STEP = 0.01
-"""Distance [m] of the places on the way from the approach to the grasp that are tested."""
+"""The distance of the tested poses on the line from the approach to the grasp [m]."""
 
 _IN_LIMITS = 1e-3
-"""How far [rad or m] a value of a preshape may be beyond its limits, as in OpenRAVE."""
+"""The tolerance of the limits for values of a preshape [rad or m], as in OpenRAVE."""
 
 _SAVED = SaveParameters.LinkTransformation | SaveParameters.LinkEnable
 
@@ -33,19 +33,20 @@ class GraspQuery:
     """A list of grasps, and how to choose from it.
 
     Attributes:
-        target: What is grasped.
-        grasps: A grasp in each row, shape (n, m).
-        indices: The first column of what a grasp has, by OpenRAVE's names: ``igrasptrans`` (``T_target_tool``, 12
-            numbers by columns) or ``grasptrans_nocol``, which counts more; ``igraspdir`` (from where the hand comes, in
-            the target), ``imanipulatordirection`` (the same in the tool), ``igrasppreshape`` (values of the gripper).
-        offset: How far [m] before the grasp the motion ends.
-        places: Poses of the target where it should be put down; a grasp has to reach one of them.
-        seed_grasps: How many grasps that can be reached are goals of one plan.
-        seed_places: How many places are looked for, for each grasp.
-        seed_ik: How many configurations of a grasp are goals; 0: all.
-        iterations: How many iterations the planner has.
-        random_grasps: Whether the grasps come in a random order.
-        random_places: Whether the places do.
+        target: The body to grasp.
+        grasps: One grasp in each row, shape (n, m).
+        indices: The first column of each property of a grasp, by OpenRAVE's names: ``igrasptrans`` (``T_target_tool``,
+            12 numbers by columns) or ``grasptrans_nocol``, which has precedence; ``igraspdir`` (the approach direction
+            of the hand in the target frame), ``imanipulatordirection`` (the same in the tool frame), ``igrasppreshape``
+            (the values of the gripper).
+        offset: The distance from the grasp at which the motion ends [m].
+        places: ``T_world_target`` of places to put the target down; a grasp has to reach one of them.
+        seed_grasps: The number of reachable grasps that are goals of one plan.
+        seed_places: The number of places that are looked for with each grasp.
+        seed_ik: The number of IK solutions of each grasp that are goals; 0 for all.
+        iterations: The maximum number of iterations of the planner.
+        random_grasps: Whether to try the grasps in random order.
+        random_places: Whether to try the places in random order.
     """
 
     target: KinBody
@@ -65,10 +66,10 @@ class GraspPlan(NamedTuple):
     """A motion to a grasp.
 
     Attributes:
-        goals: Goals of the hand for the places, where it holds the target with this grasp.
-        number: Which grasp it is.
-        seconds: How long the planner took.
-        traj: The motion of the arm, and of the gripper where its values change.
+        goals: The goals of the tool at the places, for this grasp.
+        number: The index of the grasp.
+        seconds: The time that the planner took [s].
+        traj: The motion of the arm, and of those gripper joints whose values change.
     """
 
     goals: list[IkParameterization]
@@ -79,13 +80,13 @@ class GraspPlan(NamedTuple):
 
 @dataclass
 class _Candidate:
-    """A grasp that can be reached.
+    """A reachable grasp.
 
     Attributes:
-        index: Its number.
-        preshape: Values of the gripper.
-        rows: Values of the arm before the grasp.
-        goals: Goals of the hand for the places.
+        index: The index of the grasp.
+        preshape: The values of the gripper.
+        rows: The values of the arm at the end of the motion.
+        goals: The goals of the tool at the places.
     """
 
     index: int
@@ -98,11 +99,11 @@ def plan_grasp(base: BaseManipulation, query: GraspQuery) -> GraspPlan:
     """Return a motion of the arm to one of several grasps.
 
     Args:
-        base: Plans for the robot.
+        base: The planner of motions for the robot.
         query: The grasps.
 
     Raises:
-        ArgumentError: the list has no poses, or the target is held already.
+        ArgumentError: the list of grasps has no poses, or the robot holds the target already.
         PlanningError: no grasp can be reached.
     """
     manip, robot = base.arm(), base.robot
@@ -134,7 +135,7 @@ def _first(found: Iterator[_Candidate], count: int) -> list[_Candidate]:
 def _planned(
     base: BaseManipulation, manip: Manipulator, batch: Sequence[_Candidate], iterations: int
 ) -> tuple[Trajectory, _Candidate]:
-    """Return a motion to one of the candidates, and which."""
+    """Return a motion to one of the candidates, and that candidate."""
     robot = base.robot
     gripper = manip.GetGripperIndices()
     changed = np.array([one.preshape != robot.GetDOFValues(gripper) for one in batch]).any(axis=0)
@@ -147,7 +148,7 @@ def _planned(
 
 
 class _Candidates:
-    """Finds out which grasps can be reached."""
+    """Finds the reachable grasps of a list."""
 
     def __init__(self, base: BaseManipulation, manip: Manipulator, query: GraspQuery) -> None:
         self._base, self._manip, self._query = base, manip, query
@@ -158,7 +159,7 @@ class _Candidates:
         self._pose = names[0]
 
     def all(self) -> Iterator[_Candidate]:
-        """Return the grasps that can be reached, one after the other. Everything is where it was in between."""
+        """Yield the reachable grasps. Between two of them, the robot and the target are in their original state."""
         count, query = len(self._query.grasps), self._query
         for index in self._random.permutation(count).tolist() if query.random_grasps else range(count):
             with _kept(self._base.robot, query.target):
@@ -167,7 +168,7 @@ class _Candidates:
                 yield candidate
 
     def _numbers(self, index: int, name: str, count: int) -> Floats | None:
-        """Return what a grasp has under a name, or None."""
+        """Return the numbers of a property of a grasp, or None if grasps do not have it."""
         start = self._query.indices.get(name, -1)
         row = self._query.grasps[index]
         if start < 0:
@@ -180,7 +181,7 @@ class _Candidates:
         return numbers
 
     def _candidate(self, index: int) -> _Candidate | None:
-        """Return a grasp if it can be reached. The robot and the target are moved."""
+        """Return a grasp if it is reachable, else None. The robot and the target are moved."""
         query, manip = self._query, self._manip
         gripper = manip.GetGripperIndices()
         given = self._numbers(index, "igrasppreshape", len(gripper))
@@ -203,7 +204,7 @@ class _Candidates:
         return found if found.rows and (found.goals or not query.places) else None
 
     def _direction(self, index: int, T_world_tool: Floats) -> Floats:
-        """Return where the hand goes in the last piece of its way, a unit vector in the world."""
+        """Return the approach direction of the hand, a unit vector in the world."""
         in_target = self._numbers(index, "igraspdir", 3)
         if in_target is not None:
             direction = self._query.target.GetTransform()[:3, :3] @ in_target
@@ -214,7 +215,7 @@ class _Candidates:
         return direction / (np.linalg.norm(direction) or 1.0)
 
     def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
-        """Return the values of the arm before a grasp, from where it gets there in a straight line."""
+        """Return the values of the arm before a grasp from which the tool reaches it along a straight line."""
         start = T_world_tool.copy()
         start[:3, 3] -= self._query.offset * direction
         rows: list[Floats] = []
@@ -228,7 +229,7 @@ class _Candidates:
     def _gets_there(self, row: Floats, start: Floats, direction: Floats) -> bool:
         count = int(np.ceil(self._query.offset / _STEP))
         enabled = self._query.target.GetLinkEnableStates()
-        self._query.target.Enable(False)  # it is touched on the way
+        self._query.target.Enable(False)  # the hand may touch the body that it is about to grasp
         try:
             for number in range(1, count + 1):
                 pose = start.copy()
@@ -242,7 +243,7 @@ class _Candidates:
         return True
 
     def _goals(self, T_target_tool: Floats) -> list[IkParameterization]:
-        """Return goals of the hand for places where the target can be put down with a grasp."""
+        """Return the goals of the tool at the places where the target can be put down with a grasp."""
         query, found = self._query, list[IkParameterization]()
         count = len(query.places)
         for place in self._random.permutation(count).tolist() if query.random_places else range(count):
@@ -255,7 +256,7 @@ class _Candidates:
         return found
 
     def _is_free(self, T_world_target: Floats) -> bool:
-        """Return whether nothing but the robot is in the way of the target at a place."""
+        """Return whether the target at a place collides with nothing but the robot."""
         with _kept(self._base.robot, self._query.target):
             self._base.robot.Enable(False)
             self._query.target.SetTransform(T_world_target)
@@ -273,6 +274,6 @@ def _goal(T_world_tool: Floats) -> IkParameterization:
 
 @contextmanager
 def _kept(robot: Robot, target: KinBody) -> Generator[None]:
-    """Have the robot and the target as they were afterwards."""
+    """Restore the robot and the target on leaving."""
     with robot.CreateRobotStateSaver(_SAVED), target.CreateKinBodyStateSaver(_SAVED):
         yield

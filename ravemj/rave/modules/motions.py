@@ -1,4 +1,4 @@
-"""Motions of a robot that are planned and executed."""
+"""Plans and executes motions of a robot."""
 
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 JITTER_TRIES = 1000
-"""How many configurations near a start or goal in collision are tried."""
+"""The number of random configurations that are tested near a start or goal in collision."""
 
 _SAME = 1e-9
-"""Configurations this near [rad or m] are the same."""
+"""The tolerance within which two configurations are equal [rad or m]."""
 
 Postprocessing = tuple[str, str]
 
@@ -35,9 +35,9 @@ class Manipulation:
     """Plans and executes motions of one robot.
 
     Attributes:
-        env: Where the robot is.
-        planner: Name of the planner of paths.
-        maxvelmult: Factor of the velocity limits, for motions that are straight lines.
+        env: The environment of the robot.
+        planner: The name of the path planner.
+        maxvelmult: The factor of the velocity limits for motions along straight lines.
     """
 
     def __init__(self, env: "Environment") -> None:
@@ -51,25 +51,25 @@ class Manipulation:
         """The robot.
 
         Raises:
-            ArgumentError: there is none, or it is gone.
+            ArgumentError: no robot was chosen, or it is no longer in the environment.
         """
         if self._robot is None or not self.env.simulation.holds(self._robot.simulation_state):
             raise ArgumentError("there is no robot; add the module with the name of one, or send SetRobot")
         return self._robot
 
     def choose(self, name: str) -> bool:
-        """Choose the robot by its name; return whether there is one."""
+        """Choose the robot by its name, and return whether the environment has it."""
         robot = self.env.GetRobot(name)
         if robot is not None:
             self._robot = robot
         return robot is not None
 
     def choose_planner(self, name: str) -> None:
-        """Choose the planner of paths; an unknown name chooses ``birrt``, as in OpenRAVE."""
+        """Choose the path planner; an unknown name chooses ``birrt``, as in OpenRAVE."""
         self.planner = name if is_planner(name) else "birrt"
 
     def keeping_active(self) -> AbstractContextManager[object]:
-        """Have the active DOFs as they were afterwards."""
+        """Restore the active DOFs on leaving."""
         return self.robot.CreateRobotStateSaver(SaveParameters.ActiveDOF)
 
     def plan(
@@ -86,17 +86,17 @@ class Manipulation:
         """Return a motion of the active DOFs to one of several goals.
 
         Args:
-            goals: Goals; values outside the limits are moved to them.
-            starts: Where it may start; none: where the robot is.
-            tries: How often the planner is asked, with other random numbers each time.
-            iterations: How many iterations it has.
-            jitter: How far each value of a start or goal in collision may be moved to be without [rad or m]; the way
-                there and back is not tested.
-            postprocessing: Smoother and its parameters; None: OpenRAVE's.
-            more: Further goals, which are asked for while it is planned.
+            goals: The goals; values outside the limits are set to the limits.
+            starts: The possible starts; by default the current configuration.
+            tries: The number of calls of the planner, with other random numbers each time.
+            iterations: The maximum number of iterations of each call.
+            jitter: The largest change of each value of a start or goal in collision, to make it free [rad or m]. The
+                motion between the two is not tested.
+            postprocessing: The smoother and its parameters; by default OpenRAVE's.
+            more: A source of further goals while the planner works.
 
         Raises:
-            PlanningError: there is none; its text says why.
+            PlanningError: no motion was found; the message says why.
         """
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)
@@ -112,7 +112,7 @@ class Manipulation:
         moved = [self._jittered(values, some, jitter) for some in wanted]
         params.SetInitialConfig(np.array(moved[0]).ravel())
         params.SetGoalConfig(np.array(moved[1]).ravel())
-        status = PlannerStatus("there is no try")
+        status = PlannerStatus("no attempt was allowed; give at least one try")
         for attempt in range(tries):
             params.SetRandomGeneratorSeed(attempt)
             planner = needed_planner(self.env, self.planner)
@@ -125,7 +125,7 @@ class Manipulation:
         raise PlanningError(status.description)
 
     def _jittered(self, values: Values, configurations: Sequence[Floats], jitter: float) -> list[Floats]:
-        """Return configurations with those in collision moved a little; those that stay in collision stay."""
+        """Return configurations, each one in collision replaced by a free one nearby, if one is found."""
         assert values.bodies is not None
         random = np.random.default_rng(0)
         with values.bodies.kept():
@@ -134,7 +134,7 @@ class Manipulation:
         return [old if new is None else new for old, new in zip(configurations, found, strict=True)]
 
     def _join(self, traj: Trajectory, wanted: Sequence[Sequence[Floats]], moved: Sequence[Sequence[Floats]]) -> None:
-        """Let a motion start and end where it was asked for, where a start or goal was jittered."""
+        """Extend a motion to the original start and goal, if the planner used jittered ones."""
         spec = self.robot.GetActiveConfigurationSpecification()
         for end, (asked, used) in enumerate(zip(wanted, moved, strict=True)):
             place = traj.GetNumWaypoints() if end else 0
@@ -148,13 +148,13 @@ class Manipulation:
                 new.join(new.retimed(anchor, (1.0, 1.0), "", ""), anchor)
 
     def straight(self, points: Floats) -> Trajectory:
-        """Return the motion of the active DOFs along straight lines, at the greatest speeds.
+        """Return the fastest motion of the active DOFs along straight lines.
 
         Args:
-            points: The active values, shape (m, n).
+            points: The active values at the waypoints, shape (m, n).
 
         Raises:
-            PlanningError: it has no times.
+            PlanningError: the retimer finds no times.
         """
         traj = Trajectory(self.env, "")
         traj.Init(self.robot.GetActiveConfigurationSpecification("linear"))
@@ -165,7 +165,11 @@ class Manipulation:
         return traj
 
     def execute(self, traj: Trajectory) -> None:
-        """Let the robot's controller play a motion; it begins with the next step of time."""
+        """Have the robot's controller play a motion, which begins with the next simulation step.
+
+        Raises:
+            PlanningError: the robot has no controller.
+        """
         robot = self.robot
         controller = robot.GetController()
         if controller is None:

@@ -23,24 +23,28 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 _STEP = 0.01
-"""How far joints move between two tests [rad or m]."""
+"""The step in which joints move between two collision tests [rad or m]."""
 
 _CLOSE = 1e-6
-"""How near [rad or m] to a contact joints stop."""
+"""The distance from a contact within which joints stop [rad or m]."""
 
 
 _PROJECTION_STEPS = 40
-"""OpenRAVE's, for the projection of a configuration onto a constraint."""
+"""OpenRAVE's maximum number of steps for the projection of a configuration onto a constraint."""
 
 
 class ToolConstraint(NamedTuple):
-    """A constraint of the tool: ``T_task_world @ T_world_tool @ T_tool_point`` does not turn or move along some axes.
+    """A task-space constraint of the tool.
+
+    The constraint keeps ``T_task_world @ T_world_tool @ T_tool_point`` free of rotation about some axes and of
+    translation along some axes.
 
     Attributes:
-        T_task_world: The frame whose axes count.
-        T_tool_point: The point of the tool that is constrained.
-        freedoms: 1 holds, 0 leaves free: rotations about x, y, z, and ways along them, shape (6,).
-        threshold: The error [m and rad] up to which it counts as kept.
+        T_task_world: The task frame, whose axes ``freedoms`` refers to.
+        T_tool_point: The constrained frame, relative to the tool.
+        freedoms: 1 constrains, 0 leaves free: the rotations about x, y, z, then the translations along them, shape
+            (6,).
+        threshold: The tolerance of the constraint [m and rad].
     """
 
     T_task_world: Floats
@@ -63,7 +67,7 @@ class TaskManipulation(Manipulation):
             query: The grasps.
 
         Raises:
-            PlanningError: none of them can be reached.
+            PlanningError: no grasp can be reached.
         """
         self._base.choose(self.robot.GetName())
         self._base.planner = self.planner
@@ -72,11 +76,14 @@ class TaskManipulation(Manipulation):
     def evaluate_constraints(
         self, constraint: ToolConstraint, configurations: Sequence[Floats]
     ) -> tuple[list[int], list[Floats]]:
-        """Return after how many steps configurations of the arm keep a constraint (-1: never), and what they are then.
+        """Project configurations of the arm onto a constraint.
 
         Args:
             constraint: The constraint.
-            configurations: Active values, which should be those of the arm.
+            configurations: Values of the active DOFs, which have to be those of the arm.
+
+        Returns:
+            The number of steps for each configuration, -1 if it does not reach the constraint, and the results.
 
         Raises:
             ArgumentError: the active DOFs are not the joints of the arm.
@@ -95,12 +102,12 @@ class TaskManipulation(Manipulation):
     def close_fingers(
         self, directions: Floats | None = None, offsets: Floats | None = None, step: float = _STEP
     ) -> tuple[Floats, Trajectory]:
-        """Return where the gripper's joints get when they close, and the motion; they stop at contacts and limits.
+        """Close the gripper: return the last values of its joints, and the motion. Joints stop at contacts and limits.
 
         Args:
-            directions: For each joint, to which side it moves: its sign; None: the closing direction.
-            offsets: How far each joint goes back from there [rad or m]; None: not at all.
-            step: How far joints move between two tests [rad or m].
+            directions: The sign of the motion of each joint; by default the closing direction.
+            offsets: How far each joint moves back from there [rad or m]; by default not at all.
+            step: The step in which joints move between two collision tests [rad or m].
 
         Raises:
             PlanningError: the robot has no gripper.
@@ -116,12 +123,12 @@ class TaskManipulation(Manipulation):
     def release_fingers(
         self, directions: Floats | None = None, target: KinBody | None = None, step: float = _STEP
     ) -> tuple[Floats, Trajectory]:
-        """Return where the gripper's joints get when they open, and the motion.
+        """Open the gripper: return the last values of its joints, and the motion.
 
         Args:
-            directions: For each joint, to which side it moves: its sign; None: against the closing direction.
-            target: A held body that is let go.
-            step: How far joints move between two tests [rad or m].
+            directions: The sign of the motion of each joint; by default against the closing direction.
+            target: A grabbed body to release.
+            step: The step in which joints move between two collision tests [rad or m].
 
         Raises:
             PlanningError: the robot has no gripper.
@@ -133,11 +140,11 @@ class TaskManipulation(Manipulation):
         return final, self._motion(dofs, final)
 
     def release_active(self, directions: Floats, step: float = _STEP) -> tuple[Floats, Trajectory]:
-        """Return where the active joints get when they move to one side, and the motion.
+        """Move the active joints to one side: return their last values, and the motion.
 
         Args:
-            directions: For each active joint, to which side it moves: its sign.
-            step: How far joints move between two tests [rad or m].
+            directions: The sign of the motion of each active joint.
+            step: The step in which joints move between two collision tests [rad or m].
         """
         dofs = [int(dof) for dof in self.robot.GetActiveDOFIndices()]
         if len(directions) != len(dofs):
@@ -159,7 +166,10 @@ class TaskManipulation(Manipulation):
             return self.straight(np.stack([here, final]))
 
     def _until_contact(self, dofs: Sequence[int], directions: Floats, step: float) -> Floats:
-        """Return how far joints get, each until what it moves meets something that it did not touch from the start."""
+        """Return the values at which joints stop: each moves until its links touch something new, or to its limit.
+
+        Joints take turns, one step each, as fingers close at the same time.
+        """
         if not (np.isfinite(directions).all() and np.isfinite(step) and step > 0):
             wanted = "finite directions, and a step above 0"
             raise ArgumentError(f"movingdir is {directions.tolist()} with steps of {step:g}, and should be {wanted}")
@@ -186,7 +196,7 @@ class TaskManipulation(Manipulation):
             return values
 
     def _contact(self, bodies: Bodies, values: Floats, place: int, free: float, dof: int) -> float:
-        """Return the last value without contact, between one without and the present one with contact."""
+        """Return the last value without contact, by bisection between a free value and the current one in contact."""
         taken = float(values[place])
         while abs(taken - free) > _CLOSE:
             middle = (taken + free) / 2
@@ -201,7 +211,7 @@ class TaskManipulation(Manipulation):
         return free
 
     def _touches(self, dof: int) -> bool:
-        """Return whether a link that a joint moves touches another body, or a link that it moves against."""
+        """Return whether a link that a joint moves touches another body, or a link that does not move with it."""
         state, simulation = self.robot.simulation_state, self.env.simulation
         world = simulation.collisions()
         others = body_and_others(world, state, MovedBy((dof,)))

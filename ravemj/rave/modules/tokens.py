@@ -32,7 +32,7 @@ class Tokens:
         """Return the next token as a number.
 
         Raises:
-            ArgumentError: it is none.
+            ArgumentError: the token is not a number.
         """
         word = self.next("a number")
         try:
@@ -41,26 +41,26 @@ class Tokens:
             raise ArgumentError(f"'{word}' should be a number") from None
 
     def integer(self) -> int:
-        """Return the next token as a whole number."""
+        """Return the next token as an integer."""
         number = self.number()
         if not number.is_integer():
             raise ArgumentError(f"{number:g} should be a whole number")
         return int(number)
 
     def numbers(self, count: int) -> Floats:
-        """Return some of the next tokens as numbers, shape (count,)."""
+        """Return the next tokens as numbers, shape (count,)."""
         return np.array([self.number() for _ in range(count)])
 
     def rows(self, width: int) -> Floats:
-        """Return rows of numbers, how many of which stands first, shape (n, width)."""
+        """Return rows of numbers, shape (n, width); the number of rows is the first token."""
         return self.numbers(self.integer() * width).reshape(-1, width)
 
     def list(self) -> Floats:
-        """Return numbers, how many of which stands first."""
+        """Return numbers, shape (n,); the number of them is the first token."""
         return self.numbers(self.integer())
 
     def matrix(self) -> Floats:
-        """Return a pose, 12 numbers by columns, as OpenRAVE writes it, shape (4, 4)."""
+        """Return a pose, shape (4, 4), from 12 numbers by columns, as OpenRAVE writes it."""
         pose = np.eye(4)
         pose[:3] = self.numbers(12).reshape(4, 3).T
         return pose
@@ -70,20 +70,20 @@ Reader = Callable[[Tokens], Any]
 
 
 def read_options(text: str, readers: Mapping[str, Reader]) -> dict[str, Any]:
-    """Return the options in a text.
+    """Return the options in the arguments of a command.
 
     Args:
-        text: Tokens, each followed by what its reader takes.
-        readers: By the names of the options, in lower case.
+        text: The names of options, each followed by the tokens that its reader takes.
+        readers: The readers, by the names of the options in lower case.
 
     Raises:
-        ArgumentError: a word is no option, or what follows it is wrong.
+        ArgumentError: an option is unknown, or is followed by wrong tokens.
     """
     tokens, found = Tokens(text), dict[str, Any]()
     while tokens:
         name = tokens.next().lower()
         if name not in readers:
-            raise ArgumentError(f"'{name}' is no argument of the command; it takes {', '.join(readers)}")
+            raise ArgumentError(f"the command has no argument '{name}'; it takes {', '.join(readers)}")
         try:
             found[name] = readers[name](tokens)
         except ArgumentError as error:
@@ -92,13 +92,13 @@ def read_options(text: str, readers: Mapping[str, Reader]) -> dict[str, Any]:
 
 
 def switch(tokens: Tokens) -> bool:
-    """Return True for a word that stands alone."""
+    """Return True for an option without a value."""
     del tokens
     return True
 
 
 def flag(tokens: Tokens) -> bool:
-    """Return whether the next word is not 0."""
+    """Return whether the next token is not 0."""
     return bool(tokens.number())
 
 

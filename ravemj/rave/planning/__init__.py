@@ -1,7 +1,8 @@
 """Planners and their parameters, under OpenRAVE's names.
 
-``bodies`` is what moves, ``parameters`` the problem, ``planner`` the base of all planners, ``path_planners``,
-``retimers`` and ``smoothers`` their kinds, and ``names`` makes them.
+``parameters`` states a planning problem and ``bodies`` the bodies that it moves. ``planner`` is the base class of all
+planners; ``path_planners``, ``hand_planners``, ``retimers`` and ``smoothers`` hold its kinds, and ``names`` makes a
+planner from its name.
 """
 
 from ravemj.rave.planning.names import RaveCreatePlanner

@@ -26,31 +26,27 @@ if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
 FREE, ENV_COLLISION, SELF_COLLISION, USER = 0, 1, 2, 0x8000
-"""What is wrong with a configuration, as ``ConstraintFilterOptions`` numbers it."""
-
-_JERK = 50000.0
-"""OpenRAVE's limit of the jerks of joints [rad/s^3 or m/s^3], where nothing else is said."""
+"""Why a configuration is refused: bits of ``ConstraintFilterOptions``. ``USER`` is the bit of users' own functions."""
 
 _UNLIMITED = {"lower": -np.inf, "upper": np.inf, "max_jerk": np.inf}
-"""Limits of goals of inverse kinematics; speeds have to be given."""
+"""Limits of the values of a goal of inverse kinematics. Callers have to set the limits that are not listed here."""
 
 _RESOLUTION = 0.02
-"""Steps of values that have none [rad or m]: OpenRAVE's default."""
+"""OpenRAVE's default for the step in which a value is tested for collisions [rad or m]."""
 
-_ROUND = np.pi
-"""Limits of angles that go round, for samples [rad]."""
+_ROUND = np.pi  # samples of a circular joint are drawn from [-pi, pi], since the joint has no limits of its own
 
 
 @dataclass(frozen=True)
 class _Part:
-    """Some joints of a body, or a part of its pose.
+    """Some joints of one body, or its pose, as columns of a configuration.
 
     Attributes:
         body: The body.
-        columns: Where the values are in a configuration.
-        dofs: DOF indices; empty for a pose.
-        affine: The parts of the pose, ``DOFAffine``.
-        axis: Axis of ``DOFAffine.RotationAxis``.
+        columns: The columns of a configuration that hold the values.
+        dofs: The DOF indices of the joints; empty for a pose.
+        affine: The components of the pose, bits of ``DOFAffine``; 0 for joints.
+        axis: The axis of ``DOFAffine.RotationAxis``.
     """
 
     body: "KinBody"
@@ -61,14 +57,14 @@ class _Part:
 
 
 class Bodies:
-    """Joints and poses of bodies, in the order of groups of a specification.
+    """The bodies of a planning problem: their joints and poses, in the order of a specification's groups.
 
     Args:
-        env: Where the bodies are.
-        groups: Groups of joint values, of poses, and of goals of inverse kinematics, which move nothing.
+        env: The environment that contains the bodies.
+        groups: Groups of joint values, of poses, and of goals of inverse kinematics. Goals move nothing.
 
     Raises:
-        ArgumentError: there is no such body.
+        ArgumentError: a group names a body that is not in the environment, or a DOF that its body does not have.
     """
 
     def __init__(self, env: "Environment", groups: Sequence[Group]) -> None:
@@ -81,7 +77,12 @@ class Bodies:
         self.bodies = list(dict.fromkeys(part.body for part in self._parts))
 
     def numbers(self, name: str) -> Floats:
-        """Return a setting of all values: ``lower``, ``upper``, ``max_velocity``, ``acceleration``, ``weight``, ..."""
+        """Return one setting for every value of a configuration, shape (n,).
+
+        Args:
+            name: The setting: ``lower``, ``upper``, ``max_velocity``, ``max_acceleration``, ``max_jerk``, ``weight`` or
+                ``resolution``.
+        """
         result = np.zeros(self._dof)
         for part in self._parts:
             result[part.columns] = _numbers(part, name)
@@ -90,7 +91,7 @@ class Bodies:
         return result
 
     def coordinates(self) -> Coordinates:
-        """Return what the values are."""
+        """Return which values of a configuration are circular angles, positions or quaternions."""
         circular = np.zeros(self._dof, dtype=bool)
         translation: list[int] = []
         rotation: list[int] = []
@@ -112,14 +113,14 @@ class Bodies:
         return Coordinates(circular, tuple(translation), tuple(rotation))
 
     def described(self, group: Group, index: int) -> str:
-        """Return what a value of a group is."""
+        """Return the name of one value of a group, for error messages."""
         part = next(part for part in self._parts if part.columns == group.columns)
         if part.dofs:
             return f"joint '{part.body.GetJointFromDOFIndex(part.dofs[index]).GetName()}'"
         return f"value {index} of the pose of '{part.body.GetName()}'"
 
     def values(self) -> Floats:
-        """Return the present configuration."""
+        """Return the current configuration, shape (n,)."""
         result = np.zeros(self._dof)
         with self._simulation.lock:
             for part in self._parts:
@@ -131,7 +132,7 @@ class Bodies:
         return result
 
     def move(self, values: Floats) -> None:
-        """Go to a configuration, without a look at limits. The caller holds the lock."""
+        """Move the bodies to a configuration without checking limits. The caller holds the lock."""
         for part in self._parts:
             state = part.body.simulation_state
             if part.dofs:
@@ -144,7 +145,7 @@ class Bodies:
 
     @contextmanager
     def kept(self) -> Generator[None]:
-        """Have the lock and, afterwards, all bodies and what they hold where they were."""
+        """Hold the lock; on leaving, restore the configurations of all bodies and of the bodies that they hold."""
         with self._simulation.lock:
             states = [body.simulation_state for body in self.bodies]
             held = [grab.body for state in states for grab in state.grabs]
@@ -153,25 +154,27 @@ class Bodies:
             try:
                 yield
             finally:
+                # The stamp tells caches that a body has moved. Nothing has, seen from outside, so it goes back as well.
                 for (state, configuration), stamp in zip(saved, stamps, strict=True):
                     state.restore(configuration)
                     state.stamp = stamp
 
     def fast_test(self) -> Callable[[Floats], bool] | None:
-        """Return a fast test whether the bodies collide in a configuration, or None where ``move`` has to be called.
+        """Return a fast collision test for configurations, or None if only ``move`` and ``collision`` can tell.
 
-        It is for use within ``kept``; the world has to stay as it is meanwhile.
+        Use the test within ``kept``, and change nothing else in the world meanwhile.
         """
+        # Checkers and callbacks of the user look at the bodies themselves, so these have to be moved.
         is_plain = type(self._env.GetCollisionChecker()) is CollisionChecker and not self._env.collision_callbacks
         if not is_plain or len(self._parts) != 1 or not self._parts[0].dofs:
             return None
         return moving_test(self._parts[0].body.simulation_state, self._parts[0].dofs)
 
     def collision(self, report: CollisionReport | None = None) -> int:
-        """Return how the bodies collide as they are: ``FREE``, ``ENV_COLLISION`` or ``SELF_COLLISION``.
+        """Return whether the bodies collide where they are: ``FREE``, ``ENV_COLLISION`` or ``SELF_COLLISION``.
 
-        As with OpenRAVE's option ``ActiveDOFs``, what the values do not move does not count: a base that stands on the
-        floor touches it wherever the arm is.
+        Links that no value moves do not count, as with OpenRAVE's option ``ActiveDOFs``: the base of an arm touches
+        the floor in every configuration.
         """
         checker, world = self._env.GetCollisionChecker(), self._simulation.collisions()
         for body in self.bodies:
@@ -183,7 +186,7 @@ class Bodies:
         return FREE
 
     def _moved(self, body: "KinBody") -> MovedBy | None:
-        """Return what moves of a body; None: all of it."""
+        """Return the links of a body that the values move, or None if they move all of it."""
         parts = [part for part in self._parts if part.body is body]
         return MovedBy(tuple(dof for part in parts for dof in part.dofs)) if all(part.dofs for part in parts) else None
 
@@ -205,17 +208,25 @@ def _numbers(part: _Part, name: str) -> Any:  # noqa: ANN401 - numbers
     body = part.body
     if not part.dofs:
         kinds = body.affine_kinds if isinstance(body, Robot) else default_kinds()
+        # OpenRAVE has no accelerations and jerks of affine DOFs: its maximum velocities stand for them.
         names = {"max_acceleration": "max_velocity", "max_jerk": "max_velocity"}
         return affine_numbers(kinds, part.affine, part.axis, names.get(name, name))
     if name == "max_jerk":
-        getter = getattr(body, "GetDOFJerkLimits", None)
-        return getter(part.dofs) if getter else _JERK
+        return body.GetDOFJerkLimits(part.dofs)
     axes = body.simulation_state.scene.dof_axes
     return [getattr(axes[dof], name) for dof in part.dofs]
 
 
 def space_of(coordinates: Coordinates, lower: Floats, upper: Floats, weights: Floats, resolution: Floats) -> Space:
-    """Return a space for planners, which has to be bounded."""
+    """Return the configuration space for planners. Circular values are bounded, because planners sample between limits.
+
+    Args:
+        coordinates: The kinds of the values.
+        lower: Lower limits, shape (n,).
+        upper: Upper limits, shape (n,).
+        weights: Weights of the values in distances, shape (n,).
+        resolution: Steps for collision tests, shape (n,); 0 selects OpenRAVE's default.
+    """
     resolution = np.where(resolution > 0, resolution, _RESOLUTION)
     lower = np.where(coordinates.circular, -_ROUND, lower)
     upper = np.where(coordinates.circular, _ROUND, upper)

@@ -1,4 +1,4 @@
-"""Further waypoints at the ends of trajectories with times."""
+"""Extends a timed trajectory by a waypoint before its first or after its last one."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +12,7 @@ from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
 from ravemj.trajectories.groups import DELTATIME, is_position
 
-_RETIMERS = {
+_RETIMERS = {  # by the interpolation of the trajectory, so that the new segment continues it in the same way
     "linear": "LinearTrajectoryRetimer",
     "quadratic": "ParabolicTrajectoryRetimer",
     "cubic": "CubicTrajectoryRetimer",
@@ -21,7 +21,17 @@ _RETIMERS = {
 
 
 class EndWaypoint:
-    """A waypoint that is connected to an end of a trajectory."""
+    """A waypoint to be connected with one end of a timed trajectory.
+
+    Args:
+        traj: The trajectory, with times.
+        spec: The layout of ``values``.
+        values: The new waypoint, shape (dof,).
+        velocities: The velocities at the new waypoint, shape (dof,).
+
+    Raises:
+        ArgumentError: the trajectory has no waypoints or no times, or the values have another shape.
+    """
 
     def __init__(
         self, traj: Trajectory, spec: ConfigurationSpecification, values: ArrayLike, velocities: ArrayLike
@@ -38,7 +48,15 @@ class EndWaypoint:
         self._velocities = checked_vector(velocities, dof, "dofvelocities")
 
     def anchor(self, index: int, replaced: int) -> int:
-        """Return the waypoint that the new one is connected to, when some at the end are replaced."""
+        """Return the index of the existing waypoint that the new one is connected to.
+
+        Args:
+            index: The place of the new waypoint: 0, or the number of waypoints.
+            replaced: How many existing waypoints at that end the new one replaces.
+
+        Raises:
+            ArgumentError: the index is not an end, or too few waypoints would be left.
+        """
         count = self._traj.GetNumWaypoints()
         self._is_first = index == 0
         if index not in {0, count, count - replaced}:
@@ -56,7 +74,7 @@ class EndWaypoint:
         return np.stack([first[0], second[0]]), np.stack([first[1], second[1]])
 
     def line(self, anchor: int) -> Trajectory:
-        """Return the trajectory of the two points, with velocities and without times."""
+        """Return a trajectory of the two waypoints, with velocities and without times."""
         points, velocities = self._ends(anchor)
         layout = ConfigurationSpecification.of(self._spec.GetGroups())
         layout.AddDerivativeGroups(1)
@@ -70,7 +88,17 @@ class EndWaypoint:
         return way
 
     def retimed(self, anchor: int, factors: tuple[float, float], plannername: str, extra: str) -> Trajectory:
-        """Return the way between both points with times."""
+        """Return the timed segment between the two waypoints.
+
+        Args:
+            anchor: The index of the existing waypoint.
+            factors: Factors of the velocity and acceleration limits.
+            plannername: The retimer; empty selects the one that fits the interpolation of the trajectory.
+            extra: Further parameters of the retimer as XML text.
+
+        Raises:
+            RavemjError: the retimer finds no times.
+        """
         groups = [group for group in self._layout.GetGroups() if is_position(group)]
         name = plannername or _RETIMERS.get(groups[0].interpolation if groups else "", _RETIMERS["linear"])
         way = self.line(anchor)
@@ -80,12 +108,12 @@ class EndWaypoint:
         return way
 
     def join(self, way: Trajectory, anchor: int) -> int:
-        """Put the way into the trajectory; return the index behind the last waypoint that was put in."""
+        """Insert the segment into the trajectory, and return the index after the last inserted waypoint."""
         traj, column = self._traj, self._layout.GetGroupFromName(DELTATIME).offset
         rows = way.GetAllWaypoints2D(self._layout)
         if self._is_first:
             kept = traj.GetWaypoints2D(anchor, traj.GetNumWaypoints())
-            kept[0, column] = rows[-1, column]
+            kept[0, column] = rows[-1, column]  # the old first waypoint now comes after a segment that takes time
             joined = np.vstack([rows[:-1], kept])
             behind = len(rows) - 1
         else:

@@ -1,4 +1,4 @@
-"""The hand of a problem's robot: what it lacks of a pose or of a constraint, as functions of configurations."""
+"""The error of a robot's tool against a goal pose or a task-space constraint, with its Jacobian."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,9 +22,9 @@ class Hand:
 
     Attributes:
         manip: The manipulator.
-        bodies: What moves.
-        columns: Where the joints of ``manip.GetArmIndices()`` are in a configuration.
-        dof: How many values a configuration has.
+        bodies: The robot, as the planner moves it.
+        columns: The columns of a configuration that hold the joints of ``manip.GetArmIndices()``.
+        dof: The number of values of a configuration.
     """
 
     manip: Manipulator
@@ -33,14 +33,14 @@ class Hand:
     dof: int
 
     def motion(self, values: Floats) -> tuple[Floats, Floats]:
-        """Return where the tool is and how it moves. The robot goes there.
+        """Move the robot to a configuration, and return the pose of its tool and the Jacobian.
 
         Args:
             values: A configuration, shape (n,).
 
         Returns:
-            ``T_world_tool``, shape (4, 4), and the velocities of its origin and the angular ones in world axes for
-            each value, shape (6, n).
+            ``T_world_tool``, shape (4, 4), and its Jacobian in world axes, shape (6, n): three rows for the velocity of
+            the origin, then three for the angular velocity.
         """
         self.bodies.move(values)
         jacobian = np.zeros((6, self.dof))
@@ -49,7 +49,11 @@ class Hand:
         return self.manip.GetTransform(), jacobian
 
     def to_pose(self, T_world_goal: Floats) -> Error:
-        """Return what configurations lack of a pose of the tool: the way [m] and the rotation vector [rad]."""
+        """Return the error function of a goal pose: the translation [m], then the rotation vector [rad], that are left.
+
+        Args:
+            T_world_goal: The goal pose of the tool, shape (4, 4).
+        """
 
         def lacking(values: Floats) -> tuple[Floats, Floats]:
             T_world_tool, jacobian = self.motion(values)
@@ -59,14 +63,16 @@ class Hand:
         return lacking
 
     def to_constraint(self, T_task_world: Floats, T_tool_point: Floats, freedoms: Floats) -> Error:
-        """Return what configurations lack of a constraint.
+        """Return the error function of a task-space constraint.
 
-        ``T_task_world @ T_world_tool @ T_tool_point`` should have no rotation and translation along some axes.
+        The constraint keeps ``T_task_world @ T_world_tool @ T_tool_point`` free of rotation about some axes and of
+        translation along some axes.
 
         Args:
-            T_task_world: The frame whose axes count.
-            T_tool_point: The point of the tool that is constrained.
-            freedoms: How much the rotations about x, y, z and the ways along them count; 0 leaves one free.
+            T_task_world: The task frame, whose axes ``freedoms`` refers to.
+            T_tool_point: The constrained frame, relative to the tool.
+            freedoms: Weights of the rotations about x, y, z and of the translations along them, shape (6,); 0 leaves
+                one free.
         """
         rotation = T_task_world[:3, :3]
 
@@ -74,7 +80,7 @@ class Hand:
             T_world_tool, jacobian = self.motion(values)
             found = T_task_world @ T_world_tool @ T_tool_point
             arm = T_world_tool[:3, :3] @ T_tool_point[:3, 3]
-            moves = jacobian[:3] - np.cross(arm, jacobian[3:], axisb=0, axisc=0)
+            moves = jacobian[:3] - np.cross(arm, jacobian[3:], axisb=0, axisc=0)  # v_point = v_tool + omega x arm
             error = np.append(rotation_between(found[:3, :3], np.eye(4)), -found[:3, 3])
             return freedoms * error, freedoms[:, None] * np.vstack([rotation @ jacobian[3:], rotation @ moves])
 
@@ -82,10 +88,10 @@ class Hand:
 
 
 def hand_of(values: Values) -> Hand:
-    """Return the hand of a problem's robot.
+    """Return the active manipulator of the one robot that a problem moves.
 
     Raises:
-        ArgumentError: what moves is not just the joints of the arm of a robot's active manipulator.
+        ArgumentError: the problem moves anything but the arm joints of one robot's active manipulator.
     """
     robots = [] if values.bodies is None else values.bodies.bodies
     manip = robots[0].GetActiveManipulator() if len(robots) == 1 and isinstance(robots[0], Robot) else None

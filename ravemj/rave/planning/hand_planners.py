@@ -1,4 +1,4 @@
-"""Planners of motions of the hand: along a given trajectory, and to one of several grasps."""
+"""Planners for the motion of a hand: along a given trajectory of the hand, and to one of several grasps."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -28,21 +28,22 @@ from ravemj.trajectories import extraction
 from ravemj.trajectories.groups import AFFINE
 
 _LARGEST_JUMP = 0.5
-"""How far a joint may move [rad or m] between two goals that follow each other."""
+"""The largest step of a joint between two consecutive goals [rad or m]; a larger one is another branch of solutions."""
 
 _MOST_GOALS = 100_000
-"""Of one trajectory of the hand: each takes half a millisecond."""
+"""The most goals of one trajectory of the hand. Each takes half a millisecond, so these take a minute."""
 
 _REACHED = 1e-6
-"""How near [m and rad] the hand has to be to a grasp."""
+"""The tolerance with which the hand has to reach a grasp [m and rad]."""
 
 
 class WorkspaceTrajectoryTracker(Planner):
-    """``WorkspaceTrajectoryTracker``: the hand follows a trajectory of its own, the joints without jumps.
+    """``WorkspaceTrajectoryTracker``: the hand follows a given trajectory, and the joints make no jumps.
 
-    The goals are those of the trajectory in steps of ``_fsteplength`` [s]. The motion begins where the robot is if that
-    reaches the first goal and can be continued, else at another solution. Smoothers would leave its way, so the result
-    has times of the ``LinearTrajectoryRetimer`` unless the parameters name another one.
+    The trajectory is sampled in steps of ``_fsteplength`` [s]; each sample is a goal of inverse kinematics. The motion
+    begins in the current configuration of the robot if that reaches the first goal and can be continued, else in
+    another solution. A smoother would make the hand leave the given trajectory, so ``LinearTrajectoryRetimer`` gives
+    the result its times, unless the parameters name another planner.
     """
 
     _defaults: ClassVar[Mapping[str, str]] = {
@@ -64,7 +65,7 @@ class WorkspaceTrajectoryTracker(Planner):
         return None if goals else self._failed("the trajectory of the hand has no waypoints")
 
     def _goals(self, values: Values, hand: Hand) -> tuple[Floats, list[IkParameterization]]:
-        """Return the times and goals of the trajectory of the hand."""
+        """Return the times [s] and goals along the trajectory of the hand."""
         text = values.tags.get("workspacetrajectory", "")
         if not text:
             raise ArgumentError("there is no trajectory of the hand; give it as <workspacetrajectory>")
@@ -74,7 +75,7 @@ class WorkspaceTrajectoryTracker(Planner):
         step = values.numbers["_fsteplength"]
         if not step * _MOST_GOALS > traj.GetDuration():
             raise ArgumentError(f"_fsteplength: is {step:g} s for {traj.GetDuration():g} s, and should be more")
-        count = int(np.ceil(traj.GetDuration() / step - 1e-9))
+        count = int(np.ceil(traj.GetDuration() / step - 1e-9))  # rounding shall not add a step of no length
         times = np.minimum(np.arange(count + 1) * step, traj.GetDuration())
         return times, [_goal(traj, time, hand) for time in times.tolist()]
 
@@ -108,13 +109,13 @@ class WorkspaceTrajectoryTracker(Planner):
         return self._timed(values, traj, path, times[: len(path)])
 
     def _is_checked(self, values: Values, time: float) -> bool:
-        """Return whether collisions count at a time."""
+        """Return whether collisions count at a time [s]."""
         return time >= values.tag("ignorefirstcollision", 0.0)
 
     def _solutions(
         self, values: Values, hand: Hand, goal: IkParameterization, near: Floats, *, check: bool
     ) -> list[Floats]:
-        """Return the configurations that reach a goal, the nearest first; only that one in a greedy search."""
+        """Return the configurations that reach a goal, the nearest to ``near`` first; a greedy search gets only one."""
         hand.bodies.move(near)
         found: list[Floats] = []
         for row in hand.manip.FindIKSolutions(goal, 0):
@@ -127,8 +128,12 @@ class WorkspaceTrajectoryTracker(Planner):
         return found[:1] if flag(values, "greedysearch") else found
 
     def _connection(self, values: Values, hand: Hand, times: Floats) -> Callable[[int, Floats, Floats], bool]:
-        """Return whether a straight line leads from one configuration to the next, and the hand does not swing out."""
-        edges, bend = Edges(values.space(), values.allowed()), values.tag("maxdeviationangle", 0.15 * np.pi)
+        """Return a test of the joint-space line between two consecutive solutions.
+
+        The line is refused if a joint jumps or is too fast, if the hand turns by more than ``maxdeviationangle``
+        in half of the line, or if the robot collides on it.
+        """
+        edges, largest_turn = Edges(values.space(), values.allowed()), values.tag("maxdeviationangle", 0.15 * np.pi)
         fastest = values.limits().velocity if flag(values, "maintaintiming") else np.full(hand.dof, np.inf)
 
         def connects(number: int, before: Floats, after: Floats) -> bool:
@@ -137,14 +142,14 @@ class WorkspaceTrajectoryTracker(Planner):
             if np.abs(step).max() > _LARGEST_JUMP or (np.abs(step) > fastest * elapsed * (1 + 1e-9)).any():
                 return False
             turned = [hand.motion(one)[0][:3, :3] for one in (before, before + step / 2, after)]
-            if max(_angle(turned[0], turned[1]), _angle(turned[1], turned[2])) > bend:
+            if max(_angle(turned[0], turned[1]), _angle(turned[1], turned[2])) > largest_turn:
                 return False
             return not self._is_checked(values, times[number]) or edges.line(before, step)
 
         return connects
 
     def _timed(self, values: Values, traj: Trajectory, path: Floats, times: Floats) -> PlannerStatus:
-        """Fill a trajectory with a path, and give it times."""
+        """Write a path into a trajectory, and retime it."""
         spec = ConfigurationSpecification.of(values.groups)
         keeps = flag(values, "maintaintiming")
         if keeps or values.postprocessing == CHAIN:
@@ -162,7 +167,7 @@ class WorkspaceTrajectoryTracker(Planner):
 
 
 def _goal(traj: Trajectory, time: float, hand: Hand) -> IkParameterization:
-    """Return where a trajectory of the hand is at a time."""
+    """Return the goal that a trajectory of the hand has at a time [s]."""
     spec, row = traj.GetConfigurationSpecification(), traj.Sample(time) if len(traj) > 1 else traj.GetWaypoint(0)
     goal = spec.ExtractIkParameterization(row)
     if goal is not None:
@@ -182,9 +187,10 @@ def _angle(one: Floats, other: Floats) -> float:
 
 
 class GraspGradient(PathPlanner):
-    """``GraspGradient``: the hand goes down the gradient of its distance to grasps, the nearest grasp first.
+    """``GraspGradient``: the hand descends the gradient of its distance to a grasp, the nearest grasp first.
 
-    ``<target>`` names the body; ``<grasps>`` is the number of grasps, and ``T_target_tool`` as 7 numbers for each.
+    ``<target>`` names the body to grasp. ``<grasps>`` has the number of grasps, then seven numbers for each: the pose
+    ``T_target_tool`` as quaternion (wxyz) and position [m].
     """
 
     _defaults: ClassVar[Mapping[str, str]] = {"graspdistthresh": "1.4", "numgradsamples": "5", "visgraspthresh": "0"}
@@ -201,7 +207,7 @@ class GraspGradient(PathPlanner):
         return super()._prepare(values)
 
     def _grasps(self, values: Values) -> list[Floats]:
-        """Return the poses of the tool in the world that are grasps."""
+        """Return ``T_world_tool`` of each grasp."""
         name = values.tags.get("target", "")
         target = self._env.GetKinBody(name)
         if target is None:

@@ -1,4 +1,4 @@
-"""Planners by their names."""
+"""Makes planners from their names, and runs them."""
 
 import logging
 from collections.abc import Callable, Mapping
@@ -36,10 +36,10 @@ PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
     "graspgradient": GraspGradient,
     **TRAJECTORY_PLANNERS,
 }
-"""What plans, by names in lower case."""
+"""The classes of planners, by their names in lower case."""
 
 MISSING: Mapping[str, str] = {"grasper": "planning of grasps"}
-"""Names of OpenRAVE's own planners, in lower case, with what ravemj lacks to have them."""
+"""Planners of OpenRAVE that ravemj lacks: their names in lower case, and the missing feature."""
 
 
 def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
@@ -47,7 +47,7 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
 
     Args:
         env: The environment.
-        name: In any letter case: ``birrt``, ``BasicRRT``, ``ExplorationRRT``, ``RAStar``,
+        name: The name, in any letter case: ``birrt``, ``BasicRRT``, ``ExplorationRRT``, ``RAStar``,
             ``WorkspaceTrajectoryTracker``, ``GraspGradient``; the retimers
             ``LinearTrajectoryRetimer``, ``ParabolicTrajectoryRetimer``, ``CubicTrajectoryRetimer``,
             ``QuinticTrajectoryRetimer``, and with the extra ``retiming`` ``ToppraTrajectoryRetimer``; the smoothers
@@ -56,10 +56,10 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
             ``OMPL_PRM`` and so on.
 
     Returns:
-        The planner; None for a name that OpenRAVE does not know either.
+        The planner, or None for a name that OpenRAVE does not know either.
 
     Raises:
-        UnsupportedError: the planner is another one of OpenRAVE's own.
+        UnsupportedError: OpenRAVE has this planner, and ravemj does not.
 
     Example:
         >>> planner = RaveCreatePlanner(env, "birrt")
@@ -93,10 +93,10 @@ def _maker(name: str) -> "Callable[[Environment, str], Planner] | None":
 
 
 def needed_planner(env: "Environment", name: str) -> Planner:
-    """Return a planner.
+    """Return a planner by its name.
 
     Raises:
-        RavemjError: there is none of that name.
+        RavemjError: there is no planner of that name.
     """
     planner = RaveCreatePlanner(env, name)
     if planner is None:
@@ -105,10 +105,10 @@ def needed_planner(env: "Environment", name: str) -> Planner:
 
 
 def run_planner(traj: Trajectory, params: PlannerParameters, name: str) -> PlannerStatus:
-    """Let a planner work on a trajectory.
+    """Run a planner on a trajectory.
 
     Raises:
-        RavemjError: there is none of that name.
+        RavemjError: there is no planner of that name.
     """
     planner = needed_planner(traj.GetEnv(), name)
     planner.InitPlan(None, params)
@@ -116,13 +116,13 @@ def run_planner(traj: Trajectory, params: PlannerParameters, name: str) -> Plann
 
 
 def retimed(traj: Trajectory, name: str, factors: tuple[float, float] = (1.0, 1.0), extra: str = "") -> PlannerStatus:
-    """Let a retimer or smoother work on a trajectory of any bodies.
+    """Run a retimer or a smoother on a trajectory of any bodies.
 
     Args:
-        traj: Changed in place.
-        name: Which one.
-        factors: Of the velocity and of the acceleration limits.
-        extra: Its parameters as XML text.
+        traj: The trajectory, changed in place.
+        name: The name of the retimer or smoother.
+        factors: Factors of the velocity limits and of the acceleration limits.
+        extra: Further parameters as XML text.
     """
     return run_planner(traj, of_bodies(traj, extra, *factors), name)
 
@@ -130,7 +130,10 @@ def retimed(traj: Trajectory, name: str, factors: tuple[float, float] = (1.0, 1.
 def of_bodies(
     traj: Trajectory, extra: str = "", maxvelmult: float = 1.0, maxaccelmult: float = 1.0
 ) -> PlannerParameters:
-    """Return parameters for the joints and poses that a trajectory is about.
+    """Return planner parameters for the joints and poses that a trajectory moves.
+
+    Raises:
+        ArgumentError: a factor is not a positive number.
 
     Args:
         traj: The trajectory.
@@ -149,7 +152,11 @@ def of_bodies(
 
 
 def scaled(params: PlannerParameters, extra: str, maxvelmult: float, maxaccelmult: float) -> PlannerParameters:
-    """Give parameters for a planner that works alone further text and factors of the limits; return them."""
+    """Scale the limits of parameters, add further XML text, and return them.
+
+    Raises:
+        ArgumentError: a factor is not a positive number.
+    """
     for name, factor in (("maxvelmult", maxvelmult), ("maxaccelmult", maxaccelmult)):
         if not (np.isfinite(factor) and factor > 0):
             raise ArgumentError(f"{name}: is {factor}, and should be above 0")
@@ -160,5 +167,5 @@ def scaled(params: PlannerParameters, extra: str, maxvelmult: float, maxaccelmul
 
 
 def alone(extra: str) -> str:
-    """Return parameters for a planner that works alone: times are no multiples of anything."""
+    """Return XML parameters for a retimer that is called by itself: its times are not rounded to a step length."""
     return f"<_fsteplength>0</_fsteplength>{extra}"

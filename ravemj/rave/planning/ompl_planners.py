@@ -1,4 +1,4 @@
-"""The planners of OMPL, under the names that the plugin or_ompl gave them: ``OMPL_RRTConnect`` and so on."""
+"""The planners of OMPL, under the names of OpenRAVE's plugin or_ompl: ``OMPL_RRTConnect`` and so on."""
 
 import logging
 from collections.abc import Sequence
@@ -18,11 +18,11 @@ from ravemj.rave.trajectory import Trajectory
 _LOG = logging.getLogger("ravemj")
 
 PREFIX = "ompl_"
-"""Names in lower case begin with it."""
+"""The prefix of the names, in lower case."""
 
 
 def is_ompl_planner(name: str) -> bool:
-    """Return whether there is a planner of a name; a warning says what is missing where it is OMPL."""
+    """Return whether OMPL has a planner of a name. If OMPL is not installed, log how to install it."""
     classes = planner_classes()
     if classes is None:
         _LOG.warning("planner '%s' needs OMPL; install it: pip install \"ravemj[planning]\"", name)
@@ -31,11 +31,11 @@ def is_ompl_planner(name: str) -> bool:
 
 
 class OmplPlanner(PathPlanner):
-    """A planner of OMPL.
+    """A path planner of OMPL.
 
-    Elements of the parameters set its own, such as ``<range>0.5</range>`` or ``<goal_bias>0.1</goal_bias>``; as with
-    or_ompl, ``<time_limit>`` is how long it may take [s]. Planners that look for the best path use up their time, or
-    their iterations.
+    Extra parameters of the planner are XML elements, such as ``<range>0.5</range>`` or ``<goal_bias>0.1</goal_bias>``.
+    ``<time_limit>`` is the time it may take [s], as with or_ompl. Planners that look for the best path use all of their
+    time or iterations.
     """
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:

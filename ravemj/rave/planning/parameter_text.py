@@ -1,4 +1,4 @@
-"""Parameters of planners as OpenRAVE's XML, both ways."""
+"""Reads and writes planner parameters as OpenRAVE's XML."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -34,21 +34,21 @@ CHAIN = (
     '<_postprocessing planner="parabolicsmoother"><_nmaxiterations>100</_nmaxiterations>'
     "<verifyinitialpath>0</verifyinitialpath></_postprocessing>",
 )
-"""What processes paths unless something else is said: planner and parameters."""
+"""The default post-processing of paths: the first planner, and its parameters, which name the second planner."""
 
 _ROOT = "plannerparameters"
 _POSTPROCESSING = "_postprocessing"
 
 
 class Tags(NamedTuple):
-    """What a text says.
+    """The content of a text of planner parameters.
 
     Attributes:
-        numbers: By the names of ``NUMBERS``.
-        vectors: By the names of ``VECTORS``.
-        groups: What a configuration is, or None.
-        postprocessing: Planner and parameters, or None.
-        others: What is in all other elements, by their names: text, or elements as text.
+        numbers: Scalars, by the names of ``NUMBERS``.
+        vectors: Vectors, by the names of ``VECTORS``.
+        groups: The layout of a configuration; None if the text has none.
+        postprocessing: The planner that processes the path, and its parameters; None if the text has none.
+        others: The content of all other elements as text, by their names.
     """
 
     numbers: dict[str, float]
@@ -65,7 +65,15 @@ def parameters_text(
     postprocessing: tuple[str, str],
     extra: str,
 ) -> str:
-    """Return parameters as text."""
+    """Return planner parameters as the text of a ``<plannerparameters>`` element.
+
+    Args:
+        groups: The layout of a configuration.
+        vectors: Vectors, by the names of ``VECTORS``.
+        numbers: Scalars, by the names of ``NUMBERS``.
+        postprocessing: The planner that processes the path, and its parameters as XML text.
+        extra: Further elements as XML text.
+    """
     planner, inner = postprocessing
     lines = [f"<{name}>{' '.join(repr(float(value)) for value in vectors[name])}</{name}>" for name in VECTORS]
     lines += [f"<{name}>{_number_text(numbers[name])}</{name}>" for name in NUMBERS]
@@ -78,13 +86,13 @@ def _number_text(number: float) -> str:
 
 
 def read_tags(text: str) -> Tags:
-    """Return what a text says; what is no XML says nothing, as in OpenRAVE.
+    """Return the content of a text of planner parameters. A text that is not XML is empty, as in OpenRAVE.
 
     Args:
         text: Elements, or a whole ``<plannerparameters>``.
 
     Raises:
-        ArgumentError: a number is none.
+        ArgumentError: an element of numbers contains something else.
     """
     found = Tags({}, {}, None, None, {})
     root = _parsed(text)
@@ -121,7 +129,7 @@ def _with(found: Tags, element: "Element", text: str) -> Tags:
 
 
 def _inner(element: "Element") -> str:
-    """Return what is in an element as text again."""
+    """Return the content of an element as XML text."""
     from xml.sax.saxutils import escape, quoteattr  # noqa: PLC0415 - imports urllib, which is slow
 
     parts = [escape((element.text or "").strip())]

@@ -1,4 +1,4 @@
-"""The problem of a planner."""
+"""The parameters of a planner."""
 
 # ruff: noqa: PLR0913, PLR0917 - OpenRAVE's arguments
 
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
 
 class PlannerParameters(ApiObject):
-    """The problem of a planner: what moves, from where, to where, and how far it may go.
+    """A planning problem: the joints that move, the start, the goals and the limits.
 
     Args:
-        other: Parameters to copy; None: OpenRAVE's defaults, and nothing that moves.
+        other: Parameters to copy. Without them, everything has OpenRAVE's defaults, and no joint moves yet.
 
     Example:
         >>> params = Planner.PlannerParameters()
@@ -54,31 +54,31 @@ class PlannerParameters(ApiObject):
 
     @classmethod
     def of(cls, values: Values, defaults: Mapping[str, str]) -> "PlannerParameters":
-        """Return parameters with values, and with further tags where the values lack them."""
+        """Return parameters with some values, and with default texts for the tags that the values lack."""
         params = cls()
         params.given = values.copied()
         params._extra = "\n".join(f"<{name}>{text}</{name}>" for name, text in {**defaults, **values.tags}.items())
         return params
 
     def resolved(self) -> Values:
-        """Return the values, with those of the extra text in place of others."""
+        """Return the values. Elements of the extra text replace what setters have set."""
         return self.given.with_tags(self._extra)
 
     def SetRobotActiveJoints(self, robot: Robot) -> None:
-        """Take the active DOFs of a robot with their present values, limits, weights and resolutions.
+        """Plan for the active DOFs of a robot, with their current values, limits, weights and resolutions.
 
         Args:
-            robot: The robot; what changes of it later is not noticed.
+            robot: The robot. Later changes of it have no effect on these parameters.
         """
         checked_kind(robot, Robot, "SetRobotActiveJoints: robot")
         self.SetConfigurationSpecification(robot.GetEnv(), robot.GetActiveConfigurationSpecification())
 
     def SetConfigurationSpecification(self, env: "Environment", spec: ConfigurationSpecification) -> None:
-        """Take joints and poses of bodies with their present values, limits, weights and resolutions.
+        """Plan for joints and poses of bodies, with their current values, limits, weights and resolutions.
 
         Args:
-            env: Where the bodies are.
-            spec: Their joint values and poses; its other groups are left out.
+            env: The environment that contains the bodies.
+            spec: The joint values and poses; other groups are left out.
         """
         checked_kind(spec, ConfigurationSpecification, "SetConfigurationSpecification: spec")
         groups = spec.GetTimeDerivativeSpecification(0).GetGroups()
@@ -91,29 +91,29 @@ class PlannerParameters(ApiObject):
         given.vectors["_vinitialconfig"] = bodies.values()
 
     def GetConfigurationSpecification(self) -> ConfigurationSpecification:
-        """Return what the numbers of a configuration are."""
+        """Return the layout of a configuration."""
         return ConfigurationSpecification.of(self.given.groups)
 
     def GetDOF(self) -> int:
-        """Return how many numbers a configuration has."""
+        """Return the number of values of a configuration."""
         return count(self.given.groups)
 
     def _set(self, name: str, values: ArrayLike) -> None:
         self.given.vectors[name] = checked_numbers(values, name).ravel()
 
     def SetGoalConfig(self, values: ArrayLike) -> None:
-        """Set the goal, or several one behind the other.
+        """Set the goal, or several goals one after the other.
 
         Args:
-            values: Their values, a multiple of ``GetDOF()``.
+            values: The goal values [rad or m], shape (GetDOF(),) or a multiple of it.
         """
         self._set("_vgoalconfig", values)
 
     def SetInitialConfig(self, values: ArrayLike) -> None:
-        """Set the start, or several one behind the other, in place of where the robot was.
+        """Set the start, or several starts one after the other, in place of the robot's configuration.
 
         Args:
-            values: Their values, a multiple of ``GetDOF()``.
+            values: The start values [rad or m], shape (GetDOF(),) or a multiple of it.
         """
         self._set("_vinitialconfig", values)
 
@@ -121,7 +121,7 @@ class PlannerParameters(ApiObject):
         """Set the velocities at the start.
 
         Args:
-            velocities: As many as values.
+            velocities: The velocities [rad/s or m/s], shape (GetDOF(),).
         """
         self._set("_vinitialconfigvelocities", velocities)
 
@@ -129,7 +129,7 @@ class PlannerParameters(ApiObject):
         """Set the velocities at the goal.
 
         Args:
-            velocities: As many as values.
+            velocities: The velocities [rad/s or m/s], shape (GetDOF(),).
         """
         self._set("_vgoalconfigvelocities", velocities)
 
@@ -137,7 +137,7 @@ class PlannerParameters(ApiObject):
         """Set the velocity limits.
 
         Args:
-            velocities: A limit for each value.
+            velocities: A limit for each value [rad/s or m/s], shape (GetDOF(),).
         """
         self._set("_vconfigvelocitylimit", velocities)
 
@@ -145,7 +145,7 @@ class PlannerParameters(ApiObject):
         """Set the acceleration limits.
 
         Args:
-            accelerations: A limit for each value.
+            accelerations: A limit for each value [rad/s^2 or m/s^2], shape (GetDOF(),).
         """
         self._set("_vconfigaccelerationlimit", accelerations)
 
@@ -153,55 +153,55 @@ class PlannerParameters(ApiObject):
         """Set the jerk limits.
 
         Args:
-            jerks: A limit for each value.
+            jerks: A limit for each value [rad/s^3 or m/s^3], shape (GetDOF(),).
         """
         self._set("_vconfigjerklimit", jerks)
 
     def SetConfigResolution(self, resolution: ArrayLike) -> None:
-        """Set the steps in which lines are tested.
+        """Set the step in which planners test a line for collisions.
 
         Args:
-            resolution: A step for each value.
+            resolution: A step for each value [rad or m], shape (GetDOF(),).
         """
         self._set("_vconfigresolution", resolution)
 
     def GetConfigVelocityLimit(self) -> Floats:
-        """Return the velocity limits, shape (dof,)."""
+        """Return the velocity limits [rad/s or m/s], shape (dof,)."""
         return self.given.vectors["_vconfigvelocitylimit"].copy()
 
     def GetConfigAccelerationLimit(self) -> Floats:
-        """Return the acceleration limits, shape (dof,)."""
+        """Return the acceleration limits [rad/s^2 or m/s^2], shape (dof,)."""
         return self.given.vectors["_vconfigaccelerationlimit"].copy()
 
     def GetConfigJerkLimit(self) -> Floats:
-        """Return the jerk limits, shape (dof,)."""
+        """Return the jerk limits [rad/s^3 or m/s^3], shape (dof,)."""
         return self.given.vectors["_vconfigjerklimit"].copy()
 
     def GetConfigResolution(self) -> Floats:
-        """Return the steps in which lines are tested, shape (dof,)."""
+        """Return the steps in which planners test a line for collisions [rad or m], shape (dof,)."""
         return self.given.vectors["_vconfigresolution"].copy()
 
     def SetMaxIterations(self, nMaxIterations: int) -> None:
-        """Set how many iterations a planner has at most.
+        """Set the maximum number of iterations of the planner.
 
         Args:
-            nMaxIterations: The number; 0: as the planner likes.
+            nMaxIterations: The number; 0 selects the planner's own.
         """
         self.given.numbers["_nmaxiterations"] = int(nMaxIterations)
 
     def SetMaxPlanningTime(self, nMaxPlanningTime: int) -> None:
-        """Set how long a planner may take.
+        """Set the maximum time of the planner.
 
         Args:
-            nMaxPlanningTime: Time [ms]; 0: any.
+            nMaxPlanningTime: The time [ms]; 0 sets no limit.
         """
         self.given.numbers["_nmaxplanningtime"] = int(nMaxPlanningTime)
 
     def SetStepLength(self, fStepLength: float) -> None:
-        """Set the step length: retimers make all times multiples of it.
+        """Set the step length. Retimers round all times up to multiples of it.
 
         Args:
-            fStepLength: The length; 0: any times.
+            fStepLength: The step length [s]; 0 leaves the times as they are.
         """
         self.given.numbers["_fsteplength"] = float(fStepLength)
 
@@ -214,19 +214,20 @@ class PlannerParameters(ApiObject):
         self.given.numbers["_nrandomgeneratorseed"] = int(seed)
 
     def SetPostProcessing(self, plannername: str, plannerparameters: str) -> None:
-        """Choose the planner that processes paths.
+        """Choose the planner that processes the path.
 
         Args:
-            plannername: Its name, a smoother or retimer; empty: paths stay as they are found, without times.
+            plannername: The name of a smoother or retimer. If it is empty, the path stays as it is found, without
+                times.
             plannerparameters: Its parameters as XML text.
         """
         self.given.postprocessing = plannername, plannerparameters
 
     def SetExtraParameters(self, extra: str) -> None:
-        """Set further parameters as XML text, in place of those that were set so before.
+        """Set further parameters as XML text, in place of an earlier text.
 
         Args:
-            extra: Elements such as ``<_nmaxiterations>100</_nmaxiterations>``; they count more than what setters set.
+            extra: Elements such as ``<_nmaxiterations>100</_nmaxiterations>``. They win over the setters.
         """
         self._extra = checked_kind(extra, str, "SetExtraParameters: extra", "a text")
 
@@ -234,7 +235,8 @@ class PlannerParameters(ApiObject):
         """Allow only configurations for which a function returns True.
 
         Args:
-            constraint: The function, of a configuration of shape (dof,). The robot is there when it is called.
+            constraint: The function of a configuration, shape (dof,). When it is called, the robot is in that
+                configuration.
         """
         self.given.constraints.append(constraint)
 
@@ -242,9 +244,9 @@ class PlannerParameters(ApiObject):
         """Let a function give further goals while ``birrt`` plans.
 
         Args:
-            sample: Returns a goal of shape (dof,), or None if it has none at this time; goals in collision are left
-                out. None: no function.
-            probability: The part of the iterations in which it is asked; while there is no goal, in each.
+            sample: A function that returns a goal of shape (dof,), or None if it has no goal at this time. Goals in
+                collision are left out. None removes the function.
+            probability: The fraction of the iterations that ask the function. While there is no goal, each one does.
         """
         self.given.goal_sampler = None if sample is None else (sample, probability)
 
@@ -254,10 +256,10 @@ class PlannerParameters(ApiObject):
         return self.given.bodies
 
     def SetStateValues(self, values: ArrayLike, options: int = 0) -> int:
-        """Move the bodies; values outside the limits go to them.
+        """Move the bodies to a configuration. Values outside the limits are set to the limits.
 
         Args:
-            values: A configuration.
+            values: The configuration, shape (GetDOF(),).
             options: Not used.
 
         Returns:
@@ -270,45 +272,49 @@ class PlannerParameters(ApiObject):
         return 0
 
     def GetStateFn(self) -> Floats:
-        """Return the present configuration of the bodies."""
+        """Return the current configuration of the bodies, shape (dof,).
+
+        Raises:
+            ArgumentError: no joint moves yet.
+        """
         return self._bodies().values()
 
     GetStateValues = GetStateFn
 
     def HasNeighStateFn(self) -> bool:
-        """Return whether configurations can be added, which they can as soon as something moves."""
+        """Return whether ``NeighStateFn`` can be called, which needs joints that move."""
         return self.given.bodies is not None
 
     def NeighStateFn(self, values: ArrayLike, delta: ArrayLike, fromgoal: int = 0) -> dict[str, Any]:
-        """Return a configuration some way from another, not beyond the limits.
+        """Return the sum of a configuration and a displacement, set to the limits where it is outside of them.
 
         Args:
-            values: The configuration.
-            delta: The way.
+            values: The configuration, shape (GetDOF(),).
+            delta: The displacement, shape (GetDOF(),).
             fromgoal: Not used.
 
         Returns:
-            ``configuration``, and ``returncode``: 1.
+            A dictionary: ``configuration`` is the sum, ``returncode`` is 1.
         """
         del fromgoal
         moved = self.given.space().clamp(self._checked(values) + self._checked(delta))
         return {"configuration": moved, "returncode": 1}
 
     def DistMetricFn(self, values0: ArrayLike, values1: ArrayLike) -> float:
-        """Return the distance of two configurations: the root of the sum of (weight * difference)^2.
+        """Return the distance of two configurations: the square root of the sum of (weight * difference)^2.
 
         Args:
-            values0: One.
-            values1: The other.
+            values0: One configuration, shape (GetDOF(),).
+            values1: The other configuration, shape (GetDOF(),).
         """
         return self.given.space().distance(self._checked(values0), self._checked(values1))
 
     def DiffStateFn(self, values0: ArrayLike, values1: ArrayLike) -> Floats:
-        """Return ``values0 - values1``; angles that go round take the short way.
+        """Return ``values0 - values1``. The difference of circular joints is the one within [-pi, pi].
 
         Args:
-            values0: A configuration.
-            values1: The one to subtract.
+            values0: A configuration, shape (GetDOF(),).
+            values1: The configuration to subtract, shape (GetDOF(),).
         """
         return self.given.space().difference(self._checked(values0), self._checked(values1))
 
@@ -329,20 +335,20 @@ class PlannerParameters(ApiObject):
         options: int = ALL,
         filterreturn: bool = False,
     ) -> int:
-        """Return what is wrong with the straight line between two configurations; the robot is moved along it.
+        """Test the straight line between two configurations. The robot moves along it, and stays where the test ends.
 
         Args:
-            q0: Its start.
-            q1: Its end.
+            q0: The start of the line, shape (GetDOF(),).
+            q1: The end of the line, shape (GetDOF(),).
             dq0: Velocities at the start; not used.
             dq1: Velocities at the end; not used.
             timeelapsed: How long the motion takes; not used.
-            interval: Which ends count, an ``Interval``.
-            options: What is looked at, ``ConstraintFilterOptions``.
+            interval: Which ends of the line count, an ``Interval``.
+            options: Which tests to run, bits of ``ConstraintFilterOptions``.
             filterreturn: Not used.
 
         Returns:
-            0: nothing; else a bit of ``ConstraintFilterOptions``.
+            0 if the line passes, else the bit of ``ConstraintFilterOptions`` of the test that fails.
         """
         del dq0, dq1, timeelapsed, filterreturn
         given, bodies = self.given, self._bodies()

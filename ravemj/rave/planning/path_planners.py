@@ -1,4 +1,4 @@
-"""Planners that find paths."""
+"""Planners that find a path without collisions."""
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
@@ -23,14 +23,14 @@ from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
 
 _ITERATIONS = 10000
-"""Where nothing else is said: OpenRAVE's number."""
+"""OpenRAVE's default for the maximum number of iterations."""
 
 _SPACING = 10
-"""Points of paths that nothing processes are this many step lengths apart at most."""
+"""The largest distance of the waypoints of a path that no planner processes, in step lengths."""
 
 
 class PathPlanner(Planner):
-    """Finds a path without collisions from starts to goals."""
+    """A planner that finds a path without collisions from one of several starts to one of several goals."""
 
     def __init__(self, *arguments: Any) -> None:  # noqa: ANN401 - passed on
         super().__init__(*arguments)
@@ -38,7 +38,7 @@ class PathPlanner(Planner):
 
     @property
     def search(self) -> Search | None:
-        """How the last search went, with its trees, also where it found nothing; None before the first one.
+        """The last search with its trees, successful or not; None before the first one.
 
         Example:
             >>> for tree in planner.search.trees:
@@ -72,7 +72,7 @@ class PathPlanner(Planner):
         return values.goal_sampler is None
 
     def _wrong(self, values: Values, name: str, configuration: Floats) -> PlannerStatus | None:
-        """Return what is wrong with a start or a goal, or None. The bodies are moved."""
+        """Return why a start or a goal cannot be used, or None if it can. The bodies are moved."""
         space, report = values.space(), CollisionReport()
         if not np.isfinite(configuration).all():
             status = self._failed(f"{name}: {configuration.tolist()} should be finite numbers")
@@ -139,7 +139,7 @@ class PathPlanner(Planner):
         return status
 
     def _processed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:
-        """Let the chain of smoothers and retimers work on a path."""
+        """Run the smoothers and retimers of the parameters on a path."""
         problem = post_process(self._env, values, traj)
         if problem is not None:
             return problem
@@ -148,7 +148,7 @@ class PathPlanner(Planner):
         return self._solved(f"found after {search.iterations} iterations")
 
     def _ends(self) -> tuple[int, int]:
-        """Return which start and which goal the last path connects; -1: none."""
+        """Return the indices of the start and of the goal that the last path connects; -1 where there is none."""
         return (-1, -1) if self._search_made is None else (self._search_made.start, self._search_made.goal)
 
     def _get_goal_index(self, arguments: str) -> str:
@@ -171,7 +171,7 @@ class PathPlanner(Planner):
 
 
 class BiRrt(PathPlanner):
-    """``birrt``: trees from all starts and goals grow towards each other."""
+    """``birrt``: bidirectional RRT-Connect; trees from all starts and all goals grow towards each other."""
 
     _defaults: ClassVar[Mapping[str, str]] = {"minimumgoalpaths": "1"}
 
@@ -198,7 +198,7 @@ class BiRrt(PathPlanner):
 
 
 class BasicRrt(PathPlanner):
-    """``BasicRRT``: one tree grows from the starts, now and then towards a goal."""
+    """``BasicRRT``: one tree grows from the starts; with the probability ``goalbias`` it grows towards a goal."""
 
     _defaults: ClassVar[Mapping[str, str]] = {"goalbias": "0.05", "nrrtextenttype": "0", "nminiterations": "0"}
 
@@ -218,7 +218,7 @@ class BasicRrt(PathPlanner):
 
 
 class RaStar(PathPlanner):
-    """``RA*``: what looks like the shortest way is followed first, over random neighbours."""
+    """``RA*``: a randomized A* that expands random neighbours, the most promising configuration first."""
 
     def _needs_goal(self, values: Values) -> bool:
         return True
@@ -236,7 +236,7 @@ class RaStar(PathPlanner):
 
 
 class ExplorationRrt(PathPlanner):
-    """``ExplorationRRT``: one tree explores what the starts reach; the result is all its configurations."""
+    """``ExplorationRRT``: one tree explores the free space around the starts; its configurations are the result."""
 
     _defaults: ClassVar[Mapping[str, str]] = {"exploreprob": "0", "expectedsize": "100"}
 
@@ -256,12 +256,12 @@ class ExplorationRrt(PathPlanner):
         return Search(End.found, tree.nodes(), 0, -1, tree.count, (tree,))
 
     def _processed(self, values: Values, traj: Trajectory, search: Search) -> PlannerStatus:
-        """Leave the configurations as they are: they are no path."""
+        """Leave the configurations alone: they are the nodes of a tree, not a path to be smoothed."""
         return self._solved(f"{traj.GetNumWaypoints()} configurations")
 
 
 def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
-    """Return a path with more points on its lines."""
+    """Return a path with additional waypoints on its lines, at most ``_SPACING`` step lengths apart."""
     space = edges.space
     rows = [path[:1]]
     for start, end in pairwise(path):
@@ -273,13 +273,13 @@ def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
 
 
 def _links(report: CollisionReport) -> str:
-    """Return which links collide."""
+    """Return the names of the colliding links, for error messages."""
     links = [link for link in (report.plink1, report.plink2) if link is not None]
     return " with ".join(f"link '{link.GetName()}' of '{link.GetParent().GetName()}'" for link in links)
 
 
 def _described(values: Values, index: int) -> str:
-    """Return what a value of a configuration is."""
+    """Return the name of one value of a configuration, for error messages."""
     group = next(group for group in values.groups if group.offset <= index < group.offset + group.dof)
     assert values.bodies is not None
     return values.bodies.described(group, index - group.offset)

@@ -1,4 +1,4 @@
-"""The base of all planners."""
+"""The base class of all planners."""
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
 PlanCallback = Callable[[PlannerProgress], int | None]
-"""A function of the progress; it returns a ``PlannerAction``, or None to go on."""
+"""A function that is told the progress, and returns a ``PlannerAction``, or None to continue."""
 
 
 class Planner(Interface):
-    """Finds motions, or gives them times; ``RaveCreatePlanner`` makes it."""
+    """A planner: it finds a path, smooths it, or gives it times. ``RaveCreatePlanner`` makes planners."""
 
     PlannerParameters = PlannerParameters
     PlannerStatus = PlannerStatus
@@ -33,9 +33,9 @@ class Planner(Interface):
     _interface_type = InterfaceType.planner
     _internal = ("run",)
     _takes_text: ClassVar[bool] = False
-    """Whether parameters as text are enough, which say nothing about bodies."""
+    """Whether the planner accepts parameters as text. Texts name no bodies, so only retimers and smoothers do."""
     _defaults: ClassVar[Mapping[str, str]] = {}
-    """Parameters of this kind of planner, by their tags."""
+    """The extra parameters of this kind of planner: tags, and their default texts."""
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
         self._env = env
@@ -46,25 +46,25 @@ class Planner(Interface):
         self._action = 0
 
     def GetXMLId(self) -> str:
-        """Return the name of the planner, as it was spelled when it was made."""
+        """Return the name of the planner, spelled as the caller of ``RaveCreatePlanner`` spelled it."""
         return self._xmlid
 
     @also_named(xmlparams="params")
     def InitPlan(self, robot: Robot | None, params: PlannerParameters | str, releasegil: bool = False) -> bool:
-        """Take over a problem.
+        """Set the problem, and check its starts and goals.
 
         Args:
-            robot: The robot; not used, since the problem says what moves.
-            params: The problem, which is copied; or, for retimers, its text.
+            robot: Not used, since the problem names the bodies.
+            params: The problem, which is copied. Retimers and smoothers accept its text as well.
             releasegil: Not used.
 
         Returns:
-            Whether it can be solved: False if each start, or each goal, is in collision or outside its limits, or
-            there is none. ``PlanPath`` says why.
+            Whether planning can begin. It is False if there is no start or no goal, or if all starts or all goals
+            collide or are outside the limits; ``PlanPath`` then says which.
 
         Raises:
-            TypeError: ``params`` is neither.
-            ArgumentError: it is a text, and the planner needs to know what moves.
+            TypeError: ``params`` is neither ``PlannerParameters`` nor a text.
+            ArgumentError: ``params`` is a text, and this planner needs to know the bodies.
         """
         del robot, releasegil
         self._values = None
@@ -79,20 +79,18 @@ class Planner(Interface):
         return self._prepare(self._values) is None
 
     def GetParameters(self) -> PlannerParameters | None:
-        """Return the problem as the planner understands it, a copy; None before ``InitPlan``."""
+        """Return a copy of the problem with all defaults filled in; None before ``InitPlan``."""
         return None if self._values is None else PlannerParameters.of(self._values, self._defaults)
 
     def PlanPath(self, traj: Trajectory, releasegil: bool = True) -> PlannerStatus:
-        """Solve the problem.
-
-        The robot is where it was afterwards.
+        """Solve the problem. Afterwards the robot is back in its configuration.
 
         Args:
-            traj: Filled with the motion; retimers and smoothers read it first. It stays as it is where there is none.
+            traj: Receives the motion; retimers and smoothers read it first. On failure it stays as it is.
             releasegil: Not used.
 
         Returns:
-            How it ended; on failure its ``description`` says why.
+            The status; on failure its ``description`` says why.
 
         Example:
             >>> status = planner.PlanPath(trajectory)
@@ -107,14 +105,17 @@ class Planner(Interface):
             return self.run(self._values, traj)
 
     def RegisterPlanCallback(self, callback: PlanCallback) -> Handle:
-        """Call a function while planning.
+        """Have a function called while the planner works.
 
         Args:
-            callback: Called at the beginning and after each iteration, with a ``PlannerProgress``. It returns a
-                ``PlannerAction``.
+            callback: Called with a ``PlannerProgress`` at the beginning and after each iteration. It returns a
+                ``PlannerAction``, or None to continue.
 
         Returns:
-            A handle; the function is called as long as it exists.
+            A handle. The planner calls the function as long as the handle exists.
+
+        Raises:
+            ArgumentError: the callback is not a function.
         """
         if not callable(callback):
             raise ArgumentError("RegisterPlanCallback: callback should be a function")
@@ -122,7 +123,7 @@ class Planner(Interface):
         return Handle(_forget, self._callbacks, callback)
 
     def run(self, values: Values, traj: Trajectory) -> PlannerStatus:
-        """Solve a problem. The caller holds the lock."""
+        """Solve a problem, and write the result into a trajectory. The caller holds the lock."""
         raise NotImplementedError
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
@@ -131,7 +132,7 @@ class Planner(Interface):
         return None
 
     def _proceed(self, iteration: int) -> bool:
-        """Ask the callbacks whether to go on."""
+        """Call the callbacks, and return whether to continue."""
         for callback in tuple(self._callbacks):
             self._action = int(callback(PlannerProgress(iteration)) or 0)
             if self._action == PlannerAction.Interrupt:

@@ -1,4 +1,4 @@
-"""Planners that process paths: retimers and smoothers, one after the other."""
+"""Runs the retimers and smoothers that process a path, one after the other."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -19,11 +19,11 @@ TRAJECTORY_PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
     **dict.fromkeys(RETIMERS, Retimer),
     **dict.fromkeys(SMOOTHERS, Smoother),
 }
-"""By their names in lower case."""
+"""The classes of retimers and smoothers, by their names in lower case."""
 
 
 def post_process(env: "Environment", values: Values, traj: Trajectory) -> PlannerStatus | None:
-    """Let the planners that parameters name for it work on a path, one after the other.
+    """Run the planners that the parameters name for post-processing on a path.
 
     Args:
         env: The environment.
@@ -31,13 +31,13 @@ def post_process(env: "Environment", values: Values, traj: Trajectory) -> Planne
         traj: The path, which is processed in place.
 
     Returns:
-        How a planner failed, or None.
+        The status of the planner that failed, or None if all succeeded.
     """
     name, text = values.postprocessing
     if name and traj.GetNumWaypoints() == 1:
         name, text = "LinearTrajectoryRetimer", ""  # nothing to smooth
     if (name, text) == CHAIN and len(values.coordinates().rotation) > 1:
-        name, text = "LinearSmoother", ""  # the other one of the chain knows no rotations in space
+        name, text = "LinearSmoother", ""  # the chain's parabolic smoother cannot interpolate quaternions
     numbers = {**values.numbers, "_nmaxiterations": 0.0, "_fsteplength": 0.0}
     while name:
         make = TRAJECTORY_PLANNERS.get(name.lower())

@@ -1,4 +1,4 @@
-"""Retimers: times for the waypoints of a trajectory."""
+"""Retimers: planners that give the waypoints of a trajectory times."""
 
 from collections.abc import Callable, Mapping
 from typing import ClassVar
@@ -44,7 +44,7 @@ RETIMERS: dict[str, Callable[[Values], Profile | ToppRa]] = {
     "quintictrajectoryretimer": lambda values: Quintic(),
     **dict.fromkeys(TOPP_RA, lambda values: ToppRa()),
 }
-"""What retimes, by the names of planners in lower case."""
+"""The velocity profiles of the retimers, by their names in lower case."""
 
 
 TIMING: Mapping[str, str] = {
@@ -57,12 +57,12 @@ TIMING: Mapping[str, str] = {
     "multidofinterp": "0",
     "verifyinitialpath": "1",
 }
-"""OpenRAVE's parameters of all planners that give times; of these, ``interpolation``, ``hastimestamps``,
-``hasvelocities``, ``outputaccelchanges`` and ``verifyinitialpath`` have an effect here."""
+"""The parameters that OpenRAVE's retimers and smoothers share, with its defaults. Of these, ``interpolation``,
+``hastimestamps``, ``hasvelocities``, ``outputaccelchanges`` and ``verifyinitialpath`` have an effect here."""
 
 
 class Retimer(Planner):
-    """Gives the waypoints of a trajectory times that respect the limits; it looks at no collisions."""
+    """A planner that gives waypoints times within the velocity and acceleration limits. It ignores collisions."""
 
     _takes_text: ClassVar[bool] = True
     _defaults: ClassVar[Mapping[str, str]] = TIMING
@@ -105,7 +105,7 @@ def _timed(
     given: tuple[Floats | None, Floats | None],
     time_step: float,
 ) -> Timed:
-    """Return a path with times; ``given``: times and velocities that should be kept."""
+    """Return a path with times; ``given`` are the times and velocities to keep, or None."""
     if not isinstance(profile, ToppRa):
         return retime(profile, points, limits, deltas=given[0], velocities=given[1], time_step=time_step)
     if any(one is not None for one in given):
@@ -114,7 +114,7 @@ def _timed(
 
 
 def lacking_group(spec: ConfigurationSpecification, source: ConfigurationSpecification) -> str | None:
-    """Return the name of a group whose values a layout lacks altogether, or None."""
+    """Return the name of the first group of ``spec`` for which ``source`` has no values, or None."""
     names = [group.name for group in spec.GetGroups()]
     return next((name for name in names if source.FindCompatibleGroup(name) is None), None)
 
@@ -126,13 +126,13 @@ def _given_velocities(traj: Trajectory, spec: ConfigurationSpecification) -> Flo
 def fill(
     traj: Trajectory, spec: ConfigurationSpecification, profile: Interpolated, timed: Timed, *, mark: bool = False
 ) -> None:
-    """Make a trajectory of a path with times.
+    """Write a timed path into a trajectory.
 
     Args:
-        traj: What is filled.
-        spec: What the values are.
-        profile: How they change.
-        timed: The path.
+        traj: The trajectory; its layout and waypoints are replaced.
+        spec: The layout of the path's values.
+        profile: The velocity profile, which says how values are interpolated and which derivatives are stored.
+        timed: The timed path.
         mark: Whether to add a group ``iswaypoint``.
     """
     groups = spec.GetGroups()
@@ -158,6 +158,6 @@ def fill(
 
 
 def flag(values: Values, name: str, *, default: bool = False) -> bool:
-    """Return whether a tag is on."""
+    """Return whether a tag of the parameters is on: any text but ``0`` and ``false``."""
     text = values.tags.get(name, "").strip().lower()
     return default if not text else text not in {"0", "false"}

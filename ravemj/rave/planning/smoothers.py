@@ -1,4 +1,4 @@
-"""Smoothers: shorter and faster motions without collisions."""
+"""Smoothers: planners that make a motion shorter and faster, and keep it free of collisions."""
 
 from collections.abc import Callable, Mapping
 from typing import ClassVar
@@ -21,7 +21,7 @@ from ravemj.rave.specification import ConfigurationSpecification
 from ravemj.rave.trajectory import Trajectory
 
 _TRIES = 100
-"""Of shortcuts, where nothing else is said: OpenRAVE's number."""
+"""OpenRAVE's default for the number of attempted shortcuts."""
 
 SMOOTHERS: dict[str, Callable[[], Profile]] = {
     "linearsmoother": Linear,
@@ -32,7 +32,8 @@ SMOOTHERS: dict[str, Callable[[], Profile]] = {
     "cubicsmoother": Cubic,
     "quinticsmoother": Quintic,
 }
-"""How results move, by the names of planners in lower case. All but the parabolic ones keep to straight lines."""
+"""The velocity profiles of the results, by the names of planners in lower case. Only parabolic results leave the
+straight lines of the path: they round its corners."""
 
 
 _CONSTRAINTS: Mapping[str, str] = {
@@ -48,11 +49,11 @@ _CONSTRAINTS: Mapping[str, str] = {
     "minswitchtime": "0.2",
     "nshortcutcycles": "1",
 }
-"""OpenRAVE's further parameters of smoothers; they have no effect here."""
+"""Further parameters of OpenRAVE's smoothers, with its defaults. They have no effect here."""
 
 
 class Smoother(Planner):
-    """Takes shortcuts that are without collisions, and gives the result times."""
+    """A planner that replaces parts of a path by shortcuts without collisions, and gives the result times."""
 
     _takes_text: ClassVar[bool] = True
     _defaults: ClassVar[Mapping[str, str]] = {**TIMING, **_CONSTRAINTS}
@@ -102,7 +103,7 @@ class Smoother(Planner):
 
 
 def _timed(motion: list[Piece], points: Floats) -> Timed:
-    """Return a motion from the first of some points to the last as a path with times."""
+    """Return a motion as a timed path, which begins and ends exactly at the first and last of the given points."""
     rest = np.zeros_like(points[0])
     values = np.array([*(piece.values for piece in motion), points[-1]])
     values[0] = points[0]

@@ -1,4 +1,4 @@
-"""How planning ended."""
+"""The result of planning, and the progress that callbacks are told."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 class PlanningError(Exception):
-    """No motion was found; not an ``openrave_exception``.
+    """No motion was found. As in OpenRAVE, this is not an ``openrave_exception``.
 
     Attributes:
-        parameter: Why.
+        parameter: The reason.
         recoverySuggestions: What the caller can do instead.
     """
 
@@ -29,18 +29,18 @@ class PlanningError(Exception):
 
 
 class PlannerStatus(ApiObject):
-    """How planning ended, and on failure why.
+    """The result of planning, with the reason on failure.
 
-    It compares with codes and numbers, as in OpenRAVE 0.9: ``status == PlannerStatus.HasSolution``; a status without a
-    solution is false.
+    A status compares with codes and numbers, as in OpenRAVE 0.9: ``status == PlannerStatus.HasSolution``. As a truth
+    value it is False without a solution.
 
     Attributes:
-        statusCode: How it ended, a ``PlannerStatusCode``.
+        statusCode: The result, a ``PlannerStatusCode``.
         description: A sentence that says what happened.
         errorOrigin: The planner that failed.
-        jointValues: The configuration that is to blame; empty if none is.
-        ikparam: The goal of inverse kinematics that is to blame, or None.
-        report: The collision that is to blame, or None.
+        jointValues: The configuration that caused the failure; empty if none did.
+        ikparam: The goal of inverse kinematics that caused the failure, or None.
+        report: The collision that caused the failure, or None.
     """
 
     Failed: ClassVar["PlannerStatus"]
@@ -96,10 +96,10 @@ for _code in PlannerStatusCode.__members__.values():
 
 
 class PlannerProgress(ApiObject):
-    """What a function of ``planner.RegisterPlanCallback`` is told.
+    """The progress of a planner, as callbacks of ``planner.RegisterPlanCallback`` get it.
 
     Attributes:
-        _iteration: How many iterations are over.
+        _iteration: The number of finished iterations.
     """
 
     def __init__(self, iteration: int) -> None:

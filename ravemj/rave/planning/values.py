@@ -1,4 +1,4 @@
-"""The numbers of a problem, and what bodies they are about."""
+"""The numbers of a planning problem, and the bodies that they refer to."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -18,10 +18,10 @@ from ravemj.trajectories.groups import Group
 from ravemj.trajectories.layout import count
 
 _STEP_LENGTH = float(np.float32(0.04))
-"""OpenRAVE's default, which it keeps in single precision."""
+"""OpenRAVE's default step length [s], which it keeps in single precision."""
 
 ALL = int(ConstraintFilterOptions.RecommendedOptions)
-"""What tests of configurations look at."""
+"""The tests that every configuration of a path has to pass."""
 
 Constraint = Callable[[Floats], bool]
 """A function of a configuration that returns whether it is allowed."""
@@ -33,19 +33,19 @@ def _empty() -> Floats:
 
 @dataclass
 class Values:
-    """The numbers of a problem, and what bodies they are about.
+    """The numbers of a planning problem, and the bodies that they refer to.
 
     Attributes:
-        vectors: By the names of ``parameter_text.VECTORS``.
-        numbers: By the names of ``parameter_text.NUMBERS``.
-        groups: What a configuration is.
-        weights: Of each value in distances.
-        postprocessing: Name of the planner that processes the result, and its parameters as text.
-        bodies: What moves; None for problems that are read from text.
-        constraints: Functions that configurations have to pass.
-        goal_sampler: Function that returns a further goal, or None if there is none now; and the part of iterations in
-            which it is asked.
-        tags: Further parameters, for one kind of planner.
+        vectors: Vectors, by the names of ``parameter_text.VECTORS``.
+        numbers: Scalars, by the names of ``parameter_text.NUMBERS``.
+        groups: The layout of a configuration.
+        weights: The weight of each value in distances, shape (n,).
+        postprocessing: The name of the planner that processes the result, and its parameters as text.
+        bodies: The bodies that move; None for problems that are read from text.
+        constraints: Functions that return whether a configuration is allowed.
+        goal_sampler: A function that returns a further goal, or None if it has none now; and the fraction of the
+            iterations that call it.
+        tags: Further parameters of one kind of planner, as texts.
     """
 
     vectors: dict[str, Floats] = field(default_factory=lambda: {name: np.zeros(0) for name in VECTORS})
@@ -61,11 +61,11 @@ class Values:
     tags: dict[str, str] = field(default_factory=lambda: {})
 
     def copied(self) -> "Values":
-        """Return a copy that can be changed by itself."""
+        """Return an independent copy."""
         return replace(self, vectors=dict(self.vectors), numbers=dict(self.numbers), constraints=list(self.constraints))
 
     def with_tags(self, text: str) -> "Values":
-        """Return a copy with the tags of a text."""
+        """Return a copy in which the elements of an XML text replace the values of the same names."""
         numbers, vectors = dict(self.numbers), dict(self.vectors)
         read = read_tags(text)
         tags = {**self.tags, **read.others}
@@ -76,10 +76,10 @@ class Values:
         return replace(self, numbers=numbers, vectors=vectors, tags=tags, groups=groups, postprocessing=post)
 
     def tag(self, name: str, default: float) -> float:
-        """Return a further parameter that is a number.
+        """Return one of the further parameters as a number.
 
         Raises:
-            ArgumentError: it is none.
+            ArgumentError: the text of the parameter is not a number.
         """
         text = self.tags.get(name, "").strip()
         try:
@@ -88,24 +88,24 @@ class Values:
             raise ArgumentError(f"<{name}>: '{text}' should be a number") from None
 
     def random(self) -> np.random.Generator:
-        """Return random numbers as the seed says."""
+        """Return a random number generator with the seed of the problem."""
         return np.random.default_rng(abs(int(self.numbers["_nrandomgeneratorseed"])))
 
     def coordinates(self) -> Coordinates:
-        """Return what the numbers of a configuration are."""
+        """Return which values of a configuration are circular angles, positions or quaternions."""
         return self.bodies.coordinates() if self.bodies else Coordinates(np.zeros(count(self.groups), dtype=bool))
 
     def space(self) -> Space:
-        """Return the space of configurations."""
+        """Return the configuration space."""
         vector = self.vectors
         limits = vector["_vconfiglowerlimit"], vector["_vconfigupperlimit"]
         return space_of(self.coordinates(), *limits, self.weights, vector["_vconfigresolution"])
 
     def limits(self) -> Limits:
-        """Return what motions may do.
+        """Return the limits of motions.
 
         Raises:
-            ArgumentError: there are not as many limits as values.
+            ArgumentError: the number of limits differs from the number of values.
         """
         names = ("lower", "upper", "velocity", "acceleration", "jerk")
         dof, found = count(self.groups), [self.vectors[f"_vconfig{name}limit"] for name in names]
@@ -117,10 +117,10 @@ class Values:
         return Limits(self.coordinates(), *found)
 
     def check(self) -> None:
-        """Check that something moves, and that each value has its limits and its resolution.
+        """Check that some joint or body moves, and that each value has limits and a resolution.
 
         Raises:
-            ArgumentError: it does not.
+            ArgumentError: nothing moves, or a vector of limits or resolutions has another shape or contains NaN.
         """
         dof = count(self.groups)
         if not dof or self.bodies is None:
@@ -131,10 +131,10 @@ class Values:
                 raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be {dof} numbers")
 
     def configurations(self, name: str) -> Floats:
-        """Return starts or goals, one in each row.
+        """Return the starts or the goals, shape (number, n).
 
         Raises:
-            ArgumentError: their numbers are no multiple of those of a configuration.
+            ArgumentError: the numbers do not fill whole configurations.
         """
         dof, numbers = count(self.groups), self.vectors[name]
         if not dof or numbers.size % dof:
@@ -142,19 +142,19 @@ class Values:
         return numbers.reshape(-1, dof)
 
     def allowed(self) -> Allowed:
-        """Return the test of configurations, for use within ``bodies.kept``; it may move the bodies."""
+        """Return the test of single configurations. Use it within ``bodies.kept``, since it may move the bodies."""
         fast = None if self.bodies is None or self.constraints else self.bodies.fast_test()
         if fast is not None:
             return lambda values: not fast(values)
         return lambda values: not self.problem(values, ALL)
 
     def problem(self, values: Floats, options: int, report: CollisionReport | None = None) -> int:
-        """Return what is wrong with a configuration, a bit of ``ConstraintFilterOptions``; 0: nothing.
+        """Test a configuration, and return the bit of ``ConstraintFilterOptions`` that fails, or 0.
 
         Args:
-            values: The configuration; the bodies go there.
-            options: What is looked at, ``ConstraintFilterOptions``.
-            report: Filled with the collision.
+            values: The configuration, shape (n,); the bodies are moved there.
+            options: The tests to run, bits of ``ConstraintFilterOptions``.
+            report: Receives the collision.
         """
         if self.bodies is None:
             return FREE

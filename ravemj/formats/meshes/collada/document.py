@@ -36,7 +36,8 @@ class ColladaDocument:
         try:
             root = etree.fromstring(data, parser)
         except etree.XMLSyntaxError as error:
-            raise SourceError(f"not well-formed XML: {error.msg}", Source(path, error.lineno or 0)) from error
+            reason = error.msg.partition(", line ")[0]  # the source says it already
+            raise SourceError(f"not well-formed XML: {reason}", Source(path, error.lineno or 0)) from error
         if root is None or local_name(root) != "COLLADA":
             raise SourceError("the root element is not COLLADA", Source(path, 1))
         self.root = root
