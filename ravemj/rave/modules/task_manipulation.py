@@ -1,20 +1,20 @@
 """Motions of fingers, and of arms to grasps: the module ``TaskManipulation``."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
-from ravemj.planning.projection import project
+from ravemj.planning.projection import PROJECTION_STEPS, project
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.grasp_planning import GraspPlan, GraspQuery, plan_grasp
 from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.planning.bodies import Bodies
-from ravemj.rave.planning.hand import hand_of
+from ravemj.rave.planning.hand import ToolConstraint, hand_of
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.trajectory import Trajectory
@@ -27,26 +27,6 @@ _STEP = 0.01
 
 _CLOSE = 1e-6
 """How near [rad or m] to a contact joints stop."""
-
-
-_PROJECTION_STEPS = 40
-"""OpenRAVE's, for the projection of a configuration onto a constraint."""
-
-
-class ToolConstraint(NamedTuple):
-    """A constraint of the tool: ``T_task_world @ T_world_tool @ T_tool_point`` does not turn or move along some axes.
-
-    Attributes:
-        T_task_world: The frame whose axes count.
-        T_tool_point: The point of the tool that is constrained.
-        freedoms: 1 holds, 0 leaves free: rotations about x, y, z, and ways along them, shape (6,).
-        threshold: The error [m and rad] up to which it counts as kept.
-    """
-
-    T_task_world: Floats
-    T_tool_point: Floats
-    freedoms: Floats
-    threshold: float
 
 
 class TaskManipulation(Manipulation):
@@ -79,17 +59,15 @@ class TaskManipulation(Manipulation):
             configurations: Active values, which should be those of the arm.
 
         Raises:
-            ArgumentError: the active DOFs are not the joints of the arm.
+            ArgumentError: the active DOFs are not the joints of the arm, or the constraint has numbers of none.
         """
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)
         values = params.resolved()
         hand = hand_of(values)
-        error = hand.to_constraint(constraint.T_task_world, constraint.T_tool_point, constraint.freedoms)
+        error, threshold = hand.to_constraint(constraint.checked())
         with hand.bodies.kept():
-            found = [
-                project(one, error, values.space(), constraint.threshold, _PROJECTION_STEPS) for one in configurations
-            ]
+            found = [project(one, error, values.space(), threshold, PROJECTION_STEPS) for one in configurations]
         return [steps for steps, _ in found], [row for _, row in found]
 
     def close_fingers(
