@@ -2,11 +2,15 @@
 
 from collections.abc import Callable
 from functools import lru_cache
+from math import sqrt
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.planning.space import Space
+
+RANGE = 1.0
+"""How far [rad or m] one line of a tree goes at most."""
 
 Allowed = Callable[[Floats], bool]
 """Whether a configuration is without collisions, and keeps the user's constraints."""
@@ -29,6 +33,16 @@ class Edges:
         """Return whether a configuration is allowed."""
         self.tests += 1
         return self.allowed(configuration)
+
+    def towards(self, start: Floats, target: Floats) -> tuple[Floats, bool]:
+        """Return a step towards a configuration, no longer than a line of a tree, and whether it gets there."""
+        step = self.space.difference(target, start)
+        far = sqrt(step.dot(step))
+        return (step * (RANGE / far), False) if far > RANGE else (step, True)
+
+    def onto(self, configuration: Floats) -> Floats:
+        """Return where lines that are meant for a configuration end: there, unless a constraint says otherwise."""
+        return configuration
 
     def line(self, start: Floats, step: Floats) -> bool:
         """Return whether the line from a configuration that is allowed is so everywhere, its end included.

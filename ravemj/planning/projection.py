@@ -12,6 +12,9 @@ from ravemj.planning.space import Space
 Error = Callable[[Floats], tuple[Floats, Floats]]
 """Returns what a configuration lacks, shape (k,), and how joint values reduce that: a Jacobian, shape (k, n)."""
 
+PROJECTION_STEPS = 40
+"""Of one projection at most: OpenRAVE's number."""
+
 _DAMPING = 1e-8
 """Of steps, beside a part of the squared error: it keeps them finite where the Jacobian has no full rank."""
 

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ravemj.core.transforms import Floats
-from ravemj.planning.edges import Edges
-from ravemj.planning.rrt import RANGE, Budget, End, Search, without_repetitions
+from ravemj.planning.edges import RANGE, Edges
+from ravemj.planning.rrt import Budget, End, Search, without_repetitions
 from ravemj.planning.trees import Tree
 
 _STEP = 0.3
@@ -56,7 +56,7 @@ def search_by_cost(
             path = without_repetitions(np.array([*tree.branch(number)[::-1], goals[goal]]))
             return Search(End.found, path, tree.root(number), goal, iteration + 1, (tree,))
         for direction in random.normal(size=(_NEIGHBOURS, len(node))):
-            neighbour = space.clamp(node + direction * (_STEP / np.linalg.norm(direction)))
+            neighbour = edges.onto(space.clamp(node + direction * (_STEP / np.linalg.norm(direction))))
             nearest = tree.node(tree.nearest(neighbour))
             way = space.difference(neighbour, node)
             if np.linalg.norm(space.difference(neighbour, nearest)) > _APART * _STEP and edges.line(node, way):

@@ -4,7 +4,6 @@
 the smaller one, so that a tree in a narrow place is not fed in vain.
 """
 
-import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -15,9 +14,6 @@ import numpy as np
 from ravemj.core.transforms import Floats
 from ravemj.planning.edges import Edges
 from ravemj.planning.trees import Tree
-
-RANGE = 1.0
-"""How far [rad or m] one line of a tree goes at most."""
 
 _PATIENCE = 20
 """After so many blocked lines of the smaller tree, the other one has a turn: perhaps it finds the way in."""
@@ -227,10 +223,7 @@ def _extend(edges: Edges, tree: Tree, target: Floats) -> int | None:
     """Grow a tree towards a configuration by one line; return the new node, or None where it is blocked."""
     nearest = tree.nearest(target)
     start = tree.node(nearest)
-    step = edges.space.difference(target, start)
-    far = math.sqrt(step.dot(step))
-    if far > RANGE:
-        step *= RANGE / far
+    step, _ = edges.towards(start, target)
     return tree.add(start + step, nearest) if edges.line(start, step) else None
 
 
@@ -239,11 +232,7 @@ def _reach(edges: Edges, tree: Tree, target: Floats) -> int | None:
     nearest = tree.nearest(target)
     while True:
         start = tree.node(nearest)
-        step = edges.space.difference(target, start)
-        far = math.sqrt(step.dot(step))
-        is_last = far <= RANGE
-        if not is_last:
-            step *= RANGE / far
+        step, is_last = edges.towards(start, target)
         if not edges.line(start, step):
             return None
         if is_last:

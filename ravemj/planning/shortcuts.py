@@ -45,8 +45,8 @@ def shorten(
         first, second = (min(int(np.searchsorted(ends, place)), len(steps) - 1) for place in (low, high))
         if first == second:
             continue
-        start = _place(path[first], steps[first], lengths[first], low - (ends[first] - lengths[first]))
-        end = _place(path[second], steps[second], lengths[second], high - (ends[second] - lengths[second]))
+        start = edges.onto(_place(path[first], steps[first], lengths[first], low - (ends[first] - lengths[first])))
+        end = edges.onto(_place(path[second], steps[second], lengths[second], high - (ends[second] - lengths[second])))
         step = space.difference(end, start)
         straight = float(np.linalg.norm(space.weights * step))
         # What is left of both lines is tested, too: in steps from its own ends, which are not those of the whole lines.

@@ -325,3 +325,91 @@ def test_constraints_that_hold_already_need_no_step_and_others_are_never_kept(ro
     robot.SetActiveDOFs([0, 1])
     with pytest.raises(ravemj.openrave_exception, match="should be those of the arm"):
         helper.EvaluateConstraints([1] * 6, [[0, 0]])
+
+
+def moved_tool(robot, trajectory, frame=None, point=None):
+    """Return rotation vectors and ways of ``frame @ T_world_tool @ point`` at many times of a motion, shape (m, 6)."""
+    spec, found = robot.GetActiveConfigurationSpecification(), []
+    for time in np.linspace(0, trajectory.GetDuration(), 600):
+        tool = tool_at(robot, trajectory.Sample(time, spec))
+        moved = (np.eye(4) if frame is None else frame) @ tool @ (np.eye(4) if point is None else point)
+        found.append([*ravemj.axisAngleFromRotationMatrix(moved[:3, :3]), *moved[:3, 3]])
+    return np.array(found)
+
+
+def beside_a_wall(robot):
+    """Put a wall in the way; return the present pose of the tool, and one behind the wall."""
+    here = robot.GetActiveManipulator().GetTransform()
+    there = here.copy()
+    there[1, 3] += 0.35
+    box(robot.GetEnv(), "wall", here[:3, 3] + [0, 0.17, 0], [0.05, 0.02, 0.6])
+    return here, there
+
+
+def test_a_cup_is_carried_upright_around_a_wall(robot):
+    here, there = beside_a_wall(robot)
+    there[:3, :3] = ravemj.rotationMatrixFromAxisAngle([0, 0, 0.3]) @ there[:3, :3]
+    upright = np.linalg.inv(here)
+    found = ravemj.interfaces.BaseManipulation(robot).MoveToHandPosition(
+        matrices=[there],
+        constraintfreedoms=[1, 1, 0, 0, 0, 0],
+        constrainttaskmatrix=upright,
+        execute=False,
+        outputtrajobj=True,
+    )
+    error = moved_tool(robot, found, point=upright)
+    assert np.linalg.norm(error[:, :2], axis=1).max() <= 1e-3
+    assert np.abs(error[:, 3:]).max() > 0.3
+    rows = waypoints(robot, found)
+    assert rows[0] == pytest.approx(READY)
+    assert tool_at(robot, rows[-1]) == pytest.approx(there, abs=1e-6)
+    assert robot.GetActiveDOFValues() == pytest.approx(READY)
+    planningutils.VerifyTrajectory(None, found, 0.01)
+
+
+def test_the_tool_moves_in_a_plane_by_command(robot):
+    here, there = beside_a_wall(robot)
+    plane = np.eye(4)
+    plane[:3, 3] = -here[:3, 3]
+    module = ravemj.RaveCreateModule(robot.GetEnv(), "basemanipulation")
+    robot.GetEnv().Add(module, True, robot.GetName())
+    goal, frame = (ravemj.matrixSerialization(pose) for pose in (there, plane))
+    constraint = f"constraintmatrix {frame} constraintfreedoms 0 0 0 0 0 1 constrainterrorthresh 0.01"
+    reply = module.SendCommand(f"MoveToHandPosition matrix {goal} {constraint} execute 0 outputtraj")
+    found = ravemj.RaveCreateTrajectory(robot.GetEnv(), "").deserialize(reply.split(maxsplit=1)[1])
+    error = moved_tool(robot, found, frame=plane)
+    assert np.abs(error[:, 5]).max() <= 0.01
+    assert np.abs(error[:, :3] - error[0, :3]).max() > 0.05  # it turns as it likes
+    planningutils.VerifyTrajectory(None, found, 0.01)
+
+
+def test_a_constraint_that_is_kept_by_neither_end_is_not_planned_for(robot):
+    helper = ravemj.interfaces.BaseManipulation(robot)
+    here = robot.GetActiveManipulator().GetTransform()
+    higher = here.copy()
+    higher[2, 3] += 0.1
+    held = {"constraintfreedoms": [0, 0, 0, 0, 0, 1], "constraintmatrix": np.linalg.inv(here)}
+    with pytest.raises(ravemj.PlanningError, match=r"goal: the tool is 0\.\d+ off its constraint, and"):
+        helper.MoveToHandPosition(matrices=[higher], execute=False, **held)
+    held["constraintmatrix"] = np.linalg.inv(higher)
+    with pytest.raises(ravemj.PlanningError, match="start: the tool is"):
+        helper.MoveToHandPosition(matrices=[higher], execute=False, **held)
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        ({"constrainterrorthresh": 0.01}, "needs constraintfreedoms"),
+        ({"constraintfreedoms": [1, 1, 0]}, "constraintfreedoms: has shape"),
+        ({"constraintfreedoms": [1, 1, 0, 0, 0, np.nan]}, "constraintfreedoms: is"),
+        ({"constraintfreedoms": [1, -1, 0, 0, 0, 0]}, "should be 1 or 0 each"),
+        ({"constraintfreedoms": [1] * 6, "constrainterrorthresh": 0}, "should be more than 0"),
+        ({"constraintfreedoms": [1] * 6, "constrainterrorthresh": np.nan}, "should be more than 0"),
+        ({"constraintfreedoms": [1] * 6, "constraintmatrix": np.full((4, 4), np.nan)}, "should be finite"),
+        ({"constraintfreedoms": [1] * 6, "constrainttaskpose": [0] * 7}, "quaternion is zero"),
+    ],
+)
+def test_constraints_that_are_none_are_refused(robot, options, problem):
+    here = robot.GetActiveManipulator().GetTransform()
+    with pytest.raises(ravemj.openrave_exception, match=problem):
+        ravemj.interfaces.BaseManipulation(robot).MoveToHandPosition(matrices=[here], execute=False, **options)

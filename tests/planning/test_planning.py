@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from ravemj.planning.edges import Edges, bisection_order, length, path_is_allowed
+from ravemj.planning.edges import RANGE, Edges, bisection_order, length, path_is_allowed
 from ravemj.planning.jitter import nearby
 from ravemj.planning.ramp_shortcuts import faster, lines
 from ravemj.planning.ramps import fit_from_rest, fit_ramps, shortest_ramps
@@ -15,7 +15,7 @@ from ravemj.planning.retiming.linear import Linear
 from ravemj.planning.retiming.parabolic import Parabolic
 from ravemj.planning.retiming.polynomials import Cubic, Quintic
 from ravemj.planning.retiming.segments import Limits, OutsideLimitsError, RetimingError, retime
-from ravemj.planning.rrt import RANGE, Budget, End, MoreGoals, connect, explore, single
+from ravemj.planning.rrt import Budget, End, MoreGoals, connect, explore, single
 from ravemj.planning.shortcuts import shorten
 from ravemj.planning.space import Coordinates, Space
 from ravemj.planning.verification import Samples, flaw

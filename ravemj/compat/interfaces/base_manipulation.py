@@ -13,8 +13,9 @@ from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import UnsupportedError
 from ravemj.rave.modules import base_module
-from ravemj.rave.modules.base_manipulation import HAND_SEARCH, SearchOptions
+from ravemj.rave.modules.base_manipulation import HAND_SEARCH
 from ravemj.rave.modules.commands import search_options, straight, unsync
+from ravemj.rave.modules.motions import SearchOptions
 from ravemj.rave.planning import PlanningError
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
@@ -174,22 +175,26 @@ class BaseManipulation(TrajectoryText):
             translation: A point for the tool, in place of a pose.
             rotation: A quaternion for the tool, in place of a pose.
             seedik: How many solutions of inverse kinematics are goals from the start; None: 8.
-            constraintfreedoms: Not possible here.
-            constraintmatrix: Not possible here.
-            constrainterrorthresh: Not possible here.
+            constraintfreedoms: What the tool keeps all the way: 1 for each rotation about x, y, z and each way along
+                them that ``constraintmatrix @ T_world_tool @ constrainttaskmatrix`` does not have, 0 for those that
+                are free, shape (6,); None: all are.
+            constraintmatrix: ``T_task_world``, the frame whose axes count; None: the world. The inverse of the tool's
+                present pose makes it keep what it has now.
+            constrainterrorthresh: The error [m and rad] up to which the constraint is kept; None: 0.001.
             execute: False leaves the robot alone.
             outputtraj: Whether to return the motion's text.
             steplength: Not used.
             goalsamples: How many solutions of inverse kinematics are goals at most; None: 40.
             ikparam: A goal of any type.
             ikparams: Several of them.
-            jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.03.
+            jitter: How far values of a start or goal in collision may be moved [rad or m]; None: 0.03. With a
+                constraint they are not moved.
             minimumgoalpaths: Not used.
             outputtrajobj: Whether to return the motion.
             postprocessing: The smoother and its parameters; None: OpenRAVE's.
             jittergoal: Not used.
-            constrainttaskmatrix: Not possible here.
-            constrainttaskpose: Not possible here.
+            constrainttaskmatrix: ``T_tool_point``, the point of the tool that is constrained; None: its origin.
+            constrainttaskpose: The same as 7 numbers.
             goalsampleprob: The part of the iterations in which a further one is asked for; None: 0.1.
             goalmaxsamples: As ``goalsamples``.
             goalmaxtries: Not used.
@@ -199,17 +204,29 @@ class BaseManipulation(TrajectoryText):
 
         Raises:
             PlanningError: there is no such motion, or no solver of inverse kinematics.
-            UnsupportedError: constraints of the tool's way are given.
+            ArgumentError: the constraint has numbers of none, or nothing says what it holds.
 
         Example:
             >>> basemanip.MoveToHandPosition(matrices=[T_world_tool])
+
+            A glass is carried upright: since the start, the tool turns about the vertical only.
+
+            >>> upright = np.linalg.inv(manip.GetTransform())
+            >>> basemanip.MoveToHandPosition(
+            ...     matrices=[T_world_tool], constraintfreedoms=[1, 1, 0, 0, 0, 0], constrainttaskmatrix=upright
+            ... )
         """
-        del affinedofs, steplength, minimumgoalpaths, jittergoal, goalmaxtries, releasegil
-        del freevalues, constrainterrorthresh
-        if any(
-            one is not None for one in (constraintfreedoms, constraintmatrix, constrainttaskmatrix, constrainttaskpose)
-        ):
-            raise UnsupportedError("MoveToHandPosition with constraints", "planning with constraints of the tool")
+        del affinedofs, steplength, minimumgoalpaths, jittergoal, goalmaxtries, releasegil, freevalues
+        options = given(
+            maxiter=maxiter,
+            maxtries=maxtries,
+            jitter=jitter,
+            constraintfreedoms=constraintfreedoms,
+            constraintmatrix=constraintmatrix,
+            constrainttaskmatrix=constrainttaskmatrix,
+            constrainttaskpose=constrainttaskpose,
+            constrainterrorthresh=constrainterrorthresh,
+        )
         kind = IkParameterization.Type
         goals = [IkParameterization(checked_transform(one, "matrices"), kind.Transform6D) for one in matrices or ()]
         if translation is not None:
@@ -221,7 +238,7 @@ class BaseManipulation(TrajectoryText):
             raise PlanningError("there is no goal")
         traj = self._base.move_to_hand_position(
             goals,
-            search_options(given(maxiter=maxiter, maxtries=maxtries, jitter=jitter), HAND_SEARCH),
+            search_options(options, HAND_SEARCH),
             **given(first=seedik, samples=goalsamples or goalmaxsamples, probability=goalsampleprob),
             starts=_rows(None, initialconfigs, self._base.arm().GetArmDOF()),
             postprocessing=postprocessing,

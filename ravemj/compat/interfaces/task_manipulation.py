@@ -17,7 +17,7 @@ from ravemj.errors import UnsupportedError
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules import task_module
 from ravemj.rave.modules.grasp_planning import GraspQuery
-from ravemj.rave.modules.task_manipulation import ToolConstraint
+from ravemj.rave.planning.hand import ToolConstraint
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory

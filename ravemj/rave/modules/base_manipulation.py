@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from itertools import islice
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ravemj.planning.jitter import nearby
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import IkFilterOptions
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.modules.motions import Manipulation, Postprocessing
+from ravemj.rave.modules.motions import Manipulation, Postprocessing, SearchOptions
 from ravemj.rave.planning.bodies import Bodies
 from ravemj.rave.planning.names import is_planner
 from ravemj.rave.planning.parameters import PlannerParameters
@@ -22,20 +22,6 @@ from ravemj.rave.trajectory import Trajectory
 
 _LARGEST_JUMP = 0.5
 """The largest step of a joint [rad or m] in one step of the tool along a line; a larger one is another IK branch."""
-
-
-class SearchOptions(NamedTuple):
-    """The effort of a search.
-
-    Attributes:
-        tries: The number of calls of the planner, with other random numbers each time.
-        iterations: The maximum number of iterations of each call.
-        jitter: The largest change of each value of a start or goal in collision [rad or m].
-    """
-
-    tries: int = 2
-    iterations: int = 4000
-    jitter: float = 0.04
 
 
 HAND_SEARCH = SearchOptions(tries=3, jitter=0.03)
@@ -72,7 +58,7 @@ class BaseManipulation(Manipulation):
         for one in [*goals, *starts]:
             if len(one) != dof or not np.isfinite(one).all():
                 raise ArgumentError(f"a goal or start is {one.tolist()}, and should be {dof} finite numbers")
-        return self.plan(goals, starts=starts, postprocessing=postprocessing, more=more, **search._asdict())
+        return self.plan(goals, search, starts=starts, postprocessing=postprocessing, more=more)
 
     def move_manipulator(self, goals: Sequence[Floats], search: SearchOptions) -> Trajectory:
         """Return a motion of the joints of the active manipulator's arm to one of several goals.

@@ -7,13 +7,15 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from ravemj.core.transforms import Floats
+from ravemj.errors import ArgumentError
 from ravemj.geometry_functions import matrixFromPose
 from ravemj.rave.module import Command
-from ravemj.rave.modules.base_manipulation import HAND_SEARCH, BaseManipulation, SearchOptions
+from ravemj.rave.modules.base_manipulation import HAND_SEARCH, BaseManipulation
 from ravemj.rave.modules.grasp_planning import GraspQuery
-from ravemj.rave.modules.motions import Manipulation
-from ravemj.rave.modules.task_manipulation import TaskManipulation, ToolConstraint
+from ravemj.rave.modules.motions import Manipulation, SearchOptions
+from ravemj.rave.modules.task_manipulation import TaskManipulation
 from ravemj.rave.modules.tokens import Reader, Tokens, flag, read_options, switch, text
+from ravemj.rave.planning.hand import ToolConstraint
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.specification import IkParameterization
 from ravemj.rave.trajectory import Trajectory
@@ -23,7 +25,6 @@ Kind = TypeVar("Kind", bound=Manipulation)
 
 _OUTPUT: Mapping[str, Reader] = {"execute": flag, "outputtraj": switch}
 _SEARCH: Mapping[str, Reader] = {"maxiter": Tokens.integer, "maxtries": Tokens.integer, "jitter": Tokens.number}
-_POSTPROCESSING = ("postprocessingplanner", "postprocessingparameters")
 
 
 def reply(manipulation: Manipulation, traj: Trajectory, options: Mapping[str, Any], before: str = "") -> str:
@@ -36,7 +37,27 @@ def reply(manipulation: Manipulation, traj: Trajectory, options: Mapping[str, An
 def search_options(options: Mapping[str, Any], default: SearchOptions) -> SearchOptions:
     """Return the effort of a search that options ask for."""
     names = {"maxiter": "iterations", "maxtries": "tries", "jitter": "jitter"}
-    return default._replace(**{names[name]: value for name, value in options.items() if name in names})
+    given = {names[name]: value for name, value in options.items() if name in names}
+    return default._replace(**given, constraint=_tool_constraint(options))
+
+
+def _tool_constraint(options: Mapping[str, Any]) -> ToolConstraint | None:
+    """Return the constraint of the tool that options of a motion ask for; None where they leave it free.
+
+    Raises:
+        ArgumentError: they do not say what the constraint holds.
+    """
+    given = [name for name in options if name in _CONSTRAINT]
+    if given and "constraintfreedoms" not in given:
+        raise ArgumentError(f"{given[0]} needs constraintfreedoms, which say what the constraint holds")
+    return _constraint(options) if given and np.any(options["constraintfreedoms"]) else None
+
+
+def _constraint(options: Mapping[str, Any]) -> ToolConstraint:
+    frame, point = (
+        options.get(f"{name}matrix", options.get(f"{name}pose", np.eye(4))) for name in ("constraint", "constrainttask")
+    )
+    return ToolConstraint(frame, point, options["constraintfreedoms"], options.get("constrainterrorthresh", 1e-3))
 
 
 Named = Mapping[str, Callable[[str], str | None]]
@@ -117,7 +138,7 @@ class BaseCommands(_Commands[BaseManipulation]):
         readers |= {"goalsamples": Tokens.integer, "goalmaxsamples": Tokens.integer, "steplength": Tokens.number}
         readers |= {"seedik": Tokens.integer, "goalsampleprob": Tokens.number}
         readers |= dict.fromkeys(("goalmaxtries", "minimumgoalpaths"), Tokens.number)
-        options = read_options(arguments, readers)
+        options = read_options(arguments, {**readers, **_CONSTRAINT})
         poses = [*([options["matrix"]] if "matrix" in options else []), *options.get("matrices", ())]
         goals = [IkParameterization(pose, IkParameterization.Type.Transform6D) for pose in poses]
         names = {
@@ -209,18 +230,9 @@ class TaskCommands(_Commands[TaskManipulation]):
         """Projects configurations onto a constraint of the tool, and returns the number of steps for each."""
         dof = self._manipulation.robot.GetActiveDOF()
         configurations: list[Floats] = []
-        readers: dict[str, Reader] = {name: Tokens.matrix for name in ("constraintmatrix", "constrainttaskmatrix")}
-        readers |= dict.fromkeys(("constraintpose", "constrainttaskpose"), _pose)
-        readers |= {"constraintfreedoms": lambda tokens: tokens.numbers(6), "constrainterrorthresh": Tokens.number}
-        readers |= {"config": lambda tokens: configurations.append(tokens.numbers(dof))}
-        options = read_options(arguments, readers)
-        frame, point = (
-            options.get(f"{name}matrix", options.get(f"{name}pose", np.eye(4)))
-            for name in ("constraint", "constrainttask")
-        )
-        freedoms, threshold = options.get("constraintfreedoms", np.ones(6)), options.get("constrainterrorthresh", 1e-3)
-        constraint = ToolConstraint(frame, point, freedoms, threshold)
-        steps, rows = self._manipulation.evaluate_constraints(constraint, configurations)
+        config: Mapping[str, Reader] = {"config": lambda tokens: configurations.append(tokens.numbers(dof))}
+        options = {"constraintfreedoms": np.ones(6), **read_options(arguments, {**_CONSTRAINT, **config})}
+        steps, rows = self._manipulation.evaluate_constraints(_constraint(options), configurations)
         return " ".join(map(str, steps)) + " " + "".join(_numbers(row) for row in rows)
 
     def _options(self, arguments: str) -> dict[str, Any]:
@@ -279,6 +291,13 @@ def _hand(tokens: Tokens) -> tuple[Floats, list[int]]:
 def _numbers(values: Floats) -> str:
     return " ".join(repr(value) for value in values.tolist()) + " "
 
+
+_CONSTRAINT: Mapping[str, Reader] = {
+    **dict.fromkeys(("constraintmatrix", "constrainttaskmatrix"), Tokens.matrix),
+    **dict.fromkeys(("constraintpose", "constrainttaskpose"), _pose),
+    **{"constraintfreedoms": lambda tokens: tokens.numbers(6), "constrainterrorthresh": Tokens.number},
+}
+"""Arguments of a constraint of the tool."""
 
 GRASP_COLUMNS = (
     *("igrasptrans", "grasptrans_nocol", "igraspdir", "imanipulatordirection", "igrasppreshape"),

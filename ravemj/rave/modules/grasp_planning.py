@@ -13,7 +13,8 @@ from ravemj.errors import ArgumentError
 from ravemj.rave.enums import IkFilterOptions, SaveParameters
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.manipulator import Manipulator
-from ravemj.rave.modules.base_manipulation import BaseManipulation, SearchOptions, solutions
+from ravemj.rave.modules.base_manipulation import BaseManipulation, solutions
+from ravemj.rave.modules.motions import SearchOptions
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.robot import Robot
 from ravemj.rave.specification import IkParameterization

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from ravemj.planning.jitter import nearby
 from ravemj.planning.rrt import MoreGoals
 from ravemj.rave.enums import SaveParameters
 from ravemj.rave.planning.end_waypoints import EndWaypoint
+from ravemj.rave.planning.hand import ToolConstraint, hand_of
 from ravemj.rave.planning.names import is_planner, needed_planner, retimed
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlannerStatus, PlanningError
@@ -29,6 +30,24 @@ _SAME = 1e-9
 """The tolerance within which two configurations are equal [rad or m]."""
 
 Postprocessing = tuple[str, str]
+
+
+class SearchOptions(NamedTuple):
+    """The effort of a search, and the constraint on its result.
+
+    Attributes:
+        tries: The number of calls of the planner, with other random numbers each time.
+        iterations: The maximum number of iterations of each call.
+        jitter: The largest change of each value of a start or goal in collision, to make it free [rad or m]. The
+            motion between the two is not tested.
+        constraint: The constraint of the tool along the whole motion; None for none. With a constraint, starts and
+            goals are not changed, and the motion consists of short straight lines between configurations that keep it.
+    """
+
+    tries: int = 2
+    iterations: int = 4000
+    jitter: float = 0.04
+    constraint: ToolConstraint | None = None
 
 
 class Manipulation:
@@ -75,11 +94,9 @@ class Manipulation:
     def plan(
         self,
         goals: Sequence[Floats],
+        search: SearchOptions,
         *,
         starts: Sequence[Floats] = (),
-        tries: int,
-        iterations: int,
-        jitter: float,
         postprocessing: Postprocessing | None = None,
         more: MoreGoals | None = None,
     ) -> Trajectory:
@@ -87,11 +104,8 @@ class Manipulation:
 
         Args:
             goals: The goals; values outside the limits are set to the limits.
+            search: The effort of the search; each try has other random numbers.
             starts: The possible starts; by default the current configuration.
-            tries: The number of calls of the planner, with other random numbers each time.
-            iterations: The maximum number of iterations of each call.
-            jitter: The largest change of each value of a start or goal in collision, to make it free [rad or m]. The
-                motion between the two is not tested.
             postprocessing: The smoother and its parameters; by default OpenRAVE's.
             more: A source of further goals while the planner works.
 
@@ -100,11 +114,17 @@ class Manipulation:
         """
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)
-        params.SetMaxIterations(iterations)
+        params.SetMaxIterations(search.iterations)
         if postprocessing is not None:
             params.SetPostProcessing(*postprocessing)
         if more is not None:
             params.set_goal_sampler(more.sample, more.probability)
+        jitter = search.jitter
+        if search.constraint is not None:
+            params.given.manifold = hand_of(params.resolved()).to_constraint(search.constraint.checked())
+            jitter = 0.0
+            if postprocessing is None:
+                params.SetPostProcessing("LinearTrajectoryRetimer", "")
         values = params.resolved()
         space = values.space()
         froms = list(starts) or [values.vectors["_vinitialconfig"]]
@@ -113,7 +133,7 @@ class Manipulation:
         params.SetInitialConfig(np.array(moved[0]).ravel())
         params.SetGoalConfig(np.array(moved[1]).ravel())
         status = PlannerStatus("no attempt was allowed; give at least one try")
-        for attempt in range(tries):
+        for attempt in range(search.tries):
             params.SetRandomGeneratorSeed(attempt)
             planner = needed_planner(self.env, self.planner)
             traj = Trajectory(self.env, "")

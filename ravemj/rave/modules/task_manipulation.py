@@ -1,20 +1,20 @@
 """Motions of fingers, and of arms to grasps: the module ``TaskManipulation``."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.engine.collision.queries import MovedBy, body_and_others, itself
 from ravemj.errors import ArgumentError
-from ravemj.planning.projection import project
+from ravemj.planning.projection import PROJECTION_STEPS, project
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.modules.base_manipulation import BaseManipulation
 from ravemj.rave.modules.grasp_planning import GraspPlan, GraspQuery, plan_grasp
 from ravemj.rave.modules.motions import Manipulation
 from ravemj.rave.planning.bodies import Bodies
-from ravemj.rave.planning.hand import hand_of
+from ravemj.rave.planning.hand import ToolConstraint, hand_of
 from ravemj.rave.planning.parameters import PlannerParameters
 from ravemj.rave.planning.status import PlanningError
 from ravemj.rave.trajectory import Trajectory
@@ -27,30 +27,6 @@ _STEP = 0.01
 
 _CLOSE = 1e-6
 """The distance from a contact within which joints stop [rad or m]."""
-
-
-_PROJECTION_STEPS = 40
-"""OpenRAVE's maximum number of steps for the projection of a configuration onto a constraint."""
-
-
-class ToolConstraint(NamedTuple):
-    """A task-space constraint of the tool.
-
-    The constraint keeps ``T_task_world @ T_world_tool @ T_tool_point`` free of rotation about some axes and of
-    translation along some axes.
-
-    Attributes:
-        T_task_world: The task frame, whose axes ``freedoms`` refers to.
-        T_tool_point: The constrained frame, relative to the tool.
-        freedoms: 1 constrains, 0 leaves free: the rotations about x, y, z, then the translations along them, shape
-            (6,).
-        threshold: The tolerance of the constraint [m and rad].
-    """
-
-    T_task_world: Floats
-    T_tool_point: Floats
-    freedoms: Floats
-    threshold: float
 
 
 class TaskManipulation(Manipulation):
@@ -86,17 +62,15 @@ class TaskManipulation(Manipulation):
             The number of steps for each configuration, -1 if it does not reach the constraint, and the results.
 
         Raises:
-            ArgumentError: the active DOFs are not the joints of the arm.
+            ArgumentError: the active DOFs are not the joints of the arm, or the constraint has numbers of none.
         """
         params = PlannerParameters()
         params.SetRobotActiveJoints(self.robot)
         values = params.resolved()
         hand = hand_of(values)
-        error = hand.to_constraint(constraint.T_task_world, constraint.T_tool_point, constraint.freedoms)
+        error, threshold = hand.to_constraint(constraint.checked())
         with hand.bodies.kept():
-            found = [
-                project(one, error, values.space(), constraint.threshold, _PROJECTION_STEPS) for one in configurations
-            ]
+            found = [project(one, error, values.space(), threshold, PROJECTION_STEPS) for one in configurations]
         return [steps for steps, _ in found], [row for _, row in found]
 
     def close_fingers(

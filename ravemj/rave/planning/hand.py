@@ -2,18 +2,56 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+from ravemj.core.arrays import checked_transform, checked_vector
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
 from ravemj.ik.residuals import rotation_between
+from ravemj.planning.constrained_edges import Manifold
 from ravemj.planning.projection import Error
 from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.planning.bodies import Bodies
 from ravemj.rave.planning.values import Values
 from ravemj.rave.robot import Robot
 from ravemj.trajectories.groups import joint_indices
+
+
+class ToolConstraint(NamedTuple):
+    """A task-space constraint of the tool.
+
+    The constraint keeps ``T_task_world @ T_world_tool @ T_tool_point`` free of rotation about some axes and of
+    translation along some axes.
+
+    Attributes:
+        T_task_world: The task frame, whose axes ``freedoms`` refers to.
+        T_tool_point: The constrained frame, relative to the tool.
+        freedoms: 1 constrains, 0 leaves free: the rotations about x, y, z, then the translations along them, shape
+            (6,).
+        threshold: The tolerance of the constraint [m and rad].
+    """
+
+    T_task_world: Floats
+    T_tool_point: Floats
+    freedoms: Floats
+    threshold: float
+
+    def checked(self) -> "ToolConstraint":
+        """Return the constraint, with rotations that are exact.
+
+        Raises:
+            ArgumentError: its numbers are none of a constraint.
+        """
+        freedoms = checked_vector(self.freedoms, 6, "constraintfreedoms")
+        if (freedoms < 0).any():
+            raise ArgumentError(f"constraintfreedoms: are {freedoms.tolist()}, and should be 1 or 0 each")
+        if not 0 < self.threshold < np.inf:
+            raise ArgumentError(f"constrainterrorthresh: is {self.threshold:g}, and should be more than 0")
+        T_task_world = checked_transform(self.T_task_world, "constraintmatrix")
+        T_tool_point = checked_transform(self.T_tool_point, "constrainttaskmatrix")
+        return ToolConstraint(T_task_world, T_tool_point, freedoms, self.threshold)
 
 
 @dataclass(frozen=True)
@@ -62,18 +100,9 @@ class Hand:
 
         return lacking
 
-    def to_constraint(self, T_task_world: Floats, T_tool_point: Floats, freedoms: Floats) -> Error:
-        """Return the error function of a task-space constraint.
-
-        The constraint keeps ``T_task_world @ T_world_tool @ T_tool_point`` free of rotation about some axes and of
-        translation along some axes.
-
-        Args:
-            T_task_world: The task frame, whose axes ``freedoms`` refers to.
-            T_tool_point: The constrained frame, relative to the tool.
-            freedoms: Weights of the rotations about x, y, z and of the translations along them, shape (6,); 0 leaves
-                one free.
-        """
+    def to_constraint(self, constraint: ToolConstraint) -> Manifold:
+        """Return the configurations that keep a constraint."""
+        T_task_world, T_tool_point, freedoms, threshold = constraint
         rotation = T_task_world[:3, :3]
 
         def lacking(values: Floats) -> tuple[Floats, Floats]:
@@ -84,7 +113,7 @@ class Hand:
             error = np.append(rotation_between(found[:3, :3], np.eye(4)), -found[:3, 3])
             return freedoms * error, freedoms[:, None] * np.vstack([rotation @ jacobian[3:], rotation @ moves])
 
-        return lacking
+        return Manifold(lacking, threshold)
 
 
 def hand_of(values: Values) -> Hand:

@@ -45,6 +45,11 @@ class OmplPlanner(PathPlanner):
         except OmplError as error:
             return self._failed(str(error))
 
+    def _prepare(self, values: Values) -> PlannerStatus | None:
+        if values.manifold is not None:
+            return self._failed(f"{self._xmlid} knows no constraints of the tool; birrt does")
+        return super()._prepare(values)
+
     def _needs_goal(self, values: Values) -> bool:
         return True
 

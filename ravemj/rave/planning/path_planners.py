@@ -2,6 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -9,9 +10,11 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
+from ravemj.planning.constrained_edges import ConstrainedEdges, bent_path
 from ravemj.planning.edges import Edges
 from ravemj.planning.randomized_astar import search_by_cost
 from ravemj.planning.rrt import Budget, End, MoreGoals, Search, connect, explore, single
+from ravemj.planning.shortcuts import shorten
 from ravemj.rave.enums import ConstraintFilterOptions, PlannerAction, PlannerStatusCode
 from ravemj.rave.planning.bodies import USER
 from ravemj.rave.planning.planner import Planner
@@ -24,6 +27,9 @@ from ravemj.rave.trajectory import Trajectory
 
 _ITERATIONS = 10000
 """OpenRAVE's default for the maximum number of iterations."""
+
+_SHORTCUTS = 100
+"""That are tried on a constraint: OpenRAVE's number."""
 
 _SPACING = 10
 """The largest distance of the waypoints of a path that no planner processes, in step lengths."""
@@ -85,7 +91,7 @@ class PathPlanner(Planner):
             if not found:
                 return None
             if found == USER:
-                status = self._failed(f"{name}: a constraint does not allow it")
+                status = self._failed(f"{name}: {_off(values, configuration)}")
             else:
                 values.problem(configuration, int(ConstraintFilterOptions.RecommendedOptions), report)
                 status = self._failed(f"{name}: it collides: {_links(report)}")
@@ -105,11 +111,13 @@ class PathPlanner(Planner):
                 [one for one in candidates if self._wrong(values, "", one) is None]
                 for candidates in self._starts_and_goals(values)
             )
-            edges, numbers = Edges(values.space(), values.allowed()), values.numbers
+            edges, numbers = values.edges(), values.numbers
             iterations = int(numbers["_nmaxiterations"]) or _ITERATIONS
             budget = Budget(iterations, numbers["_nmaxplanningtime"] / 1000, self._proceed)
             random = values.random()
             search = self._search(edges, starts, goals, budget, random, values)
+            if isinstance(edges, ConstrainedEdges) and search.path is not None:
+                search = _bent(edges, search, search.path, random)
         self._search_made = search
         if search.path is None:
             return self._ended(search)
@@ -260,6 +268,12 @@ class ExplorationRrt(PathPlanner):
         return self._solved(f"{traj.GetNumWaypoints()} configurations")
 
 
+def _bent(edges: ConstrainedEdges, search: Search, path: Floats, random: np.random.Generator) -> Search:
+    """Return a search with the configurations along its path, after shortcuts: smoothers would leave the constraint."""
+    bent = bent_path(edges, shorten(edges, path, _SHORTCUTS, random))
+    return replace(search, path=bent, end=End.stuck if bent is None else search.end)
+
+
 def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
     """Return a path with additional waypoints on its lines, at most ``_SPACING`` step lengths apart."""
     space = edges.space
@@ -270,6 +284,15 @@ def _spaced(edges: Edges, path: Floats, step_length: float) -> Floats:
         parts = np.arange(1, count)[:, None] / count
         rows += [start + parts * space.difference(end, start), end[None]]
     return np.concatenate(rows)
+
+
+def _off(values: Values, configuration: Floats) -> str:
+    """Return which constraint a configuration does not keep."""
+    manifold = values.manifold
+    if manifold is None or manifold.has(configuration):
+        return "a constraint does not allow it"
+    most = manifold.threshold
+    return f"the tool is {manifold.off(configuration):.3g} off its constraint, and should be {most:g} at most"
 
 
 def _links(report: CollisionReport) -> str:

@@ -7,7 +7,8 @@ import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.errors import ArgumentError
-from ravemj.planning.edges import Allowed
+from ravemj.planning.constrained_edges import ConstrainedEdges, Manifold
+from ravemj.planning.edges import Allowed, Edges
 from ravemj.planning.retiming.segments import Limits
 from ravemj.planning.space import Coordinates, Space
 from ravemj.rave.enums import ConstraintFilterOptions
@@ -43,6 +44,7 @@ class Values:
         postprocessing: The name of the planner that processes the result, and its parameters as text.
         bodies: The bodies that move; None for problems that are read from text.
         constraints: Functions that return whether a configuration is allowed.
+        manifold: The configurations that keep a constraint of the hand; None: all.
         goal_sampler: A function that returns a further goal, or None if it has none now; and the fraction of the
             iterations that call it.
         tags: Further parameters of one kind of planner, as texts.
@@ -57,6 +59,7 @@ class Values:
     postprocessing: tuple[str, str] = CHAIN
     bodies: Bodies | None = None
     constraints: list[Constraint] = field(default_factory=lambda: [])
+    manifold: Manifold | None = None
     goal_sampler: tuple[Callable[[], Floats | None], float] | None = None
     tags: dict[str, str] = field(default_factory=lambda: {})
 
@@ -143,10 +146,18 @@ class Values:
 
     def allowed(self) -> Allowed:
         """Return the test of single configurations. Use it within ``bodies.kept``, since it may move the bodies."""
-        fast = None if self.bodies is None or self.constraints else self.bodies.fast_test()
-        if fast is not None:
-            return lambda values: not fast(values)
-        return lambda values: not self.problem(values, ALL)
+        fast, manifold = None if self.bodies is None or self.constraints else self.bodies.fast_test(), self.manifold
+        if fast is None:
+            return lambda values: not self.problem(values, ALL)
+        if manifold is not None:
+            return lambda values: manifold.has(values) and not fast(values)
+        return lambda values: not fast(values)
+
+    def edges(self) -> Edges:
+        """Return the test of lines, for use within ``bodies.kept``."""
+        if self.manifold is None:
+            return Edges(self.space(), self.allowed())
+        return ConstrainedEdges(self.space(), replace(self, manifold=None).allowed(), self.manifold)
 
     def problem(self, values: Floats, options: int, report: CollisionReport | None = None) -> int:
         """Test a configuration, and return the bit of ``ConstraintFilterOptions`` that fails, or 0.
@@ -160,6 +171,7 @@ class Values:
             return FREE
         self.bodies.move(values)
         found = self.bodies.collision(report) & options
-        if not found and options & USER and not all(constraint(values) for constraint in self.constraints):
-            return USER
-        return found
+        if found or not options & USER:
+            return found
+        keeps_all = all(constraint(values) for constraint in self.constraints)
+        return FREE if keeps_all and (self.manifold is None or self.manifold.has(values)) else USER

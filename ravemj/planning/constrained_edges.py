@@ -1,0 +1,133 @@
+"""Lines on a constraint: between two configurations, what lies in between is moved onto it.
+
+After D. Berenson, S. Srinivasa, D. Ferguson and J. Kuffner, "Manipulation planning on constraint manifolds", ICRA 2009.
+"""
+
+from collections import deque
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ravemj.core.transforms import Floats
+from ravemj.planning.edges import Allowed, Edges
+from ravemj.planning.projection import PROJECTION_STEPS, Error, project
+from ravemj.planning.space import Space
+
+_PROJECTED = 0.1
+"""Projections end at this part of the threshold."""
+
+_INSIDE = 0.5
+"""Configurations that are beyond this part of the threshold are projected, so that lines between others stay inside."""
+
+_DETOUR = 0.8
+"""Each half of a line is at most this long, relative to the line: others jump from one part of the constraint away."""
+
+_SHORTEST = 1e-3
+"""Shorter parts of a line are not halved."""
+
+
+class Manifold(NamedTuple):
+    """The configurations that keep a constraint.
+
+    Attributes:
+        error: What others lack.
+        threshold: The norm of the error up to which a constraint is kept.
+    """
+
+    error: Error
+    threshold: float
+
+    def off(self, values: Floats) -> float:
+        """Return the norm of the error of a configuration."""
+        return float(np.linalg.norm(self.error(values)[0]))
+
+    def has(self, values: Floats) -> bool:
+        """Return whether a configuration keeps the constraint."""
+        return self.off(values) <= self.threshold
+
+
+class ConstrainedEdges(Edges):
+    """Tests lines that are bent onto a constraint, in steps of the space's resolution.
+
+    Args:
+        space: Where the lines are.
+        allowed: Tests one configuration; it need not look at the constraint.
+        manifold: What keeps the constraint.
+    """
+
+    def __init__(self, space: Space, allowed: Allowed, manifold: Manifold) -> None:
+        super().__init__(space, allowed)
+        self._manifold = manifold
+
+    def towards(self, start: Floats, target: Floats) -> tuple[Floats, bool]:
+        """Return a step towards a configuration, onto the constraint, and whether it gets there.
+
+        Where no step onto the constraint comes nearer, it leaves the constraint, and ``line`` does not allow it.
+        """
+        step, is_last = super().towards(start, target)
+        if is_last and self._manifold.has(start + step):
+            return step, True
+        end = self.onto(start + step)
+        return (end - start if self._far(end, target) < self._far(start, target) else step), False
+
+    def onto(self, configuration: Floats) -> Floats:
+        """Return a configuration well inside of the threshold, near another one; that one where none is found."""
+        if self._manifold.off(configuration) <= _INSIDE * self._manifold.threshold:
+            return configuration
+        smallest = _PROJECTED * self._manifold.threshold
+        steps, found = project(configuration, self._manifold.error, self.space, smallest, PROJECTION_STEPS)
+        return configuration if steps < 0 else found
+
+    def line(self, start: Floats, step: Floats) -> bool:
+        """Return whether the bent line from a configuration that is allowed is so everywhere, its end included."""
+        return self.bent(start, start + step) is not None
+
+    def bent(self, start: Floats, end: Floats) -> Floats | None:
+        """Return the configurations along a bent line, so near that straight lines between them keep the constraint.
+
+        Args:
+            start: Where it starts; it is allowed.
+            end: Where it ends.
+
+        Returns:
+            Shape (m, n); None where one of them is not allowed.
+        """
+        if not (self._manifold.has(end) and self.point(end)):
+            return None
+        points, pending = {0.0: start, 1.0: end}, deque([(0.0, 1.0)])
+        while pending:
+            low, high = pending.popleft()
+            if self._is_straight(points[low], points[high]):
+                continue
+            middle = self._middle(points[low], points[high])
+            if middle is None or high - low < _SHORTEST or not self.point(middle):
+                return None
+            between = (low + high) / 2
+            points[between] = middle
+            pending += [(low, between), (between, high)]
+        return np.array([points[part] for part in sorted(points)])
+
+    def _is_straight(self, start: Floats, end: Floats) -> bool:
+        """Return whether a straight line keeps the constraint, and is no longer than the resolution."""
+        step = self.space.difference(end, start)
+        most = max(_INSIDE * self._manifold.threshold, self._manifold.off(start), self._manifold.off(end))
+        return self.space.steps(step) == 1 and self._manifold.off(start + step / 2) <= most
+
+    def _middle(self, start: Floats, end: Floats) -> Floats | None:
+        """Return the middle of a bent line, or None where there is none on the constraint that is not far aside."""
+        step = self.space.difference(end, start)
+        middle = self.onto(start + step / 2)
+        farther = max(self._far(start, middle), self._far(middle, end))
+        is_between = farther <= _DETOUR * float(np.linalg.norm(step))
+        return middle if is_between and self._manifold.has(middle) else None
+
+    def _far(self, start: Floats, end: Floats) -> float:
+        return float(np.linalg.norm(self.space.difference(end, start)))
+
+
+def bent_path(edges: ConstrainedEdges, points: Floats) -> Floats | None:
+    """Return the configurations along a path of bent lines, shape (m, n); None where one is not allowed."""
+    bent = [edges.bent(start, end) for start, end in pairwise(points)]
+    rows = [one[1:] for one in bent if one is not None]
+    return np.concatenate([points[:1], *rows]) if len(rows) == len(bent) else None
