@@ -192,6 +192,9 @@ class BodyBuilder:
         """Return the arms. One that is impossible has no gripper, and those behind it have no links."""
         frozen: list[scene.Manipulator] = []
         for built in self.manipulators:
+            if any(arm.name == built.name for arm in frozen):
+                message = f"there already is a manipulator '{built.name}'; by this name, the first one is found"
+                diagnostics.warn("repeated-name", message, built.source, "give each a name of its own")
             arm = freeze_manipulator(built, body, diagnostics)
             try:
                 check_reach(arm, body)

@@ -51,19 +51,27 @@ def resolve(joints: Sequence[NamedJoint], diagnostics: Diagnostics) -> dict[int,
     """
     if not any(joint.equations for joint in joints):
         return {}
-    from ravemj.model.expressions import ExpressionError, joint_variables, parse, substitute  # noqa: PLC0415 - rarely wanted
+    from ravemj.model.expressions import (  # noqa: PLC0415 - rarely wanted
+        ExpressionError,
+        before_substitution,
+        joint_variables,
+        parse,
+        substitute,
+    )
 
     mimics: dict[int, Expression] = {}
     variables = joint_variables([joint.name for joint in joints])
     known = {f"joint{index}" for index, joint in enumerate(joints) if len(joint.dofs) <= 1}
     for index, joint in enumerate(joints):
-        if joint.equations is None or not joint.equations.position:
+        text = joint.equations.position if joint.equations is not None else ""
+        if not text:
             continue
         try:
-            mimics[index] = parse(substitute(joint.equations.position, variables), known)
+            mimics[index] = parse(substitute(text, variables), known)
         except ExpressionError as error:
+            problem = before_substitution(error, text, variables).message
             hint = "without it, no joint of this body follows another"
-            diagnostics.warn("bad-mimic", f"joint '{joint.name}' cannot follow: {error.message}", joint.source, hint)
+            diagnostics.warn("bad-mimic", f"joint '{joint.name}' cannot follow: {problem}", joint.source, hint)
     if len(mimics) < sum(1 for joint in joints if joint.equations and joint.equations.position):
         return {}
     return {index: _mimic(index, joints, mimics, diagnostics) for index in mimics}

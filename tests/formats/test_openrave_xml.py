@@ -493,6 +493,9 @@ class TestIncludes:
 
 THREE = "<Body name='a'/><Body name='b'/><Body name='c'/>"
 THREE_NAMES = "<Body>a</Body><Body>b</Body><Body>c</Body>"
+TWO = "<Body name='a'/><Body name='b'/><Joint name='lead'><Body>a</Body><Body>b</Body><axis>0 0 1</axis></Joint>"
+JOINT = TWO + "<Body name='c'/><Joint name='j' {}><Body>b</Body><Body>c</Body>{}</Joint>"
+"""Two joints; attributes and children of the second one go into the braces."""
 
 
 class TestFindings:
@@ -522,6 +525,16 @@ class TestFindings:
             ("<Body name='a'><Mass type='heavy'/></Body>", "unknown-type", "heavy"),
             (f"{THREE}<Joint name='j'>{THREE_NAMES}<axis>0 0 1</axis></Joint>", "third-body", "'c'"),
             ("</KinBody><KinBody name='z'>", "unread", "behind the end of <KinBody>"),
+            (JOINT.format("mimic_pos='lead*2+nope(3)'", ""), "bad-mimic", "after 'lead*2+' and before 'nope(3)'"),
+            (
+                JOINT.format("mimic_pos='(lead lead'", ""),
+                "bad-mimic",
+                "unexpected 'lead' at character 6 after '(lead '",
+            ),
+            (JOINT.format("mimic_pos='leader'", ""), "bad-mimic", "at character 0 before 'leader'"),
+            (JOINT.format("", "<limits>0 1</limits><limitsdeg>0 9</limitsdeg>"), "repeated-tag", "overrides <limits>"),
+            (JOINT.format("", "<offsetfrom>a</offsetfrom>" * 2), "repeated-tag", "in line 3"),
+            ("<Body name='a'/><Body name='b'>" + "<offsetfrom>a</offsetfrom>" * 2 + "</Body>", "repeated-tag", "last"),
         ],
     )
     def test_are_reported_with_their_place(self, read_text, content, code, words):
@@ -531,6 +544,26 @@ class TestFindings:
         assert finding.code == code
         assert finding.source.line == 3
         assert words in str(finding)
+
+    def test_several_values_of_one_kind_are_no_repetition(self, read_text):
+        children = "<axis1>0 0 1</axis1><axis2>1 0 0</axis2><hardmaxvel>1 1</hardmaxvel><maxjerk>1 1</maxjerk>"
+        content = JOINT.format("type='hinge2'", children)
+        assert codes(read_text(f'<KinBody name="b">{content}</KinBody>')) == []
+
+    def test_manipulators_of_one_name(self, read_text):
+        arm = '<Manipulator name="arm"><base>a</base><effector>{}</effector></Manipulator>'
+        reading = read_text(f'<Robot name="r"><KinBody>{TWO}</KinBody>\n{arm.format("b")}\n{arm.format("a")}</Robot>')
+        (finding,) = reading.diagnostics
+        assert (finding.code, finding.source.line) == ("repeated-name", 3)
+        assert [one.effector for one in reading.scene.bodies[0].manipulators] == [1, 0]  # as in errors-41
+
+    def test_a_unit_scales_nothing(self, read_text):
+        reading = read_text(
+            '<Environment><unit>mm 0.001</unit><KinBody name="b"><Body name="a"/></KinBody></Environment>'
+        )
+        (finding,) = reading.diagnostics
+        assert finding.code == "ignored-tag"
+        assert "metres" in finding.message
 
     def test_unknown_offset_is_an_error_that_leaves_the_body(self, read_text):
         reading = read_text('<KinBody name="b"><Body name="a"><offsetfrom>b</offsetfrom></Body></KinBody>')

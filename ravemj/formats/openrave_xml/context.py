@@ -55,10 +55,13 @@ class Context:
             ignored: Known tags without effect, and the reason.
             target: What the children are read into.
         """
+        before: dict[object, Element] = {}
         for child in element.children:
             tag = tags.get(child.tag)
             if tag is not None:
                 if child.complete:
+                    if tag.once:
+                        self._check_first(child, before.setdefault(tag.read, child))
                     try:
                         tag.read(target, child)
                     except ArithmeticError as error:
@@ -72,6 +75,14 @@ class Context:
                     child.source,
                     _belongs(child) or did_you_mean(child.tag, tags),
                 )
+
+    def _check_first(self, element: Element, first: Element) -> None:
+        """Warn of an element that overrides another one."""
+        if first is not element:
+            message = (
+                f"<{element.spelled}> overrides <{first.spelled}> in line {first.source.line}; the last one counts"
+            )
+            self.diagnostics.warn("repeated-tag", message, element.source, "write one")
 
     def leave_out(self, element: Element, reason: str) -> None:
         """Report an element that has no effect here."""

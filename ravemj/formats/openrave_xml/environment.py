@@ -10,7 +10,7 @@ from ravemj.errors import Diagnostics, Source, SourceError, UnnamedError
 from ravemj.formats.openrave_xml.context import Context, uncomputable
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, with_given
 from ravemj.formats.openrave_xml.kinbody import read_body
-from ravemj.formats.openrave_xml.tags import IGNORED, NO_EFFECT_HERE, Tag
+from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag
 from ravemj.formats.openrave_xml.tree import Document, Element, parse, parse_file
 from ravemj.formats.openrave_xml.values import ROTATIONS, axis_angle, vector
 from ravemj.model.scene import KinBody, Scene, View
@@ -276,7 +276,7 @@ ENVIRONMENT_TAGS: dict[str, Tag[_EnvironmentScope]] = {
 ENVIRONMENT_ATTRIBUTES = {"file": "read first, as if its content stood here"}
 ENVIRONMENT_IGNORED = {
     "plugin": "plugins are not loaded",
-    "unit": IGNORED,
+    "unit": "OpenRAVE keeps it as a label and scales nothing; lengths are in metres here",
     "camfocal": "no viewer turns about a point yet",
 }
 

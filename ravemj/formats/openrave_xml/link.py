@@ -109,7 +109,7 @@ class _LinkScope:
 
 LINK_TAGS: dict[str, Tag[_LinkScope]] = {
     **placement_tags(_LinkScope.translate, _LinkScope.rotate),
-    "offsetfrom": Tag(_LinkScope.read_offset, "name of the Body that the pose is relative to"),
+    "offsetfrom": Tag(_LinkScope.read_offset, "name of the Body that the pose is relative to", once=True),
     "geom": Tag(_LinkScope.read_geometry, "see below"),
     "geometry": Tag(_LinkScope.read_geometry, "the same as Geom"),
     "mass": Tag(_LinkScope.read_mass, "see below"),

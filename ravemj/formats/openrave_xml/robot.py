@@ -63,15 +63,15 @@ class _ManipulatorScope:
 
 MANIPULATOR_TAGS: dict[str, Tag[_ManipulatorScope]] = {
     **placement_tags(_ManipulatorScope.translate, _ManipulatorScope.rotate),
-    "base": Tag(_ManipulatorScope.read_base, "name of the Body that the arm starts from"),
-    "effector": Tag(_ManipulatorScope.read_effector, "name of the Body that carries the tool"),
-    "joints": Tag(_ManipulatorScope.read_gripper, "names of the gripper's joints"),
-    "gripperjoints": Tag(_ManipulatorScope.read_gripper, "names of the gripper's joints"),
-    "closingdirection": Tag(_ManipulatorScope.read_closing, "sign of closing for each"),
-    "closingdir": Tag(_ManipulatorScope.read_closing, "the same as closingdirection"),
-    "chuckingdirection": Tag(_ManipulatorScope.read_closing, "the same as closingdirection"),
-    "direction": Tag(_ManipulatorScope.read_direction, "where the tool points: x y z"),
-    "palmdirection": Tag(_ManipulatorScope.read_direction, "the same as direction"),
+    "base": Tag(_ManipulatorScope.read_base, "name of the Body that the arm starts from", once=True),
+    "effector": Tag(_ManipulatorScope.read_effector, "name of the Body that carries the tool", once=True),
+    "joints": Tag(_ManipulatorScope.read_gripper, "names of the gripper's joints", once=True),
+    "gripperjoints": Tag(_ManipulatorScope.read_gripper, "names of the gripper's joints", once=True),
+    "closingdirection": Tag(_ManipulatorScope.read_closing, "sign of closing for each", once=True),
+    "closingdir": Tag(_ManipulatorScope.read_closing, "the same as closingdirection", once=True),
+    "chuckingdirection": Tag(_ManipulatorScope.read_closing, "the same as closingdirection", once=True),
+    "direction": Tag(_ManipulatorScope.read_direction, "where the tool points: x y z", once=True),
+    "palmdirection": Tag(_ManipulatorScope.read_direction, "the same as direction", once=True),
 }
 MANIPULATOR_ATTRIBUTES = {"name": "name of the manipulator"}
 MANIPULATOR_IGNORED = {

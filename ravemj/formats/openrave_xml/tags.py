@@ -21,11 +21,13 @@ class Tag(NamedTuple, Generic[Target]):
         read: Reads the element into the object that stands for its parent.
         meaning: What the element means, or why it is left out, in a few words.
         left_out: Whether it has no effect on the model.
+        once: Whether only the last one of an element counts, among all tags with this ``read``.
     """
 
     read: Callable[[Target, Element], None]
     meaning: str
     left_out: bool = False
+    once: bool = False
 
 
 def placement_tags(

@@ -15,7 +15,7 @@ Hostile text cannot do more than raise ``ExpressionError``: its length, the dept
 values it can have are bounded, and evaluation takes time in proportion to the length.
 """
 
-from ravemj.model.expressions.attributes import joint_variables, linear_mimic, partials, substitute
+from ravemj.model.expressions.attributes import before_substitution, joint_variables, linear_mimic, partials, substitute
 from ravemj.model.expressions.errors import ExpressionError
 from ravemj.model.expressions.expression import Expression, parse
 from ravemj.model.expressions.polynomial_fit import fit_polynomial
@@ -23,6 +23,7 @@ from ravemj.model.expressions.polynomial_fit import fit_polynomial
 __all__ = [
     "Expression",
     "ExpressionError",
+    "before_substitution",
     "fit_polynomial",
     "joint_variables",
     "linear_mimic",

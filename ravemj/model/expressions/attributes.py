@@ -28,11 +28,28 @@ def substitute(text: str, names: Mapping[str, str]) -> str:
         text: The equation.
         names: The variable for each joint name, as ``joint_variables`` makes it.
     """
+    return _of_names(names).sub(lambda match: names[match[0]], text)
+
+
+def before_substitution(error: ExpressionError, text: str, names: Mapping[str, str]) -> ExpressionError:
+    """Return a mistake in a substituted equation as one in the text that ``substitute`` was given."""
+    problem, grown = error.problem, 0
+    position = error.position
+    for match in _of_names(names).finditer(text):
+        variable, start = names[match[0]], match.start() + grown
+        problem = problem.replace(repr(variable), repr(match[0]))
+        if start < error.position:
+            grown += len(variable) - len(match[0])
+            position = max(match.start(), error.position - grown)
+    if "'joint" in problem and problem.split("'")[1] not in text:
+        problem += " (names of joints count inside of words, too)"
+    return ExpressionError(problem, text, position, error.expected)
+
+
+def _of_names(names: Mapping[str, str]) -> re.Pattern[str]:
+    """Return a pattern that finds the longest of the names first, and nothing where there is none."""
     longest_first = sorted(filter(None, names), key=len, reverse=True)
-    if not longest_first:
-        return text
-    pattern = "|".join(map(re.escape, longest_first))
-    return re.sub(pattern, lambda match: names[match[0]], text)
+    return re.compile("|".join(map(re.escape, longest_first)) or r"(?!)")
 
 
 def partials(text: str) -> dict[str, str]:

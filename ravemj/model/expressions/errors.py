@@ -9,6 +9,7 @@ class ExpressionError(ArgumentError):
     """An equation that cannot be read; one line that names the place.
 
     Attributes:
+        problem: What is wrong, without the place.
         position: Index of the character in the text, from 0; where the text ends too early, its length.
         expected: What could have stood there; may be empty.
     """
@@ -18,5 +19,6 @@ class ExpressionError(ArgumentError):
         where = " and".join(f" {side} {part!r}" for side, part in (("after", before), ("before", after)) if part)
         wanted = f"; expected {expected}" if expected else ""
         super().__init__(f"{problem} at character {position}{where}{wanted}")
+        self.problem = problem
         self.position = position
         self.expected = expected
