@@ -73,9 +73,13 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
 
 def finite_vector(values: ArrayLike, length: int, name: str) -> Floats:
     """Return ``checked_vector``, or the array itself where it is one already, for what is only read."""
-    if type(values) is np.ndarray and values.dtype is FLOAT and values.shape == (length,):
-        if math.isfinite(sum(values.tolist())):
-            return values
+    if (
+        type(values) is np.ndarray
+        and values.dtype is FLOAT
+        and values.shape == (length,)
+        and math.isfinite(sum(values.tolist()))
+    ):
+        return values
     return checked_vector(values, length, name)
 
 

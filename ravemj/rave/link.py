@@ -1,5 +1,6 @@
 """Links of a body."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -131,7 +132,7 @@ class Link(LinkGeometries):
 
     def GetMass(self) -> float:
         """Return the link's mass [kg]; NaN, as its centre and inertia, for a total over shapes without a volume."""
-        return float(self._answer(self._inertial.mass))
+        return math.nan if self._inertial.undefined else self._inertial.mass
 
     def GetLocalCOM(self) -> Floats:
         """Return the centre of mass in the link frame [m], shape (3,)."""
