@@ -71,6 +71,18 @@ def checked_vector(values: ArrayLike, length: int, name: str) -> Floats:
     return vector
 
 
+def finite_vector(values: ArrayLike, length: int, name: str) -> Floats:
+    """Return ``checked_vector``, or the array itself where it is one already, for what is only read."""
+    if (
+        type(values) is np.ndarray
+        and values.dtype is FLOAT
+        and values.shape == (length,)
+        and math.isfinite(sum(values.tolist()))
+    ):
+        return values
+    return checked_vector(values, length, name)
+
+
 def checked_first(values: ArrayLike, length: int, name: str) -> Floats:
     """Return the first numbers of a vector, which may have more, as OpenRAVE takes velocities and accelerations.
 
@@ -82,17 +94,16 @@ def checked_first(values: ArrayLike, length: int, name: str) -> Floats:
 
 
 def checked_point(values: ArrayLike, name: str) -> Floats:
-    """Return a point, shape (3,).
+    """Return a point, shape (3,), for what only reads it: the given array where that is one.
 
     Raises:
         ValueError: it has another shape, as in OpenRAVE, whose bindings let Python's own error through.
         ArgumentError: something in it is no finite number.
     """
-    given = _floats(values, name)
+    given = values if type(values) is np.ndarray else checked_numbers(values, name)
     if given.shape != (3,):
         raise ValueError(f"{name}: has shape {given.shape}, and should have shape (3,)")
-    x, y, z = given.tolist()
-    return given.copy() if math.isfinite(x + y + z) else checked_vector(given, 3, name)
+    return finite_vector(given, 3, name)
 
 
 def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name: str = "DOF indices") -> Ints:

@@ -1,12 +1,12 @@
 """Axis-aligned bounding boxes of geometries and links."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from ravemj.core.transforms import Floats
 from ravemj.geometry_functions import AABB
-from ravemj.model.scene import Bounds, Geometry, Link
+from ravemj.model.scene import Bounds, Extent, Geometry, Link
 
 
 def geometry_bounds(geometry: Geometry, T_a_link: Floats) -> Bounds:
@@ -25,10 +25,49 @@ def links_bounds(links: Iterable[Link], T_a_links: Iterable[Floats]) -> Bounds |
     return _enclosing(bounds for bounds in found if bounds is not None)
 
 
+class BodyBounds:
+    """The bounding box of the geometries of a body's links, ready for many poses."""
+
+    def __init__(self, links: Sequence[Link]) -> None:
+        """Take the geometries of links."""
+        extents: list[tuple[int, Geometry, Extent]] = []
+        self._corners: list[tuple[int, Floats]] = []  # by link, vertices in its frame, shape (4, n)
+        for index, geometry in [(index, one) for index, link in enumerate(links) for one in link.geometries]:
+            extent = geometry.shape.extent()
+            if extent is not None:
+                if max(*extent.box, extent.disk, extent.ball) > 0.0:
+                    extents.append((index, geometry, extent))
+            elif len(vertices := geometry.shape.triangulated().vertices) and np.ptp(vertices, axis=0).any():
+                points = np.vstack((vertices.T, np.ones(len(vertices))))
+                self._corners.append((index, geometry.T_link_geometry.matrix() @ points))
+        self._links = np.array([index for index, _, _ in extents], dtype=int)
+        self._poses = np.array([one.T_link_geometry.matrix() for _, one, _ in extents]).reshape(-1, 4, 4)
+        self._centres = np.array([(*extent.centre, 1.0) for _, _, extent in extents]).reshape(-1, 4, 1)
+        self._boxes = np.array([extent.box for _, _, extent in extents]).reshape(-1, 3, 1)
+        self._radii = np.array([(extent.disk, extent.ball) for _, _, extent in extents]).reshape(-1, 2)
+
+    def at(self, T_a_links: Floats, chosen: Sequence[bool]) -> Bounds | None:
+        """Return the exact bounds in frame a; None if nothing has an extent.
+
+        Args:
+            T_a_links: Poses of all links, shape (links, 4, 4).
+            chosen: For each link whether it takes part.
+        """
+        poses = T_a_links[self._links] @ self._poses
+        centres, rotations = (poses @ self._centres)[:, :3, 0], poses[:, :3, :3]
+        reaches = (np.abs(rotations) @ self._boxes)[:, :, 0] + self._radii[:, 1:]
+        reaches += np.hypot(rotations[:, :, 0], rotations[:, :, 1]) * self._radii[:, :1]
+        some = np.array(chosen, dtype=bool)[self._links]
+        parts = [(centres - reaches)[some].T, (centres + reaches)[some].T]
+        parts += [T_a_links[link, :3] @ corners for link, corners in self._corners if chosen[link]]
+        points = np.concatenate(parts, axis=1)
+        return Bounds(points.min(axis=1), points.max(axis=1)) if points.size else None
+
+
 def _enclosing(parts: Iterable[Bounds]) -> Bounds | None:
     extended = [part for part in parts if (part.high > part.low).any()]
-    if not extended:
-        return None
+    if len(extended) < 2:
+        return extended[0] if extended else None
     return Bounds(np.min([part.low for part in extended], axis=0), np.max([part.high for part in extended], axis=0))
 
 

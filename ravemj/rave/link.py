@@ -1,5 +1,6 @@
 """Links of a body."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -134,7 +135,7 @@ class Link(LinkGeometries):
 
         If the file gives a total mass for shapes that have no volume, mass, centre and inertia are NaN, as in OpenRAVE.
         """
-        return float(self._answer(self._inertial.mass))
+        return math.nan if self._inertial.undefined else self._inertial.mass
 
     def GetLocalCOM(self) -> Floats:
         """Return the centre of mass in the link frame [m], shape (3,)."""

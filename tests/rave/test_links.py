@@ -276,3 +276,24 @@ class TestLink:
         link.SetStatic(True)
         assert link.IsStatic()
         assert robot.GetDOF() == 2
+
+
+@pytest.mark.parametrize("enabled_only", [False, True])
+def test_the_box_of_a_body_holds_those_of_its_links(enabled_only):
+    """Every other link of an arm is disabled; shapes are boxes, cylinders, a mesh and points."""
+    robot = ravemj.load("models/panda.xml").GetRobots()[0]
+    link, point = robot.GetLinks()[6], ravemj.KinBody.GeometryInfo()
+    point._type, point._vGeomData = ravemj.GeometryType.Box, np.zeros(3)
+    point._t = np.array([[1, 0, 0, 100], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+    mesh = ravemj.KinBody.GeometryInfo()
+    mesh._type, mesh._meshcollision = ravemj.GeometryType.Trimesh, MESH
+    link.InitGeometries([mesh, point])
+    robot.SetDOFValues(np.full(robot.GetDOF(), 0.3), ..., ravemj.KinBody.CheckLimitsAction.Nothing)
+    robot.SetTransform(matrixFromAxisAngle([0.4, -0.3, 0.9]))
+    robot.SetLinkEnableStates(np.arange(len(robot.GetLinks())) % 2 == 0)
+    boxes = [one.ComputeAABB() for one in robot.GetLinks() if one.IsEnabled() or not enabled_only]
+    boxes = [box for box in boxes if box.extents().any()]
+    whole = robot.ComputeAABB(enabled_only)
+    low, high = (np.array([box.pos() + sign * box.extents() for box in boxes]) for sign in (-1, 1))
+    np.testing.assert_allclose(whole.pos() - whole.extents(), low.min(axis=0), atol=1e-12)
+    np.testing.assert_allclose(whole.pos() + whole.extents(), high.max(axis=0), atol=1e-12)

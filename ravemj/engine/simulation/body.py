@@ -10,6 +10,7 @@ from ravemj.core.transforms import Floats, Pose
 from ravemj.engine.kinematics import BodyKinematics, Configuration
 from ravemj.engine.kinematics.displacement import place_links
 from ravemj.errors import ErrorCode, RavemjError
+from ravemj.model.bounds import BodyBounds
 from ravemj.model.inertia import Inertias
 from ravemj.model.scene import Axis, Geometry, Inertial, KinBody, Link
 from ravemj.model.zero import rezeroed
@@ -74,6 +75,7 @@ class BodyState:
         self._link_enabled: tuple[bool, ...] = ()
         self.rest_poses: Floats | None = None
         self._inertias: tuple[tuple[Link, ...], Inertias] | None = None
+        self._bounds: tuple[tuple[Link, ...], BodyBounds] | None = None
         self.rebuild(scene)
 
     def rebuild(self, scene: KinBody) -> None:
@@ -172,6 +174,13 @@ class BodyState:
         if self._inertias is None or self._inertias[0] is not self.scene.links:
             self._inertias = (self.scene.links, Inertias.of(self.scene.links))
         return self._inertias[1]
+
+    @property
+    def bounds(self) -> BodyBounds:
+        """The extents of the links' geometries, as the scene has them now."""
+        if self._bounds is None or self._bounds[0] is not self.scene.links:
+            self._bounds = (self.scene.links, BodyBounds(self.scene.links))
+        return self._bounds[1]
 
     def link_transforms(self) -> Floats:
         """Return ``T_world_link`` of every link, shape (links, 4, 4); a copy."""

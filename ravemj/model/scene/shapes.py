@@ -40,6 +40,22 @@ class Solid(NamedTuple):
     centre: Vec3 = ZERO
 
 
+class Extent(NamedTuple):
+    """How far a shape reaches in any direction: as far as a box, a disk in the xy-plane and a ball together.
+
+    Attributes:
+        box: Half the edge lengths of the box.
+        disk: Radius of the disk.
+        ball: Radius of the ball.
+        centre: Centre of the shape in its frame.
+    """
+
+    box: Vec3 = ZERO
+    disk: float = 0.0
+    ball: float = 0.0
+    centre: Vec3 = ZERO
+
+
 class Size(NamedTuple):
     """A size of a shape.
 
@@ -83,9 +99,19 @@ class Shape(Record):
         solids = self.solids()
         return Mesh.merged(solid_mesh(kind, size).moved(Pose(centre).matrix()) for kind, size, centre in solids)
 
+    def extent(self) -> Extent | None:
+        """Return how far the shape reaches; None if only its triangles say it."""
+        return None
+
     def bounds(self, T_a_shape: Floats) -> Bounds:
         """Return the exact axis-aligned bounding box in frame a."""
-        return self.triangulated().bounds(T_a_shape)
+        extent = self.extent()
+        if extent is None:
+            return self.triangulated().bounds(T_a_shape)
+        rotation = T_a_shape[:3, :3]
+        centre = rotation @ extent.centre + T_a_shape[:3, 3]
+        reach = np.abs(rotation) @ extent.box + np.hypot(rotation[:, 0], rotation[:, 1]) * extent.disk + extent.ball
+        return Bounds(centre - reach, centre + reach)
 
     def mass_moments(self, density: float) -> tuple[float, Vec3]:
         """Return mass [kg] and principal moments of inertia about the origin of the shape's frame [kg m^2].
@@ -94,10 +120,6 @@ class Shape(Record):
         """
         del density
         return 0.0, ZERO
-
-
-def _centred_bounds(centre: Floats, half_extents: Floats) -> Bounds:
-    return Bounds(centre - half_extents, centre + half_extents)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -109,8 +131,8 @@ class Box(Shape):
     def solids(self) -> list[Solid]:
         return [Solid("box", self.half_extents)]
 
-    def bounds(self, T_a_shape: Floats) -> Bounds:
-        return _centred_bounds(T_a_shape[:3, 3], np.abs(T_a_shape[:3, :3]) @ self.half_extents)
+    def extent(self) -> Extent:
+        return Extent(self.half_extents)
 
     def mass_moments(self, density: float) -> tuple[float, Vec3]:
         a, b, c = self.half_extents
@@ -132,8 +154,8 @@ class Sphere(Shape):
     def solids(self) -> list[Solid]:
         return [Solid("sphere", (self.radius,))]
 
-    def bounds(self, T_a_shape: Floats) -> Bounds:
-        return _centred_bounds(T_a_shape[:3, 3], np.full(3, self.radius))
+    def extent(self) -> Extent:
+        return Extent(ball=self.radius)
 
     def mass_moments(self, density: float) -> tuple[float, Vec3]:
         mass = 4 / 3 * math.pi * self.radius**3 * density
@@ -151,10 +173,8 @@ class Cylinder(Shape):
     def solids(self) -> list[Solid]:
         return [Solid("cylinder", (self.radius, self.height / 2))]
 
-    def bounds(self, T_a_shape: Floats) -> Bounds:
-        x, y, z = T_a_shape[:3, :3].T
-        half_extents = np.abs(z) * self.height / 2 + np.hypot(x, y) * self.radius
-        return _centred_bounds(T_a_shape[:3, 3], half_extents)
+    def extent(self) -> Extent:
+        return Extent((0.0, 0.0, self.height / 2), disk=self.radius)
 
     def mass_moments(self, density: float) -> tuple[float, Vec3]:
         mass = math.pi * self.radius**2 * self.height * density
@@ -172,8 +192,8 @@ class Capsule(Shape):
     def solids(self) -> list[Solid]:
         return [Solid("capsule", (self.radius, self.height / 2))]
 
-    def bounds(self, T_a_shape: Floats) -> Bounds:
-        return _centred_bounds(T_a_shape[:3, 3], np.abs(T_a_shape[:3, 2]) * self.height / 2 + self.radius)
+    def extent(self) -> Extent:
+        return Extent((0.0, 0.0, self.height / 2), ball=self.radius)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -209,10 +229,9 @@ class Container(Shape):
                 solids.append(Solid("box", scale(size, 0.5), (0.0, 0.0, floor + size[2] / 2)))
         return solids
 
-    def bounds(self, T_a_shape: Floats) -> Bounds:
-        half_extents = np.array(self.outer_extents) / 2
-        centre = T_a_shape[:3, :3] @ (0.0, 0.0, half_extents[2]) + T_a_shape[:3, 3]
-        return _centred_bounds(centre, np.abs(T_a_shape[:3, :3]) @ half_extents)
+    def extent(self) -> Extent:
+        half = scale(self.outer_extents, 0.5)
+        return Extent(half, centre=(0.0, 0.0, half[2]))
 
     def mass_moments(self, density: float) -> tuple[float, Vec3]:
         """Return those of a solid box about the origin, as OpenRAVE does."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector
+from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector, finite_vector
 from ravemj.core.transforms import Floats, Ints, Vec3, wxyz_jacobian
 from ravemj.engine.affine import AffineMotion
 from ravemj.errors import ArgumentError
@@ -277,7 +277,7 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
         Returns:
             The Jacobian in world axes, shape (3, active dof).
         """
-        point = checked_vector(offset, 3, "offset")
+        point = finite_vector(offset, 3, "offset")
         link = self._checked_link(linkindex)
         with self._simulation.lock:
             joints = self._active_columns(self._state.dynamics.translation_jacobian(link, point))

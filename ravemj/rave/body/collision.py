@@ -340,6 +340,5 @@ class BodyCollision(Structure, Interface):
 
     def _bounds(self, poses: Floats, enabled_only: bool) -> AABB:
         enabled = self._state.link_enabled
-        chosen = [link for link in range(len(poses)) if enabled[link] or not enabled_only]
-        bounds = links_bounds([self._state.scene.links[link] for link in chosen], poses[chosen])
+        bounds = self._state.bounds.at(poses, enabled if enabled_only else (True,) * len(enabled))
         return enclosing_box(bounds, poses[0] if len(poses) else np.eye(4))

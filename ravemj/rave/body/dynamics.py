@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_first, checked_point, checked_vector
+from ravemj.core.arrays import checked_first, checked_point, checked_vector, finite_vector
 from ravemj.core.transforms import Floats, wxyz_jacobian
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
@@ -223,7 +223,7 @@ class Dynamics(BodyPart):
             >>> inertia, coriolis, gravity = robot.ComputeInverseDynamics([1, 0], None, True)
         """
         accelerations = self._checked_accelerations(dofaccelerations, "ComputeInverseDynamics")
-        pushes = self._checked_pushes(externalforcetorque, "externalforcetorque") if externalforcetorque else {}
+        pushes = self._checked_pushes(externalforcetorque, "externalforcetorque")
         for joint in self._state.scene.passive_joints:
             if joint.mimic is None and not joint.static:  # random api-5000-92; graph-5000-102 where it closes a loop
                 message = f"joint '{joint.name}' has no DOF and mimics no other, so no torques determine its motion"
@@ -239,7 +239,7 @@ class Dynamics(BodyPart):
     def _checked_accelerations(self, accelerations: "ArrayLike | None", name: str) -> Floats:
         dof = self._state.dof
         if type(accelerations) is np.ndarray and accelerations.shape == (dof,):  # the usual case, and a cheap test
-            return checked_vector(accelerations, dof, name)
+            return finite_vector(accelerations, dof, name)
         count = 0 if accelerations is None else np.size(accelerations)
         if accelerations is None or not count:
             return np.zeros(dof)
@@ -251,7 +251,7 @@ class Dynamics(BodyPart):
         if not pushes:
             return {}
         checked_kind(pushes, (dict, Mapping), name, "a dictionary")  # dict first: a test against an ABC is slow
-        return {self._checked_link(link): checked_vector(push, 6, name) for link, push in pushes.items()}
+        return {self._checked_link(link): finite_vector(push, 6, name) for link, push in pushes.items()}
 
     def batch_link_transforms(self, values: ArrayLike, out: Floats | None = None) -> Floats:
         """Return the poses of all links for many configurations, several times faster than a loop.
