@@ -27,6 +27,7 @@ from ravemj.model.scene import Grab, Mesh
 from ravemj.rave.env.json_files import JsonFiles, is_json
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
+from ravemj.rave.sensors import Sensor
 from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ _Argument = KinBody | Text | Attributes | None
 
 _LOG = logging.getLogger("ravemj")
 
+_NAME_CONFLICTS = {ErrorCode.BodyNameConflict.name, ErrorCode.SensorNameConflict.name}
+
 
 class Loading(JsonFiles):
     """Loads models."""
@@ -50,7 +53,7 @@ class Loading(JsonFiles):
         """Add the content of a model file to the environment.
 
         Args:
-            filename: An OpenRAVE XML file with an environment, a robot or a kinbody, a COLLADA file (``.dae``,
+            filename: An OpenRAVE XML file with an environment, robot, kinbody or sensor, a COLLADA file (``.dae``,
                 ``.zae``), OpenRAVE's JSON (``.json``, see ``LoadJSON``), or a mesh file. It is looked for in the
                 working folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
             atts: Attributes as of a ``<Robot>``: ``name`` in place of the body's, ``prefix`` before the names of its
@@ -60,12 +63,12 @@ class Loading(JsonFiles):
 
         Returns:
             False where OpenRAVE's ``Load`` is False: the file is missing or broken, refers to what is not there, or
-            has a body of a name that is taken. The reason is logged, and what was read before is in the environment
-            all the same. ``ravemj.load`` raises instead. Bodies of COLLADA and of mesh files get other names where
-            theirs are taken.
+            has a body or a sensor of a name that is taken. The reason is logged, and what was read before is in the
+            environment all the same. ``ravemj.load`` raises instead. Bodies of COLLADA and of mesh files get other
+            names where theirs are taken.
 
         Raises:
-            openrave_exception: a body of the file has no name (``Failed``).
+            openrave_exception: a body or a sensor of the file has no name (``Failed``).
 
         Example:
             >>> env = ravemj.Environment()
@@ -79,7 +82,7 @@ class Loading(JsonFiles):
         try:
             return self._take(reading)
         except RavemjError as error:
-            if error.GetCode() != ErrorCode.BodyNameConflict.name:
+            if error.GetCode() not in _NAME_CONFLICTS:
                 raise
             _LOG.error("%s: %s", os.fsdecode(filename), error)
             return False
@@ -103,7 +106,7 @@ class Loading(JsonFiles):
             broken = [finding for finding in reading.diagnostics if finding.severity == "error"]
             if reading.failure is not None or broken:
                 return str(reading.failure or broken[0])
-            if not reading.scene.bodies:
+            if not reading.scene.bodies and not reading.scene.sensors:
                 return f"{path}: there is no body in it"
             self._add(replace(reading, renames=True))
         except RavemjError as error:
@@ -174,6 +177,8 @@ class Loading(JsonFiles):
                 self._simulation.view = reading.scene.view
             if reading.scene.gravity is not None:
                 self._simulation.set_gravity(reading.scene.gravity)
+            for sensor in reading.scene.sensors:
+                self.AddSensor(Sensor(self._environment, sensor), reading.renames)
         for viewer in self._viewers:
             viewer.take_over(reading.scene.view)
         send_warnings(reading.diagnostics)
