@@ -26,7 +26,7 @@ from ravemj.formats.openrave_xml.actuator import ACTUATOR_TAGS
 from ravemj.formats.openrave_xml.environment import ENVIRONMENT_IGNORED
 from ravemj.formats.openrave_xml.geom import GEOM_TAGS
 from ravemj.formats.openrave_xml.joint import JOINT_ATTRIBUTES, JOINT_TAGS
-from ravemj.formats.openrave_xml.sensor import COMMON_TAGS, device_tags
+from ravemj.formats.openrave_xml.sensor import COMMON_TAGS, PLACEMENT_TAGS, device_tags
 from ravemj.formats.readers import read_file
 from ravemj.model.scene import SENSOR_KINDS
 
@@ -43,7 +43,8 @@ TAGS = [
     "density", "total", "com", "inertia", "base", "effector", "joints", "closingdirection", "direction", "link",
     "camtrans", "camrotationaxis", "camrotmat", "camrotaxis", "bkgndcolor", "PhysicsEngine", "odeproperties", "gravity",
     "Controller", "transparency", "unknown", *ACTUATOR_TAGS, *ENVIRONMENT_IGNORED,
-    *GEOM_TAGS, *JOINT_TAGS, *COMMON_TAGS, *(tag for kind in SENSOR_KINDS.values() for tag in device_tags(kind)),
+    *GEOM_TAGS, *JOINT_TAGS, *COMMON_TAGS, *PLACEMENT_TAGS,
+    *(tag for kind in SENSOR_KINDS.values() for tag in device_tags(kind)),
 ]  # fmt: skip
 ATTRIBUTES = sorted({"prefix", "file", "scalegeometry", "skipgeometry", "makejoinedlinksadjacent", "render", "group",
     "modifiable", "scale", "unknown", "xmlns", *JOINT_ATTRIBUTES})  # fmt: skip

@@ -38,7 +38,9 @@ def diff(options: argparse.Namespace) -> int:
 
 def _scene(model: str) -> Scene:
     env = load_model(argparse.Namespace(model=model, strict=False))
-    return Scene(tuple(state.scene for state in env.simulation.bodies), gravity=env.simulation.gravity)
+    bodies = tuple(state.scene for state in env.simulation.bodies)
+    sensors = tuple(sensor.description for sensor in env.GetSensors() if sensor.attached is None)
+    return Scene(bodies, env.simulation.view, env.simulation.gravity, sensors)
 
 
 def _entry(difference: Difference) -> dict[str, object]:

@@ -7,16 +7,18 @@ from collections.abc import Iterator, Sequence
 
 from ravemj.cli.console import console, table
 from ravemj.cli.models import load_model
-from ravemj.cli.summary import dof_starts, summarize
-from ravemj.model.scene import AttachedSensor, Joint, KinBody, Link, Manipulator
+from ravemj.cli.summary import dof_starts, sensor_summary, summarize
+from ravemj.model.scene import AttachedSensor, Intrinsics, Joint, KinBody, Link, Manipulator
 
 
 def info(options: argparse.Namespace) -> int:
     """Show what the bodies of a model consist of."""
     env = load_model(options)
     bodies = [state.scene for state in env.simulation.bodies]
+    sensors = [sensor.description for sensor in env.GetSensors() if sensor.attached is None]
     if options.json:
-        print(json.dumps({"gravity": env.simulation.gravity, "bodies": list(map(summarize, bodies))}, indent=1))
+        content = {"bodies": list(map(summarize, bodies)), "sensors": list(map(sensor_summary, sensors))}
+        print(json.dumps({"gravity": env.simulation.gravity, **content}, indent=1))
         return 0
     if not bodies:
         print("the model has no bodies")
@@ -27,6 +29,9 @@ def info(options: argparse.Namespace) -> int:
         for rows in _tables(body):
             out.print()
             out.print(rows)
+    if sensors:
+        out.print()
+        out.print(_loose_sensors(sensors))
     return 0
 
 
@@ -147,12 +152,23 @@ def _manipulators(links: Sequence[Link], manipulators: Sequence[Manipulator]) ->
 def _sensors(links: Sequence[Link], sensors: Sequence[AttachedSensor]) -> object:
     rows = table("Sensors", "sensor", "link", "type", "intrinsics [pixels]")
     for sensor in sensors:
-        camera = sensor.camera
-        intrinsics = "" if camera is None else f"{camera.width}x{camera.height}, f {_number(camera.fx)} "
-        if camera is not None:
-            intrinsics += f"{_number(camera.fy)}, c {_number(camera.cx)} {_number(camera.cy)}"
-        rows.add_row(sensor.name, _link_name(links, sensor.link), sensor.type or "", intrinsics)
+        rows.add_row(sensor.name, _link_name(links, sensor.link), sensor.type or "", _intrinsics(sensor.camera))
     return rows
+
+
+def _loose_sensors(sensors: Sequence[AttachedSensor]) -> object:
+    rows = table("Sensors that no robot carries", "sensor", "position [m]", "type", "intrinsics [pixels]")
+    for sensor in sensors:
+        position = " ".join(map(_number, sensor.T_link_sensor.position))
+        rows.add_row(sensor.name, position, sensor.type or "", _intrinsics(sensor.camera))
+    return rows
+
+
+def _intrinsics(camera: Intrinsics | None) -> str:
+    if camera is None:
+        return ""
+    centre = f"{_number(camera.cx)} {_number(camera.cy)}"
+    return f"{camera.width}x{camera.height}, f {_number(camera.fx)} {_number(camera.fy)}, c {centre}"
 
 
 def _ends(body: KinBody, joint: Joint) -> tuple[str, str]:

@@ -23,7 +23,7 @@ def summarize(body: KinBody) -> Summary:
         "joints": [_joint(joint, first) for joint, first in zip(body.joints, first_dofs, strict=True)],
         "passive_joints": [_joint(joint, None) for joint in body.passive_joints],
         "manipulators": [_manipulator(manipulator) for manipulator in body.manipulators],
-        "sensors": [_sensor(sensor) for sensor in body.sensors],
+        "sensors": [sensor_summary(sensor) for sensor in body.sensors],
     }
 
 
@@ -105,7 +105,8 @@ def _manipulator(manipulator: Manipulator) -> Summary:
     }
 
 
-def _sensor(sensor: AttachedSensor) -> Summary:
+def sensor_summary(sensor: AttachedSensor) -> Summary:
+    """Return a sensor; one that no robot carries is on no link, and its pose is that in the world."""
     camera = sensor.camera
     names = ("fx", "fy", "cx", "cy", "width", "height")
     return {

@@ -12,7 +12,7 @@ from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, check_given, give, given_scale
 from ravemj.formats.openrave_xml.mesh_body import add_mesh, is_mesh
 from ravemj.model.builder import BodyBuilder
-from ravemj.model.scene import KinBody, Scene
+from ravemj.model.scene import AttachedSensor, KinBody, Scene
 
 _COLLADA, _HEAD = b"<COLLADA", 1000  # the root element, and the bytes that it is looked for in
 
@@ -84,13 +84,14 @@ def _read_collada(
     context, source = Context(), Source(path)
     check_given(given, source, context)
     bodies: list[KinBody] = []
+    sensors: list[AttachedSensor] = []
     gravity = failure = None
     try:
         content = read_content(context, metre * uniform(given_scale(given), source, context))
         gravity = content.gravity
-        if not content.bodies and not content.others:
+        if not content.bodies and not content.others and not content.sensors:
             raise SourceError("there is no body in it", source)
-        if not content.bodies:
+        if not content.bodies and content.others:
             message = "without a kinematics scene, OpenRAVE loads no body of it into an environment"
             context.diagnostics.error("no-kinematics", message, source, "read it with ReadKinBodyURI")
         found = (*content.bodies, *content.others)
@@ -100,11 +101,12 @@ def _read_collada(
             bodies.append(built.freeze(context.diagnostics))
             if built.refusal is not None:
                 raise built.refusal
+        sensors = content.sensors
     except SourceError as error:
         failure = error
     except ArithmeticError:
         failure = SourceError("a number in the file is too large to compute with", source)
-    scene = Scene(tuple(bodies), None, gravity)
+    scene = Scene(tuple(bodies), None, gravity, tuple(sensors))
     return Reading(scene, context.diagnostics, failure, tuple(context.files), renames=True)
 
 

@@ -77,7 +77,7 @@ class DescribedSensor(Interface):
         description, device = self.description, self.device
         if self.attached is not None and description.link is None:
             return "it is attached to no link"
-        if self.attached is None and not isinstance(device, scene.Intrinsics | scene.Laser | scene.FlashLidar):
+        if self.attached is None and scene.needs_link(device):
             return "it measures what a link feels: attach it to a robot, with robot.AddAttachedSensor"
         return device.problem()
 

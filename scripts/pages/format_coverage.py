@@ -94,8 +94,8 @@ def sections() -> list[Section]:
         _section("AttachedSensor", "in Robot", robot.SENSOR_TAGS, robot.SENSOR_ATTRIBUTES, robot.SENSOR_IGNORED),
         _section(
             "Sensor",
-            "in AttachedSensor, or the root of an included file",
-            sensor.COMMON_TAGS,
+            "in AttachedSensor and Environment, or the root; in an AttachedSensor, that has the pose",
+            {**sensor.COMMON_TAGS, **sensor.PLACEMENT_TAGS},
             sensor.DEVICE_ATTRIBUTES,
             sensor.COMMON_IGNORED,
             sensor.DEVICE_IGNORED_ATTRIBUTES,

@@ -24,7 +24,7 @@ WAYS_IN = {
     "Mass of a KinBody": '<KinBody name="k"><Mass>{}</Mass></KinBody>',
     "Manipulator": '<Robot name="r"><Manipulator name="m">{}</Manipulator></Robot>',
     "AttachedSensor": '<Robot name="r"><AttachedSensor name="s">{}</AttachedSensor></Robot>',
-    "Sensor": '<Robot name="r"><AttachedSensor><Sensor type="BaseCamera">{}</Sensor></AttachedSensor></Robot>',
+    "Sensor": '<Environment><Sensor name="s" type="BaseCamera">{}</Sensor></Environment>',
 }
 """Where an element's children stand; joints and actuators are refused without their bodies."""
 

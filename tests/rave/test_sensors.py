@@ -648,3 +648,123 @@ class TestCopies:
         assert self.states(taken)[0] == 0
         with pytest.raises(ravemj.openrave_exception, match="is off"):
             taken.GetSensorData()
+
+
+class TestOfTheEnvironment:
+    """Sensors that stand in an environment, and not on a robot."""
+
+    FILE = """
+<Sensor name="ceiling" type="BaseCamera">
+  <KK>100 100 40 20</KK><width>80</width><height>40</height>
+  <power>1</power><color>1 0 0</color><translation>0 0 3</translation><rotationaxis>1 0 0 180</rotationaxis>
+</Sensor>
+<Sensor name="door" type="BaseLaser2D">
+  <translation>1 0 0</translation><translation>-0.5 0 0.2</translation>
+  <min_angle>0</min_angle><max_angle>90</max_angle><resolution>90</resolution><power>1</power>
+</Sensor>
+<Sensor name="off" type="BaseFlashLidar3D"/>
+<KinBody name="wall"><Body type="static">
+  <Translation>2 0 0.5</Translation><Geom type="box"><extents>0.1 4 0.5</extents></Geom>
+</Body></KinBody>
+<KinBody name="floor"><Body type="static">
+  <Translation>0 0 -0.5</Translation><Geom type="box"><extents>4 4 0.5</extents></Geom>
+</Body></KinBody>"""
+
+    def test_measure_where_they_are(self):
+        env = loaded(self.FILE)
+        ceiling, door, off = env.GetSensors()
+        assert [one.Configure(Sensor.ConfigureCommand.PowerCheck) for one in env.GetSensors()] == [1, 1, 0]
+        assert ceiling.description.color == (1, 0, 0)
+        np.testing.assert_allclose(ceiling.depth_image(), 3, rtol=1e-3)
+        np.testing.assert_allclose(door.GetTransformPose(), [1, 0, 0, 0, 0.5, 0, 0.2])
+        data = door.GetSensorData()
+        np.testing.assert_allclose(data.ranges[0], [1.4, 0, 0])
+        assert list(data.intensity) == [1, 0]
+        env.StepSimulation(0.02)
+        assert door.GetSensorData().stamp == 20_000
+        assert env.GetSensor("off") is off
+        assert env.Remove(off)
+        assert not env.GetSensor("off")
+
+    @pytest.mark.parametrize(
+        ("name", "format"), [("a.env.xml", "openrave"), ("a.dae", "collada"), ("a.zae", "collada")]
+    )
+    def test_are_saved_as_they_stand(self, tmp_path, name, format):
+        env = loaded(self.FILE)
+        env.GetSensor("door").SetTransform([0.6, 0, 0, 0.8, 1, 2, 3])
+        (tmp_path / "again").mkdir()
+        first, second = tmp_path / name, tmp_path / "again" / name
+        env.Save(first, atts={"format": format})
+        again = ravemj.load(first)
+        again.Save(second, atts={"format": format})
+        assert first.read_bytes() == second.read_bytes()
+        for one, other in zip(env.GetSensors(), again.GetSensors(), strict=True):
+            np.testing.assert_allclose(one.GetTransform(), other.GetTransform(), atol=1e-12)
+            assert one.GetName() == other.GetName()
+            assert (one.device, one.description.color) == (other.device, other.description.color)
+            assert one.description.is_on == other.description.is_on
+
+    def test_are_saved_without_a_body(self, tmp_path):
+        for name, format in (("a.env.xml", "openrave"), ("a.dae", "collada")):
+            loaded('<Sensor name="door" type="BaseLaser2D"/>').Save(tmp_path / name, atts={"format": format})
+            assert [one.GetName() for one in ravemj.load(tmp_path / name).GetSensors()] == ["door"]
+
+    def test_are_left_out_where_that_is_asked_for(self, tmp_path):
+        env, path = loaded(self.FILE), tmp_path / "a.dae"
+        for arguments in ((env.SelectionOptions.NoRobots,), (1, {"skipwrite": "sensors"}), (4, "wall")):
+            env.Save(path, *arguments)
+            assert ravemj.load(path).GetSensors() == []
+
+    def test_are_lost_in_json(self, tmp_path):
+        with pytest.warns(ravemj.RavemjWarning, match=r"not-written.*ceiling, door, off"):
+            loaded(self.FILE).Save(tmp_path / "a.json")
+
+    def test_in_files_of_their_own(self, tmp_path):
+        (tmp_path / "eye.sensor.xml").write_text(
+            '<sensor name="eye" type="BaseCamera"><KK>1 2 3 4</KK><translation>9 9 9</translation></sensor>'
+        )
+        env = ravemj.Environment()
+        assert env.Load(tmp_path / "eye.sensor.xml")
+        assert not env.Load(tmp_path / "eye.sensor.xml")  # the name is taken
+        (tmp_path / "a.env.xml").write_text(
+            "<Environment><Sensor file='eye.sensor.xml' name='other'><Translation>1 2 3</Translation><KK>5 6 7 8</KK>"
+            "</Sensor></Environment>"
+        )
+        with pytest.warns(ravemj.RavemjWarning, match="<KK> is left out"):
+            assert env.Load(tmp_path / "a.env.xml")
+        assert [one.device.fx for one in env.GetSensors()] == [1, 1]
+        assert [list(one.GetTransform()[:3, 3]) for one in env.GetSensors()] == [[9, 9, 9], [1, 2, 3]]
+
+    def test_on_a_robot_the_place_is_that_of_the_attached_sensor(self):
+        with pytest.warns(ravemj.RavemjWarning, match="the AttachedSensor says where it is"):
+            env = loaded(robot(on_link('<Sensor type="BaseCamera"><Translation>9 9 9</Translation></Sensor>')))
+        assert list(env.GetSensor("r:device").GetTransform()[:3, 3]) == [0, 0, 0.1]
+
+    @pytest.mark.parametrize(
+        ("content", "is_loaded", "words"),
+        [
+            ('<Sensor name="a"/>', False, "of no type"),
+            ('<Sensor name="a" type="nose"/>', False, "no sensor of type 'nose'"),
+            ('<Sensor name="a" type="BaseIMU"><power>1</power></Sensor>', True, "stays off: it measures what its link"),
+            (
+                '<Sensor name="a" type="BaseLaser2D"><power>1</power><resolution>0</resolution></Sensor>',
+                True,
+                "no rays",
+            ),
+        ],
+    )
+    def test_that_measure_nothing(self, content, is_loaded, words):
+        env = ravemj.Environment()
+        with pytest.warns(ravemj.RavemjWarning, match=words):
+            assert env.LoadData(f"<Environment>{content}</Environment>") is is_loaded
+        for sensor in env.GetSensors():
+            assert sensor.Configure(Sensor.ConfigureCommand.PowerCheck) == 0
+
+    def test_need_names_of_their_own(self, caplog):
+        one = '<Sensor name="a" type="BaseCamera"/>'
+        env = ravemj.Environment()
+        assert not env.LoadData(f"<Environment>{one}{one}</Environment>")
+        assert "there already is a sensor 'a'" in caplog.text
+        assert len(env.GetSensors()) == 1
+        with pytest.raises(ravemj.openrave_exception, match="no name"):
+            env.LoadData('<Environment><Sensor type="BaseCamera"/></Environment>')

@@ -10,12 +10,11 @@ from ravemj.formats.collada.library import Library
 from ravemj.formats.collada.motor import driven
 from ravemj.formats.collada.polar import rigid_part
 from ravemj.formats.collada.references import References
+from ravemj.formats.collada.sensor import SensorReader
 from ravemj.formats.collada.visual import transform_of
 from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
-from ravemj.formats.sensor_tags import described, is_text, sensor_tags
 from ravemj.model.builder import SensorBuilder
 from ravemj.model.manipulators import ManipulatorBuilder
-from ravemj.model.scene import AttachedSensor, Device, sensor_kind
 
 
 def extras(element: Element | None, kind: str) -> Iterator[tuple[Element, Element]]:
@@ -117,50 +116,9 @@ class ExtraReader:
     def _read_sensor(self, extra: Element, technique: Element, system: Element) -> None:
         origin = child(technique, "frame_origin")
         link = None if origin is None else self.link(origin, system)
-        instance = child(technique, "instance_sensor")
-        sensor = None if instance is None else self._library.follow(instance, "sensor")
-        kind = None if sensor is None else sensor_kind(_device_type(sensor))
-        built = AttachedSensor(
-            name=extra.get("name", ""),
-            link=link,
-            T_link_sensor=Pose() if origin is None else self._pose(origin),
-            type=None if sensor is None else sensor.get("type"),
-            device=None if sensor is None or kind is None else self._device(sensor, kind.device),
-            source=self._library.source(extra),
-        )
-        if sensor is not None:
-            built = self._looks(sensor, built)
-        self._body.sensors.append(SensorBuilder(built))
-
-    def _device(self, sensor: Element, device: Device) -> Device:
-        """Return a device as a ``<sensor>`` describes it; elements that only handle pictures say nothing here."""
-        tags = {name.lower(): tag for name, tag in sensor_tags(device).items()}
-        for element in children(sensor):
-            tag = tags.get(local_name(element).lower())
-            if tag is None:
-                continue
-            values = numbers(element).tolist()
-            if is_text(device, tag):
-                device = described(device, tag, " ".join(words(element)))
-            elif all(map(math.isfinite, values)) and len(values) >= tag.numbers:
-                device = described(device, tag, values)
-            else:
-                message = f"it holds {len(values)} numbers, and should hold {tag.numbers or ''} finite ones"
-                self._library.warn("number-count", message, element)
-        return device
-
-    def _looks(self, sensor: Element, built: AttachedSensor) -> AttachedSensor:
-        """Return a sensor with the colour in which it is drawn, and on if it should be and can."""
-        color = numbers(child(sensor, "color")).tolist()
-        if len(color) >= 3 and all(map(math.isfinite, color)):
-            built = replace(built, color=(color[0], color[1], color[2]))
-        power = child(sensor, "power")
-        if power is None or built.device is None or not self._references.truth(power, False):
-            return built
-        problem = built.device.problem()
-        if problem is not None:
-            self._library.warn("bad-sensor", f"the sensor stays off: {problem}", sensor)
-        return replace(built, is_on=problem is None)
+        pose = Pose() if origin is None else self._pose(origin)
+        sensor = SensorReader(self._library, self._references).read(extra, technique, link, pose)
+        self._body.sensors.append(SensorBuilder(sensor))
 
     def _read_actuator(self, technique: Element, system: Element) -> None:
         """Give a joint the torque limit and the inertia of its motor, where the file has a motor."""
@@ -194,12 +152,3 @@ class ExtraReader:
         if index is not None and not self._references.truth(element, True):
             link = self._body.links[index]
             link.geometries = [replace(part, visible=False) for part in link.geometries]
-
-
-def _device_type(sensor: Element) -> str:
-    """Return the name of the device that a ``<sensor>`` is: the interface that it names, else its type."""
-    for technique in children(child(sensor, "interface_type"), "technique"):
-        named = " ".join(words(child(technique, "interface")))
-        if named:
-            return named
-    return sensor.get("type", "")

@@ -1,4 +1,4 @@
-"""``<scene>``: the bodies of a document."""
+"""``<scene>``: the bodies of a document, and the sensors that none of them carries."""
 
 from typing import NamedTuple
 
@@ -13,10 +13,12 @@ from ravemj.formats.collada.physics import NO_MASS, Physics
 from ravemj.formats.collada.polar import rigid_part
 from ravemj.formats.collada.references import References
 from ravemj.formats.collada.robot import ExtraReader, interface_kind
+from ravemj.formats.collada.sensor import SensorReader
 from ravemj.formats.collada.supplement import read_supplement
 from ravemj.formats.collada.visual import Node, expand
 from ravemj.formats.meshes.collada.document import ColladaDocument, Element, child, children
 from ravemj.model.builder import BodyBuilder, LinkBuilder
+from ravemj.model.scene import AttachedSensor
 
 _MAX_DEPTH = 20
 
@@ -28,11 +30,13 @@ class Content(NamedTuple):
         bodies: Bodies with kinematics, articulated systems first.
         others: Bodies that are only a node of the visual scene.
         gravity: Acceleration of free fall [m/s^2], or None.
+        sensors: Sensors that no body carries.
     """
 
     bodies: list[BodyBuilder]
     others: list[BodyBuilder]
     gravity: Vec3 | None
+    sensors: list[AttachedSensor]
 
 
 def read_document(library: Library, document: ColladaDocument, wanted: str = "") -> Content:
@@ -54,6 +58,7 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
     physics = Physics(library, references, scene, root)
     geometry = GeometryReader(library)
     bodies: list[BodyBuilder] = []
+    sensors: list[AttachedSensor] = []
     shown: set[Node] = set()
     for kinematics in children(scene, "instance_kinematics_scene"):
         element = library.follow(kinematics)
@@ -62,14 +67,15 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
             shared = SceneContext(library, references, bindings, physics, geometry)
             shown |= shared.moved
             bodies += _bodies(shared, element, wanted)
+            sensors += SensorReader(library, references).read_loose(element)
     if wanted:
         if not bodies:
             raise library.error(f"there is no articulated system '{wanted}' in the scene", document.root)
-        return Content(bodies, [], physics.gravity)
+        return Content(bodies, [], physics.gravity, [])
     taken = {node for inner in shown for node in inner.around()}
     nodes = [] if root is None else [node for node in root.nodes if node not in taken]
     others = [body for node in nodes if (body := _node_body(library, geometry, node)) is not None]
-    return Content(bodies, others, physics.gravity)
+    return Content(bodies, others, physics.gravity, sensors)
 
 
 def _bodies(scene: SceneContext, element: Element, wanted: str) -> list[BodyBuilder]:

@@ -7,13 +7,13 @@ from ravemj.errors import Diagnostics
 from ravemj.formats import settled
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.sections import Sections
+from ravemj.formats.collada.sensor import write_device
 from ravemj.formats.collada.supplement import OTHER_NUMBERS, PROFILE
 from ravemj.formats.collada.trees import Tree
 from ravemj.formats.parameters import write_parameters
-from ravemj.formats.sensor_tags import written
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.joints import rests
-from ravemj.model.scene import SENSOR_COLOR, AttachedSensor, Axis, Joint, KinBody, Manipulator
+from ravemj.model.scene import AttachedSensor, Axis, Joint, KinBody, Manipulator
 
 _PLAIN = Axis((0.0, 0.0, 1.0))
 
@@ -176,17 +176,7 @@ class SystemWriter:
         link = None if sensor.link is None else self._link_path(sensor.link)
         with out.inside("frame_origin", link=link):
             write_pose(out, settled.pose(sensor.T_link_sensor))
-        if sensor.type is None:
-            return
-        out.element("instance_sensor", url=f"#{name}")
-        library = self._sections.sensors
-        with library.inside("sensor", id=name, type=sensor.type):
-            for tag, content in () if sensor.device is None else written(sensor.device, collada=True):
-                library.element(tag, content)
-            if sensor.is_on:
-                library.element("power", 1)
-            if sensor.color != SENSOR_COLOR:
-                library.element("color", sensor.color)
+        write_device(out, self._sections.sensors, name, sensor)
 
     def _write_actuator(self, index: int, axis: Axis) -> None:
         """Write a motor without a gear."""

@@ -12,6 +12,7 @@ from ravemj.formats.collada.body_writer import BodyWriter
 from ravemj.formats.collada.external import ExternalBody, write_reference
 from ravemj.formats.collada.geometry_writer import GeometryWriter
 from ravemj.formats.collada.sections import Sections
+from ravemj.formats.collada.sensor import write_loose
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.scene import Scene
 
@@ -40,6 +41,7 @@ def write(scene: Scene, diagnostics: Diagnostics, external: Mapping[str, Externa
             BodyWriter(sections, diagnostics, body, number).write()
         else:
             write_reference(sections, body, number, found)
+    write_loose(sections.kinematics_scene, sections.sensors, scene.sensors)
     out = XmlText()
     with out.inside("COLLADA", xmlns=NAMESPACE, version="1.5.0"):
         _write_asset(out)

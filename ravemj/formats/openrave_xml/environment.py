@@ -1,4 +1,4 @@
-"""``<Environment>`` and the other roots: bodies in document order, background and camera."""
+"""``<Environment>`` and the other roots: bodies and sensors in document order, background and camera."""
 
 import math
 import os
@@ -10,10 +10,11 @@ from ravemj.errors import Diagnostics, Source, SourceError, UnnamedError
 from ravemj.formats.openrave_xml.context import Context, uncomputable
 from ravemj.formats.openrave_xml.given import NOTHING, Attributes, with_given
 from ravemj.formats.openrave_xml.kinbody import read_body
+from ravemj.formats.openrave_xml.sensor import read_sensor
 from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag
 from ravemj.formats.openrave_xml.tree import Document, Element, parse, parse_file
 from ravemj.formats.openrave_xml.values import ROTATIONS, axis_angle, vector
-from ravemj.model.scene import KinBody, Scene, View
+from ravemj.model.scene import AttachedSensor, KinBody, Scene, View
 
 _DEFAULT_CAMERA_POSITION: Vec3 = (0.0, 1.5, 0.8)
 _DEFAULT_CAMERA_WXYZ: Wxyz = wxyz_from_axis_angle((1.0, 0.0, 0.0), -0.5)
@@ -22,7 +23,6 @@ _HALF_TURN_X: Wxyz = wxyz_from_axis_angle((1.0, 0.0, 0.0), math.pi)
 
 INTERFACES = (
     "collisionchecker",
-    "sensor",
     "module",
     "controller",
     "planner",
@@ -38,7 +38,6 @@ NO_PHYSICS = "of a physics engine, only the gravity means something to MuJoCo"
 _KNOWN_CLASSES = {
     "ode", "bullet", "pqp", "fcl_", "fcl", "genericcollisionchecker",
     "idealcontroller", "idealvelocitycontroller", "redirectcontroller", "odevelocity",
-    "basecamera", "baselaser2d", "basespinninglaser2d", "baseflashlidar3d", "baseforce6d",
     "qtcoin", "qtosg", "generictrajectory", "mt19937", "halton", "robotconfiguration",
     "basemanipulation", "taskmanipulation", "taskcaging", "visualfeedback", "logging", "ikfast", "grasper",
     "birrt", "basicrrt", "rastar", "workspacetrajectorytracker", "linearsmoother", "parabolicsmoother",
@@ -101,17 +100,18 @@ def _read(path: str, parsed_file: Callable[[str], Document], given: Attributes) 
         failure = error
     except RecursionError:
         failure = SourceError("the elements are nested too deeply", Source(path))
-    scene = Scene(tuple(document.bodies), document.view, document.gravity)
+    scene = Scene(tuple(document.bodies), document.view, document.gravity, tuple(document.sensors))
     return Reading(scene, context.diagnostics, failure, (path, *context.files))
 
 
 class _Document:
-    """The bodies and the view of a file, as far as it is read."""
+    """The bodies, the sensors and the view of a file, as far as it is read."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
         self.bodies: list[KinBody] = []
-        self._names: set[str] = set()
+        self.sensors: list[AttachedSensor] = []
+        self._names: set[tuple[str, str]] = set()
         self.view: View | None = None
         self.gravity: Vec3 | None = None
 
@@ -121,13 +121,14 @@ class _Document:
         Raises:
             SourceError: this is another format.
         """
+        readers = {"robot": self.read_body, "kinbody": self.read_body, "sensor": self.read_sensor}
         if _is_urdf(root):
             raise _other_format("URDF", root.source)
         if root.tag == "environment":
             self.read_environment(root)
-        elif root.tag in {"robot", "kinbody"}:
+        elif root.tag in readers:
             if root.complete:
-                self.read_body(root)
+                readers[root.tag](root)
         elif root.tag not in INTERFACES:
             if root.tag == "mujoco":
                 raise _other_format("MJCF, MuJoCo's own format", root.source)
@@ -155,13 +156,23 @@ class _Document:
             body, refusal = read_body(element, self.context)
         except ArithmeticError as error:
             raise uncomputable(element) from error
-        check_name(body.name, element)
-        if body.name in self._names:
-            raise SourceError(f"there already is a body '{body.name}'", element.source, "give it another name")
-        self._names.add(body.name)
+        self._take_name("body", body.name, element)
         self.bodies.append(body)
         if refusal is not None:
             raise refusal
+
+    def read_sensor(self, element: Element) -> None:
+        """Read a sensor that no robot carries."""
+        sensor = read_sensor(element, self.context)
+        if sensor is not None:
+            self._take_name("sensor", sensor.name, element)
+            self.sensors.append(sensor)
+
+    def _take_name(self, kind: str, name: str, element: Element) -> None:
+        check_name(name, element)
+        if (kind, name) in self._names:
+            raise SourceError(f"there already is a {kind} '{name}'", element.source, "give it another name")
+        self._names.add((kind, name))
 
 
 def _is_urdf(root: Element) -> bool:
@@ -201,6 +212,9 @@ class _EnvironmentScope:
 
     def read_body(self, element: Element) -> None:
         self.document.read_body(element)
+
+    def read_sensor(self, element: Element) -> None:
+        self.document.read_sensor(element)
 
     def read_background(self, element: Element) -> None:
         self.view = replace(self.view, background=vector(element, self._diagnostics))
@@ -265,6 +279,7 @@ ENVIRONMENT_TAGS: dict[str, Tag[_EnvironmentScope]] = {
     "environment": Tag(_EnvironmentScope.read_environment, "its content is added"),
     "robot": Tag(_EnvironmentScope.read_body, "see below; also as the root"),
     "kinbody": Tag(_EnvironmentScope.read_body, "see below; also as the root"),
+    "sensor": Tag(_EnvironmentScope.read_sensor, "see below; also as the root; no robot carries it"),
     "bkgndcolor": Tag(_EnvironmentScope.read_background, "red green blue, from 0 to 1"),
     "camtrans": Tag(_EnvironmentScope.read_camera_position, "position of the camera [m]"),
     "camrotationaxis": Tag(_EnvironmentScope.read_camera_rotation, "axis x y z, angle [deg]; z looks forward, y down"),
@@ -282,7 +297,7 @@ ENVIRONMENT_IGNORED = {
 
 
 def check_name(name: str, element: Element) -> None:
-    """Check that a body can be found by its name.
+    """Check that a body or a sensor can be found by its name.
 
     Raises:
         UnnamedError: the name is empty.

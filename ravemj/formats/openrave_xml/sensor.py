@@ -4,12 +4,22 @@ from collections.abc import Mapping
 from functools import partial
 from typing import NamedTuple
 
+from ravemj.core.transforms import Pose
 from ravemj.formats.openrave_xml.context import Context
-from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, reasons
+from ravemj.formats.openrave_xml.tags import NO_EFFECT_HERE, Tag, placement_tags, reasons
 from ravemj.formats.openrave_xml.tree import Element
-from ravemj.formats.openrave_xml.values import is_true, leading_numbers, numbers, vector
+from ravemj.formats.openrave_xml.values import Placement, is_true, leading_numbers, numbers, vector
 from ravemj.formats.sensor_tags import SensorTag, described, is_text, sensor_tags
-from ravemj.model.scene import SENSOR_COLOR, SENSOR_KINDS, Device, Intrinsics, Rgb, SensorKind
+from ravemj.model.scene import (
+    SENSOR_COLOR,
+    SENSOR_KINDS,
+    AttachedSensor,
+    Device,
+    Intrinsics,
+    Rgb,
+    SensorKind,
+    needs_link,
+)
 
 
 class SensorElement(NamedTuple):
@@ -20,23 +30,27 @@ class SensorElement(NamedTuple):
         device: What is fixed about it.
         is_on: Whether it measures from the start.
         color: Colour in which viewers draw it.
+        pose: Where it says that it is; of one on a robot the ``<AttachedSensor>`` says it.
+        name: Its name.
     """
 
     type: str | None = None
     device: Device | None = None
     is_on: bool = False
     color: Rgb = SENSOR_COLOR
+    pose: Pose = Pose()
+    name: str = ""
 
 
 class _Sensor:
     """An open ``<Sensor>``."""
 
-    def __init__(self, context: Context, kind: SensorKind) -> None:
+    def __init__(self, context: Context, device: Device) -> None:
         self.context = context
-        self.type = kind.name
-        self.device = kind.device
+        self.device = device
         self.is_on = False
         self.color = SENSOR_COLOR
+        self.placement = Placement()
 
     def describe(self, element: Element, tag: SensorTag) -> None:
         """Read an element that the tables shared with COLLADA describe."""
@@ -55,18 +69,27 @@ class _Sensor:
         """Read the colour of what viewers draw."""
         self.color = vector(element, self.context.diagnostics, self.color)
 
+    def translate(self, element: Element) -> None:
+        """Read a ``<Translation>``."""
+        self.placement.translate(element, self.context.diagnostics)
+
+    def rotate(self, element: Element) -> None:
+        """Read a rotation."""
+        self.placement.rotate(element, self.context.diagnostics)
+
 
 COMMON_TAGS: dict[str, Tag[_Sensor]] = {
     "power": Tag(_Sensor.switch, "1: it measures from the start"),
     "color": Tag(_Sensor.paint, "of what viewers draw: red, green, blue from 0 to 1"),
 }
+PLACEMENT_TAGS: dict[str, Tag[_Sensor]] = placement_tags(_Sensor.translate, _Sensor.rotate)
 DEVICE_ATTRIBUTES = {
     "type": ", ".join(kind.name for kind in SENSOR_KINDS.values()),
     "file": "read in its place",
-    "name": "takes no effect; the name is that of the AttachedSensor",
+    "name": "name of a sensor of the environment; one in an AttachedSensor has the name of that",
 }
 DEVICE_IGNORED_ATTRIBUTES = {"args": "no sensor here takes arguments"}
-COMMON_IGNORED = reasons(NO_EFFECT_HERE, "hardware_id")
+COMMON_IGNORED = reasons(NO_EFFECT_HERE, "hardware_id", "sendcommand")
 _CAMERA_IGNORED = {
     "framerate": "pictures are taken when somebody asks for them",
     **reasons(
@@ -74,6 +97,10 @@ _CAMERA_IGNORED = {
         "distortion_model", "distortion_coeffs",
     ),
 }  # fmt: skip
+_IN_FILE = dict.fromkeys(
+    (tag.lower() for kind in SENSOR_KINDS.values() for tag in (*sensor_tags(kind.device), *COMMON_TAGS)),
+    "the file says what the sensor is like; OpenRAVE reads nothing here without a type",
+)
 
 
 def device_tags(kind: SensorKind) -> Mapping[str, Tag[_Sensor]]:
@@ -92,21 +119,55 @@ def _describe(sensor: _Sensor, element: Element, tag: SensorTag) -> None:
 
 
 def read_device(element: Element, context: Context) -> SensorElement:
-    """Read a ``<Sensor>``; with ``file``, that of the file."""
+    """Read the ``<Sensor>`` of an ``<AttachedSensor>``; with ``file``, that of the file."""
+    return _read(element, context, {}, reasons("the AttachedSensor says where it is", *PLACEMENT_TAGS))
+
+
+def read_sensor(element: Element, context: Context) -> AttachedSensor | None:
+    """Read a ``<Sensor>`` that no robot carries; None, with an error, where it is of no known kind."""
+    found = _read(element, context, PLACEMENT_TAGS, {})
+    if found.device is None:
+        if "type" not in element.attributes:
+            message = "<Sensor> is of no type, and is left out"
+            context.diagnostics.error("unknown-interface", message, element.source, 'write type="…", or file="…"')
+        return None
+    problem = "it measures what its link feels, and is on none" if needs_link(found.device) else None
+    if problem is not None:
+        hint = "put it into an <AttachedSensor> of a robot"
+        context.diagnostics.warn("bad-sensor", f"the sensor stays off: {problem}", element.source, hint)
+    return AttachedSensor(
+        name=found.name,
+        link=None,
+        T_link_sensor=found.pose,
+        type=found.type,
+        device=found.device,
+        source=element.source,
+        is_on=found.is_on and problem is None,
+        color=found.color,
+    )
+
+
+def _read(
+    element: Element, context: Context, placement: Mapping[str, Tag[_Sensor]], ignored: Mapping[str, str]
+) -> SensorElement:
+    """Read a ``<Sensor>``; with ``file`` and without a type, that of the file, in the pose of the element."""
     context.check_attributes(element, DEVICE_ATTRIBUTES, DEVICE_IGNORED_ATTRIBUTES)
     root = context.include(element)
-    found = SensorElement() if root is None or root.tag != "sensor" else read_device(root, context)
-    name = element.attributes.get("type")
-    if name is None:
-        return found
-    kind = SENSOR_KINDS.get(next(iter(name.split()), "").lower())
+    found = SensorElement() if root is None or root.tag != "sensor" else _read(root, context, placement, ignored)
+    type_name, name = element.attributes.get("type"), element.attributes.get("name", found.name)
+    if type_name is None:
+        place = _Sensor(context, Intrinsics())
+        context.walk(element, placement, {**ignored, **_IN_FILE}, place)
+        return found._replace(pose=place.placement.pose, name=name)
+    kind = SENSOR_KINDS.get(next(iter(type_name.split()), "").lower())
     if kind is None:
-        context.diagnostics.error("unknown-interface", f"there is no sensor of type '{name}'", element.source)
+        context.diagnostics.error("unknown-interface", f"there is no sensor of type '{type_name}'", element.source)
         return SensorElement()
-    sensor = _Sensor(context, kind)
-    tags, ignored = {**device_tags(kind), **COMMON_TAGS}, {**device_ignored(kind), **COMMON_IGNORED}
-    context.walk(element, tags, ignored, sensor)
+    sensor = _Sensor(context, kind.device)
+    tags = {**device_tags(kind), **COMMON_TAGS, **placement}
+    context.walk(element, tags, {**device_ignored(kind), **COMMON_IGNORED, **ignored}, sensor)
     problem = sensor.device.problem() if sensor.is_on else None
     if problem is not None:
         context.diagnostics.warn("bad-sensor", f"the sensor stays off: {problem}", element.source)
-    return SensorElement(kind.name, sensor.device, sensor.is_on and problem is None, sensor.color)
+    is_on = sensor.is_on and problem is None
+    return SensorElement(kind.name, sensor.device, is_on, sensor.color, sensor.placement.pose, name)

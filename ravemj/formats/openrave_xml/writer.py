@@ -25,6 +25,7 @@ from ravemj.model.scene import (
     Link,
     Manipulator,
     Scene,
+    SensorKind,
     View,
     sensor_kind,
 )
@@ -56,7 +57,7 @@ def write(scene: Scene, diagnostics: Diagnostics, meshes: MeshFormat = "stl") ->
     """
     writer = _Writer(diagnostics, meshes)
     out = writer.out
-    if scene.view is None and scene.gravity is None and len(scene.bodies) == 1:
+    if scene.view is None and scene.gravity is None and len(scene.bodies) == 1 and not scene.sensors:
         writer.write_body(scene.bodies[0])
     else:
         with out.inside("Environment"):
@@ -66,6 +67,8 @@ def write(scene: Scene, diagnostics: Diagnostics, meshes: MeshFormat = "stl") ->
                     out.element("gravity", scene.gravity)
             for body in scene.bodies:
                 writer.write_body(body)
+            for sensor in scene.sensors:
+                writer.write_sensor(sensor)
     return Document(out.document(), writer.geoms.files)
 
 
@@ -85,8 +88,7 @@ class _Writer:
 
     def write_body(self, body: KinBody) -> None:
         """Write a robot or another body."""
-        if not body.name or " " in body.name or not body.name.isprintable():
-            raise OutputError(f"OpenRAVE reads no body with the name {body.name!r}; give it one without spaces")
+        _check_name("body", body.name)
         joined = None if body.joined_links_adjacent else 0
         body = writable(body, self.diagnostics)
         names = PartNames(body, self.diagnostics)
@@ -104,7 +106,7 @@ class _Writer:
             for manipulator in body.manipulators:
                 self._write_manipulator(manipulator, names)
             for sensor in body.sensors:
-                self._write_sensor(sensor, names)
+                self._write_attached_sensor(sensor, names)
             self._write_state(body, names)
 
     def _write_parts(self, body: KinBody, names: PartNames) -> None:
@@ -171,7 +173,19 @@ class _Writer:
             self.out.element("direction", settled.direction(manipulator.direction))
             write_pose(self.out, settled.pose(manipulator.T_effector_tool))
 
-    def _write_sensor(self, sensor: AttachedSensor, names: PartNames) -> None:
+    def write_sensor(self, sensor: AttachedSensor) -> None:
+        """Write a sensor that no robot carries."""
+        _check_name("sensor", sensor.name)
+        kind = None if sensor.type is None else sensor_kind(sensor.type)
+        if kind is None:
+            message = f"'{sensor.name}' is left out: OpenRAVE XML knows no sensor of type '{sensor.type}'"
+            self.diagnostics.warn("not-written", message, sensor.source)
+            return
+        with self.out.inside("Sensor", name=sensor.name, type=kind.name):
+            write_pose(self.out, settled.pose(sensor.T_link_sensor))
+            self._write_device(sensor, kind)
+
+    def _write_attached_sensor(self, sensor: AttachedSensor, names: PartNames) -> None:
         kind = None if sensor.type is None else sensor_kind(sensor.type)
         if kind is None and sensor.type is not None:
             message = f"OpenRAVE XML knows no sensor of type '{sensor.type}'; of '{sensor.name}' only the frame is kept"
@@ -182,9 +196,17 @@ class _Writer:
             write_pose(self.out, settled.pose(sensor.T_link_sensor))
             if kind is not None:
                 with self.out.inside("Sensor", type=kind.name):
-                    for tag, content in written(sensor.device or kind.device):
-                        self.out.element(tag, content)
-                    if sensor.is_on:
-                        self.out.element("power", 1)
-                    if sensor.color != SENSOR_COLOR:
-                        self.out.element("color", sensor.color)
+                    self._write_device(sensor, kind)
+
+    def _write_device(self, sensor: AttachedSensor, kind: SensorKind) -> None:
+        for tag, content in written(sensor.device or kind.device):
+            self.out.element(tag, content)
+        if sensor.is_on:
+            self.out.element("power", 1)
+        if sensor.color != SENSOR_COLOR:
+            self.out.element("color", sensor.color)
+
+
+def _check_name(kind: str, name: str) -> None:
+    if not name or " " in name or not name.isprintable():
+        raise OutputError(f"OpenRAVE reads no {kind} with the name {name!r}; give it one without spaces")

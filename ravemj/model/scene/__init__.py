@@ -32,6 +32,7 @@ from ravemj.model.scene.sensors import (
     Odometry,
     SensorKind,
     Tactile,
+    needs_link,
     sensor_kind,
 )
 from ravemj.model.scene.shapes import (
@@ -108,5 +109,6 @@ __all__ = [
     "Tactile",
     "TriMesh",
     "View",
+    "needs_link",
     "sensor_kind",
 ]

@@ -264,6 +264,11 @@ def sensor_kind(name: str) -> SensorKind | None:
     return SENSOR_KINDS.get(_SPELLINGS.get(plain, plain))
 
 
+def needs_link(device: Device) -> bool:
+    """Return whether a sensor measures what its link feels, and so measures nothing without a robot."""
+    return not isinstance(device, Intrinsics | Laser | FlashLidar)
+
+
 def _are_finite(numbers: Iterable[float]) -> bool:
     return all(map(math.isfinite, numbers))
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ravemj.core.transforms import Pose, Vec3
-from ravemj.model.scene.body import KinBody
+from ravemj.model.scene.body import AttachedSensor, KinBody
 from ravemj.model.scene.record import Record
 from ravemj.model.scene.shapes import Rgb
 
@@ -29,8 +29,10 @@ class Scene(Record):
         bodies: Bodies in document order.
         view: Background and camera, or None where the file has no ``<Environment>``.
         gravity: Acceleration of free fall [m/s^2], or None where the file has no physics engine.
+        sensors: Sensors that no robot carries; they are on no link, and ``T_link_sensor`` is their pose in the world.
     """
 
     bodies: tuple[KinBody, ...] = ()
     view: View | None = None
     gravity: Vec3 | None = None
+    sensors: tuple[AttachedSensor, ...] = ()

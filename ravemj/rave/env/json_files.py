@@ -32,13 +32,16 @@ def is_json(path: str) -> bool:
 class JsonFiles(Description):
     """Saves and loads environments in OpenRAVE's JSON."""
 
-    def _save_json(self, path: str, names: Collection[str], skipped: Sequence[str]) -> None:
+    def _save_json(
+        self, path: str, names: Collection[str], skipped: Sequence[str], sensors: Sequence[scene.AttachedSensor]
+    ) -> None:
         """Write bodies and the properties of the environment to a file.
 
         Args:
             path: The file.
             names: The names of the bodies.
             skipped: The parts to leave out, words of ``skipwrite``.
+            sensors: The sensors that no robot carries; JSON has no place for them.
 
         Raises:
             OutputError: The file cannot be written, or a number is not finite. An existing file stays as it is.
@@ -53,6 +56,10 @@ class JsonFiles(Description):
         if self._simulation.view not in (None, View()):
             message = "background and camera are left out: JSON has no place for them"
             diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML keeps them")
+        if sensors:
+            names_of_sensors = ", ".join(sensor.name for sensor in sensors)
+            message = f"sensors that no robot carries are left out: {names_of_sensors}; JSON has no place for them"
+            diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML and COLLADA keep them")
         _warn_of_losses(
             diagnostics, path, [body.simulation_state.scene for body in self.GetBodies() if body.GetName() in names]
         )

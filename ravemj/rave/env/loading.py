@@ -27,6 +27,7 @@ from ravemj.model.scene import Grab, Mesh
 from ravemj.rave.env.json_files import JsonFiles, is_json
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
+from ravemj.rave.sensors import Sensor
 from ravemj.rave.trimesh import TriMesh, trimesh_of
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ _Argument = KinBody | Text | Attributes | None
 
 _LOG = logging.getLogger("ravemj")
 
+_NAME_CONFLICTS = {ErrorCode.BodyNameConflict.name, ErrorCode.SensorNameConflict.name}
+
 
 class Loading(JsonFiles):
     """The methods that load models."""
@@ -50,9 +53,9 @@ class Loading(JsonFiles):
         """Add the content of a model file to the environment.
 
         Args:
-            filename: An OpenRAVE XML file with an environment, a robot or a kinbody; a COLLADA file (``.dae``,
-                ``.zae``); OpenRAVE's JSON (``.json``, see ``LoadJSON``); or a mesh file. Relative paths are searched in
-                the working folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
+            filename: An OpenRAVE XML file with an environment, a robot, a kinbody or a sensor; a COLLADA file
+                (``.dae``, ``.zae``); OpenRAVE's JSON (``.json``, see ``LoadJSON``); or a mesh file. Relative paths are
+                searched in the working folder, then in the folders of the environment variable ``OPENRAVE_DATA``.
             atts: Attributes as those of a ``<Robot>``: ``name`` replaces the name of the body, ``prefix`` is put before
                 the names of its parts, ``skipgeometry`` "1" leaves out its shapes, ``scalegeometry`` ("2" or "2 3 4")
                 multiplies its lengths, except the sizes of boxes, spheres and cylinders of XML. Attributes apply to
@@ -61,12 +64,12 @@ class Loading(JsonFiles):
 
         Returns:
             Whether the whole file was loaded. As in OpenRAVE, the result is False if the file is missing or broken,
-            refers to a missing file, or has a body whose name is taken. The reason is logged, and the bodies before the
-            error are in the environment; ``ravemj.load`` raises an error instead. Bodies of COLLADA and mesh files get
-            another name if theirs is taken.
+            refers to a missing file, or has a body or sensor whose name is taken. The reason is logged, and the bodies
+            before the error are in the environment; ``ravemj.load`` raises an error instead. Bodies of COLLADA and mesh
+            files get another name if theirs is taken.
 
         Raises:
-            openrave_exception: a body of the file has no name (``Failed``).
+            openrave_exception: a body or a sensor of the file has no name (``Failed``).
 
         Example:
             >>> env = ravemj.Environment()
@@ -80,7 +83,7 @@ class Loading(JsonFiles):
         try:
             return self._take(reading)
         except RavemjError as error:
-            if error.GetCode() != ErrorCode.BodyNameConflict.name:
+            if error.GetCode() not in _NAME_CONFLICTS:
                 raise
             _LOG.error("%s: %s", os.fsdecode(filename), error)
             return False
@@ -104,8 +107,8 @@ class Loading(JsonFiles):
             broken = [finding for finding in reading.diagnostics if finding.severity == "error"]
             if reading.failure is not None or broken:
                 return str(reading.failure or broken[0])
-            if not reading.scene.bodies:
-                return f"{path}: the file has no body"
+            if not reading.scene.bodies and not reading.scene.sensors:
+                return f"{path}: the file has no body and no sensor"
             self._add(replace(reading, renames=True))
         except RavemjError as error:
             return str(error)
@@ -175,6 +178,8 @@ class Loading(JsonFiles):
                 self._simulation.view = reading.scene.view
             if reading.scene.gravity is not None:
                 self._simulation.set_gravity(reading.scene.gravity)
+            for sensor in reading.scene.sensors:
+                self.AddSensor(Sensor(self._environment, sensor), reading.renames)
         for viewer in self._viewers:
             viewer.take_over(reading.scene.view)
         send_warnings(reading.diagnostics)

@@ -31,6 +31,9 @@ _CHOICES: dict[SelectionOptions, Callable[[KinBody, Sequence[str]], bool]] = {
     SelectionOptions.Body: lambda body, targets: body.name in targets,
     SelectionOptions.AllExceptBody: lambda body, targets: body.name not in targets,
 }
+_WITH_SENSORS = (SelectionOptions.Everything, SelectionOptions.AllExceptBody)
+"""Selections that the sensors belong to which no robot carries."""
+
 _NO_MASS = Inertial(1e-10, ZERO, ((1e-7, 0.0, 0.0), (0.0, 1e-7, 0.0), (0.0, 0.0, 1e-7)))  # as without <rigid_body>
 
 
@@ -75,7 +78,8 @@ class Saving(JsonFiles):
         Args:
             filename: The file. The format is COLLADA 1.5 with OpenRAVE's extensions; with the suffix ``.zae`` a zip
                 archive of that, with the suffix ``.json`` OpenRAVE's JSON. ``Load`` reads all of them.
-            options: The choice of bodies, a ``SelectionOptions``.
+            options: The choice of bodies, a ``SelectionOptions``. ``Everything`` and ``AllExceptBody`` include the
+                sensors that no robot carries.
             atts: The name of a body, for ``SelectionOptions.Body`` and ``AllExceptBody``; or a dict or pairs of
 
                 * ``target``: the name of a body; several pairs name several bodies;
@@ -112,10 +116,13 @@ class Saving(JsonFiles):
         with self._simulation.lock:
             bodies = [snapshot(body) for body in self._simulation.bodies]
             view, gravity = self._simulation.view, self._simulation.gravity
+            sensors = tuple(sensor.description for sensor in self._sensors)
+        if options not in _WITH_SENSORS or "sensors" in skipped:
+            sensors = ()
         bodies = _chosen(bodies, options, [value for name, value in given if name == "target"])
         names = [body.name for body in bodies]
         if named.get("format") == "json" or ("format" not in named and is_json(path)):
-            self._save_json(path, names, skipped)
+            self._save_json(path, names, skipped, sensors)
             return
         kind = cast("ModelFormat", named.get("format", "collada"))
         if self._metre != 1 and kind == "collada":
@@ -126,8 +133,8 @@ class Saving(JsonFiles):
         external = external_bodies(path, Scene(tuple(bodies)), references, diagnostics)
         for part in skipped:
             bodies = [body if body.name in external else _PARTS[part](body) for body in bodies]
-        is_lone_body = len(bodies) == 1 and view == View()
-        scene = Scene(tuple(bodies), None if is_lone_body else view, None if gravity == DEFAULT_GRAVITY else gravity)
+        shown = None if len(bodies) == 1 and view == View() else view
+        scene = Scene(tuple(bodies), shown, None if gravity == DEFAULT_GRAVITY else gravity, sensors)
         save(path, scene, diagnostics, kind, cast("MeshFormat", named.get("meshes", "stl")), external)
         send_warnings(diagnostics)
 

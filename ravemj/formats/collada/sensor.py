@@ -1,0 +1,128 @@
+"""Sensors: OpenRAVE's ``<sensor>``, which says what one is like, and those of ours that no robot carries."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+from ravemj.core.transforms import Pose
+from ravemj.formats import settled
+from ravemj.formats.collada.geometry_writer import write_pose
+from ravemj.formats.collada.library import Library
+from ravemj.formats.collada.polar import rigid_part
+from ravemj.formats.collada.references import References
+from ravemj.formats.collada.supplement import PROFILE, own_techniques
+from ravemj.formats.collada.visual import transform_of
+from ravemj.formats.meshes.collada.document import Element, child, children, local_name, numbers, words
+from ravemj.formats.sensor_tags import described, is_text, sensor_tags, written
+from ravemj.formats.xml_text import XmlText
+from ravemj.model.scene import SENSOR_COLOR, AttachedSensor, Device, needs_link, sensor_kind
+
+
+class SensorReader:
+    """Reads what sensors are like."""
+
+    def __init__(self, library: Library, references: References) -> None:
+        self._library = library
+        self._references = references
+
+    def read(self, place: Element, technique: Element, link: int | None, T_link_sensor: Pose) -> AttachedSensor:
+        """Read a sensor.
+
+        Args:
+            place: The element that has its name.
+            technique: The element with its ``<instance_sensor>``; without one it is a frame without a device.
+            link: Index of the link that carries it, or None.
+            T_link_sensor: Its pose in the link; of a sensor that no robot carries, in the world.
+        """
+        instance = child(technique, "instance_sensor")
+        sensor = None if instance is None else self._library.follow(instance, "sensor")
+        kind = None if sensor is None else sensor_kind(_device_type(sensor))
+        built = AttachedSensor(
+            name=place.get("name", ""),
+            link=link,
+            T_link_sensor=T_link_sensor,
+            type=None if sensor is None else sensor.get("type"),
+            device=None if sensor is None or kind is None else self._device(sensor, kind.device),
+            source=self._library.source(place),
+        )
+        return built if sensor is None else self._looks(sensor, built)
+
+    def read_loose(self, scene: Element) -> Iterator[AttachedSensor]:
+        """Yield the sensors of a kinematics scene that no robot carries."""
+        for technique in own_techniques(scene):
+            for element in children(technique, "sensor"):
+                pose = rigid_part(transform_of(self._library, element), self._library.source(element))
+                sensor = self.read(element, element, None, pose)
+                can_measure = sensor.device is not None and not needs_link(sensor.device)
+                yield replace(sensor, is_on=sensor.is_on and can_measure)
+
+    def _device(self, sensor: Element, device: Device) -> Device:
+        """Return a device as a ``<sensor>`` describes it; elements that only handle pictures say nothing here."""
+        tags = {name.lower(): tag for name, tag in sensor_tags(device).items()}
+        for element in children(sensor):
+            tag = tags.get(local_name(element).lower())
+            if tag is None:
+                continue
+            values = numbers(element).tolist()
+            if is_text(device, tag):
+                device = described(device, tag, " ".join(words(element)))
+            elif all(map(math.isfinite, values)) and len(values) >= tag.numbers:
+                device = described(device, tag, values)
+            else:
+                message = f"it holds {len(values)} numbers, and should hold {tag.numbers or ''} finite ones"
+                self._library.warn("number-count", message, element)
+        return device
+
+    def _looks(self, sensor: Element, built: AttachedSensor) -> AttachedSensor:
+        """Return a sensor with the colour in which it is drawn, and on if it should be and can."""
+        color = numbers(child(sensor, "color")).tolist()
+        if len(color) >= 3 and all(map(math.isfinite, color)):
+            built = replace(built, color=(color[0], color[1], color[2]))
+        power = child(sensor, "power")
+        if power is None or built.device is None or not self._references.truth(power, False):
+            return built
+        problem = built.device.problem()
+        if problem is not None:
+            self._library.warn("bad-sensor", f"the sensor stays off: {problem}", sensor)
+        return replace(built, is_on=problem is None)
+
+
+def _device_type(sensor: Element) -> str:
+    """Return the name of the device that a ``<sensor>`` is: the interface that it names, else its type."""
+    for technique in children(child(sensor, "interface_type"), "technique"):
+        named = " ".join(words(child(technique, "interface")))
+        if named:
+            return named
+    return sensor.get("type", "")
+
+
+def write_device(out: XmlText, library: XmlText, name: str, sensor: AttachedSensor) -> None:
+    """Write what a sensor is like, and the reference to that.
+
+    Args:
+        out: Takes the reference.
+        library: The library of sensors.
+        name: The id of the sensor in it.
+        sensor: The sensor; of a frame without a device nothing is written.
+    """
+    if sensor.type is None:
+        return
+    out.element("instance_sensor", url=f"#{name}")
+    with library.inside("sensor", id=name, type=sensor.type):
+        for tag, content in () if sensor.device is None else written(sensor.device, collada=True):
+            library.element(tag, content)
+        if sensor.is_on:
+            library.element("power", 1)
+        if sensor.color != SENSOR_COLOR:
+            library.element("color", sensor.color)
+
+
+def write_loose(out: XmlText, library: XmlText, sensors: tuple[AttachedSensor, ...]) -> None:
+    """Write the sensors that no robot carries into a kinematics scene; only ``SensorReader`` reads them."""
+    if not sensors:
+        return
+    with out.inside("extra", type=PROFILE), out.inside("technique", profile=PROFILE):
+        for number, sensor in enumerate(sensors):
+            with out.inside("sensor", name=sensor.name):
+                write_pose(out, settled.pose(sensor.T_link_sensor))
+                write_device(out, library, f"sensor{number}", sensor)
