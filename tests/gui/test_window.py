@@ -56,6 +56,20 @@ def test_play_ends_by_ctrl_c_and_by_closing_while_it_moves(display, folder):
     await_that(lambda: not display.windows(), "the window stays")
 
 
+def test_a_window_that_grows_has_no_black_bands_before_it_is_drawn(display, folder):
+    with Started(display, folder, *PLAY, "--duration", "6000") as command:
+        window = display.await_window()
+        display.await_pose(window, "hanging")
+        command.process.send_signal(signal.SIGSTOP)
+        display.tool("windowsize", str(window), "1100", "850")
+        await_that(lambda: display.picture(window).shape == (850, 1100, 3), "it does not grow")
+        grown = display.picture(window)
+        assert np.abs(grown[:, 970:].astype(int) - BACKGROUND).max() <= 1
+        assert np.abs(grown[730:].astype(int) - BACKGROUND).max() <= 1
+        command.process.send_signal(signal.SIGCONT)
+        display.await_pose(window, "hanging")
+
+
 def test_play_with_an_output_opens_no_window(display, folder):
     words = ("play", "env.xml", "-o", "frames", "--size", "96x72", "--fps", "2")
     seen = []
