@@ -70,6 +70,29 @@ def test_a_window_that_grows_has_no_black_bands_before_it_is_drawn(display, fold
         display.await_pose(window, "hanging")
 
 
+def test_points_are_as_wide_while_pictures_are_coarse_as_when_they_are_crisp(display, folder):
+    (folder / "coarse.py").write_text("""
+import ravemj
+from ravemj.gui.viewers import sharpness
+sharpness.Sharpness.moving = lambda self, now: sharpness.LEVELS[-1]
+sharpness.Sharpness.is_due = lambda self, now: False
+env = ravemj.Environment()
+env.SetViewer('window')
+viewer = env.GetViewer()
+viewer.SetSize(320, 240)
+viewer.SetCamera([[0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+point = env.plot3([0, 0, 0], 40, [1, 0, 0])
+viewer.wait()
+""")
+    with Started(display, folder, "-m", "ravemj", "run", "coarse.py"):
+        window = display.await_window()
+        await_that(lambda: display.picture(window)[120, 160].tolist() == [255, 0, 0], "the point does not come")
+        await_that(lambda: display.picture(window).shape == (240, 320, 3), "it is not resized")
+        red = (display.picture(window)[:, :200] < [256, 128, 128]).all(axis=2)
+        assert abs(red.any(axis=0).sum() - 40) <= 6
+        assert abs(red.any(axis=1).sum() - 40) <= 6
+
+
 def test_play_with_an_output_opens_no_window(display, folder):
     words = ("play", "env.xml", "-o", "frames", "--size", "96x72", "--fps", "2")
     seen = []
@@ -239,7 +262,7 @@ print('main', viewer.main(True), viewer.is_open)
     terminal.sendline("")
     await_that(lambda: display.picture(window)[120, 160].tolist() == white, "the point does not move")
     await_that(
-        lambda: abs((display.picture(window) == red).all(axis=2).sum() - 1600) <= 160,  # at rest; coarser before
+        lambda: abs((display.picture(window) == red).all(axis=2).sum() - 1600) <= 160,  # at rest; with soft edges before
         "the point is not 40 pixels wide",
     )
     terminal.sendline("")
