@@ -262,7 +262,9 @@ print('main', viewer.main(True), viewer.is_open)
     terminal.sendline("")
     await_that(lambda: display.picture(window)[120, 160].tolist() == white, "the point does not move")
     await_that(
-        lambda: abs((display.picture(window) == red).all(axis=2).sum() - 1600) <= 160,  # at rest; with soft edges before
+        lambda: (
+            abs((display.picture(window) == red).all(axis=2).sum() - 1600) <= 160
+        ),  # at rest; with soft edges before
         "the point is not 40 pixels wide",
     )
     terminal.sendline("")
