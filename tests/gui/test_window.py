@@ -12,6 +12,7 @@ from command_line import (
     on_terminal,
     ravemj_command,
 )
+from file_drops import drop
 from screens import NEEDS_A_SCREEN, Display, Started
 from waiting import await_that
 
@@ -91,6 +92,35 @@ viewer.wait()
         red = (display.picture(window)[:, :200] < [256, 128, 128]).all(axis=2)
         assert abs(red.any(axis=0).sum() - 40) <= 6
         assert abs(red.any(axis=1).sum() - 40) <= 6
+
+
+def test_files_that_are_dropped_on_a_window_are_added_or_the_window_says_why_not(display, folder):
+    (folder / "bad file.xml").write_text("<Environment>\n<KinBody></Body>")
+    script = folder / "waits.py"
+    script.write_text("""
+import ravemj
+env = ravemj.load('env.xml')
+env.SetViewer('window')
+print('ready', flush=True)
+while input():
+    print(len(env.GetBodies()), env.GetViewer().interaction.overlay().lines, flush=True)
+""")
+    terminal = on_terminal(folder, "waits.py", DISPLAY=display.name)
+    terminal.expect("ready")
+    window = display.await_window()
+    for files, answer in (
+        (["env.xml"], r"2 \('Added env.xml'"),
+        (["bad file.xml"], r"2 \(.*bad file.xml:2"),
+        (["env.xml", "double-pendulum.xml"], "4 "),
+    ):
+        drop(display, window, [folder / file for file in files])
+
+        def is_answered(answer=answer) -> bool:
+            terminal.sendline("?")
+            return terminal.expect([answer, r"[0-9] \("]) == 0
+
+        await_that(is_answered, f"it does not answer {answer}")
+    terminal.close(force=True)
 
 
 def test_play_with_an_output_opens_no_window(display, folder):
@@ -262,9 +292,7 @@ print('main', viewer.main(True), viewer.is_open)
     terminal.sendline("")
     await_that(lambda: display.picture(window)[120, 160].tolist() == white, "the point does not move")
     await_that(
-        lambda: (
-            abs((display.picture(window) == red).all(axis=2).sum() - 1600) <= 160
-        ),  # at rest; with soft edges before
+        lambda: abs((display.picture(window) == red).all(axis=2).sum() - 1600) <= 160,  # at rest; softer before
         "the point is not 40 pixels wide",
     )
     terminal.sendline("")

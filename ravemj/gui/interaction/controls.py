@@ -18,7 +18,6 @@ from ravemj.gui.interaction.shortcuts import DISPLAY, VIEW, Shortcut, key_text
 from ravemj.gui.interaction.time_controls import TimeControls
 from ravemj.gui.interaction.tree import Node, Tree, choose, names_of
 
-
 if TYPE_CHECKING:
     from ravemj.gui.interaction.reaching import Reach
 

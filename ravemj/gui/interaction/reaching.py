@@ -76,7 +76,8 @@ class Reach:
 
     def _free_joint(self) -> int | None:
         """Return the joint of the arm that can have any value while the link stays: where there is a choice, the one
-        that moves most; None where the arm is not redundant."""
+        that moves most; None where the arm is not redundant.
+        """
         if self._solver.free:
             return self._solver.free[0]
         chain = self._solver.chain
