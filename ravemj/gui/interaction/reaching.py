@@ -75,8 +75,9 @@ class Reach:
         self._free = self._free_joint()
 
     def _free_joint(self) -> int | None:
-        """Return the joint of the arm that can have any value while the link stays: where there is a choice, the one
-        that moves most; None where the arm is not redundant.
+        """Return the joint of the arm that can have any value while the link stays; None where it is not redundant.
+
+        Where there is a choice, it is the one that moves most.
         """
         if self._solver.free:
             return self._solver.free[0]
