@@ -40,6 +40,13 @@ def loaded(file: str) -> Environment:
         raise error if error.cause is None else failure_of([error.cause]) from None
 
 
+def hold_bases(env: Environment) -> None:
+    """Let robots keep their bases where nothing is static: with physics all would fall, for ever."""
+    if not any(link.IsStatic() for body in env.GetBodies() for link in body.GetLinks()):
+        for robot in env.GetRobots():
+            robot.GetLinks()[0].SetStatic(True)
+
+
 def model_file(name: str) -> str:
     """Return the file that a word of the command line names: a path, or the name of a model that comes with ravemj."""
     return model_path(name) if name in SHIPPED_MODELS and not os.path.exists(name) else name

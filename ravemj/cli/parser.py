@@ -46,12 +46,18 @@ def _add_view(commands: Commands) -> None:
         "ravemj view --web workshop            # prints the address of the page; Ctrl-C ends it",
         "ravemj view --web --port 8080 robot.xml",
         "ravemj view --watch robot.xml         # shows it anew whenever a file of it is saved",
+        "ravemj view --physics pendulum        # right drags pull it, Space stops time",
     )
     add_model(parser)
     parser.add_argument(
         "--watch",
         action="store_true",
         help="read the model again when one of its files is saved; camera, joint values and selection stay",
+    )
+    parser.add_argument(
+        "--physics",
+        action="store_true",
+        help="physics from the start; what is not static falls, but robots keep their bases where nothing is static",
     )
     parser.add_argument("--web", action="store_true", help="a page, also where there is a display for a window")
     parser.add_argument(

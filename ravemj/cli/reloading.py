@@ -6,7 +6,7 @@ import warnings
 from dataclasses import replace
 
 from ravemj.cli.checking import FATAL_CODES
-from ravemj.cli.models import failure_of, loaded, model_file
+from ravemj.cli.models import failure_of, hold_bases, loaded, model_file
 from ravemj.errors import Diagnostic, RavemjError, RavemjWarning, Source, SourceError
 from ravemj.gui.interaction import Selection
 from ravemj.gui.viewers import Viewer
@@ -76,6 +76,8 @@ class Reloader:
             warnings.simplefilter("ignore", RavemjWarning)
             fresh = loaded(self._model)
             fresh.StopSimulation()
+            if self._env.simulation.physics is not None:
+                hold_bases(fresh)
             with fresh:
                 _ = fresh.model
         broken = [finding for finding in fresh.diagnostics if _is_error(finding)]

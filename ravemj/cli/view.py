@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ravemj.cli.models import load_model
+from ravemj.cli.models import hold_bases, load_model
 from ravemj.cli.reloading import Reloader
 from ravemj.core.signals import signals_delayed, signals_raised
 from ravemj.gui.viewers import Viewer, has_display
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 _LOOK = 0.1
 """Time between two checks for changed files and for a closed viewer [s]."""
 
+_TIMESTEP = 0.01
+"""Time of a step of physics [s]."""
+
 _ASPECT = 4 / 3
 """Width of a view divided by its height."""
 
@@ -30,7 +33,7 @@ def view(options: argparse.Namespace) -> int:
     """Show a model until its window is closed, or its page is ended by Ctrl-C."""
     env = load_model(options)
     try:
-        window = None if options.web or not has_display() else _open_window(env, options.model)
+        window = None if options.web or not has_display() else _open_window(env, options)
         if window is None:
             _serve(env, options)
         else:
@@ -42,24 +45,28 @@ def view(options: argparse.Namespace) -> int:
     return 0
 
 
-def _open_window(env: Environment, model: str) -> WindowViewer | None:
+def _open_window(env: Environment, options: argparse.Namespace) -> WindowViewer | None:
     """Open a window; None where there is no OpenGL for it."""
     env.SetViewer("window")
     viewer = env.GetViewer()
     if not isinstance(viewer, WindowViewer):
         return None
-    _arrange(env, viewer, model)
+    _arrange(env, viewer, options)
     return viewer
 
 
-def _arrange(env: Environment, viewer: Viewer, model: str) -> None:
+def _arrange(env: Environment, viewer: Viewer, options: argparse.Namespace) -> None:
     """Show the name of the model, the floor, and everything from a corner where the file has no camera."""
-    viewer.SetTitle(f"{os.path.basename(model)} - ravemj")
+    viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
     if env.renderer.file_camera() is None:
         camera = env.renderer.camera_for_stills(_ASPECT)
         center, _ = env.renderer.bounding_sphere()
         viewer.SetCamera(camera.T_world_camera, float(np.linalg.norm(center - camera.position)))
     viewer.interaction.controls.display.show("floor")
+    if options.physics:
+        hold_bases(env)
+        env.SetPhysicsEngine("mujoco")
+        env.StartSimulation(_TIMESTEP)
 
 
 def _serve(env: Environment, options: argparse.Namespace) -> None:
@@ -67,7 +74,7 @@ def _serve(env: Environment, options: argparse.Namespace) -> None:
     from ravemj.gui.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
 
     viewer = env.serve_viewer(options.host, options.port, options.token)
-    _arrange(env, viewer, options.model)
+    _arrange(env, viewer, options)
     if not is_local(options.host):
         print(
             "ravemj: warning: browsers of other machines can come here; whoever knows the address sees and moves "

@@ -42,12 +42,14 @@ class Format(NamedTuple):
         height: Rows [pixels].
         shadows: Whether lights cast shadows; too slow for videos without a graphics card.
         samples: Samples per pixel against jagged edges: 4, or 0 for speed.
+        scale: Its columns as a part of those that it is shown with: points and lines are so much narrower.
     """
 
     width: int = 640
     height: int = 480
     shadows: bool = False
     samples: int = 4
+    scale: float = 1.0
 
 
 class SimulationRenderer:
@@ -93,9 +95,10 @@ class SimulationRenderer:
             finer = self._finer(form)
             mujoco.mj_copyData(self._kept.data, compiled.model, compiled.data)
             self._kept.shown, self._kept.published = (shown, style), self._simulation.published.number
+        widened = shown.widened(finer * form.scale)
         if finer == 1:
-            return renderer.render(self._kept.data, camera, background, shown, style)
-        picture = renderer.render(self._kept.data, camera.enlarged(finer), background, shown.widened(finer), style)
+            return renderer.render(self._kept.data, camera, background, widened, style)
+        picture = renderer.render(self._kept.data, camera.enlarged(finer), background, widened, style)
         return _averaged(picture, finer)
 
     def depth(self, camera: Camera, form: Format) -> NDArray[np.float32]:
@@ -150,7 +153,8 @@ class SimulationRenderer:
             self._kept.published = published.number
             published.copy_to(self._kept.data, self._kept.model)
         self._kept.renderer.resize(form.width, form.height, form.samples)
-        return self._kept.renderer.render(self._kept.data, camera, background, *self._kept.shown)
+        shown, style = self._kept.shown
+        return self._kept.renderer.render(self._kept.data, camera, background, shown.widened(form.scale), style)
 
     def backend(self, form: Format) -> str:
         """Return what draws such pictures: ``egl``, ``osmesa``, ``glfw`` or ``ray``."""

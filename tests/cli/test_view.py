@@ -12,6 +12,9 @@ from waiting import PATIENCE
 from websockets.frames import CloseCode
 from websockets.sync.client import connect
 
+import ravemj
+from ravemj.cli.models import hold_bases
+
 
 def served(folder, *options) -> Served:
     return Served(folder, "view", *options, "env.xml")
@@ -60,6 +63,40 @@ def test_another_host_is_served_with_a_warning(folder):
         code, _, warning = page.end(signal.SIGINT)
         assert code == 0
         assert "ravemj: warning: browsers of other machines can come here" in warning
+
+
+def test_physics_runs_from_the_start_and_can_be_paused(folder):
+    with served(folder, "--web", "--physics") as page:
+        address = page.url.replace("http", "ws", 1) + "socket"
+        with connect(address, origin=page.url.rsplit("/", 2)[0], compression=None) as connection:
+
+            def is_running() -> bool:
+                connection.send('{"type": "ready"}')
+                news = {}
+                while "controls" not in news:
+                    message = connection.recv(PATIENCE)
+                    news = json.loads(message) if isinstance(message, str) else {}
+                return next(control["is_on"] for control in news["controls"] if control["name"] == "run")
+
+            assert is_running()
+            connection.send('{"type": "operate", "name": "run", "value": 0}')
+            while is_running():
+                connection.recv(PATIENCE)
+        assert page.end(signal.SIGINT) == (0, "", "")
+
+
+def test_with_physics_robots_fall_only_where_something_is_static(folder):
+    env = ravemj.load(folder / "env.xml")
+    hold_bases(env)
+    assert [link.IsStatic() for link in env.GetRobots()[0].GetLinks()] == [True, False, False]
+    on_floor = ravemj.load(folder / "env.xml")
+    floor = ravemj.RaveCreateKinBody(on_floor, "")
+    floor.InitFromBoxes([[0, 0, -1, 1, 1, 0.1]])
+    floor.SetName("floor")
+    floor.GetLinks()[0].SetStatic(True)
+    on_floor.Add(floor)
+    hold_bases(on_floor)
+    assert not any(link.IsStatic() for link in on_floor.GetRobots()[0].GetLinks())
 
 
 @pytest.mark.parametrize(

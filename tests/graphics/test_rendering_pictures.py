@@ -308,6 +308,15 @@ def test_edges_are_smooth_with_samples_and_identities_never(how):
         assert np.array_equal(smooth.segment(data, TUTORIAL), hard.segment(data, TUTORIAL))
 
 
+@both
+def test_a_picture_without_samples_can_be_followed_by_one_with_them(how):
+    model, data = state_of(PENDULUM)
+    with open_as(how, model) as smooth, open_as(how, model, 80, 60, samples=0) as renderer:
+        renderer.render(data, TUTORIAL)
+        renderer.resize(160, 120, 4)
+        assert np.array_equal(renderer.render(data, TUTORIAL), smooth.render(data, TUTORIAL))
+
+
 @pytest.mark.parametrize("how", [GL])
 def test_shadows(how):
     model, data = state_of(

@@ -53,6 +53,40 @@ def test_a_broken_file_changes_nothing_and_the_view_says_where(env, notices, tmp
     add_files(None, [str(path)], notices)  # a viewer whose environment is gone
 
 
+def chain_of(links):
+    """Return a body that MuJoCo refuses where it has too many links."""
+    parts = [f'<Body name="l{number}"/>' for number in range(links)]
+    parts += [
+        f'<Joint name="j{number}"><Body>l{number}</Body><Body>l{number + 1}</Body><axis>0 0 1</axis></Joint>'
+        for number in range(links - 1)
+    ]
+    return f'<Environment><bkgndcolor>1 0 0</bkgndcolor><KinBody name="chain">{"".join(parts)}</KinBody></Environment>'
+
+
+def test_what_mujoco_refuses_is_not_added_and_the_view_says_why(env, notices, tmp_path):
+    path = tmp_path / "chain.xml"
+    path.write_text(chain_of(510))
+    env.SetViewer("offscreen")
+    before = env.GetViewer().render(64, 48)
+    add_files(env, [str(path)], notices)
+    said(notices, "a chain of 496 links, and MuJoCo takes no longer ones")
+    assert [body.GetName() for body in env.GetBodies()] == ["Pendulum"]
+    assert (env.GetViewer().render(64, 48) == before).all()
+
+
+def test_of_json_that_breaks_off_in_its_second_body_nothing_is_added(env, notices, tmp_path):
+    add_files(env, [str(MODELS / "env.xml")], notices)
+    said(notices, "Added env.xml")
+    path = tmp_path / "two.json"
+    env.Save(str(path))
+    content = json.loads(path.read_text())
+    content["bodies"][1]["joints"][0]["parentLinkName"] = "none"
+    path.write_text(json.dumps(content))
+    add_files(env, [str(path)], notices)
+    said(notices, "two.json")
+    assert len(env.GetBodies()) == 2
+
+
 def piece(name, data, last=False):
     return parse(json.dumps({"type": "piece", "name": name, "data": base64.b64encode(data).decode(), "last": last}))
 

@@ -160,6 +160,54 @@ def test_the_wheel_moves_a_redundant_arm_while_its_hand_stays():
     np.testing.assert_allclose(robot.GetDOFValues(), values, atol=0.02)  # nothing is held any more
 
 
+def test_a_slider_sweeps_the_free_joint_of_a_redundant_arm_while_its_hand_stays():
+    env = ravemj.load(model_path("panda"))
+    robot = env.GetRobots()[0]
+    robot.SetDOFValues([0.1, -0.5, 0.2, -1.8, 0.1, 1.6, 0.7], range(7))
+    grip = robot.GetLink("hand")
+    place = grip.GetTransform()[:3, 3]
+    camera = ravemj.transformLookat(lookat=place, camerapos=place + np.array([1.5, 1.0, 0.3]), cameraup=[0, 0, -1])
+    hand = Hand(env, camera).in_interaction()
+    assert slider(hand) is None
+    at = hand.at(place)
+    hand.drag(at, (at[0] + 10, at[1]), **PULL)
+    shown = slider(hand)
+    lower, upper = robot.GetDOFLimits([6])
+    assert (shown.label, shown.lower, shown.upper) == ("joint7, hand stays", lower[0], upper[0])
+    T_world_hand = grip.GetTransform()
+    for value in (0.2, 1.1, 0.6):
+        hand.gui.handle(Operate("sweep", value))
+        assert robot.GetDOFValues()[6] == pytest.approx(value, abs=1e-3)
+        assert slider(hand).value == robot.GetDOFValues()[6]
+        np.testing.assert_allclose(grip.GetTransform(), T_world_hand, atol=1e-6)
+    hand.gui.handle(Operate("sweep", lower[0]))  # limits of other joints come first
+    values = robot.GetDOFValues()
+    assert lower[0] + 0.1 < values[6] < 0.2
+    assert (values >= robot.GetDOFLimits()[0]).all()
+    np.testing.assert_allclose(grip.GetTransform(), T_world_hand, atol=1e-6)
+    robot.SetDOFValues([0.4], [0])  # somebody else moves it: it stays where it is now
+    T_world_hand = grip.GetTransform()
+    hand.gui.handle(Operate("sweep", 0.5))
+    np.testing.assert_allclose(grip.GetTransform(), T_world_hand, atol=1e-6)
+    hand.gui.handle(Operate("tree"))
+    assert slider(hand) is None
+    hand.gui.handle(Operate("tree"))
+    assert slider(hand) is not None
+    hand.click((5, 5))
+    assert slider(hand) is None
+
+
+def test_an_arm_that_is_not_redundant_has_no_such_slider(arm):
+    point, _ = surface(arm, arm.env.GetRobots()[0])
+    arm.drag(arm.at(point), arm.at(point + 0.02 * arm.view.camera.rotation[:, 0]), **PULL)
+    assert slider(arm) is None, "six joints leave nothing free"
+
+
+def slider(hand):
+    """Return the slider that sweeps an arm, or None."""
+    return next((control for control in hand.gui.overlay().controls if control.name == "sweep"), None)
+
+
 def test_the_wheel_leaves_an_arm_without_free_joints_where_it_is(arm):
     robot = arm.env.GetRobots()[0]
     point, _ = surface(arm, robot)

@@ -121,6 +121,14 @@ def test_a_selection_that_is_gone_is_forgotten(shown):
     assert [link.GetName() for link in shown.env.GetRobots()[0].GetLinks()] == ["foot", "upper"]
 
 
+def test_with_physics_the_base_is_held_again(shown):
+    shown.env.SetPhysicsEngine("mujoco")
+    shown.save(BODY.format(width=0.02, limit=90))
+    shown.reloader.look()
+    assert shown.width == 0.02
+    assert [link.IsStatic() for link in shown.env.GetRobots()[0].GetLinks()] == [True, False]
+
+
 def test_a_key_reads_it_again_and_nothing_else_does_without_watching(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shown = Shown(tmp_path, watches=False)

@@ -29,6 +29,7 @@ from ravemj.errors import RenderingError
 from ravemj.graphics.rendering import Camera
 from ravemj.gui.interaction import Button, Fingers, Key, Leave, Move, Press, Release, Resize, Tool, Use, Wheel
 from ravemj.gui.interaction.joint_handle import JointHandle
+from ravemj.gui.viewers.sharpness import LEVELS, Sharpness
 from ravemj.gui.viewers.viewer import LOCKED
 from ravemj.gui.viewers.web import WebViewer, client, server
 from ravemj.gui.viewers.web import viewer as viewers
@@ -270,6 +271,17 @@ def test_pages_that_are_slow_are_sent_less(env, viewer):
             page.send(type="ready")
         assert (picture.format, picture.size) == ("JPEG", SIZE)  # crisp, but as few bytes as can be
         assert np.abs(np.asarray(picture).astype(int) - viewer.render(*SIZE)).mean() < 1
+
+
+def test_points_are_as_wide_in_coarse_pictures_as_in_crisp_ones(env, viewer, monkeypatch):
+    half = next(level for level in LEVELS if level.scale == 0.5)
+    monkeypatch.setattr(Sharpness, "moving", lambda self, now: half)
+    point = env.plot3([0.3, 0, 0], 20, [0, 1, 0])
+    with Page(viewer) as page:
+        for scale, picture in ((0.5, page.picture()), (1, page.settled())):
+            green = picture[:, :, 1] > picture[:, :, 0].astype(int) + 128
+            assert green.any(axis=0).sum() == green.any(axis=1).sum() == pytest.approx(20 * scale, abs=1)
+    del point
 
 
 def test_gestures_move_what_the_script_reads(env, viewer):

@@ -12,6 +12,7 @@ from command_line import (
     on_terminal,
     ravemj_command,
 )
+from file_drops import drop
 from screens import NEEDS_A_SCREEN, Display, Started
 from waiting import await_that
 
@@ -54,6 +55,72 @@ def test_play_ends_by_ctrl_c_and_by_closing_while_it_moves(display, folder):
         display.close(display.await_window())
         assert command.end() == (0, "", "")
     await_that(lambda: not display.windows(), "the window stays")
+
+
+def test_a_window_that_grows_has_no_black_bands_before_it_is_drawn(display, folder):
+    with Started(display, folder, *PLAY, "--duration", "6000") as command:
+        window = display.await_window()
+        display.await_pose(window, "hanging")
+        command.process.send_signal(signal.SIGSTOP)
+        display.tool("windowsize", str(window), "1100", "850")
+        await_that(lambda: display.picture(window).shape == (850, 1100, 3), "it does not grow")
+        grown = display.picture(window)
+        assert np.abs(grown[:, 970:].astype(int) - BACKGROUND).max() <= 1
+        assert np.abs(grown[730:].astype(int) - BACKGROUND).max() <= 1
+        command.process.send_signal(signal.SIGCONT)
+        display.await_pose(window, "hanging")
+
+
+def test_points_are_as_wide_while_pictures_are_coarse_as_when_they_are_crisp(display, folder):
+    (folder / "coarse.py").write_text("""
+import ravemj
+from ravemj.gui.viewers import sharpness
+sharpness.Sharpness.moving = lambda self, now: sharpness.LEVELS[-1]
+sharpness.Sharpness.is_due = lambda self, now: False
+env = ravemj.Environment()
+env.SetViewer('window')
+viewer = env.GetViewer()
+viewer.SetSize(320, 240)
+viewer.SetCamera([[0, 0, -1, 1], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+point = env.plot3([0, 0, 0], 40, [1, 0, 0])
+viewer.wait()
+""")
+    with Started(display, folder, "-m", "ravemj", "run", "coarse.py"):
+        window = display.await_window()
+        await_that(lambda: display.picture(window)[120, 160].tolist() == [255, 0, 0], "the point does not come")
+        await_that(lambda: display.picture(window).shape == (240, 320, 3), "it is not resized")
+        red = (display.picture(window)[:, :200] < [256, 128, 128]).all(axis=2)
+        assert abs(red.any(axis=0).sum() - 40) <= 6
+        assert abs(red.any(axis=1).sum() - 40) <= 6
+
+
+def test_files_that_are_dropped_on_a_window_are_added_or_the_window_says_why_not(display, folder):
+    (folder / "bad file.xml").write_text("<Environment>\n<KinBody></Body>")
+    script = folder / "waits.py"
+    script.write_text("""
+import ravemj
+env = ravemj.load('env.xml')
+env.SetViewer('window')
+print('ready', flush=True)
+while input():
+    print(len(env.GetBodies()), env.GetViewer().interaction.overlay().lines, flush=True)
+""")
+    terminal = on_terminal(folder, "waits.py", DISPLAY=display.name)
+    terminal.expect("ready")
+    window = display.await_window()
+    for files, answer in (
+        (["env.xml"], r"2 \('Added env.xml'"),
+        (["bad file.xml"], r"2 \(.*bad file.xml:2"),
+        (["env.xml", "double-pendulum.xml"], "4 "),
+    ):
+        drop(display, window, [folder / file for file in files])
+
+        def is_answered(answer=answer) -> bool:
+            terminal.sendline("?")
+            return terminal.expect([answer, r"[0-9] \("]) == 0
+
+        await_that(is_answered, f"it does not answer {answer}")
+    terminal.close(force=True)
 
 
 def test_play_with_an_output_opens_no_window(display, folder):
@@ -225,7 +292,7 @@ print('main', viewer.main(True), viewer.is_open)
     terminal.sendline("")
     await_that(lambda: display.picture(window)[120, 160].tolist() == white, "the point does not move")
     await_that(
-        lambda: abs((display.picture(window) == red).all(axis=2).sum() - 1600) <= 160,  # at rest; coarser before
+        lambda: abs((display.picture(window) == red).all(axis=2).sum() - 1600) <= 160,  # at rest; softer before
         "the point is not 40 pixels wide",
     )
     terminal.sendline("")

@@ -15,7 +15,9 @@ _WHITE = np.ones(4, dtype=np.float32)
 _Floats32 = NDArray[np.float32]
 
 
-def add_drawing_geoms(scene: mujoco.MjvScene, primitives: Primitives, camera: Camera, width: int, height: int) -> None:
+def add_drawing_geoms(
+    scene: mujoco.MjvScene, primitives: Primitives, camera: Camera, width: int, height: int
+) -> list[_Floats32]:
     """Append drawings to a scene that has been updated; what does not fit is left out.
 
     Args:
@@ -24,7 +26,11 @@ def add_drawing_geoms(scene: mujoco.MjvScene, primitives: Primitives, camera: Ca
         camera: Where the picture is taken from.
         width: Columns of the picture.
         height: Rows of the picture.
+
+    Returns:
+        The widths of what is as wide as said on the screen, each (N, 2), which may be written to [pixels].
     """
+    widths: list[_Floats32] = []
     points, spheres, lines, triangles = primitives.batches
     for kind, batch in (
         (mujoco.mjtGeom.mjGEOM_SPHERE, spheres),
@@ -35,6 +41,9 @@ def add_drawing_geoms(scene: mujoco.MjvScene, primitives: Primitives, camera: Ca
         slots = _append(scene, kind, min(len(batch.sizes), scene.maxgeom - scene.ngeom))
         if slots:
             _write(slots, kind, PrimitiveBatch(*(array[: len(slots)] for array in batch)), camera.position)
+            if kind == mujoco.mjtGeom.mjGEOM_LINE:
+                widths.append(_column(slots, "size")[:, :2])
+    return widths
 
 
 def _squares(points: PrimitiveBatch, camera: Camera, width: int, height: int) -> PrimitiveBatch:

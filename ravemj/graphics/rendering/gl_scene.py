@@ -8,7 +8,7 @@ import contextlib
 import logging
 import threading
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -33,6 +33,9 @@ are far from the light.
 
 _SLICES, _STACKS = 48, 24
 """Facets around and along round shapes; MuJoCo's 28 and 16 show corners on close views."""
+
+_SAMPLES = 4
+"""Samples per pixel that contexts begin with: one that begins without gets no buffer to resolve samples into, ever."""
 
 _SPARE_GEOMS = 1000
 _MAX_FIGURES = 300_000
@@ -78,8 +81,9 @@ class GlScene:
 
     def __init__(self, model: mujoco.MjModel, quality: Quality) -> None:
         self._model = model
-        with _quality_of(model, quality):
+        with _quality_of(model, replace(quality, samples=_SAMPLES)):
             self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_150.value)
+        self.set_buffer(quality.width, quality.height, quality.samples)
         self._shadows = quality.shadows
         self._has_warned = False
         self._make_scene(_SPARE_GEOMS)
@@ -134,7 +138,7 @@ class GlScene:
         if self.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW]:
             self._cover_with_shadows(data, near=depths[0])
         style.finish(self._model, self.scene)
-        add_drawing_geoms(self.scene, primitives, camera, *size)
+        self._widths = [(array, array.copy()) for array in add_drawing_geoms(self.scene, primitives, camera, *size)]
 
     def aim(self, camera: Camera, size: tuple[int, int]) -> tuple[float, float]:
         """Look at what was filled in from elsewhere; arguments as for ``fill``.
@@ -144,6 +148,7 @@ class GlScene:
         """
         depths = self._contents.depths(camera)
         aim(self.scene, camera, size, depths)
+        self._columns = size[0]
         return depths
 
     def set_buffer(self, width: int, height: int, samples: int) -> None:
@@ -167,10 +172,13 @@ class GlScene:
         """Draw into the current framebuffer.
 
         Args:
-            viewport: Rectangle of the framebuffer, in pixels from its lower left corner.
+            viewport: Rectangle of the framebuffer, in pixels from its lower left corner. Where it has fewer columns
+                than the size that was filled in for, points and lines are narrower.
             background: Colour where nothing is, (3,) in 0..255; black where the model has no skybox texture.
         """
         self._paint_background(background)
+        for widths, whole in self._widths:
+            widths[:] = viewport.width / self._columns * whole
         mujoco.mjr_render(viewport, self.scene, self.context)
 
     def draw_ids(self, viewport: mujoco.MjrRect) -> None:

@@ -4,7 +4,7 @@ They are plain data, which a window draws (``layout``) and a page makes its own 
 """
 
 from enum import Enum
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ravemj.engine.simulation import BodyState
 from ravemj.gui.interaction import joint_controls
@@ -17,6 +17,9 @@ from ravemj.gui.interaction.selection import Selector
 from ravemj.gui.interaction.shortcuts import DISPLAY, VIEW, Shortcut, key_text
 from ravemj.gui.interaction.time_controls import TimeControls
 from ravemj.gui.interaction.tree import Node, Tree, choose, names_of
+
+if TYPE_CHECKING:
+    from ravemj.gui.interaction.reaching import Reach
 
 
 class Menu(NamedTuple):
@@ -69,6 +72,7 @@ class Controls:
         values_line: The line of a script that sets the values of the sliders, as they were when that was asked for.
         in_degrees: Whether angles are shown in degrees, not in radians.
         pulls: Whether a drag on a link pulls the arm, as it does with Ctrl and Shift.
+        reach: The link that was pulled last, with its arm.
         requests: What was asked of the one who draws, and is not done yet.
     """
 
@@ -83,6 +87,7 @@ class Controls:
         self.unfolded = ""
         self.in_degrees = False
         self.pulls = False
+        self.reach: Reach | None = None
         self.values_line = ""
         self.requests: list[Request] = []
         self._tree = Tree(selector.simulation)
@@ -123,6 +128,9 @@ class Controls:
             Control(Request.CAMERA.value, "Copy the camera as a line of Python", "Copy"),
             *(Control(name, label, text, is_on=self.unfolded == name) for name, (text, label, _) in MENUS.items()),
         ]
+        reach = self._redundant_reach()
+        if reach is not None and reach.free_dof is not None:
+            controls.append(joint_controls.sweep_control(reach.body, reach.free_dof, in_degrees=self.in_degrees))
         if body is not None:
             label = "Pull links: a drag on one takes the joints above it along (P)"
             controls.append(Control("pull", label, "Pull", is_on=self.pulls))
@@ -168,6 +176,13 @@ class Controls:
         bodies += sorted(self._selector.simulation.bodies, key=lambda body: not body.scene.is_robot)
         return next((body for body in bodies if body.scene.dof_axes), None)
 
+    def _redundant_reach(self) -> "Reach | None":
+        """Return the redundant arm that was pulled last, while its link is selected and nothing covers its slider."""
+        reach, selection = self.reach, self._selector.selection
+        if reach is None or reach.free_dof is None or selection is None or self.unfolded not in {"", "joints"}:
+            return None
+        return reach if (selection.body, selection.link) == (reach.body, reach.link) else None
+
     def operate(self, name: str, value: float = 0.0) -> None:
         """Press a button, or move a slider to a value; nothing happens where there is no such control."""
         if name in _WITHOUT_BUTTON:
@@ -210,11 +225,19 @@ class Controls:
             self.unfolded = "" if self.unfolded == name else name
         elif name == "pull":
             self.pulls = not self.pulls
+        elif name == "sweep":
+            self._sweep(value)
         elif name == "units":
             self.in_degrees = not self.in_degrees
         elif body is not None:
             self.take(body)
             joint_controls.operate(body, name, value)
+
+    def _sweep(self, value: float) -> None:
+        reach = self._redundant_reach()
+        if reach is not None:
+            self.take(reach.body)
+            reach.sweep_to(value)
 
     def take_requests(self) -> list[Request]:
         """Return what was asked of the one who draws, and forget it."""

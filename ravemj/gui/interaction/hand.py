@@ -334,6 +334,7 @@ class Hand:
         if reach is None:
             return None
         self._controls.take(reach.body)
+        self._controls.reach = reach
         return lambda x, y: reach.follow(self.view.ray(x, y))
 
     def _pull(self, press: Press) -> _Follow | None:

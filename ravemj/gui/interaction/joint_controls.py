@@ -2,6 +2,7 @@
 
 import math
 import random
+from dataclasses import replace
 
 import numpy as np
 
@@ -32,6 +33,12 @@ def controls(body: BodyState, *, in_degrees: bool) -> list[Control]:
     sliders = (_slider(body, dof, value, in_degrees=in_degrees) for dof, value in values)
     buttons = [Control(name, label, text, group="joint tools") for name, text, label in _TOOLS]
     return [*buttons, *(slider for slider in sliders if slider.is_slider)]
+
+
+def sweep_control(body: BodyState, dof: int, *, in_degrees: bool) -> Control:
+    """Return a slider for a joint of a redundant arm whose hand stays where it is."""
+    slider = _slider(body, dof, float(body.kinematics.values()[dof]), in_degrees=in_degrees)
+    return replace(slider, name="sweep", label=f"{slider.label}, hand stays")
 
 
 def operate(body: BodyState, name: str, value: float) -> None:

@@ -1,5 +1,7 @@
 """Links that follow the pointer by inverse kinematics: the arm comes along."""
 
+import math
+
 import numpy as np
 
 from ravemj.core.transforms import Floats, Pose, inverse
@@ -23,6 +25,15 @@ _WEIGHTS = np.array([1.0, 1.0, 1.0, _TURNING, _TURNING, _TURNING])
 _SWEEP = 0.08
 """How far a step of the wheel moves the joints of a redundant arm, in joint space [rad]."""
 
+_MOST_STEPS = 100
+"""Most of such steps to the value of a slider."""
+
+_CLOSE = 1e-4
+"""How near to that the joint comes [rad or m]."""
+
+_STUCK = 0.1
+"""Where a step moves the joint by a smaller part of what it should, limits of other joints hold the arm."""
+
 _SAME = 0.05
 """Configurations whose joints all differ by less [rad or m] are the same to the eye."""
 
@@ -37,6 +48,7 @@ class Reach:
 
     Attributes:
         body: The body.
+        link: Index of the link.
     """
 
     def __init__(self, body: BodyState, link: int, point: Floats, normal: Floats) -> None:
@@ -51,7 +63,7 @@ class Reach:
         Raises:
             ValueError: no joints move the link, or one of them follows others or is spherical; the message says so.
         """
-        self.body = body
+        self.body, self.link = body, link
         self._point, self._normal = point, normal
         self._T_world_goal = body.link_transform(link)
         place = (point - self._T_world_goal[:3, 3]) @ self._T_world_goal[:3, :3]
@@ -60,6 +72,24 @@ class Reach:
         arm = _arm_to(body.scene, self._base, link, place)
         self._solver = make_solver(chain_of(body.scene, arm), Task.TRANSFORM)
         self._dofs = list(arm.arm_dofs)
+        self._free = self._free_joint()
+
+    def _free_joint(self) -> int | None:
+        """Return the joint of the arm that can have any value while the link stays; None where it is not redundant.
+
+        Where there is a choice, it is the one that moves most.
+        """
+        if self._solver.free:
+            return self._solver.free[0]
+        chain = self._solver.chain
+        values = np.random.default_rng(0).uniform(-1.0, 1.0, chain.dof)  # where nothing is singular
+        basis = null_space(chain, np.clip(values, *chain.bounds))
+        return int(np.argmax(np.linalg.norm(basis, axis=1))) if basis.size else None
+
+    @property
+    def free_dof(self) -> int | None:
+        """The DOF that can have any value while the link stays; None where the arm is not redundant."""
+        return None if self._free is None else self._dofs[self._free]
 
     @property
     def _values(self) -> Floats:
@@ -85,13 +115,39 @@ class Reach:
         Args:
             steps: How far the joints move, in steps of the wheel.
         """
-        values = self._values
-        basis = null_space(self._solver.chain, values)
-        free = self._solver.free[0] if self._solver.free else int(np.argmax(np.linalg.norm(basis, axis=1)))
-        along = basis @ basis[free]  # the self-motion that moves the free joint most
-        size = float(np.linalg.norm(along))
-        if size > 0:
-            self._come_near(values + _SWEEP * steps / size * along)
+        if self._free is not None:
+            self._come_near(self._values + _SWEEP * steps * self._self_motion(self._free))
+
+    def sweep_to(self, value: float) -> None:
+        """Bring the free joint to a value, or as near as limits let it, while the link stays where it is now.
+
+        Args:
+            value: The value of the joint [rad or m].
+        """
+        free = self._free
+        if free is None:
+            return
+        start = self._values
+        T_world_base, placed = self.body.link_transform(self._base), self._solver.chain.forward(start)
+        self._T_world_goal = T_world_base @ placed
+        for _ in range(_MOST_STEPS):
+            values, along = self._values, self._self_motion(free)
+            missing = value - float(values[free])
+            if self._solver.chain.circular[free]:
+                missing = math.remainder(missing, math.tau)
+            rate = float(along[free])
+            if abs(missing) < _CLOSE or rate <= 0:
+                return
+            step = math.copysign(min(abs(missing) / rate, _SWEEP), missing)
+            self._come_near(values + step * along)
+            if abs(float(self._values[free] - values[free])) < _STUCK * abs(step) * rate:
+                return
+
+    def _self_motion(self, free: int) -> Floats:
+        """Return the joint velocities that leave the link and move a joint most, of length 1; 0 where it cannot."""
+        basis = null_space(self._solver.chain, self._values)
+        along = basis @ basis[free]
+        return along / max(float(np.linalg.norm(along)), np.finfo(float).tiny)
 
     def ghosts(self) -> Primitives:
         """Return the other configurations that bring the link to where it is: lines from joint to joint.

@@ -106,7 +106,10 @@ GESTURES = {
             "pull a link, with the joints above it",
             "Ctrl + Shift + left drag, or left drag with the button Pull: it follows in the plane of the view",
         ),
-        Gesture("move a redundant arm while its link stays", "mouse wheel, while the link is pulled"),
+        Gesture(
+            "move a redundant arm while its link stays",
+            "mouse wheel, while the link is pulled; or the slider that is there from then on",
+        ),
     ),
 }
 """The gestures of the tutorial, and more."""

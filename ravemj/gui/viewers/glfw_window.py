@@ -39,6 +39,7 @@ class GlfwWindow:
         self.dropped: list[str] = []
         self.is_lost = True
         self._pointer = 0.0, 0.0
+        self._rgb: tuple[int, int, int] | None = None
         self._cursor = ""
         self._cursors: dict[str, Any] = {}
         self._x = _x_connection(glfw)
@@ -185,6 +186,12 @@ class GlfwWindow:
     def set_title(self, title: str) -> None:
         """Set the title."""
         self._glfw.set_window_title(self._window, title)
+
+    def set_background(self, rgb: tuple[int, int, int]) -> None:
+        """Set the colour, in 0..255, of what is new in a larger window until it is drawn."""
+        if rgb != self._rgb and self._x is not None:
+            self._x.keep_picture(self._glfw.get_x11_window(self._window), rgb)
+        self._rgb = rgb
 
     def resize(self, width: int, height: int) -> None:
         """Set the size, in units of the screen."""

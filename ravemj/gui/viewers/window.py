@@ -234,6 +234,8 @@ class WindowViewer(Viewer):
             self._image_callbacks.call(painter.read(surface.pixels))
         painter.draw_overlay(surface)
         window.set_cursor(painter.cursor)
+        red, green, blue = (round(255 * shade) for shade in surface.background)
+        window.set_background((red, green, blue))
         window.swap()
 
     def _serve(self, window: GlfwWindow) -> None:

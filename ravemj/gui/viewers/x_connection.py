@@ -6,6 +6,23 @@ import select
 _OnError = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
 _OnExit = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
 
+_PIXEL, _GRAVITY = 1 << 1, 1 << 4
+"""Which of the attributes are to be changed."""
+
+_NORTH_WEST = 1
+
+
+class _WindowAttributes(ctypes.Structure):
+    """The beginning of Xlib's ``XSetWindowAttributes``; it reads no others than those that are to be changed."""
+
+    _fields_ = (
+        ("background_pixmap", ctypes.c_ulong),
+        ("background_pixel", ctypes.c_ulong),
+        ("border_pixmap", ctypes.c_ulong),
+        ("border_pixel", ctypes.c_ulong),
+        ("bit_gravity", ctypes.c_int),
+    )
+
 
 class XConnection:
     """A connection that does not take the process with it.
@@ -41,6 +58,22 @@ class XConnection:
         poll.register(self._number, select.POLLIN)
         for _, events in poll.poll(1e3 * seconds):
             self.is_broken |= bool(events & (select.POLLHUP | select.POLLERR | select.POLLNVAL))
+
+    def keep_picture(self, window: int, rgb: tuple[int, int, int]) -> None:
+        """Have the server keep what is in a window that people resize, and fill what is new with a colour.
+
+        It would be black until the next picture.
+
+        Args:
+            window: The window's number.
+            rgb: The colour, in 0..255.
+        """
+        red, green, blue = rgb
+        pixel = 0xFF << 24 | red << 16 | green << 8 | blue
+        attributes = _WindowAttributes(background_pixel=pixel, bit_gravity=_NORTH_WEST)
+        self._xlib.XChangeWindowAttributes(
+            self._display, ctypes.c_ulong(window), ctypes.c_ulong(_PIXEL | _GRAVITY), ctypes.byref(attributes)
+        )
 
     def abandon(self) -> None:
         """Give back what this thread has locked in the display when it broke, or the process would wait for that."""

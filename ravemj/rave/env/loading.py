@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from ravemj.core.arguments import checked_kind
+from ravemj.engine.compiled import Compiled
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import (
@@ -23,7 +24,7 @@ from ravemj.errors import (
     UnnamedError,
     send_warnings,
 )
-from ravemj.model.scene import Grab, Mesh
+from ravemj.model.scene import Grab, Mesh, Scene
 from ravemj.rave.env.json_files import JsonFiles, is_json
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
@@ -101,6 +102,7 @@ class Loading(JsonFiles):
         """
         try:
             if is_json(path):
+                self._try_elsewhere(path)
                 self._load_json(path)
                 return ""
             reading = self._read_file(path, {})
@@ -109,10 +111,24 @@ class Loading(JsonFiles):
                 return str(reading.failure or broken[0])
             if not reading.scene.bodies and not reading.scene.sensors:
                 return f"{path}: the file has no body and no sensor"
+            Compiled(reading.scene, Diagnostics())  # raises where MuJoCo refuses the bodies
             self._add(replace(reading, renames=True))
         except RavemjError as error:
             return str(error)
         return ""
+
+    def _try_elsewhere(self, path: str) -> None:
+        """Load a file of JSON into another environment, for a moment.
+
+        Raises:
+            RavemjError: it is missing or broken, or MuJoCo refuses the bodies.
+        """
+        trial = type(self)()
+        try:
+            trial._load_json(path)
+            Compiled(Scene(tuple(body.scene for body in trial._simulation.bodies)), Diagnostics())
+        finally:
+            trial._environment.Destroy()
 
     def _try_json(self, path: str, given: Attributes) -> bool:
         _warn_of_attributes(path, given)

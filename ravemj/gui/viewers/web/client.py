@@ -280,7 +280,8 @@ class Client:
     def _form(self, level: Level) -> Format:
         width, height = (max(round(self._ratio * length), 1) for length in self.interaction.view.size)
         shrink = min((_MOST_PIXELS / (width * height)) ** 0.5, 1.0) * level.scale
-        return Format(max(int(width * shrink), 1), max(int(height * shrink), 1), samples=level.samples)
+        size = max(int(width * shrink), 1), max(int(height * shrink), 1)
+        return Format(*size, samples=level.samples, scale=shrink)
 
     def send_file(self, connection: Connection, style: PageStyle) -> None:
         """Have the browser save a picture of the view as it is now."""
