@@ -9,8 +9,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from browsers import NEEDS_A_BROWSER, Desk, unlike
+from browsers import CHROMIUM, NEEDS_A_BROWSER, WEBGL_FLAGS, Desk, unlike
 from conftest import MODELS
+from slow_link import SlowLink
 from waiting import PATIENCE, await_that
 from websockets.sync.client import connect
 
@@ -367,6 +368,17 @@ class TestWhatIsSeen:
         assert fetched == []
         assert asked
         assert all(url.startswith((desk.viewer.url, "data:")) for url in asked), asked
+
+    def test_behind_a_slow_way_to_the_server_it_needs_few_answers(self, desk, chromium):
+        port = desk.viewer.server.port
+        with SlowLink(port, rate=3e5, delay=0.03) as link:
+            flag = f"--host-resolver-rules=MAP 127.0.0.1:{port} 127.0.0.1:{link.port}"
+            with chromium.launch(executable_path=CHROMIUM, args=[*WEBGL_FLAGS, flag]) as browser:
+                page = browser.new_page(viewport={"width": 640, "height": 480})
+                page.goto(desk.viewer.url)
+                desk.await_picture(page)
+                assert link.connections == 3, "other than the page, its surfaces and its messages"
+                assert link.received < 40e3
 
     def test_the_view_turns_before_the_answer_comes(self, desk):
         desk.await_picture()
