@@ -8,6 +8,7 @@ from collections.abc import Callable
 from benchmarks import (
     collada,
     collision,
+    drawing,
     dynamics,
     ik,
     imports,
@@ -38,6 +39,7 @@ AREAS: dict[str, Callable[[], list[Row]]] = {
     "video": video.rows,
     "viewer": viewer.rows,
     "page": page.rows,
+    "drawing": drawing.rows,
     "memory": memory.rows,
     "window": window.rows,
 }

@@ -1,5 +1,6 @@
 """Pages that draw by themselves: what they are sent while robots move, and what that takes of the processor."""
 
+import contextlib
 import itertools
 import json
 import threading
@@ -16,6 +17,7 @@ import ravemj
 from benchmarks.kinematics import PR2
 from benchmarks.measure import ROOT, Row
 from benchmarks.reading import CORPUS
+from ravemj.gui.viewers.web import WebViewer
 from ravemj.gui.viewers.web.feed import FRAME
 
 _RATE = 60.0
@@ -81,12 +83,7 @@ def _robots() -> Generator[tuple[str, Path]]:
 
 
 def _rows(name: str, path: Path) -> Generator[Row]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        env = ravemj.load(path)
-    robot = env.GetRobots()[0]
-    viewer = env.serve_viewer()
-    try:
+    with opened(path) as (robot, viewer):
         tabs = [Tab(viewer.url)]
         time.sleep(_SETTLING)
         moving, _ = _measured(robot, tabs, _SECONDS)
@@ -103,6 +100,15 @@ def _rows(name: str, path: Path) -> Generator[Row]:
         yield Row(f"processor for {_TABS} pages while the {name} moves : most", "% of one", share, _SHARE, 1.0)
         for tab in tabs:
             tab.leave()
+
+
+@contextlib.contextmanager
+def opened(path: Path) -> Generator[tuple[ravemj.Robot, WebViewer]]:
+    """Load a model and serve its page; yield the robot and the viewer."""
+    with warnings.catch_warnings(action="ignore"):
+        env = ravemj.load(path)
+    try:
+        yield env.GetRobots()[0], env.serve_viewer()
     finally:
         env.Destroy()
 

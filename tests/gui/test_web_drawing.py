@@ -4,13 +4,16 @@ import json
 import struct
 import urllib.error
 import urllib.request
+import warnings
 import zlib
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from browsers import NEEDS_A_BROWSER, Desk, unlike
+from agreement import CORPUS, NEEDS_THE_CORPUS
+from browsers import CHROMIUM, NEEDS_A_BROWSER, WEBGL_FLAGS, Desk, around
 from conftest import MODELS
+from slow_link import SlowLink
 from waiting import PATIENCE, await_that
 from websockets.sync.client import connect
 
@@ -279,6 +282,16 @@ def arm() -> ravemj.Environment:
     return ravemj.load(MODELS / "puma560.xml")
 
 
+def pr2() -> ravemj.Environment:
+    with warnings.catch_warnings(action="ignore"):
+        return ravemj.load(CORPUS / "models" / "rdiankov+openrave" / "src" / "robots" / "pr2-beta-static.zae")
+
+
+def near(mask: np.ndarray) -> np.ndarray:
+    """Return which pixels are at most two away from one of a mask."""
+    return around(mask[..., None], np.maximum)[..., 0]
+
+
 class TestWhatIsSeen:
     pytestmark = NEEDS_A_BROWSER
 
@@ -295,25 +308,30 @@ class TestWhatIsSeen:
         desk.page.evaluate("for (const one of document.body.children) one.style.opacity = Number(one === view)")
         return desk.picture()
 
-    @pytest.mark.parametrize("desk", [arm], indirect=True)
+    @pytest.mark.parametrize(
+        "desk", [arm, pytest.param(pr2, marks=[*NEEDS_THE_CORPUS, pytest.mark.stress])], indirect=True
+    )
     def test_silhouettes_are_those_of_the_servers_segmentation(self, desk):
-        desk.viewer.SetBkgndColor([0, 0, 0.4])
+        desk.viewer.SetBkgndColor([0.8, 0, 0.8])  # as no link is
         lower, upper = desk.robot.GetDOFLimits()
-        for values, zoom in ((0 * lower, 3.0), (0.4 * lower + 0.3 * upper, 1.6)):
+        for values, zoom in ((np.clip(0, lower, upper), 3.0), (0.4 * lower + 0.3 * upper, 1.6)):
             desk.robot.SetDOFValues(values)
             T_world_camera = np.array(desk.core.view.camera.T_world_camera)
-            T_world_camera[:3, 3] *= zoom
+            T_world_camera[:3, 3] = zoom * T_world_camera[:3, 3] + desk.robot.ComputeAABB().pos()
             desk.viewer.SetCamera(T_world_camera, zoom)
             camera, size = Camera(desk.viewer.GetCameraTransform()), (640, 480)
             compiled = desk.env.simulation.compiled()
             with open_renderer(compiled.model, *size, backend="ray") as renderer:
                 expected = renderer.segment(compiled.data, camera) >= 0
-            assert 0.005 < expected.mean() < 0.9
+            assert 0.01 < expected.mean() < 0.9
             await_that(lambda expected=expected: self.is_outline(self.seen(desk), expected), "another silhouette")
 
     def is_outline(self, picture, expected) -> bool:
-        drawn = np.abs(picture - [0, 0, 102]).max(axis=2) > 8
-        return not unlike(*(np.repeat(255 * mask[..., None], 3, axis=2) for mask in (drawn, expected))).size
+        """Return whether what is covered and what is open is so at most two pixels away; at edges, pixels are both."""
+        magenta = picture[..., ::2].min(axis=2) - picture[..., 1]  # 204 where nothing is
+        covered, is_open = magenta < 196, magenta > 20
+        missing = (expected & ~near(covered)) | (~expected & ~near(is_open))
+        return not (missing | (~is_open & ~near(expected)) | (~covered & ~near(~expected))).any()
 
     def test_a_point_lands_within_half_a_pixel(self, desk):
         desk.viewer.SetBkgndColor([1, 1, 1])
@@ -367,6 +385,17 @@ class TestWhatIsSeen:
         assert fetched == []
         assert asked
         assert all(url.startswith((desk.viewer.url, "data:")) for url in asked), asked
+
+    def test_behind_a_slow_way_to_the_server_it_needs_few_answers(self, desk, chromium):
+        port = desk.viewer.server.port
+        with SlowLink(port, rate=3e5, delay=0.03) as link:
+            flag = f"--host-resolver-rules=MAP 127.0.0.1:{port} 127.0.0.1:{link.port}"
+            with chromium.launch(executable_path=CHROMIUM, args=[*WEBGL_FLAGS, flag]) as browser:
+                page = browser.new_page(viewport={"width": 640, "height": 480})
+                page.goto(desk.viewer.url)
+                desk.await_picture(page)
+                assert link.connections == 3, "other than the page, its surfaces and its messages"
+                assert link.received < 40e3
 
     def test_the_view_turns_before_the_answer_comes(self, desk):
         desk.await_picture()

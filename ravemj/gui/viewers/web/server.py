@@ -2,6 +2,7 @@
 
 import atexit
 import contextlib
+import gzip
 import http
 import logging
 import re
@@ -10,36 +11,21 @@ import socket
 import threading
 import time
 import weakref
-from collections.abc import Callable
-from importlib import resources
-from importlib.resources.abc import Traversable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 from websockets.sync.server import ServerConnection, serve
 
 from ravemj.errors import ArgumentError, RenderingError
+from ravemj.gui.viewers.web.document import document
 from ravemj.gui.viewers.web.messages import LONGEST
 from ravemj.gui.viewers.web.rejections import Rejections
 
 LOOPBACK = "127.0.0.1"
 _LOCAL_NAMES = {LOOPBACK, "localhost", "::1"}
 _EVERYWHERE = {"", "0.0.0.0", "::"}
-_FOLDER = resources.files("ravemj.gui.viewers.web") / "page"
-_WEBGL = resources.files("ravemj.graphics.webgl") / "page"
-_FILES: dict[str, tuple[str, Traversable]] = {
-    "": ("text/html", _FOLDER / "page.html"),
-    "page.css": ("text/css", _FOLDER / "page.css"),
-    "page.js": ("text/javascript", _FOLDER / "page.js"),
-    "drawing.js": ("text/javascript", _FOLDER / "drawing.js"),
-    "controls.css": ("text/css", _FOLDER / "controls.css"),
-    "controls.js": ("text/javascript", _FOLDER / "controls.js"),
-    "drop.js": ("text/javascript", _FOLDER / "drop.js"),
-    "tree.css": ("text/css", _FOLDER / "tree.css"),
-    "tree.js": ("text/javascript", _FOLDER / "tree.js"),
-    "camera.js": ("text/javascript", _WEBGL / "camera.js"),
-    "renderer.js": ("text/javascript", _WEBGL / "renderer.js"),
-}
 _SOCKET = "socket"
 _FOREVER = "private, max-age=31536000, immutable"
 """How long browsers keep what has a name made of its content."""
@@ -51,12 +37,6 @@ _HANDSHAKE = 5.0
 
 _FAREWELL = 1.0
 """How long a page may take to leave when the viewer is closed [s]."""
-
-_POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; base-uri 'none'; "
-    "form-action 'none'"
-)
-
 
 _servers: "weakref.WeakSet[PageServer]" = weakref.WeakSet()
 
@@ -77,6 +57,7 @@ class PageServer:
         port: int,
         serve_page: Callable[[ServerConnection], None],
         find_scene: Callable[[str], bytes | None],
+        first_scene: Callable[[], str],
         *,
         token: str | None = None,
         any_name: bool,
@@ -88,6 +69,7 @@ class PageServer:
             port: Number of the port; 0: any that is free.
             serve_page: Called with the connection of each page, in a thread of its own.
             find_scene: Returns what pages fetch once and keep, by its name; None where there is no such thing.
+            first_scene: Returns the name of what a new page will need; empty where it is not known yet.
             token: The secret that begins each path; None: a new one.
             any_name: Whether browsers may call this server what they like, as they do where something stands between.
 
@@ -100,7 +82,7 @@ class PageServer:
         self.closed = threading.Event()
         self._may_stop = threading.Lock()  # once, by whoever comes first
         self._any_name = any_name
-        self._find_scene = find_scene
+        self._find_scene, self._first_scene = find_scene, first_scene
         self._listening = _listen(host, port)
         self.port = int(self._listening.getsockname()[1])
         self._threads: set[threading.Thread] = set()
@@ -182,16 +164,16 @@ class PageServer:
         token, slash, name = request.path.partition("?")[0].removeprefix("/").partition("/")
         is_friend = secrets.compare_digest(token.encode(), self.token.encode())
         scene = self._find_scene(name) if is_friend else None
-        is_known = is_friend and (name in {*_FILES, _SOCKET} or scene is not None)
+        is_known = is_friend and (name in {"", _SOCKET} or scene is not None)
         if is_known:
             self._strangers.pop(threading.current_thread(), None)
         if not (slash and is_known) or not self._is_our_name(request.headers.get("Host", "")):
             return _text(http.HTTPStatus.NOT_FOUND, "There is nothing here.\n")
         if scene is not None:
-            return _response(http.HTTPStatus.OK, "application/octet-stream", scene, _FOREVER)
+            return _response(http.HTTPStatus.OK, "application/octet-stream", scene, {"Cache-Control": _FOREVER})
         if name != _SOCKET:
-            kind, file = _FILES[name]
-            return _response(http.HTTPStatus.OK, f"{kind}; charset=utf-8", file.read_bytes())
+            page, policy = document(self._first_scene())
+            return _page(page, policy, may_compress="gzip" in request.headers.get("Accept-Encoding", ""))
         origin = request.headers.get("Origin", "")
         if not self._is_our_page(origin, request.headers):
             self.complain("a page of another site is refused", origin)
@@ -247,17 +229,27 @@ def _bracketed(name: str) -> str:
     return f"[{name}]" if ":" in name else name
 
 
+def _page(page: bytes, policy: str, *, may_compress: bool) -> Response:
+    headers = {"Content-Security-Policy": policy}
+    if may_compress:
+        page, headers["Content-Encoding"] = gzip.compress(page), "gzip"
+    return _response(http.HTTPStatus.OK, "text/html; charset=utf-8", page, headers)
+
+
 def _text(status: http.HTTPStatus, text: str) -> Response:
     return _response(status, "text/plain", text.encode())
 
 
-def _response(status: http.HTTPStatus, kind: str, body: bytes, caching: str = "no-store") -> Response:
-    headers = Headers()
-    headers["Content-Type"] = kind
-    headers["Content-Length"] = str(len(body))
-    headers["Content-Security-Policy"] = _POLICY
-    headers["Cache-Control"] = caching
-    headers["Referrer-Policy"] = "no-referrer"
-    headers["X-Content-Type-Options"] = "nosniff"
-    headers["Connection"] = "close"
-    return Response(status.value, status.phrase, headers, body)
+def _response(
+    status: http.HTTPStatus, kind: str, body: bytes, more: Mapping[str, str] = MappingProxyType({})
+) -> Response:
+    headers = {
+        "Content-Type": kind,
+        "Content-Length": str(len(body)),
+        "Content-Security-Policy": "default-src 'none'",
+        "Cache-Control": "no-store",
+        "Referrer-Policy": "no-referrer",
+        "X-Content-Type-Options": "nosniff",
+        "Connection": "close",
+    }
+    return Response(status.value, status.phrase, Headers({**headers, **more}), body)

@@ -15,6 +15,7 @@ from websockets.sync.server import ServerConnection
 from ravemj.core.arguments import also_named
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import RavemjError
+from ravemj.graphics.rendering.style import AS_IT_IS
 from ravemj.graphics.simulation_renderer import SimulationRenderer
 from ravemj.gui.interaction import Interaction, Request
 from ravemj.gui.viewers.notebook import frame
@@ -41,7 +42,7 @@ class WebViewer(Viewer):
         server: Listens for pages.
     """
 
-    _internal = ("attend", "dismiss", "server", "welcome")
+    _internal = ("attend", "dismiss", "first_scene", "server", "welcome")
 
     def __init__(
         self,
@@ -80,6 +81,7 @@ class WebViewer(Viewer):
             port,
             lambda connection: _serve(reference, connection),
             self._scenes.content,
+            lambda: _first_scene(reference),
             token=token,
             any_name=any_name or not is_local(host),
         )
@@ -136,6 +138,18 @@ class WebViewer(Viewer):
         """Return what notebooks show for a viewer: its page."""
         return frame(self.url, f"{self.server.port}/{self.server.token}/")
 
+    def first_scene(self) -> str:
+        """Return the name of the surfaces that a new page will draw; empty where somebody has the environment."""
+        if not self._simulation.lock.acquire(timeout=_SYNC_STEP):
+            return ""
+        try:
+            model = self._simulation.compiled().model
+            return self._scenes.of(model, self._simulation.version, AS_IT_IS).name
+        except RavemjError:  # which the page says
+            return ""
+        finally:
+            self._simulation.lock.release()
+
     def welcome(self, connection: ServerConnection) -> None:
         """Take a page up; one that was here before has the view that it had."""
         tab = _tab(connection)
@@ -191,6 +205,11 @@ class WebViewer(Viewer):
         if client is not None:
             client.interaction.let_go()
         self._renderer.close()
+
+
+def _first_scene(reference: "weakref.ref[WebViewer]") -> str:
+    viewer = reference()
+    return "" if viewer is None else viewer.first_scene()
 
 
 def _serve(reference: "weakref.ref[WebViewer]", connection: ServerConnection) -> None:

@@ -330,10 +330,12 @@ class Wheel {
 }
 
 for (const element of document.querySelectorAll("[role=slider]")) new Wheel(element);
+connect();  // which takes its time
 try {
   if (new URLSearchParams(location.search).has("pictures")) throw new Error("the address asks for pictures");
   drawing = new Drawing(() => takePictures("WebGL has stopped"));
+  const { scene } = document.body.dataset;  // most likely what the other side will name
+  if (scene) order = drawing.load(scene).catch(() => {});
 } catch (error) {
   takePictures(error.message);
 }
-connect();

@@ -1,0 +1,39 @@
+"""The page as one document: a slow way to the server is gone only once."""
+
+import base64
+import hashlib
+import re
+from importlib import resources
+from importlib.resources.abc import Traversable
+
+_FOLDERS = tuple(resources.files(package) / "page" for package in ("ravemj.gui.viewers.web", "ravemj.graphics.webgl"))
+_LINKS = re.compile(
+    r"""<link rel="stylesheet" href="(?P<style>\w+\.css)">|<script src="(?P<script>\w+\.js)"></script>"""
+)
+
+
+def document(scene: str) -> tuple[bytes, str]:
+    """Return the page with its styles and scripts in it, and the policy that lets browsers run these and nothing else.
+
+    Args:
+        scene: Name of the surfaces that it fetches while it connects; empty: it waits to be told.
+    """
+    hashes: dict[str, list[str]] = {"style": [], "script": []}
+
+    def inline(link: re.Match[str]) -> str:
+        kind = str(link.lastgroup)
+        text = _file(link[kind]).read_text(encoding="utf-8")
+        digest = hashlib.sha256(text.encode()).digest()
+        hashes[kind].append(f"'sha256-{base64.b64encode(digest).decode()}'")
+        return f"<{kind}>{text}</{kind}>"
+
+    page = _LINKS.sub(inline, _file("page.html").read_text(encoding="utf-8"))
+    policy = (
+        f"default-src 'none'; script-src {' '.join(hashes['script'])}; style-src {' '.join(hashes['style'])}; "
+        "connect-src 'self'; img-src data:; base-uri 'none'; form-action 'none'"
+    )
+    return page.replace('data-scene=""', f'data-scene="{scene}"', 1).encode(), policy
+
+
+def _file(name: str) -> Traversable:
+    return next(folder / name for folder in _FOLDERS if (folder / name).is_file())
