@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
+from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.readables import ReadableInterface
-from ravemj.rave.user_data import UserData
+from ravemj.rave.user_data import Annotations
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -19,12 +20,13 @@ Command = Callable[[str], str | None]
 """What runs a command: takes its arguments as text, and returns the answer, or None if it failed."""
 
 
-class Interface(UserData, ReadableInterface):
+class Interface(ReadableInterface):
     """An object of an environment: a body, a controller, a physics engine, a trajectory, ...
 
     OpenRAVE calls them interfaces, since its plugins make them.
     """
 
+    _annotations: Annotations
     _env: "Environment"
     _interface_type: InterfaceType
     _commands: ClassVar[Mapping[str, Callable[[Any, str], str]]] = {}
@@ -61,6 +63,33 @@ class Interface(UserData, ReadableInterface):
             description: The text.
         """
         self._annotations.description = str(description)
+
+    def SetUserData(self, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
+        """Attach an object of your own: ``SetUserData(data)`` or ``SetUserData(key, data)``.
+
+        It stays as long as this one does. ``GetUserData`` returns it.
+
+        Args:
+            key: The name, or the object where it is the only argument.
+            data: The object.
+        """
+        self._annotations.attach(key, data)
+
+    def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
+        """Return what ``SetUserData`` attached under that name, or None.
+
+        Args:
+            key: The name; left out: the one without a name.
+        """
+        return self._annotations.data.get(key)
+
+    def RemoveUserData(self, key: str = "") -> bool:
+        """Forget what is attached under a name; return whether there was something.
+
+        Args:
+            key: The name; left out: the one without a name.
+        """
+        return self._annotations.data.pop(key, None) is not None
 
     def Clone(self, ref: Any, cloningoptions: int = 0) -> None:  # noqa: ANN401 - another object of its class
         """Take over the description and the data of users that another object of the same class has.
@@ -152,6 +181,6 @@ def checked_environment(env: "Environment", caller: str) -> "Environment":
     Raises:
         ArgumentError: it is something else.
     """
-    if isinstance(env, Interface) or not isinstance(env, UserData):  # pyright: ignore[reportUnnecessaryIsInstance]
+    if not isinstance(env, EnvironmentPart):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ArgumentError(f"{caller}: env is {env!r}, and should be an Environment")
     return env

@@ -4,8 +4,7 @@
 # pyright: reportPrivateUsage=false
 
 import json
-import os
-from collections.abc import Callable, Collection, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from typing import Any, cast
 
@@ -15,9 +14,7 @@ from ravemj.core.output import new_file
 from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError, send_warnings
 from ravemj.model import scene
 from ravemj.model.scene import View
-from ravemj.rave.env.description import Description
 from ravemj.rave.infos import EnvironmentBaseInfo, KinBodyInfo
-from ravemj.rave.kinbody import KinBody
 
 SUFFIX = ".json"
 
@@ -29,94 +26,43 @@ def is_json(path: str) -> bool:
     return path.lower().endswith(SUFFIX)
 
 
-class JsonFiles(Description):
-    """Saves and loads environments in OpenRAVE's JSON."""
+def save_json(
+    info: EnvironmentBaseInfo, path: str, bodies: Sequence[scene.KinBody], view: View, skipped: Sequence[str]
+) -> None:
+    """Write bodies, with what else there is to say about their environment.
 
-    def _save_json(self, path: str, names: Collection[str], skipped: Sequence[str]) -> None:
-        """Write bodies, with what else there is to say about the environment.
+    Args:
+        info: The environment; it is changed.
+        path: The file.
+        bodies: The bodies.
+        view: Background and camera, of which a warning says that they are left out.
+        skipped: What is left out, words of ``skipwrite``.
 
-        Args:
-            path: The file.
-            names: Names of the bodies.
-            skipped: What is left out, words of ``skipwrite``.
-
-        Raises:
-            OutputError: The file cannot be written, or a number is not finite; nothing is changed then.
-        """
-        info = self.ExtractInfo()
-        info._vBodyInfos = [body for body in info._vBodyInfos if body._name in names]
-        for body in info._vBodyInfos:
-            body._vGrabbedInfos = [grab for grab in body._vGrabbedInfos if cast("Any", grab)._grabbedname in names]
-            for word in skipped:
-                _SKIPS[word](body)
-        diagnostics = Diagnostics()
-        if self._simulation.view not in (None, View()):
-            message = "background and camera are left out: JSON has no place for them"
-            diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML keeps them")
-        _warn_of_losses(
-            diagnostics, path, [body.simulation_state.scene for body in self.GetBodies() if body.GetName() in names]
-        )
-        send_warnings(diagnostics)
-        try:
-            text = json.dumps(info.SerializeJSON(), allow_nan=False)
-        except ValueError as error:
-            raise OutputError(f"cannot write {path}: a number is not finite, and JSON has no word for it") from error
-        with new_file(path) as file:
-            file.write_text(text + "\n", encoding="utf-8", newline="\n")
-
-    def _load_json(self, path: str) -> None:
-        """Take over the environment of a file; see ``LoadJSON``.
-
-        Raises:
-            SourceError: The file is missing or broken; what was read before is there.
-        """
-        self._check_alive()
-        content = self._content(path)
-        with _placed_errors(path):
-            self.LoadJSON(content)
-
-    def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
-        """Return the first body of a file, which is not added.
-
-        Args:
-            path: The file.
-            into: A body to make anew, or None.
-            is_robot: Whether it becomes a robot, whatever the file calls it.
-
-        Raises:
-            SourceError: The file is missing or broken, or has no body.
-        """
-        content = self._content(path)
-        info = EnvironmentBaseInfo()
-        with _placed_errors(path):
-            self._read_json(info, content)
-            if not info._vBodyInfos:
-                raise SourceError("there is no body in it", Source(path))
-            first = info._vBodyInfos[0]
-            first._uri = f"file:{os.path.abspath(path)}"
-            first._isRobot = into.IsRobot() if into is not None else first._isRobot or is_robot
-            body = self._new_body(is_robot=first._isRobot) if into is None else into
-            body.InitFromKinBodyInfo(first)
-        return body
-
-    def _content(self, path: str) -> dict[str, Any]:
-        """Return what a file holds, and note that it was read.
-
-        Raises:
-            SourceError: The file is missing or broken.
-        """
-        from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
-
-        found = find(path)
-        if found is None:
-            raise SourceError("there is no such file", Source(path), "check the path, or set OPENRAVE_DATA")
-        content = _parsed(found)
-        self._files[found] = None
-        return content
+    Raises:
+        OutputError: The file cannot be written, or a number is not finite; nothing is changed then.
+    """
+    names = {body.name for body in bodies}
+    info._vBodyInfos = [body for body in info._vBodyInfos if body._name in names]
+    for body in info._vBodyInfos:
+        body._vGrabbedInfos = [grab for grab in body._vGrabbedInfos if cast("Any", grab)._grabbedname in names]
+        for word in skipped:
+            _SKIPS[word](body)
+    diagnostics = Diagnostics()
+    if view != View():
+        message = "background and camera are left out: JSON has no place for them"
+        diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML keeps them")
+    _warn_of_losses(diagnostics, path, bodies)
+    send_warnings(diagnostics)
+    try:
+        text = json.dumps(info.SerializeJSON(), allow_nan=False)
+    except ValueError as error:
+        raise OutputError(f"cannot write {path}: a number is not finite, and JSON has no word for it") from error
+    with new_file(path) as file:
+        file.write_text(text + "\n", encoding="utf-8", newline="\n")
 
 
 @contextmanager
-def _placed_errors(path: str) -> Generator[None]:
+def placed_errors(path: str) -> Generator[None]:
     """Let errors about values name the file that they stand in."""
     try:
         yield
@@ -128,6 +74,20 @@ def _placed_errors(path: str) -> Generator[None]:
         raise SourceError("a number in the file is too large to compute with", Source(path)) from error
     except (TypeError, ValueError, LookupError) as error:  # values of wrong kinds, in any of a hundred places
         raise SourceError(f"a value in the file is of a wrong kind: {error}", Source(path)) from error
+
+
+def read_json(path: str) -> tuple[str, dict[str, Any]]:
+    """Return the path of a file that is looked for as ``Load`` does, and the object that it holds.
+
+    Raises:
+        SourceError: The file is missing or broken.
+    """
+    from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
+
+    found = find(path)
+    if found is None:
+        raise SourceError("there is no such file", Source(path), "check the path, or set OPENRAVE_DATA")
+    return found, _parsed(found)
 
 
 def _parsed(path: str) -> dict[str, Any]:
