@@ -54,7 +54,7 @@ class CollisionChecker(CheckerExtras):
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
         self._env = env
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._name = name
         self._simulation = env.simulation
         self._options = 0

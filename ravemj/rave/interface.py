@@ -10,7 +10,7 @@ from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
 from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.readables import ReadableInterface
-from ravemj.rave.user_data import Annotations
+from ravemj.rave.user_data import Annotations, GetUserData, RemoveUserData, SetUserData
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -26,7 +26,8 @@ class Interface(ReadableInterface):
     OpenRAVE calls them interfaces, since its plugins make them.
     """
 
-    _annotations: Annotations
+    _internal = ("annotations",)
+    annotations: Annotations
     _env: "Environment"
     _interface_type: InterfaceType
     _commands: ClassVar[Mapping[str, Callable[[Any, str], str]]] = {}
@@ -54,7 +55,7 @@ class Interface(ReadableInterface):
 
     def GetDescription(self) -> str:
         """Return the text of ``SetDescription``."""
-        return self._annotations.description
+        return self.annotations.description
 
     def SetDescription(self, description: str) -> None:
         """Attach a text.
@@ -62,34 +63,11 @@ class Interface(ReadableInterface):
         Args:
             description: The text.
         """
-        self._annotations.description = str(description)
+        self.annotations.description = str(description)
 
-    def SetUserData(self, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
-        """Attach an object of your own: ``SetUserData(data)`` or ``SetUserData(key, data)``.
-
-        It stays as long as this one does. ``GetUserData`` returns it.
-
-        Args:
-            key: The name, or the object where it is the only argument.
-            data: The object.
-        """
-        self._annotations.attach(key, data)
-
-    def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
-        """Return what ``SetUserData`` attached under that name, or None.
-
-        Args:
-            key: The name; left out: the one without a name.
-        """
-        return self._annotations.data.get(key)
-
-    def RemoveUserData(self, key: str = "") -> bool:
-        """Forget what is attached under a name; return whether there was something.
-
-        Args:
-            key: The name; left out: the one without a name.
-        """
-        return self._annotations.data.pop(key, None) is not None
+    SetUserData = SetUserData
+    GetUserData = GetUserData
+    RemoveUserData = RemoveUserData
 
     def Clone(self, ref: Any, cloningoptions: int = 0) -> None:  # noqa: ANN401 - another object of its class
         """Take over the description and the data of users that another object of the same class has.
@@ -103,8 +81,8 @@ class Interface(ReadableInterface):
         """
         del cloningoptions
         checked_kind(ref, type(self), "Clone: ref")
-        self._annotations = copy(ref._annotations)
-        self._annotations.data = dict(ref._annotations.data)
+        self.annotations = copy(ref.annotations)
+        self.annotations.data = dict(ref.annotations.data)
         self._readables = ref.GetReadableInterfaces()
 
     def SupportsJSONCommand(self, cmd: str) -> bool:

@@ -62,7 +62,7 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
         self._env = env
         self._state = state
         self._simulation = state.simulation
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._open_savers: list[StateSaver] = []
 
     def SetName(self, name: str) -> None:

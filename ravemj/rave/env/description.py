@@ -28,7 +28,7 @@ from ravemj.rave.units import (
     LengthUnit,
     UnitInfo,
 )
-from ravemj.rave.user_data import Annotations
+from ravemj.rave.user_data import Annotations, GetUserData, RemoveUserData, SetUserData
 
 OTHER_UNITS = "environments in other units than kilograms, radians and seconds"
 
@@ -39,10 +39,12 @@ Json = Mapping[str, Any]
 class Description(Simulating):
     """Name, description, data of users, units of an environment, and all of it as an info or as JSON."""
 
+    _internal = ("annotations",)
+
     def __init__(self) -> None:
         super().__init__()
         self._name = ""
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._keywords: list[str] = []
         self._numbers: dict[str, int] = {}
         self._units = UnitInfo()
@@ -57,7 +59,7 @@ class Description(Simulating):
 
     def GetDescription(self) -> str:
         """Return the text of ``SetDescription``."""
-        return self._annotations.description
+        return self.annotations.description
 
     def SetDescription(self, sceneDescription: str) -> None:
         """Attach a text.
@@ -65,34 +67,11 @@ class Description(Simulating):
         Args:
             sceneDescription: The text.
         """
-        self._annotations.description = str(sceneDescription)
+        self.annotations.description = str(sceneDescription)
 
-    def SetUserData(self, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
-        """Attach an object of your own: ``SetUserData(data)`` or ``SetUserData(key, data)``.
-
-        It stays as long as the environment does. ``GetUserData`` returns it.
-
-        Args:
-            key: The name, or the object where it is the only argument.
-            data: The object.
-        """
-        self._annotations.attach(key, data)
-
-    def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
-        """Return what ``SetUserData`` attached under that name, or None.
-
-        Args:
-            key: The name; left out: the one without a name.
-        """
-        return self._annotations.data.get(key)
-
-    def RemoveUserData(self, key: str = "") -> bool:
-        """Forget what is attached under a name; return whether there was something.
-
-        Args:
-            key: The name; left out: the one without a name.
-        """
-        return self._annotations.data.pop(key, None) is not None
+    SetUserData = SetUserData
+    GetUserData = GetUserData
+    RemoveUserData = RemoveUserData
 
     def GetKeywords(self) -> list[str]:
         """Return the words of ``SetKeywords``."""
@@ -234,7 +213,7 @@ class Description(Simulating):
                 if body is not None:
                     body.ResetGrabbed(cast("Sequence[GrabbedInfo]", one._vGrabbedInfos))
             self.GetPhysicsEngine().SetGravity(np.asarray(info._gravity))
-            self._annotations.description, self._keywords = info._description, list(info._keywords)
+            self.annotations.description, self._keywords = info._description, list(info._keywords)
             self._numbers = dict(info._uInt64Parameters)
         return added, changed, removed
 
