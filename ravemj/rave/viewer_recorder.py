@@ -13,7 +13,6 @@ from ravemj.rave.module import Module
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
-_FORMATS = ("mp4", "gif", "webp")
 _WAITING = 8
 """Frames that may wait for the encoder."""
 _PATIENCE = 0.2
@@ -36,9 +35,9 @@ class ViewerRecorder(Module):
     """Writes videos of what the viewer shows; without a viewer, of what ``env.render`` does, but for shadows.
 
     ``Start WIDTH HEIGHT FPS codec NUMBER timing WHICH filename FILE`` begins: a frame is drawn when simulation time has
-    gone on by that of a frame (``simtime``, ``controller``), or real time (``realtime``). The suffix of the file, .mp4,
-    .gif or .webp, chooses the format, and not the number of the codec. ``Stop`` ends; the file is complete then.
-    A script that ends without ``Stop``, by an error for instance, completes it too. ``GetCodecs`` lists the formats.
+    gone on by that of a frame (``simtime``, ``controller``), or real time (``realtime``). The suffix of the file
+    chooses the format, and not the number of the codec. ``Stop`` ends; the file is complete then. A script that ends
+    without ``Stop``, by an error for instance, completes it too. ``GetCodecs`` lists the formats.
 
     Example:
         >>> recorder = ravemj.RaveCreateModule(env, "viewerrecorder")
@@ -144,8 +143,11 @@ class ViewerRecorder(Module):
 
     def _codecs(self, arguments: str) -> str:
         """List the formats."""
+        from ravemj.graphics.video import VIDEO_FORMATS  # noqa: PLC0415 - slow to import
+
         del arguments
-        return "\n".join(f"{number} {name}" for number, name in enumerate(_FORMATS))
+        names = [suffix[1:] for suffix in VIDEO_FORMATS if suffix]
+        return "\n".join(f"{number} {name}" for number, name in enumerate(names))
 
 
 def _order_of(arguments: str) -> _Order:
