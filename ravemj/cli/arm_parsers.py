@@ -3,7 +3,7 @@
 import argparse
 
 from ravemj.cli.argument_types import positive, seed, target, vector
-from ravemj.cli.shared_options import Commands, add_model, add_picture_options, command, late
+from ravemj.cli.shared_options import VIDEOS, Commands, add_model, add_picture_options, command, late
 from ravemj.geometry_functions.ik_types import GOAL_TYPES
 
 _GOAL_TYPES = sorted(kind.name for kind in GOAL_TYPES)
@@ -77,7 +77,7 @@ def add_plan(commands: Commands) -> None:
         type=target,
         metavar="FILE",
         help="motion as .csv or .npz, which play takes; picture of start, goal and way as .png or .jpg; or video as "
-        ".mp4, .gif, .webp, or a folder for PNG frames",
+        + VIDEOS,
     )
     parser.add_argument(
         "--show-tree",

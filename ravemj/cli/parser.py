@@ -5,7 +5,7 @@ import argparse
 from ravemj.cli.argument_parser import Parser
 from ravemj.cli.argument_types import TO_STANDARD_OUTPUT, port, positive, target, vector
 from ravemj.cli.arm_parsers import add_ik, add_plan
-from ravemj.cli.shared_options import Commands, add_model, add_picture_options, command, complete_models, late
+from ravemj.cli.shared_options import VIDEOS, Commands, add_model, add_picture_options, command, complete_models, late
 from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
 
 
@@ -92,7 +92,7 @@ def _add_play(commands: Commands) -> None:
         "--output",
         type=target,
         metavar="FILE",
-        help=".mp4, .gif, .webp, .html, or a folder for PNG frames; without a display: MODEL.mp4",
+        help=f"page as .html; or video as {VIDEOS}; without a display: MODEL.mp4",
     )
     goal = parser.add_mutually_exclusive_group()
     goal.add_argument(

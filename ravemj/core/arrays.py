@@ -93,6 +93,23 @@ def checked_first(values: ArrayLike, length: int, name: str) -> Floats:
     return checked_vector(given[:length] if given.ndim == 1 and len(given) > length else given, length, name)
 
 
+def checked_rows(numbers: ArrayLike, width: int, name: str) -> Floats:
+    """Return a finite array of shape (N, width), which is the given one where that has numbers of the right kind.
+
+    Raises:
+        ArgumentError: it has another shape, or something in it is no finite number.
+    """
+    try:
+        checked = np.asarray(numbers, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{name}: should be numbers of shape (N, {width})") from None
+    if checked.ndim != 2 or checked.shape[1] != width:
+        raise ArgumentError(f"{name}: has shape {checked.shape}, and should have (N, {width})")
+    if not np.isfinite(checked.sum()) and not all(np.isfinite(row).all() for row in checked):
+        raise ArgumentError(f"{name}: should be finite")
+    return checked
+
+
 def checked_point(values: ArrayLike, name: str) -> Floats:
     """Return a point, shape (3,), for what only reads it: the given array where that is one.
 

@@ -63,7 +63,7 @@ def check_target(path: AnyPath) -> None:
         ArgumentError: The suffix is not one of those in the module's text.
         OutputError: The folder around it is missing or cannot be written, or something is in the way.
     """
-    if _known_suffix(path, _VIDEO_FORMATS) == _FOLDER:
+    if _known_suffix(path, VIDEO_FORMATS) == _FOLDER:
         check_folder(path, _FILES_OF_FOLDER)
     else:
         check_file(path)
@@ -91,8 +91,8 @@ def write_frames(
         ArgumentError: Unknown suffix, unusable fps, a frame of wrong type or size, or no frames at all.
         OutputError: The target cannot be written; most causes are found before the first frame is drawn.
     """
-    suffix = _known_suffix(path, _VIDEO_FORMATS)
-    encoder, highest_fps = _VIDEO_FORMATS[suffix]
+    suffix = _known_suffix(path, VIDEO_FORMATS)
+    encoder, highest_fps = VIDEO_FORMATS[suffix]
     rate = _rate(fps, highest_fps)
     with new_folder(path, _FILES_OF_FOLDER) if suffix == _FOLDER else new_file(path) as temporary:
         _overlap(_checked(frames), lambda arriving: _encode(encoder, arriving, temporary, rate, path), on_frame)
@@ -204,12 +204,13 @@ def _write_png_folder(frames: Iterator[Frame], temporary: Path, _: Fraction) -> 
 
 
 _Encoder = Callable[[Iterator[Frame], Path, Fraction], None]
-_VIDEO_FORMATS: dict[str, tuple[_Encoder, int]] = {  # with the highest fps
+VIDEO_FORMATS: dict[str, tuple[_Encoder, int]] = {
     ".mp4": (_write_mp4, 1000),
     ".gif": (_write_gif, 50),
     ".webp": (_write_webp, 90),
     _FOLDER: (_write_png_folder, 1000),
 }
+"""How files of a suffix are written, and the highest number of frames in a second; no suffix: a folder."""
 _STILL_FORMATS: dict[str, dict[str, str | int]] = {  # with the encoder's options
     ".png": {},
     ".jpg": {"quality": 95},

@@ -18,7 +18,7 @@ from ravemj.ik.closed import ClosedForm, Solutions
 from ravemj.ik.compiled import CompiledKinematics
 from ravemj.ik.derive import Certificate, derive
 from ravemj.ik.limits import all_turns, distances, nearest_turns
-from ravemj.ik.numeric import ACCURATE, Kinematics, Nearest, NumericSolver
+from ravemj.ik.numeric import ACCURATE, Kinematics, NumericSolver
 from ravemj.ik.reductions import ReducedForm, derive_reduced
 from ravemj.ik.tasks import Task, goal_poses
 from ravemj.ik.vectors import Floats
@@ -214,16 +214,6 @@ class IKSolver:
             if accept is None or accept(row):
                 return row
         return None
-
-    def approach(self, goal: ArrayLike, seed: Floats, weights: Floats | None = None) -> Nearest:
-        """Return the configuration near a seed that comes nearest to a goal, reachable or not; for dragging a hand.
-
-        Args:
-            goal: A pose (4, 4), or what else the task asks for.
-            seed: The present configuration, shape (n,).
-            weights: How much errors along x, y, z and about them count, shape (6,).
-        """
-        return self.numeric.nearest(goal_poses(self.chain, self.task, goal), seed, weights)
 
 
 def make_solver(

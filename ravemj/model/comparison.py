@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -22,11 +22,8 @@ CONFIGURATIONS = 5
 """How many random configurations are compared."""
 
 _FARTHEST = 10.0  # [rad or m], of random values of joints without limits
-_AXIS_FIELDS = (
-    "lower", "upper", "circular", "value", "weight", "resolution", "max_velocity", "max_acceleration",
-    "max_torque", "armature", "coulomb_friction", "viscous_friction", "max_jerk", "max_inertia", "hard_max_velocity",
-    "hard_max_acceleration", "hard_max_jerk", "wrap_offset",
-)  # fmt: skip
+_AXIS_FIELDS = tuple(one.name for one in fields(Axis) if one.name not in {"direction", "reference"})
+"""All but the direction, which not every joint has, and the reference, which follows from poses and values."""
 
 
 class Difference(NamedTuple):

@@ -119,7 +119,7 @@ class AttachedSensor(ApiObject):
 
     def GetSensor(self) -> Sensor | None:
         """Return the device, or None for a mere frame; always the same object."""
-        return self._robot.device(self)
+        return self._robot.devices.of(self)
 
     def GetInfo(self) -> AttachedSensorInfo:
         """Return the description of the attached sensor, a copy."""

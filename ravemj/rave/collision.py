@@ -18,7 +18,6 @@ from ravemj.engine.collision.world import CollisionWorld
 from ravemj.engine.simulation import BodyState
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.geometry_functions import Ray
-from ravemj.rave.body.base import BodyPart
 from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.collision_extras import CheckerExtras
 from ravemj.rave.enums import CollisionAction, CollisionOptions, InterfaceType
@@ -55,7 +54,7 @@ class CollisionChecker(CheckerExtras):
 
     def __init__(self, env: "Environment", name: str = "mujoco") -> None:
         self._env = env
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._name = name
         self._simulation = env.simulation
         self._options = 0
@@ -173,7 +172,7 @@ class CollisionChecker(CheckerExtras):
                 return self._pairs_with_others(
                     world, thing, frozenset(map(_state, bodies)), frozenset(map(_link, links))
                 )
-            case (BodyPart() | Link() as one, BodyPart() | Link() as other):
+            case (BodyCollision() | Link() as one, BodyCollision() | Link() as other):
                 first, second = self._added(one), self._added(other)
                 return queries.each_other(world, first, second, self._active_links(one))
             case _:
@@ -264,7 +263,7 @@ class CollisionChecker(CheckerExtras):
         """
         if target is ...:
             return None
-        if not isinstance(target, BodyPart | Link):
+        if not isinstance(target, BodyCollision | Link):
             raise _not_understood((Ray(np.zeros(3), np.zeros(3)), target))
         thing = self._added(target)
         return world.geoms_of_group(thing) if isinstance(thing, BodyState) else world.geoms_of_link(*thing)
@@ -352,7 +351,7 @@ def RaveCreateCollisionChecker(env: "Environment", name: str) -> CollisionChecke
 
 
 def _state(body: object) -> BodyState:
-    if not isinstance(body, BodyPart):
+    if not isinstance(body, BodyCollision):
         raise _not_understood((body,))
     return body.simulation_state
 
@@ -364,7 +363,7 @@ def _link(link: object) -> LinkOf:
 
 
 def _thing(argument: object) -> BodyState | LinkOf:
-    return argument.simulation_state if isinstance(argument, BodyPart) else _link(argument)
+    return argument.simulation_state if isinstance(argument, BodyCollision) else _link(argument)
 
 
 def _not_understood(arguments: Iterable[object]) -> RavemjError:

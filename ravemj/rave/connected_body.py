@@ -3,6 +3,7 @@
 # The fields of infos have the names that OpenRAVE gives them.
 # pyright: reportPrivateUsage=false
 
+from collections.abc import Iterable
 from copy import deepcopy
 from typing import TYPE_CHECKING
 
@@ -11,9 +12,10 @@ import numpy as np
 from ravemj.core.api_object import ApiObject
 from ravemj.core.arrays import checked_transform
 from ravemj.core.transforms import Floats, pose_of
-from ravemj.errors import ErrorCode, RavemjError
+from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.model import hashes
-from ravemj.rave.infos import ConnectedBodyInfo, GripperInfo
+from ravemj.rave.infos import ConnectedBodyInfo, GripperInfo, RobotBaseInfo
+from ravemj.rave.infos.connecting import only_parts_of, with_connected
 
 if TYPE_CHECKING:
     from ravemj.rave.attached_sensor import AttachedSensor
@@ -152,3 +154,66 @@ class ConnectedBody(ApiObject):
 
     def __repr__(self) -> str:
         return f"{self._robot!r}.GetConnectedBody({self.GetName()!r})"
+
+
+class ConnectedBodies:
+    """The bodies that can be connected to a robot, and whether the active ones are parts of it now.
+
+    Args:
+        robot: The robot.
+        infos: Their descriptions.
+    """
+
+    def __init__(self, robot: "Robot", infos: Iterable[ConnectedBodyInfo] = ()) -> None:
+        self._robot = robot
+        self._own_parts: RobotBaseInfo | None = None  # the robot without them, while some are parts of it
+        self.bodies = tuple(ConnectedBody(robot, info) for info in infos)
+
+    def copy_for(self, robot: "Robot") -> "ConnectedBodies":
+        """Return the same for a copy of the robot."""
+        copied = ConnectedBodies(robot, [body.GetInfo() for body in self.bodies])
+        copied._own_parts = self._own_parts
+        return copied
+
+    def add(self, info: ConnectedBodyInfo, replaces: bool) -> ConnectedBody:
+        """Add a body; see ``Robot.AddConnectedBody``."""
+        name = info._name
+        self._check_removed("AddConnectedBody")
+        if not name or (not replaces and any(body.GetName() == name for body in self.bodies)):
+            raise ArgumentError(f"AddConnectedBody: a body cannot be called '{name}': that is empty, or taken")
+        if self._robot.GetLink(info._linkname or "") is None:
+            raise ArgumentError(f"AddConnectedBody: '{self._robot.GetName()}' has no link '{info._linkname}'")
+        added = ConnectedBody(self._robot, info)
+        self.bodies = (*(body for body in self.bodies if body.GetName() != name), added)
+        return added
+
+    def remove(self, gone: ConnectedBody) -> bool:
+        """Forget a body; return whether it was there."""
+        self._check_removed("RemoveConnectedBody")
+        before = len(self.bodies)
+        self.bodies = tuple(body for body in self.bodies if body is not gone)
+        return len(self.bodies) < before
+
+    def connect(self) -> None:
+        """Make the active bodies parts of the robot, which is not in the environment yet."""
+        active = [body.GetInfo() for body in self.bodies if body.IsActive() == 1]
+        if active and self._own_parts is None:
+            own = self._robot.ExtractInfo()
+            self._robot.remake(with_connected(own, active))
+            self._own_parts = own
+
+    def disconnect(self) -> None:
+        """Take their parts away from the robot, which is no longer in the environment."""
+        if self._own_parts is not None:
+            own = self._robot.ExtractInfo()
+            self._own_parts = None
+            self._robot.remake(own)
+
+    def without_their_parts(self, info: RobotBaseInfo) -> RobotBaseInfo:
+        """Return a description of the robot without what connected bodies are in it."""
+        return info if self._own_parts is None else only_parts_of(info, self._own_parts)
+
+    def _check_removed(self, caller: str) -> None:
+        if self._robot.simulation_state.index:
+            message = f"{caller}: '{self._robot.GetName()}' is in an environment; remove it first"
+            raise RavemjError(message, ErrorCode.InvalidState)

@@ -7,9 +7,8 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from ravemj.core.arguments import also_named
-from ravemj.engine.simulation import Simulation
+from ravemj.engine.simulation import Simulation, both_locks
 from ravemj.errors import ErrorCode, RavemjError, SourceError
-from ravemj.rave.body.base import both_locks
 from ravemj.rave.enums import CloningOptions
 from ravemj.rave.env.collision import Collision
 from ravemj.rave.env.drawing import Drawing

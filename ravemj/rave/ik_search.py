@@ -83,7 +83,7 @@ class IkSearch(Interface):
         steps: Sequence[float] | None = None,
     ) -> None:
         self._env = env
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._name = name
         self.kind = kind
         from ravemj.ik.arms import ArmSolver

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from ravemj.core.arguments import checked_kind
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.enums import InterfaceType
+from ravemj.rave.env.base import EnvironmentPart
 from ravemj.rave.readables import ReadableInterface
-from ravemj.rave.user_data import UserData
+from ravemj.rave.user_data import Annotations, GetUserData, RemoveUserData, SetUserData
 
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
@@ -19,12 +20,14 @@ Command = Callable[[str], str | None]
 """What runs a command: takes its arguments as text, and returns the answer, or None if it failed."""
 
 
-class Interface(UserData, ReadableInterface):
+class Interface(ReadableInterface):
     """An object of an environment: a body, a controller, a physics engine, a trajectory, ...
 
     OpenRAVE calls them interfaces, since its plugins make them.
     """
 
+    _internal = ("annotations",)
+    annotations: Annotations
     _env: "Environment"
     _interface_type: InterfaceType
     _commands: ClassVar[Mapping[str, Callable[[Any, str], str]]] = {}
@@ -52,7 +55,7 @@ class Interface(UserData, ReadableInterface):
 
     def GetDescription(self) -> str:
         """Return the text of ``SetDescription``."""
-        return self._annotations.description
+        return self.annotations.description
 
     def SetDescription(self, description: str) -> None:
         """Attach a text.
@@ -60,7 +63,11 @@ class Interface(UserData, ReadableInterface):
         Args:
             description: The text.
         """
-        self._annotations.description = str(description)
+        self.annotations.description = str(description)
+
+    SetUserData = SetUserData
+    GetUserData = GetUserData
+    RemoveUserData = RemoveUserData
 
     def Clone(self, ref: Any, cloningoptions: int = 0) -> None:  # noqa: ANN401 - another object of its class
         """Take over the description and the data of users that another object of the same class has.
@@ -74,8 +81,8 @@ class Interface(UserData, ReadableInterface):
         """
         del cloningoptions
         checked_kind(ref, type(self), "Clone: ref")
-        self._annotations = copy(ref._annotations)
-        self._annotations.data = dict(ref._annotations.data)
+        self.annotations = copy(ref.annotations)
+        self.annotations.data = dict(ref.annotations.data)
         self._readables = ref.GetReadableInterfaces()
 
     def SupportsJSONCommand(self, cmd: str) -> bool:
@@ -152,6 +159,6 @@ def checked_environment(env: "Environment", caller: str) -> "Environment":
     Raises:
         ArgumentError: it is something else.
     """
-    if isinstance(env, Interface) or not isinstance(env, UserData):  # pyright: ignore[reportUnnecessaryIsInstance]
+    if not isinstance(env, EnvironmentPart):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise ArgumentError(f"{caller}: env is {env!r}, and should be an Environment")
     return env

@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_numbers
 from ravemj.engine.grabbing import attached_bodies, grab_as_it_stands
-from ravemj.engine.simulation import BodyState
+from ravemj.engine.simulation import BodyState, both_locks
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.model.shape_bodies import empty_body
-from ravemj.rave.body.base import both_locks
 from ravemj.rave.body.building import Building
 from ravemj.rave.body.collision import BodyCollision
 from ravemj.rave.body.configuration import Configuration
@@ -63,7 +62,7 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
         self._env = env
         self._state = state
         self._simulation = state.simulation
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._open_savers: list[StateSaver] = []
 
     def SetName(self, name: str) -> None:

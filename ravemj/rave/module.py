@@ -36,7 +36,7 @@ class Module(Interface):
     ) -> None:
         self._env = env
         self._xmlid = xmlid
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self.start = start
         self._by_name = commands
 

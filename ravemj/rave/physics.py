@@ -37,7 +37,7 @@ class PhysicsEngine(Interface):
 
     def __init__(self, env: "Environment", xml_id: str, gravity: Vec3 = ZERO) -> None:
         self._env = env
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._xml_id = xml_id
         self._gravity = gravity
         self._is_attached = False

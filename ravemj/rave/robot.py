@@ -1,10 +1,10 @@
 """Robots: bodies with manipulators and sensors."""
 
-import logging
-import time
+# The fields of infos have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from threading import Condition, RLock
 from types import EllipsisType
 from typing import TYPE_CHECKING
 
@@ -15,29 +15,30 @@ from ravemj.core.arguments import also_named, checked_kind
 from ravemj.core.arrays import checked_indices
 from ravemj.core.transforms import Floats
 from ravemj.engine.simulation import BodyState
-from ravemj.errors import ArgumentError, ErrorCode, RavemjError
+from ravemj.errors import ArgumentError, RavemjError
 from ravemj.geometry_functions import DOFAffine
 from ravemj.geometry_functions.ik_types import IkParameterizationType
+from ravemj.model import hashes
 from ravemj.model.mimic import Equations
 from ravemj.rave.body.active import ActiveChoice, ActiveDofs
 from ravemj.rave.body.affine import default_kinds
-from ravemj.rave.body.connected import Connected
-from ravemj.rave.body.manipulators import Manipulators
+from ravemj.rave.body.equipment import Equipment
 from ravemj.rave.body.saving import Restorer, StateSaver
-from ravemj.rave.body.sensors import Sensors
-from ravemj.rave.connected_body import ConnectedBody
+from ravemj.rave.connected_body import ConnectedBodies
 from ravemj.rave.controllers import Controller, IdealController
+from ravemj.rave.controllers.waiting import wait_until
+from ravemj.rave.devices import Devices
 from ravemj.rave.enums import InterfaceType, SaveParameters
 from ravemj.rave.iksolver import IkSolver
 from ravemj.rave.infos import (
     AttachedSensorInfo,
     ExtractInfoOptions,
     JointInfo,
+    KinBodyInfo,
     LinkInfo,
     ManipulatorInfo,
     RobotBaseInfo,
 )
-from ravemj.rave.infos.connecting import only_parts_of
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.link import Link
 from ravemj.rave.manipulator import Manipulator
@@ -47,16 +48,11 @@ if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
     from ravemj.rave.report import CollisionReport
 
-_LOG = logging.getLogger("ravemj")
-
 _ACTIVE_DOF, _ACTIVE_MANIPULATOR = int(SaveParameters.ActiveDOF), int(SaveParameters.ActiveManipulator)
 _TOOLS, _ACTIVE_TOOL = int(SaveParameters.ManipulatorsToolTransform), int(SaveParameters.ActiveManipulatorToolTransform)
 
-POLL = 1e-3  # short against a time step of 10 ms, long enough not to load a core
-"""The interval at which ``WaitForController`` asks the controller [s]."""
 
-
-class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
+class Robot(ActiveDofs, Equipment, KinBody):
     """A robot: a body with manipulators, sensors and a controller. ``env.GetRobots()`` returns the robots."""
 
     DOFAffine = DOFAffine
@@ -72,8 +68,11 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         "active_choice",
         "affine_kinds",
         "arm_solvers",
+        "connected",
+        "devices",
         "ik_solvers",
         "quaternion_limits",
+        "remake",
         "step_controller",
         "take_choices",
     )
@@ -85,7 +84,8 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         self.affine_kinds = default_kinds()
         self.quaternion_limits = np.array([np.pi, 0.0, 0.0, 0.0])
         self._active_manipulator = None
-        self._devices = {}
+        self.connected = ConnectedBodies(self)
+        self.devices = Devices(self)
         self.ik_solvers: dict[str, IkSolver] = {}
         self.arm_solvers: dict[tuple[str, IkParameterizationType], ArmSolver] = {}
 
@@ -230,22 +230,7 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         controller = self.GetController()
         if controller is None:
             return False
-        if controller.IsDone():
-            return True
-        if _is_held(self._simulation.lock):
-            message = "WaitForController: time stands still inside 'with env:'; wait outside of it"
-            if timeout <= 0:
-                raise RavemjError(message, ErrorCode.InvalidState)
-            _LOG.warning("%s", message)
-            return False
-        if not self._env.IsSimulationRunning():
-            _LOG.warning("WaitForController: time was stopped by StopSimulation; waiting for others to step it")
-        deadline = time.monotonic() + timeout
-        while not controller.IsDone():
-            if timeout > 0 and deadline < time.monotonic():
-                return False
-            time.sleep(POLL)
-        return True
+        return wait_until(controller.IsDone, timeout, self._simulation.lock, self._env.IsSimulationRunning)
 
     def step_controller(self, timestep: float) -> None:
         """Advance the controller by a time step [s]. A robot that never had one does not get one for this."""
@@ -285,6 +270,28 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         )
         return self.InitFromKinBodyInfo(info)
 
+    def InitFromKinBodyInfo(self, info: KinBodyInfo) -> bool:
+        """Make the robot, its name included, of a description.
+
+        Args:
+            info: The description, for instance of ``ExtractInfo``; a ``RobotBaseInfo`` has grippers and connected
+                bodies, too.
+
+        Returns:
+            True.
+        """
+        super().InitFromKinBodyInfo(info)
+        if isinstance(info, RobotBaseInfo):
+            self._grippers = tuple(info._vGripperInfos)
+            self.connected = ConnectedBodies(self, info._vConnectedBodyInfos)
+        return True
+
+    def remake(self, info: RobotBaseInfo) -> None:
+        """Make the robot anew of a description, but for its file, its id and what can be connected to it."""
+        super().InitFromKinBodyInfo(replace(info, _uri=self._uri, _id=self._id))
+        self._grippers = tuple(info._vGripperInfos)
+        self.active_choice = ActiveChoice()
+
     def InitFromRobotInfo(self, info: RobotBaseInfo) -> bool:
         """Make the robot, including its name, from a description; see ``InitFromKinBodyInfo``.
 
@@ -295,6 +302,10 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
             True.
         """
         return self.InitFromKinBodyInfo(info)
+
+    def GetRobotStructureHash(self) -> str:
+        """Return a text that is the same for robots of the same structure, arms and sensors: 32 hexadecimal digits."""
+        return hashes.of_robot(self._state.scene)
 
     def ExtractInfo(self, options: int = ExtractInfoOptions.Everything) -> RobotBaseInfo:
         """Return the description of the robot in its current state.
@@ -311,9 +322,9 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
             _vManipInfos=[ManipulatorInfo.of(body, arm) for arm in body.manipulators],
             _vAttachedSensorInfos=[AttachedSensorInfo.of(body, sensor) for sensor in body.sensors],
             _vGripperInfos=self.GetGripperInfos(),
-            _vConnectedBodyInfos=[connected.GetInfo() for connected in self._connected],
+            _vConnectedBodyInfos=[body.GetInfo() for body in self.connected.bodies],
         )
-        return info if self._own_parts is None else only_parts_of(info, self._own_parts)
+        return self.connected.without_their_parts(info)
 
     def Clone(self, ref: KinBody, cloningoptions: int = 0) -> None:
         """Copy another body, as ``KinBody.Clone`` does, and of a robot also the sensors and the user's choices.
@@ -328,7 +339,7 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
             openrave_exception: this robot is in an environment.
         """
         super().Clone(ref, cloningoptions)
-        self.forget_sensors()
+        self.devices.forget()
         if isinstance(ref, Robot):
             self.take_choices(ref)
 
@@ -337,11 +348,10 @@ class Robot(ActiveDofs, Manipulators, Connected, Sensors, KinBody):
         self.active_choice = other.active_choice
         self.affine_kinds = {name: replace(kind) for name, kind in other.affine_kinds.items()}
         self.quaternion_limits = other.quaternion_limits.copy()
-        self._connected = tuple(ConnectedBody(self, body.GetInfo()) for body in other._connected)
-        self._own_parts = other._own_parts
+        self.connected = other.connected.copy_for(self)
         self._active_manipulator = other._active_manipulator
         self.ik_solvers = {name: solver.copy_for(self) for name, solver in other.ik_solvers.items()}
-        self.take_sensors(other)
+        self.devices.take_over(other.devices)
 
     def restorers(self, options: int) -> list[Restorer]:
         """Return functions that restore the current state of this robot, on it or on a robot of the same kind."""
@@ -364,12 +374,3 @@ def _set_tool(body: KinBody, name: str, transform: Floats) -> None:
     manipulator = body.GetManipulator(name) if isinstance(body, Robot) else None
     if manipulator is not None:
         manipulator.SetLocalToolTransform(transform)
-
-
-def _is_held(lock: RLock) -> bool:
-    """Return whether this thread holds a lock. ``RLock`` cannot tell, but only its holder may notify a condition."""
-    try:
-        Condition(lock).notify(0)
-    except RuntimeError:
-        return False
-    return True

@@ -44,7 +44,7 @@ class SpaceSampler(Interface):
 
     def __init__(self, env: "Environment", name: str, sequence: "_Random") -> None:
         self._env = env
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._name = name
         self._sequence = sequence
 

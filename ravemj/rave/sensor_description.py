@@ -36,7 +36,7 @@ class DescribedSensor(Interface):
         self, env: "Environment", description: scene.AttachedSensor, attached: "AttachedSensor | None"
     ) -> None:
         self._env = env
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._own = description
         self.attached = attached
 

@@ -49,7 +49,7 @@ class Trajectory(Interface):
     def __init__(self, env: "Environment", xmlid: str) -> None:
         self._env = env
         self._xmlid = xmlid
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._waypoints: Waypoints | None = None
 
     def GetXMLId(self) -> str:

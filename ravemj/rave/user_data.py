@@ -1,8 +1,8 @@
 """User data: objects that scripts attach to bodies, other interfaces and environments."""
 
-from typing import Any
+# ruff: noqa: D417 - the functions are methods of classes that have no base in common, and take self
 
-from ravemj.core.api_object import ApiObject
+from typing import Any, Protocol
 
 
 class Annotations:
@@ -13,35 +13,38 @@ class Annotations:
         self.data: dict[str, Any] = {}
 
 
-class UserData(ApiObject):
-    """The methods of objects that store user data."""
+class Annotated(Protocol):
+    """An object with annotations: an environment or an interface. The functions below are its methods."""
 
-    _annotations: Annotations
+    annotations: Annotations
 
-    def SetUserData(self, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
-        """Attach an object of the user: ``SetUserData(data)`` or ``SetUserData(key, data)``.
 
-        The object lives as long as what it is attached to. ``GetUserData`` returns it.
+def SetUserData(self: Annotated, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
+    """Attach an object of the user: ``SetUserData(data)`` or ``SetUserData(key, data)``.
 
-        Args:
-            key: The name; or the object itself, if it is the only argument.
-            data: The object.
-        """
-        name, attached = ("", key) if data is ... else (key, data)
-        self._annotations.data[str(name)] = attached
+    The object lives as long as what it is attached to. ``GetUserData`` returns it.
 
-    def GetUserData(self, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
-        """Return the object that ``SetUserData`` attached under a name, or None.
+    Args:
+        key: The name; or the object itself, if it is the only argument.
+        data: The object.
+    """
+    name, attached = ("", key) if data is ... else (key, data)
+    self.annotations.data[str(name)] = attached
 
-        Args:
-            key: The name; without one, the object that has no name.
-        """
-        return self._annotations.data.get(key)
 
-    def RemoveUserData(self, key: str = "") -> bool:
-        """Remove the object that is attached under a name, and return whether there was one.
+def GetUserData(self: Annotated, key: str = "") -> Any:  # noqa: ANN401 - any object of the user's
+    """Return the object that ``SetUserData`` attached under a name, or None.
 
-        Args:
-            key: The name; without one, the object that has no name.
-        """
-        return self._annotations.data.pop(key, None) is not None
+    Args:
+        key: The name; without one, the object that has no name.
+    """
+    return self.annotations.data.get(key)
+
+
+def RemoveUserData(self: Annotated, key: str = "") -> bool:
+    """Remove the object that is attached under a name, and return whether there was one.
+
+    Args:
+        key: The name; without one, the object that has no name.
+    """
+    return self.annotations.data.pop(key, None) is not None

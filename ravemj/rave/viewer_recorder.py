@@ -13,7 +13,6 @@ from ravemj.rave.module import Module
 if TYPE_CHECKING:
     from ravemj.rave.environment import Environment
 
-_FORMATS = ("mp4", "gif", "webp")
 _WAITING = 8
 """The number of frames that may wait for the encoder; drawing waits for it when there are more."""
 _PATIENCE = 0.2
@@ -37,9 +36,9 @@ class ViewerRecorder(Module):
     """Writes videos of the viewer's view; without a viewer, of the view of ``env.render``, without shadows.
 
     ``Start WIDTH HEIGHT FPS codec NUMBER timing WHICH filename FILE`` begins a video. It has a frame for each 1/FPS of
-    simulation time (``simtime``, ``controller``) or of real time (``realtime``). The suffix of the file, .mp4, .gif or
-    .webp, selects the format; the number of the codec has no effect. ``Stop`` completes the file. A script that ends
-    without ``Stop``, for instance by an error, completes the file as well. ``GetCodecs`` lists the formats.
+    simulation time (``simtime``, ``controller``) or of real time (``realtime``). The suffix of the file selects the
+    format; the number of the codec has no effect. ``Stop`` completes the file. A script that ends without ``Stop``, for
+    instance by an error, completes the file as well. ``GetCodecs`` lists the formats.
 
     Example:
         >>> recorder = ravemj.RaveCreateModule(env, "viewerrecorder")
@@ -145,8 +144,11 @@ class ViewerRecorder(Module):
 
     def _codecs(self, arguments: str) -> str:
         """List the formats."""
+        from ravemj.graphics.video import VIDEO_FORMATS  # noqa: PLC0415 - slow to import
+
         del arguments
-        return "\n".join(f"{number} {name}" for number, name in enumerate(_FORMATS))
+        names = [suffix[1:] for suffix in VIDEO_FORMATS if suffix]
+        return "\n".join(f"{number} {name}" for number, name in enumerate(names))
 
 
 def _order_of(arguments: str) -> _Order:

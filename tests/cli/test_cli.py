@@ -645,7 +645,11 @@ BAD_WORDS = [
     ("plan puma560 --to 0,0,0,0,0,0 --pose 0,0,0", 2, "ravemj plan: error: .*--pose"),
     ("plan puma560 --to 0,0,0,0,0,0 --seed -1", 2, "ravemj plan: error: .*'-1' is not a whole number"),
     ("plan puma560 --to 0,0,0,0,0,0 --time-limit 0", 2, "ravemj plan: error: .*--time-limit"),
-    ("plan puma560 --to 1,2", 1, "ravemj: error: --to: found 2, expected 6: one for each joint of 'arm': joint1, joint2"),
+    (
+        "plan puma560 --to 1,2",
+        1,
+        "ravemj: error: --to: found 2, expected 6: one for each joint of 'arm': joint1, joint2",
+    ),
     ("plan puma560 --to 0,0,0,0,0,0 -o a.avi", 1, "ravemj: error: .*a.avi.*mp4"),
     ("plan puma560 --to 0,0,0,0,0,0 -o gone/a.csv", 1, "ravemj: error: .*gone"),
     ("plan puma560 --to 9,0,0,0,0,0", 1, r"ravemj: error: no motion: goal: joint 'joint1' is 9, outside its limits \["),

@@ -396,7 +396,7 @@ def test_what_on_frame_raises_comes_through(target, old):
 
 
 def use_encoder(monkeypatch, encoder):
-    monkeypatch.setitem(ravemj.graphics.video._VIDEO_FORMATS, ".mp4", (encoder, 1000))
+    monkeypatch.setitem(ravemj.graphics.video.VIDEO_FORMATS, ".mp4", (encoder, 1000))
 
 
 def test_an_encoder_that_fails_frees_a_waiting_producer(tmp_path, monkeypatch):

@@ -17,6 +17,7 @@ from ravemj.ik.compiled import CompiledKinematics
 from ravemj.ik.derive import random_values
 from ravemj.ik.limits import all_turns, distances, nearest_turns
 from ravemj.ik.redundancy import samples
+from ravemj.ik.tasks import goal_poses
 
 DEGREES = np.pi / 180
 LIMITED = replace(
@@ -292,7 +293,7 @@ class TestNumeric:
     def test_out_of_reach_it_comes_as_near_as_it_can(self):
         chain = Chain.of([[0, 0, 1]] * 2, [[0, 0, 0], [0.5, 0, 0]], T_base_tool=_at(1, 0, 0))
         solver = make_solver(chain, Task.PLACE_XY)
-        found = solver.approach([0.0, 3.0], np.array([0.3, 0.4]))
+        found = solver.numeric.nearest(goal_poses(chain, Task.PLACE_XY, [0.0, 3.0]), np.array([0.3, 0.4]))
         np.testing.assert_allclose(chain.forward(found.values)[:2, 3], [0, 1], atol=1e-3)
         assert found.error * chain.reach == pytest.approx(2, abs=1e-3)
 

@@ -122,14 +122,14 @@ def circles(typing: bool) -> list[set[str]]:
 
 NAME_EACH_OTHER = """
     rave.animations rave.arm_base rave.arm_end rave.arm_ik rave.arm_redundancy rave.attached_sensor rave.body.active
-    rave.body.building rave.body.collision rave.body.configuration rave.body.connected rave.body.manipulators
-    rave.body.saving rave.body.sensors rave.body.structure rave.collision rave.collision_extras rave.configuration_data
-    rave.connected_body rave.controllers rave.controllers.base rave.controllers.ideal rave.controllers.multi
-    rave.controllers.velocity rave.env.collision rave.env.contents rave.env.description rave.env.json_files
-    rave.env.loading rave.env.saving rave.env.simulation rave.env.viewing rave.environment rave.ik_search
-    rave.ik_validation rave.ikreturn rave.iksolver rave.instruments rave.interface rave.joint rave.joint_limits
-    rave.kinbody rave.link rave.link_geometries rave.manipulator rave.member rave.module rave.physics rave.recording
-    rave.report rave.robot rave.sensor_description rave.sensors rave.specification rave.tables rave.trajectory
+    rave.body.building rave.body.collision rave.body.configuration rave.body.equipment rave.body.saving
+    rave.body.structure rave.collision rave.collision_extras rave.configuration_data rave.connected_body
+    rave.controllers rave.controllers.base rave.controllers.ideal rave.controllers.multi rave.controllers.velocity
+    rave.devices rave.env.collision rave.env.contents rave.env.description rave.env.load_arguments rave.env.loading
+    rave.env.saving rave.env.simulation rave.env.viewing rave.environment rave.ik_search rave.ik_validation
+    rave.ikreturn rave.iksolver rave.instruments rave.interface rave.joint rave.joint_limits rave.kinbody rave.link
+    rave.link_geometries rave.manipulator rave.member rave.module rave.physics rave.recording rave.report rave.robot
+    rave.sensor_description rave.sensors rave.specification rave.tables rave.trajectory
 """
 """Classes of the API whose methods take and return one another, and the topics that make them up."""
 

@@ -1,5 +1,7 @@
 """The bodies of an environment and the MuJoCo model made of them."""
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from threading import RLock
 from typing import TYPE_CHECKING
 
@@ -258,3 +260,11 @@ class Simulation:
         # Links that scripts make are all called "base"; only who reads the MJCF wants to know its names.
         send_warnings(finding for finding in self.diagnostics if finding.code != "renamed")
         return world
+
+
+@contextmanager
+def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
+    """Hold the locks of two environments; taken in the same order by all, so that nobody waits for one another."""
+    first, second = sorted((one, other), key=id)
+    with first.lock, second.lock:
+        yield

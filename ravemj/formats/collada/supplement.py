@@ -6,20 +6,11 @@ from dataclasses import replace
 from ravemj.formats.collada.references import References
 from ravemj.formats.meshes.collada.document import Element, child, children, words
 from ravemj.model.builder import BodyBuilder
+from ravemj.model.scene.mechanism import RARE_NUMBERS
 
 PROFILE = "ravemj"
 
-OTHER_NUMBERS = (
-    "max_inertia",
-    "hard_max_velocity",
-    "hard_max_acceleration",
-    "max_jerk",
-    "hard_max_jerk",
-    "wrap_offset",
-)
-"""Fields of axes that COLLADA lacks; attributes of joints are called like them."""
-
-_NUMBERS = {"values": "reference", "torques": "max_torque", **{name: name for name in OTHER_NUMBERS}}
+_NUMBERS = {"values": "reference", "torques": "max_torque", **{name: name for name in RARE_NUMBERS}}
 
 
 def own_techniques(element: Element | None) -> Iterator[Element]:

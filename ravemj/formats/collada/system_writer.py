@@ -8,12 +8,13 @@ from ravemj.formats import settled
 from ravemj.formats.collada.geometry_writer import write_pose
 from ravemj.formats.collada.sections import Sections
 from ravemj.formats.collada.sensor import write_device
-from ravemj.formats.collada.supplement import OTHER_NUMBERS, PROFILE
+from ravemj.formats.collada.supplement import PROFILE
 from ravemj.formats.collada.trees import Tree
 from ravemj.formats.parameters import write_parameters
 from ravemj.formats.xml_text import XmlText
 from ravemj.model.joints import rests
 from ravemj.model.scene import AttachedSensor, Axis, Joint, KinBody, Manipulator
+from ravemj.model.scene.mechanism import RARE_NUMBERS
 
 _PLAIN = Axis((0.0, 0.0, 1.0))
 
@@ -212,7 +213,7 @@ class SystemWriter:
                 "values": values if any(values) else None,
                 "torques": torques if len(set(torques)) > 1 else None,
             }
-            for name in OTHER_NUMBERS:
+            for name in RARE_NUMBERS:
                 numbers = [getattr(axis, name) for axis in joint.axes]
                 attributes[name] = numbers if numbers != [getattr(_PLAIN, name)] * len(numbers) else None
             out.element("joint", joint.name, path=self._joint_path(index), **attributes)

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any, cast
 
-from ravemj.errors import ArgumentError, OutputError, Source, SourceError
+from ravemj.errors import ArgumentError, Source, SourceError
 from ravemj.graphics.rendering.camera import DEFAULT_FOVY, Camera
 
 _EXPECTED = "expected a 4x4 matrix as JSON, as a Python list or as rows of numbers"
@@ -37,20 +37,6 @@ def read_camera(path: str | Path) -> Camera:
     except ArgumentError as error:
         hint = "" if "expected" in error.message else _EXPECTED  # most say already what they expect
         raise SourceError(error.message, source, hint) from None
-
-
-def write_camera(path: str | Path, camera: Camera) -> None:
-    """Write a camera as JSON that :func:`read_camera` reads back to the last digit.
-
-    Raises:
-        OutputError: the file cannot be written.
-    """
-    rows = ",\n    ".join(json.dumps(row) for row in camera.T_world_camera.tolist())
-    text = f'{{\n  "camera": [\n    {rows}\n  ],\n  "fovy": {json.dumps(camera.fovy)}\n}}\n'
-    try:
-        Path(path).write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise OutputError(f"{path}: cannot write the camera: {error.strerror}") from None
 
 
 def _camera_from_document(document: Any) -> Camera:  # noqa: ANN401 - what JSON can hold

@@ -42,11 +42,6 @@ class Sharpness:
         self._changed: float | None = None
         self._is_crisp = False
 
-    @property
-    def is_crisp(self) -> bool:
-        """Whether the last picture was as sharp as can be."""
-        return self._is_crisp
-
     def moving(self, now: float) -> Level:
         """Return how to draw something that has changed [s, any clock]."""
         self._changed = now

@@ -6,7 +6,7 @@ from ravemj.core.transforms import Pose, Vec3
 from ravemj.errors import Source
 from ravemj.model.scene.mechanism import Axis, Joint, Link
 from ravemj.model.scene.record import Record
-from ravemj.model.scene.sensors import SENSOR_COLOR, Device, Intrinsics
+from ravemj.model.scene.sensors import SENSOR_COLOR, Device, Intrinsics, sensor_kind
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
@@ -68,6 +68,13 @@ class AttachedSensor(Record):
     def camera(self) -> Intrinsics | None:
         """The camera that it is, or None."""
         return self.device if isinstance(self.device, Intrinsics) else None
+
+    def problem(self) -> str | None:
+        """Return why it cannot measure with what is said about its device, or None; nothing may be said."""
+        kind = sensor_kind(self.type or "")
+        if kind is None or self.device is None or self.device == kind.device:
+            return None
+        return self.device.problem()
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)

@@ -141,6 +141,17 @@ class Axis(Record):
     wrap_offset: float = 0.0
 
 
+RARE_NUMBERS = (
+    "max_inertia",
+    "hard_max_velocity",
+    "hard_max_acceleration",
+    "max_jerk",
+    "hard_max_jerk",
+    "wrap_offset",
+)
+"""Fields of axes that few files have, and COLLADA not at all: attributes of our own there are called like them."""
+
+
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Mimic(Record):
     """The equations of a mimic joint.

@@ -242,7 +242,7 @@ class ActiveDofs(BodyCollision, Dynamics, Configuration):
             >>> trajectory = ravemj.RaveCreateTrajectory(env, "")
             >>> trajectory.Init(robot.GetActiveConfigurationSpecification("linear"))
         """
-        groups = body_groups(self.GetName(), self._active_dofs(), self.active_choice.affine, interpolation)
+        groups = body_groups(self._state.scene.name, self._active_dofs(), self.active_choice.affine, interpolation)
         return ConfigurationSpecification.of(groups)
 
     def SubtractActiveDOFValues(self, values0: ArrayLike, values1: ArrayLike) -> Floats:

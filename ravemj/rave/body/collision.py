@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ravemj.core.arrays import checked_numbers, checked_transform
+from ravemj.core.arrays import checked_numbers, checked_rows, checked_transform
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.moving import batch_collides
 from ravemj.engine.collision.queries import moved_apart
@@ -85,7 +85,7 @@ class BodyCollision(Structure, Interface):
             >>> samples = np.random.uniform(lower, upper, (1000, robot.GetDOF()))
             >>> free = samples[~robot.batch_collides(samples)]
         """
-        rows = self._checked_many(values, "batch_collides: values")
+        rows = checked_rows(values, self.GetDOF(), "batch_collides: values")
         with self._simulation.lock:
             return batch_collides(self._state, rows, itself_too=itself_too)
 

@@ -243,7 +243,7 @@ class Configuration(Limits):
         Args:
             interpolation: The interpolation between waypoints, for instance ``linear``.
         """
-        groups = body_groups(self.GetName(), range(self.GetDOF()), DOFAffine.Transform, interpolation)
+        groups = body_groups(self._state.scene.name, range(self.GetDOF()), DOFAffine.Transform, interpolation)
         return ConfigurationSpecification.of(groups)
 
     def GetConfigurationSpecificationIndices(
@@ -261,7 +261,7 @@ class Configuration(Limits):
         chosen = checked_numbers(indices, "indices").astype(np.int_).tolist()
         if any(not 0 <= index < self.GetDOF() for index in chosen):
             raise ArgumentError(f"indices: are {chosen}, and should be from 0 to {self.GetDOF() - 1}")
-        return ConfigurationSpecification.of(body_groups(self.GetName(), chosen, 0, interpolation))
+        return ConfigurationSpecification.of(body_groups(self._state.scene.name, chosen, 0, interpolation))
 
     def GetConfigurationValues(self) -> Floats:
         """Return the joint values, then the pose (x, y, z, qw, qx, qy, qz), shape (dof + 7,)."""

@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_first, checked_point, checked_vector, finite_vector
+from ravemj.core.arrays import checked_first, checked_point, checked_rows, checked_vector, finite_vector
 from ravemj.core.transforms import Floats, wxyz_jacobian
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
-from ravemj.rave.body.base import BodyPart
+from ravemj.rave.body.limits import Limits
 
 
-class Dynamics(BodyPart):
+class Dynamics(Limits):
     """Jacobians, Hessians, accelerations and inverse dynamics.
 
     Methods whose names begin with ``batch_`` take arrays of joint values, and do not move the body. Besides the result
@@ -273,7 +273,7 @@ class Dynamics(BodyPart):
             >>> Q = numpy.random.uniform(lower, upper, (100_000, robot.GetDOF()))
             >>> tips = robot.batch_link_transforms(Q)[:, -1, :3, 3]
         """
-        checked = self._checked_many(values, "values")
+        checked = checked_rows(values, self.GetDOF(), "values")
         result = _checked_out(out, (len(checked), len(self._state.scene.links), 4, 4))
         with self._simulation.lock:
             self._state.batch.link_transforms(checked, result)
@@ -297,7 +297,7 @@ class Dynamics(BodyPart):
         Raises:
             ArgumentError: a shape is wrong, there is no such link, or a value is not finite.
         """
-        checked = self._checked_many(values, "values")
+        checked = checked_rows(values, self.GetDOF(), "values")
         link = self._checked_link(linkindex)
         point = checked_vector(position_in_link, 3, "position_in_link")
         result = _checked_out(out, (len(checked), 6, self.GetDOF()))
@@ -323,7 +323,7 @@ class Dynamics(BodyPart):
             ArgumentError: a shape is wrong, or a value is not finite.
         """
         given = {"values": values, "velocities": velocities, "accelerations": accelerations}
-        checked = [self._checked_many(numbers, name) for name, numbers in given.items()]
+        checked = [checked_rows(numbers, self.GetDOF(), name) for name, numbers in given.items()]
         if len({len(numbers) for numbers in checked}) > 1:
             raise ArgumentError(
                 f"values, velocities and accelerations have {[len(numbers) for numbers in checked]} rows; "

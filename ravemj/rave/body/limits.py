@@ -1,25 +1,54 @@
-"""Limits, weights and resolutions of the DOFs."""
+"""The number of DOFs, their limits, weights and resolutions."""
 
 from types import EllipsisType
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ravemj.core.api_object import ApiObject
+from ravemj.core.arguments import checked_index
 from ravemj.core.arrays import checked_indices, checked_numbers, checked_vector
 from ravemj.core.transforms import Floats
+from ravemj.engine.simulation import BodyState, Simulation
 from ravemj.errors import ArgumentError, ErrorCode
 from ravemj.model.joints import value_differences
 from ravemj.model.limits import with_fields
 from ravemj.model.scene import Joint
-from ravemj.rave.body.base import BodyPart
 
 
-class Limits(BodyPart):
-    """Limits, weights and resolutions of the DOFs. Setting them does not move the body."""
+class Limits(ApiObject):
+    """The number of DOFs, and their limits, weights and resolutions. Setting them does not move the body.
+
+    It is the base class of the other topics of a body, and declares the state that they share.
+    """
+
+    _internal = ("simulation_state",)
+
+    _state: BodyState
+    _simulation: Simulation
 
     _known: tuple[tuple[Joint, ...], dict[str, Floats]] | None = None
     """A cache: the joints, and fields of all their axes as arrays, by name. A change replaces the tuple of joints, so
     the cache holds as long as the scene has this very tuple."""
+
+    @property
+    def simulation_state(self) -> BodyState:
+        """The body below the OpenRAVE API: its scene and its kinematics."""
+        return self._state
+
+    def _checked_link(self, index: int) -> int:
+        return checked_index(index, len(self._state.scene.links), "linkindex")
+
+    def GetDOF(self) -> int:
+        """Return the number of degrees of freedom: the joint axes that ``SetDOFValues`` sets.
+
+        Passive joints are not counted.
+
+        Example:
+            >>> robot.GetDOF()
+            2
+        """
+        return self._state.dof
 
     def GetDOFLimits(self, indices: "ArrayLike | EllipsisType | None" = ...) -> tuple[Floats, Floats]:
         """Return the joint limits.

@@ -11,7 +11,7 @@ from ravemj.model import chains, hashes
 from ravemj.model.adjacency import adjacent_pairs
 from ravemj.model.mimic import Equations
 from ravemj.model.shape_bodies import FROM_SCRIPT
-from ravemj.rave.body.base import BodyPart
+from ravemj.rave.body.limits import Limits
 from ravemj.rave.joint import Joint
 from ravemj.rave.link import Link
 
@@ -22,7 +22,7 @@ _NO_FILES = frozenset({FROM_SCRIPT.file, "data"})
 """Sources of bodies that were read from no file; ``data`` is what readers call a text."""
 
 
-class Structure(BodyPart):
+class Structure(Limits):
     """Links and joints: which there are, what moves what, the path between links, mass, hashes, file and id.
 
     OpenRAVE's ids, revisions and reference files belong to databases of models, which ravemj has none of: they are what
@@ -41,6 +41,15 @@ class Structure(BodyPart):
     @property
     def _body(self) -> "KinBody":
         return cast("KinBody", self)
+
+    def GetName(self) -> str:
+        """Return the body's name, unique in its environment.
+
+        Example:
+            >>> [body.GetName() for body in env.GetBodies()]
+            ['Pendulum']
+        """
+        return self._state.scene.name
 
     def GetLinks(self, indices: Sequence[int] | None = None) -> list[Link]:
         """Return the links in the order of the file; the first one is the root.

@@ -25,7 +25,7 @@ class Controller(Interface):
 
     def __init__(self, env: "Environment", xml_id: str) -> None:
         self._env = env
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._xml_id = xml_id
         self._attached_robot: Robot | None = None
         self._dofs: Ints | None = None

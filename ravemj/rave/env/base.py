@@ -2,16 +2,16 @@
 
 from typing import TYPE_CHECKING
 
+from ravemj.core.api_object import ApiObject
 from ravemj.engine.simulation import Simulation
 from ravemj.errors import Diagnostic, ErrorCode, RavemjError
 from ravemj.graphics.simulation_renderer import SimulationRenderer
-from ravemj.rave.user_data import Annotations, UserData
 
 if TYPE_CHECKING:
     from ravemj.gui.viewers import Viewer
 
 
-class EnvironmentPart(UserData):
+class EnvironmentPart(ApiObject):
     """The base class of the topics of ``Environment``, with the state that they share."""
 
     def __init__(self) -> None:
@@ -20,7 +20,6 @@ class EnvironmentPart(UserData):
         self._viewers: list[Viewer] = []
         self._found: dict[Diagnostic, None] = {}  # ordered sets: loading a file again adds nothing
         self._files: dict[str, None] = {}
-        self._annotations = Annotations()
         self._is_destroyed = False
 
     def _check_alive(self) -> None:

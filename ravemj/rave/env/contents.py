@@ -62,7 +62,7 @@ class Contents(EnvironmentPart):
         """Remove all bodies and sensors from the environment."""
         for body in self._kept_objects.values():
             if isinstance(body, Robot):
-                body.forget_sensors()
+                body.devices.forget()
         for sensor in self._sensors:
             sensor.hide()
         self._sensors.clear()
@@ -215,7 +215,7 @@ class Contents(EnvironmentPart):
             )
         self._kept_objects.pop(state, None)
         if isinstance(interface, Robot):
-            interface.forget_sensors()
+            interface.devices.forget()
         was_there = self._simulation.remove(state)
         if was_there:
             interface.disconnect()

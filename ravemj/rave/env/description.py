@@ -28,6 +28,7 @@ from ravemj.rave.units import (
     LengthUnit,
     UnitInfo,
 )
+from ravemj.rave.user_data import Annotations, GetUserData, RemoveUserData, SetUserData
 
 OTHER_UNITS = "environments in other units than kilograms, radians and seconds"
 
@@ -36,12 +37,14 @@ Json = Mapping[str, Any]
 
 
 class Description(Simulating):
-    """Name, description, keywords, parameters and units of an environment, and the environment as an info or JSON."""
+    """Name, description, user data, parameters and units of an environment, and the environment as an info or JSON."""
+
+    _internal = ("annotations",)
 
     def __init__(self) -> None:
         super().__init__()
         self._name = ""
-        self._description = ""
+        self.annotations = Annotations()
         self._keywords: list[str] = []
         self._numbers: dict[str, int] = {}
         self._units = UnitInfo()
@@ -56,7 +59,7 @@ class Description(Simulating):
 
     def GetDescription(self) -> str:
         """Return the description that ``SetDescription`` set."""
-        return self._description
+        return self.annotations.description
 
     def SetDescription(self, sceneDescription: str) -> None:
         """Set a description for people.
@@ -64,7 +67,11 @@ class Description(Simulating):
         Args:
             sceneDescription: The text.
         """
-        self._description = str(sceneDescription)
+        self.annotations.description = str(sceneDescription)
+
+    SetUserData = SetUserData
+    GetUserData = GetUserData
+    RemoveUserData = RemoveUserData
 
     def GetKeywords(self) -> list[str]:
         """Return the keywords that ``SetKeywords`` set."""
@@ -206,7 +213,7 @@ class Description(Simulating):
                 if body is not None:
                     body.ResetGrabbed(cast("Sequence[GrabbedInfo]", one._vGrabbedInfos))
             self.GetPhysicsEngine().SetGravity(np.asarray(info._gravity))
-            self._description, self._keywords = info._description, list(info._keywords)
+            self.annotations.description, self._keywords = info._description, list(info._keywords)
             self._numbers = dict(info._uInt64Parameters)
         return added, changed, removed
 

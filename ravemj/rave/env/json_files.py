@@ -4,8 +4,7 @@
 # pyright: reportPrivateUsage=false
 
 import json
-import os
-from collections.abc import Callable, Collection, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from typing import Any, cast
 
@@ -15,9 +14,7 @@ from ravemj.core.output import new_file
 from ravemj.errors import Diagnostics, OutputError, RavemjError, Source, SourceError, send_warnings
 from ravemj.model import scene
 from ravemj.model.scene import View
-from ravemj.rave.env.description import Description
 from ravemj.rave.infos import EnvironmentBaseInfo, KinBodyInfo
-from ravemj.rave.kinbody import KinBody
 
 SUFFIX = ".json"
 
@@ -29,101 +26,46 @@ def is_json(path: str) -> bool:
     return path.lower().endswith(SUFFIX)
 
 
-class JsonFiles(Description):
-    """Saves and loads environments in OpenRAVE's JSON."""
+def save_json(info: EnvironmentBaseInfo, path: str, content: scene.Scene, skipped: Sequence[str]) -> None:
+    """Write bodies and the properties of their environment to a file.
 
-    def _save_json(
-        self, path: str, names: Collection[str], skipped: Sequence[str], sensors: Sequence[scene.AttachedSensor]
-    ) -> None:
-        """Write bodies and the properties of the environment to a file.
+    JSON has no place for the view and for sensors that no robot carries; warnings say that they are left out.
 
-        Args:
-            path: The file.
-            names: The names of the bodies.
-            skipped: The parts to leave out, words of ``skipwrite``.
-            sensors: The sensors that no robot carries; JSON has no place for them.
+    Args:
+        info: The description of the environment; it is changed.
+        path: The file.
+        content: The bodies, the view and the sensors to save.
+        skipped: The parts to leave out, words of ``skipwrite``.
 
-        Raises:
-            OutputError: The file cannot be written, or a number is not finite. An existing file stays as it is.
-        """
-        info = self.ExtractInfo()
-        info._vBodyInfos = [body for body in info._vBodyInfos if body._name in names]
-        for body in info._vBodyInfos:
-            body._vGrabbedInfos = [grab for grab in body._vGrabbedInfos if cast("Any", grab)._grabbedname in names]
-            for word in skipped:
-                _SKIPS[word](body)
-        diagnostics = Diagnostics()
-        if self._simulation.view not in (None, View()):
-            message = "background and camera are left out: JSON has no place for them"
-            diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML keeps them")
-        if sensors:
-            names_of_sensors = ", ".join(sensor.name for sensor in sensors)
-            message = f"sensors that no robot carries are left out: {names_of_sensors}; JSON has no place for them"
-            diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML and COLLADA keep them")
-        _warn_of_losses(
-            diagnostics, path, [body.simulation_state.scene for body in self.GetBodies() if body.GetName() in names]
-        )
-        send_warnings(diagnostics)
-        try:
-            text = json.dumps(info.SerializeJSON(), allow_nan=False)
-        except ValueError as error:
-            raise OutputError(f"cannot write {path}: a number is not finite, and JSON has no word for it") from error
-        with new_file(path) as file:
-            file.write_text(text + "\n", encoding="utf-8", newline="\n")
-
-    def _load_json(self, path: str) -> None:
-        """Load the environment of a file; see ``LoadJSON``.
-
-        Raises:
-            SourceError: The file is missing or broken. Bodies before the error are in the environment.
-        """
-        self._check_alive()
-        content = self._content(path)
-        with _placed_errors(path):
-            self.LoadJSON(content)
-
-    def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
-        """Return the first body of a file, without adding it.
-
-        Args:
-            path: The file.
-            into: An existing body to replace, or None for a new one.
-            is_robot: Whether to make a robot, whatever the file says.
-
-        Raises:
-            SourceError: The file is missing or broken, or has no body.
-        """
-        content = self._content(path)
-        info = EnvironmentBaseInfo()
-        with _placed_errors(path):
-            self._read_json(info, content)
-            if not info._vBodyInfos:
-                raise SourceError("there is no body in it", Source(path))
-            first = info._vBodyInfos[0]
-            first._uri = f"file:{os.path.abspath(path)}"
-            first._isRobot = into.IsRobot() if into is not None else first._isRobot or is_robot
-            body = self._new_body(is_robot=first._isRobot) if into is None else into
-            body.InitFromKinBodyInfo(first)
-        return body
-
-    def _content(self, path: str) -> dict[str, Any]:
-        """Return the content of a file, and note that it was read.
-
-        Raises:
-            SourceError: The file is missing or broken.
-        """
-        from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
-
-        found = find(path)
-        if found is None:
-            raise SourceError("there is no such file", Source(path), "check the path, or set OPENRAVE_DATA")
-        content = _parsed(found)
-        self._files[found] = None
-        return content
+    Raises:
+        OutputError: The file cannot be written, or a number is not finite. An existing file stays as it is.
+    """
+    names = {body.name for body in content.bodies}
+    info._vBodyInfos = [body for body in info._vBodyInfos if body._name in names]
+    for body in info._vBodyInfos:
+        body._vGrabbedInfos = [grab for grab in body._vGrabbedInfos if cast("Any", grab)._grabbedname in names]
+        for word in skipped:
+            _SKIPS[word](body)
+    diagnostics = Diagnostics()
+    if content.view not in (None, View()):
+        message = "background and camera are left out: JSON has no place for them"
+        diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML keeps them")
+    if content.sensors:
+        names_of_sensors = ", ".join(sensor.name for sensor in content.sensors)
+        message = f"sensors that no robot carries are left out: {names_of_sensors}; JSON has no place for them"
+        diagnostics.warn("not-written", message, Source(path), "OpenRAVE XML and COLLADA keep them")
+    _warn_of_losses(diagnostics, path, content.bodies)
+    send_warnings(diagnostics)
+    try:
+        text = json.dumps(info.SerializeJSON(), allow_nan=False)
+    except ValueError as error:
+        raise OutputError(f"cannot write {path}: a number is not finite, and JSON has no word for it") from error
+    with new_file(path) as file:
+        file.write_text(text + "\n", encoding="utf-8", newline="\n")
 
 
 @contextmanager
-def _placed_errors(path: str) -> Generator[None]:
+def placed_errors(path: str) -> Generator[None]:
     """Turn errors about values into errors that name the file."""
     try:
         yield
@@ -135,6 +77,20 @@ def _placed_errors(path: str) -> Generator[None]:
         raise SourceError("a number in the file is too large to compute with", Source(path)) from error
     except (TypeError, ValueError, LookupError) as error:  # a hundred places convert values; any can meet a wrong type
         raise SourceError(f"a value in the file is of a wrong kind: {error}", Source(path)) from error
+
+
+def read_json(path: str) -> tuple[str, dict[str, Any]]:
+    """Return the path of a file that is looked for as ``Load`` does, and the object that it holds.
+
+    Raises:
+        SourceError: The file is missing or broken.
+    """
+    from ravemj.formats.readers import find  # noqa: PLC0415 - slow to import
+
+    found = find(path)
+    if found is None:
+        raise SourceError("there is no such file", Source(path), "check the path, or set OPENRAVE_DATA")
+    return found, _parsed(found)
 
 
 def _parsed(path: str) -> dict[str, Any]:

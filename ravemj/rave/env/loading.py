@@ -1,11 +1,14 @@
 """Loads models from files and from text."""
 
+# The fields of infos have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
 import logging
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,7 +17,6 @@ from ravemj.engine.compiled import Compiled
 from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.body import GrabbedBody
 from ravemj.errors import (
-    ArgumentError,
     Diagnostic,
     Diagnostics,
     ErrorCode,
@@ -25,7 +27,17 @@ from ravemj.errors import (
     send_warnings,
 )
 from ravemj.model.scene import Grab, Mesh, Scene
-from ravemj.rave.env.json_files import JsonFiles, is_json
+from ravemj.rave.env.description import Description
+from ravemj.rave.env.json_files import is_json, placed_errors, read_json
+from ravemj.rave.env.load_arguments import (
+    Argument,
+    Attributes,
+    Text,
+    checked_attributes,
+    read_arguments,
+    warn_of_attributes,
+)
+from ravemj.rave.infos import EnvironmentBaseInfo
 from ravemj.rave.kinbody import KinBody
 from ravemj.rave.robot import Robot
 from ravemj.rave.sensors import Sensor
@@ -34,18 +46,12 @@ from ravemj.rave.trimesh import TriMesh, trimesh_of
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml import Reading
 
-Attributes = Mapping[str, str]
-"""Attributes for the bodies of a file, by name; see ``Load``."""
-
-Text = str | bytes | os.PathLike[str]
-_Argument = KinBody | Text | Attributes | None
-
 _LOG = logging.getLogger("ravemj")
 
 _NAME_CONFLICTS = {ErrorCode.BodyNameConflict.name, ErrorCode.SensorNameConflict.name}
 
 
-class Loading(JsonFiles):
+class Loading(Description):
     """The methods that load models."""
 
     _internal = ("add_file",)
@@ -79,8 +85,8 @@ class Loading(JsonFiles):
         """
         checked_kind(filename, (str, bytes, os.PathLike), "Load: filename", "a path")
         if is_json(os.fsdecode(filename)):
-            return self._try_json(os.fsdecode(filename), _checked_attributes(atts, "Load"))
-        reading = self._read_file(filename, _checked_attributes(atts, "Load"))
+            return self._try_json(os.fsdecode(filename), checked_attributes(atts, "Load"))
+        reading = self._read_file(filename, checked_attributes(atts, "Load"))
         try:
             return self._take(reading)
         except RavemjError as error:
@@ -131,13 +137,29 @@ class Loading(JsonFiles):
             trial._environment.Destroy()
 
     def _try_json(self, path: str, given: Attributes) -> bool:
-        _warn_of_attributes(path, given)
+        warn_of_attributes(path, given)
         try:
             self._load_json(path)
         except SourceError as error:
             _LOG.error("%s", error)
             return False
         return True
+
+    def _load_json(self, path: str) -> None:
+        """Take over the environment of a file; see ``LoadJSON``.
+
+        Raises:
+            SourceError: The file is missing or broken; what was read before is there.
+        """
+        self._check_alive()
+        content = self._json_content(path)
+        with placed_errors(path):
+            self.LoadJSON(content)
+
+    def _json_content(self, path: str) -> dict[str, Any]:
+        found, content = read_json(path)
+        self._files[found] = None
+        return content
 
     def LoadData(self, data: str | bytes, atts: Attributes | None = None) -> bool:
         """Add a model that is given as text, as ``Load`` adds a file.
@@ -158,7 +180,7 @@ class Loading(JsonFiles):
             True
         """
         checked_kind(data, (str, bytes), "LoadData: data", "a text")
-        return self._take(self._read_data(data, _checked_attributes(atts, "LoadData")))
+        return self._take(self._read_data(data, checked_attributes(atts, "LoadData")))
 
     def _read_file(self, path: Text, given: Attributes) -> "Reading":
         from ravemj.formats.readers import read_file  # noqa: PLC0415 - takes a while, and not every script reads a file
@@ -218,7 +240,7 @@ class Loading(JsonFiles):
         self._files.update(dict.fromkeys(reading.files))
         self._found.update(dict.fromkeys(reading.diagnostics))
 
-    def ReadKinBodyURI(self, *arguments: _Argument, **named: _Argument) -> KinBody | None:
+    def ReadKinBodyURI(self, *arguments: Argument, **named: Argument) -> KinBody | None:
         """Return a body from a file without adding it: ``ReadKinBodyURI(filename[, atts])``.
 
         The form ``ReadKinBodyURI(body, filename[, atts])`` replaces an existing body. ``atts`` are as for ``Load``.
@@ -230,32 +252,32 @@ class Loading(JsonFiles):
             >>> mug = env.ReadKinBodyURI("mug.kinbody.xml")
             >>> env.Add(mug)
         """
-        into, filename, given = _read_arguments("ReadKinBodyURI", arguments, named)
+        into, filename, given = read_arguments("ReadKinBodyURI", arguments, named)
         return self._read_uri(filename, given, into, is_robot=False)
 
     ReadKinBodyXMLFile = ReadKinBodyURI
 
-    def ReadKinBodyData(self, *arguments: _Argument, **named: _Argument) -> KinBody | None:
+    def ReadKinBodyData(self, *arguments: Argument, **named: Argument) -> KinBody | None:
         """Return a body from text without adding it: ``ReadKinBodyData(data[, atts])``; see ``ReadKinBodyURI``."""
-        into, data, given = _read_arguments("ReadKinBodyData", arguments, named)
+        into, data, given = read_arguments("ReadKinBodyData", arguments, named)
         return self._read(self._read_data(data, given), into, is_robot=False)
 
     ReadKinBodyXMLData = ReadKinBodyData
 
-    def ReadRobotURI(self, *arguments: _Argument, **named: _Argument) -> Robot | None:
+    def ReadRobotURI(self, *arguments: Argument, **named: Argument) -> Robot | None:
         """Return a robot from a file without adding it: ``ReadRobotURI(filename[, atts])``; see ``ReadKinBodyURI``.
 
         A kinbody of the file becomes a robot.
         """
-        into, filename, given = _read_arguments("ReadRobotURI", arguments, named)
+        into, filename, given = read_arguments("ReadRobotURI", arguments, named)
         robot = self._read_uri(filename, given, into, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
     ReadRobotXMLFile = ReadRobotURI
 
-    def ReadRobotData(self, *arguments: _Argument, **named: _Argument) -> Robot | None:
+    def ReadRobotData(self, *arguments: Argument, **named: Argument) -> Robot | None:
         """Return a robot from text without adding it: ``ReadRobotData(data[, atts])``; see ``ReadRobotURI``."""
-        into, data, given = _read_arguments("ReadRobotData", arguments, named)
+        into, data, given = read_arguments("ReadRobotData", arguments, named)
         robot = self._read(self._read_data(data, given), into, is_robot=True)
         return robot if isinstance(robot, Robot) else None
 
@@ -265,12 +287,36 @@ class Loading(JsonFiles):
         path = os.fsdecode(filename)
         if not is_json(path):
             return self._read(self._read_file(path, given), into, is_robot=is_robot)
-        _warn_of_attributes(path, given)
+        warn_of_attributes(path, given)
         try:
             return self._body_of_json(path, into, is_robot=is_robot)
         except SourceError as error:
             _LOG.error("%s", error)
             return None
+
+    def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
+        """Return the first body of a file, which is not added.
+
+        Args:
+            path: The file.
+            into: A body to make anew, or None.
+            is_robot: Whether it becomes a robot, whatever the file calls it.
+
+        Raises:
+            SourceError: The file is missing or broken, or has no body.
+        """
+        content = self._json_content(path)
+        info = EnvironmentBaseInfo()
+        with placed_errors(path):
+            self._read_json(info, content)
+            if not info._vBodyInfos:
+                raise SourceError("there is no body in it", Source(path))
+            first = info._vBodyInfos[0]
+            first._uri = f"file:{os.path.abspath(path)}"
+            first._isRobot = into.IsRobot() if into is not None else first._isRobot or is_robot
+            body = self._new_body(is_robot=first._isRobot) if into is None else into
+            body.InitFromKinBodyInfo(first)
+        return body
 
     def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
         """Return the first body that was read, without adding it."""
@@ -302,7 +348,7 @@ class Loading(JsonFiles):
         from ravemj.formats.readers import find  # noqa: PLC0415
 
         path = find(filename)
-        factors = [float(word) for word in _checked_attributes(atts, "ReadTrimesh").get("scalegeometry", "1").split()]
+        factors = [float(word) for word in checked_attributes(atts, "ReadTrimesh").get("scalegeometry", "1").split()]
         x, y, z = (factors * 3)[:3]
         try:
             if path is None:
@@ -339,7 +385,7 @@ class Loading(JsonFiles):
         Returns:
             The robot or body; None with a logged reason if the file is missing, broken or has no body.
         """
-        return self._read_uri(filename, _checked_attributes(atts, "ReadInterfaceURI"), None, is_robot=False)
+        return self._read_uri(filename, checked_attributes(atts, "ReadInterfaceURI"), None, is_robot=False)
 
     ReadInterfaceXMLFile = ReadInterfaceURI
 
@@ -352,41 +398,3 @@ class Loading(JsonFiles):
     def files(self) -> tuple[str, ...]:
         """The paths of all files that were read: models, included files, and meshes."""
         return tuple(self._files)
-
-
-def _warn_of_attributes(path: str, given: Attributes) -> None:
-    """Warn about attributes for a JSON file, where they have no effect."""
-    diagnostics = Diagnostics()
-    for name in given:
-        diagnostics.warn("unknown-attribute", f"the attribute '{name}' has no effect on a JSON file", Source(path))
-    send_warnings(diagnostics)
-
-
-def _read_arguments(
-    caller: str, arguments: tuple[_Argument, ...], named: dict[str, _Argument]
-) -> tuple[KinBody | None, str | bytes, Attributes]:
-    """Return the body to replace or None, the file or text, and the attributes."""
-    given = [*arguments, *(named.pop(name) for name in ("filename", "data", "atts") if name in named)]
-    if named:
-        raise TypeError(f"{caller}: has no argument {', '.join(named)}")
-    into = given[0] if given and isinstance(given[0], KinBody) else None
-    text, atts, *rest = *(given if into is None else given[1:]), None, None
-    if len(rest) > 2 or not isinstance(text, str | bytes | os.PathLike):
-        raise ArgumentError(f"{caller}: takes a text, optionally after a body and before attributes, not {arguments!r}")
-    return into, os.fspath(text), _checked_attributes(atts, caller)
-
-
-def _checked_attributes(atts: object, caller: str) -> Attributes:
-    """Return the attributes of a user, with their names in lower case.
-
-    Raises:
-        ArgumentError: the attributes are not a dictionary of texts.
-    """
-    if atts is None:
-        return {}
-    given = cast("Mapping[object, object]", checked_kind(atts, Mapping, f"{caller}: atts", "a dict of texts"))
-    wanted = f"{caller}: atts: a name or value"
-    return {
-        checked_kind(name, str, wanted, "a text").lower(): checked_kind(value, str, wanted, "a text")
-        for name, value in given.items()
-    }

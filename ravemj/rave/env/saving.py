@@ -15,7 +15,8 @@ from ravemj.errors import ArgumentError, Diagnostics, UnsupportedError, send_war
 from ravemj.model.scene import Inertial, KinBody, Scene, View
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import SelectionOptions
-from ravemj.rave.env.json_files import JsonFiles, is_json
+from ravemj.rave.env.description import Description
+from ravemj.rave.env.json_files import is_json, save_json
 
 if TYPE_CHECKING:
     from ravemj.formats.openrave_xml.geom_writer import MeshFormat
@@ -62,7 +63,7 @@ _FILE_TYPES = {"collada": ".dae", "json": ".json"}
 _VALUES = {"skipwrite": tuple(_PARTS), "format": ("collada", "openrave", "json"), "meshes": ("stl", "obj")}
 
 
-class Saving(JsonFiles):
+class Saving(Description):
     """The methods that save models."""
 
     SelectionOptions = SelectionOptions
@@ -122,7 +123,8 @@ class Saving(JsonFiles):
         bodies = _chosen(bodies, options, [value for name, value in given if name == "target"])
         names = [body.name for body in bodies]
         if named.get("format") == "json" or ("format" not in named and is_json(path)):
-            self._save_json(path, names, skipped, sensors)
+            content = Scene(tuple(bodies), view, sensors=sensors)
+            save_json(self.ExtractInfo(), path, content, skipped)
             return
         kind = cast("ModelFormat", named.get("format", "collada"))
         if self._metre != 1 and kind == "collada":

@@ -198,7 +198,7 @@ class Simulating(Contents):
         stamp = self._clock.now + round(timestep * 1e6)
         for body in map(self.wrap, self._simulation.bodies):
             if isinstance(body, Robot):
-                body.step_sensors(timestep, stamp)
+                body.devices.step(timestep, stamp)
         for sensor in tuple(self._sensors):
             sensor.advance(timestep, stamp)
         self._simulation.publish()

@@ -19,7 +19,7 @@ from ravemj.model.bounds import geometry_bounds
 from ravemj.model.shape_bodies import FROM_SCRIPT
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.base import filled, identity, info_class, pose, vector
-from ravemj.rave.infos.geometry_sizes import AxialSlice, GeometrySizes, SideWall
+from ravemj.rave.infos.geometry_sizes import VECTORS, AxialSlice, GeometrySizes, SideWall
 from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 TYPES = {one.shape: GeometryType[one.name] for one in scene.SHAPE_TYPES}
 _SHAPES = {GeometryType[one.name]: one.shape for one in scene.SHAPE_TYPES}
-_VECTORS = ("_vGeomData", "_vGeomData2", "_vGeomData3", "_vGeomData4")
 
 
 @info_class
@@ -118,7 +117,7 @@ class GeometryInfo(GeometrySizes):
 
     def _take(self, shape: scene.Shape) -> None:
         """Set the fields of the sizes: each vector of a shape fills a field, and its scalars share the first one."""
-        vectors, numbers = iter(_VECTORS), list[float]()
+        vectors, numbers = iter(VECTORS), list[float]()
         for size in shape.sizes():
             value = getattr(shape, size.name)
             if size.type is scene.Mesh:
@@ -165,7 +164,7 @@ class GeometryInfo(GeometrySizes):
         if kind is None:
             message = f"GeometryInfo: a shape of type {GeometryType(self._type).name} cannot be made here"
             raise RavemjError(message, ErrorCode.NotImplemented)
-        sizes, vectors = dict[str, object](), iter(_VECTORS)
+        sizes, vectors = dict[str, object](), iter(VECTORS)
         for name, form, _ in kind.sizes():
             if form is scene.Mesh:
                 sizes[name] = self._mesh()

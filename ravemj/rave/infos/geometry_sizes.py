@@ -4,7 +4,8 @@
 # pyright: reportUnknownLambdaType=false, reportUnknownArgumentType=false, reportUnknownVariableType=false
 # pyright: reportUnknownMemberType=false
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,10 +15,14 @@ from numpy.typing import ArrayLike
 from ravemj.core.arrays import checked_vector
 from ravemj.core.enumerations import NamedInt
 from ravemj.core.transforms import Floats
+from ravemj.model import scene
 from ravemj.rave.enums import GeometryType
 from ravemj.rave.infos.base import Info
 from ravemj.rave.infos.json import LENGTHS, PLAIN, POSE, TEXT, Entry, Form, Json, named
 from ravemj.rave.trimesh import TriMesh
+
+VECTORS = ("_vGeomData", "_vGeomData2", "_vGeomData3", "_vGeomData4")
+"""The fields of sizes that are vectors, in their order; sizes that are numbers share the first."""
 
 
 class SideWallType(NamedInt):
@@ -186,8 +191,7 @@ def _first(numbers: ArrayLike) -> Floats:
     return np.array([*np.ravel(np.asarray(numbers, dtype=float)), 0.0, 0.0, 0.0])[:3]
 
 
-_NAMES = "Box Sphere Cylinder Trimesh Container Cage CalibrationBoard Axial ConicalFrustum Prism Capsule"
-_TYPES = named({GeometryType.None_: ""} | {GeometryType[name]: name.lower() for name in _NAMES.split()})
+_TYPES = named({kind: kind.name.lower() for kind in GeometryType} | {GeometryType.None_: ""})
 
 _COMMON_JSON = (
     Entry("id", "_id", TEXT),
@@ -218,7 +222,6 @@ def _number(place: int) -> Form:
     return Form(lambda numbers, scale: float(_first(numbers)[place] * scale), read)
 
 
-_ROUND = (Entry("radius", "_vGeomData", _number(0)), Entry("height", "_vGeomData", _number(1)))
 _MESH = Form(
     lambda mesh, scale: _mesh_json(mesh or TriMesh(), scale),
     lambda value, scale, present: TriMesh(
@@ -252,29 +255,30 @@ _SLICES = Form(
     lambda value, scale, present: [AxialSlice(z * scale, r * scale) for z, r in np.reshape(value, (-1, 2)).tolist()],
 )
 
-_SIZES_JSON = {
-    GeometryType.Box: (Entry("halfExtents", "_vGeomData", _EXTENTS),),
-    GeometryType.CalibrationBoard: (Entry("halfExtents", "_vGeomData", _EXTENTS),),
-    GeometryType.Sphere: _ROUND[:1],
-    GeometryType.Cylinder: _ROUND,
-    GeometryType.Capsule: _ROUND,
-    GeometryType.Trimesh: (Entry("mesh", "_meshcollision", _MESH),),
-    GeometryType.Prism: (
-        Entry("crossSection", "_vCrossSection", _CROSS_SECTION),
-        Entry("height", "_vGeomData", _number(0)),
-    ),
+
+def _of_sizes(shape: type[scene.Shape]) -> Iterator[Entry]:
+    """Yield the keys of a shape, named like its sizes; see ``GeometryInfo`` for the fields that hold them."""
+    vectors, places = iter(VECTORS), itertools.count()
+    for name, kind, optional in shape.sizes():
+        first, *others = name.split("_")
+        key = first + "".join(map(str.title, others))
+        if kind is float:
+            yield Entry(key, VECTORS[0], _number(next(places)), optional)
+        elif kind is scene.Mesh:
+            yield Entry(key, "_meshcollision", _MESH, optional)
+        elif kind == scene.CrossSection:
+            yield Entry(key, "_vCrossSection", _CROSS_SECTION, optional)
+        else:
+            yield Entry(key, next(vectors), _EXTENTS, optional)
+
+
+_SIZES_JSON = {GeometryType[one.name]: tuple(_of_sizes(one.shape)) for one in scene.SHAPE_TYPES} | {
     GeometryType.ConicalFrustum: (
         Entry("topRadius", "_vGeomData", _number(0)),
         Entry("bottomRadius", "_vGeomData", _number(1)),
         Entry("height", "_vGeomData", _number(2)),
     ),
     GeometryType.Axial: (Entry("axial", "_vAxialSlices", _SLICES),),
-    GeometryType.Container: (
-        Entry("outerExtents", "_vGeomData", _EXTENTS),
-        Entry("innerExtents", "_vGeomData2", _EXTENTS),
-        Entry("bottomCross", "_vGeomData3", _EXTENTS, optional=True),
-        Entry("bottom", "_vGeomData4", _EXTENTS, optional=True),
-    ),
     GeometryType.Cage: (
         Entry("baseExtents", "_vGeomData", _EXTENTS),
         Entry("innerSizeX", "_vGeomData2", _number(0)),
@@ -283,6 +287,7 @@ _SIZES_JSON = {
         Entry("sideWalls", "_vSideWalls", _WALLS, optional=True),
     ),
 }
+"""How JSON says the sizes; of the last three types, which no shape is of, only infos know them."""
 
 
 def _mesh_json(mesh: TriMesh, scale: float) -> Json:

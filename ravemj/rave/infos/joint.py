@@ -271,7 +271,6 @@ def type_of(kind: scene.JointKind) -> JointType:
     return next(number for number, known in _KINDS.items() if known == kind)
 
 
-_TWO_AXES = (JointType.RR, JointType.RP, JointType.PR, JointType.PP)
 _SPECIAL_AXES = {JointType.Universal: 2, JointType.Hinge2: 2, JointType.Spherical: 3, JointType.Trajectory: 1}
 _WORDS = named(
     {

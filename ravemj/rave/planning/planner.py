@@ -40,7 +40,7 @@ class Planner(Interface):
     def __init__(self, env: "Environment", xmlid: str) -> None:
         self._env = env
         self._xmlid = xmlid
-        self._annotations = Annotations()
+        self.annotations = Annotations()
         self._values: Values | None = None
         self._callbacks: list[PlanCallback] = []
         self._action = 0

@@ -1,5 +1,9 @@
-"""The manipulators of a robot, the active one among them, and the descriptions of its grippers."""
+"""The manipulators, grippers and sensors of a robot, and the bodies that can be connected to it."""
 
+# The fields of infos have the names that OpenRAVE gives them.
+# pyright: reportPrivateUsage=false
+
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, cast
 
 from numpy.typing import ArrayLike
@@ -7,11 +11,14 @@ from numpy.typing import ArrayLike
 from ravemj.core.arguments import also_named, checked_kind
 from ravemj.errors import ArgumentError, Diagnostics, ErrorCode, RavemjError, send_warnings
 from ravemj.geometry_functions.ik_types import IkParameterizationType
-from ravemj.model import hashes
+from ravemj.model import scene
 from ravemj.model.manipulators import check_reach, freeze_manipulator
 from ravemj.rave.arm_ik import IkBatch
-from ravemj.rave.body.base import BodyPart
-from ravemj.rave.infos import GripperInfo, ManipulatorInfo
+from ravemj.rave.attached_sensor import AttachedSensor
+from ravemj.rave.body.structure import Structure
+from ravemj.rave.connected_body import ConnectedBodies, ConnectedBody
+from ravemj.rave.devices import Devices
+from ravemj.rave.infos import AttachedSensorInfo, ConnectedBodyInfo, GripperInfo, ManipulatorInfo
 from ravemj.rave.manipulator import Manipulator
 
 if TYPE_CHECKING:
@@ -19,20 +26,26 @@ if TYPE_CHECKING:
     from ravemj.rave.robot import Robot
 
 
-class Manipulators(BodyPart):
-    """The manipulators of a robot. Methods without a manipulator use the active one, which at first is the first.
+class Equipment(Structure):
+    """The manipulators, grippers and sensors of a robot, and the bodies that can be connected to it.
 
-    Robots also store descriptions of grippers, which have no effect.
+    Methods without a manipulator use the active one, which at first is the first. Descriptions of grippers have no
+    effect. Connected bodies are parts of the robot while they are active and it is in an environment.
     """
 
-    _active_manipulator: str | None
-    """The name of the active manipulator; None for the first, empty for none."""
+    devices: Devices
+    """The sensors that were used; others are not made."""
+    connected: ConnectedBodies
     ik_solvers: "dict[str, IkSolver]"
     """The IK solvers, by the names of their manipulators."""
-
+    _active_manipulator: str | None
+    """The name of the active manipulator; None for the first, empty for none."""
     _manipulators: tuple[Manipulator, ...] = ()
-
     _grippers: tuple[GripperInfo, ...] = ()
+
+    @property
+    def _robot(self) -> "Robot":
+        return cast("Robot", self)
 
     def GetManipulators(self, manipname: str | None = None) -> list[Manipulator]:
         """Return the manipulators, in the order of the file.
@@ -42,8 +55,8 @@ class Manipulators(BodyPart):
         """
         arms = self._state.scene.manipulators
         if len(self._manipulators) != len(arms):  # they are made once, as links are
-            robot, known = cast("Robot", self), self._manipulators[: len(arms)]
-            new = (Manipulator(robot, self._state, index) for index in range(len(known), len(arms)))
+            known = self._manipulators[: len(arms)]
+            new = (Manipulator(self._robot, self._state, index) for index in range(len(known), len(arms)))
             self._manipulators = (*known, *new)
         if manipname is None:
             return list(self._manipulators)
@@ -89,10 +102,6 @@ class Manipulators(BodyPart):
             raise RavemjError(f"ik: '{self.GetName()}' has no active manipulator; SetActiveManipulator chooses one")
         return arm.ik(goals, iktype, limits=limits)
 
-    def GetRobotStructureHash(self) -> str:
-        """Return a hash of the robot's structure, manipulators and sensors, 32 hexadecimal digits."""
-        return hashes.of_robot(self._state.scene)
-
     def GetActiveManipulatorIndex(self) -> int:
         """Return the index of the active manipulator in ``GetManipulators()``; -1 without one."""
         active = self.GetActiveManipulator()
@@ -123,13 +132,10 @@ class Manipulators(BodyPart):
         checked_kind(manipinfo, ManipulatorInfo, "AddManipulator: manipinfo")
         made = freeze_manipulator(manipinfo.manipulator(), body, diagnostics)
         check_reach(made, body)
-        arms, names = list(body.manipulators), [arm.name for arm in body.manipulators]
-        index = names.index(made.name) if made.name in names else len(names)
-        if index < len(names) and not removeduplicate:
-            raise ArgumentError(f"AddManipulator: '{self.GetName()}' has a manipulator '{made.name}' already")
+        index = self._place(made.name, body.manipulators, removeduplicate, "AddManipulator")
         with self._simulation.lock:
             self.ik_solvers.pop(made.name, None)
-            self._state.edit(manipulators=(*arms[:index], made, *arms[index + 1 :]))
+            self._state.edit(manipulators=(*body.manipulators[:index], made, *body.manipulators[index + 1 :]))
         send_warnings(diagnostics)
         return self.GetManipulators()[index]
 
@@ -231,3 +237,149 @@ class Manipulators(BodyPart):
         gone = self.GetGripperInfo(name)
         self._grippers = tuple(info for info in self._grippers if info is not gone)
         return gone is not None
+
+    def GetAttachedSensors(self) -> list[AttachedSensor]:
+        """Return the sensors on the robot's links, in the order of the file."""
+        return [AttachedSensor(self._robot, self._state, index) for index in range(len(self._state.scene.sensors))]
+
+    def GetAttachedSensor(self, sensorname: str) -> AttachedSensor | None:
+        """Return an attached sensor, or None where there is none of that name.
+
+        Args:
+            sensorname: Its name.
+        """
+        return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == sensorname), None)
+
+    GetSensors = GetAttachedSensors
+    GetSensor = GetAttachedSensor
+
+    def AddAttachedSensor(
+        self, attachedsensorinfo: AttachedSensorInfo, removeduplicate: bool = False
+    ) -> AttachedSensor:
+        """Attach a sensor to a link.
+
+        Args:
+            attachedsensorinfo: Its description.
+            removeduplicate: Whether it replaces one of the same name.
+
+        Returns:
+            The new attached sensor.
+
+        Raises:
+            openrave_exception: there is one of that name, or no such link. Nothing has changed then.
+        """
+        body = self._state.scene
+        info = checked_kind(attachedsensorinfo, AttachedSensorInfo, "AddAttachedSensor: attachedsensorinfo")
+        made = info.sensor([link.name for link in body.links])
+        if made.link is None:
+            raise ArgumentError(f"AddAttachedSensor: '{body.name}' has no such link as {info!r} names")
+        index = self._place(made.name, body.sensors, removeduplicate, "AddAttachedSensor")
+        problem = made.problem()
+        if problem is not None:
+            raise ArgumentError(f"AddAttachedSensor: '{made.name}' cannot measure: {problem}")
+        with self._simulation.lock:
+            self.devices.forget(made.name)
+            self._state.edit(sensors=(*body.sensors[:index], made, *body.sensors[index + 1 :]))
+        return self.GetAttachedSensors()[index]
+
+    def RemoveAttachedSensor(self, attsensor: AttachedSensor) -> bool:
+        """Take a sensor off; those behind it move up.
+
+        Args:
+            attsensor: The attached sensor.
+
+        Returns:
+            Whether it was there.
+        """
+        if attsensor not in self.GetAttachedSensors():
+            return False
+        with self._simulation.lock:
+            name = attsensor.GetName()
+            self.devices.forget(name)
+            self._state.edit(sensors=tuple(one for one in self._state.scene.sensors if one.name != name))
+        return True
+
+    def GetConnectedBodies(self) -> list[ConnectedBody]:
+        """Return the bodies that can be connected, active or not."""
+        return list(self.connected.bodies)
+
+    def GetConnectedBody(self, bodyname: str) -> ConnectedBody | None:
+        """Return the connected body of a name, or None.
+
+        Args:
+            bodyname: The name.
+        """
+        return next((body for body in self.connected.bodies if body.GetName() == bodyname), None)
+
+    def GetConnectedBodyActiveStates(self) -> list[int]:
+        """Return for each connected body whether it is active: 1, or 0 for no, -1 for undecided."""
+        return [body.IsActive() for body in self.connected.bodies]
+
+    def SetConnectedBodyActiveStates(self, activestates: Sequence[int]) -> None:
+        """Set for each connected body whether it is active; see ``ConnectedBody.SetActive``.
+
+        Args:
+            activestates: As many states as there are connected bodies.
+        """
+        bodies = self.connected.bodies
+        if len(activestates) != len(bodies):
+            raise ArgumentError(f"SetConnectedBodyActiveStates: {len(activestates)} states for {len(bodies)} bodies")
+        for body, active in zip(bodies, activestates, strict=True):
+            body.SetActive(active)
+
+    def AddConnectedBody(self, connectedbodyinfo: ConnectedBodyInfo, removeduplicate: bool = False) -> ConnectedBody:
+        """Add a body that can be connected; it is where its description says so, from the next ``env.Add`` on.
+
+        Args:
+            connectedbodyinfo: Its description.
+            removeduplicate: Whether it replaces one of the same name.
+
+        Returns:
+            The body.
+
+        Raises:
+            openrave_exception: the robot is in an environment (``InvalidState``); the description has no name, or that
+                of another, or names no link of the robot. Nothing has changed then.
+
+        Example:
+            >>> env.Remove(robot)
+            True
+            >>> tool = robot.AddConnectedBody(info)
+            >>> tool.SetActive(True)
+            True
+            >>> env.Add(robot)
+        """
+        info = checked_kind(connectedbodyinfo, ConnectedBodyInfo, "AddConnectedBody: connectedbodyinfo")
+        return self.connected.add(info, removeduplicate)
+
+    def RemoveConnectedBody(self, connectedbody: ConnectedBody) -> bool:
+        """Forget a body that can be connected; return whether it was there.
+
+        Args:
+            connectedbody: The body.
+
+        Raises:
+            openrave_exception: the robot is in an environment (``InvalidState``).
+        """
+        return self.connected.remove(connectedbody)
+
+    def connect(self) -> None:
+        """Make the active connected bodies parts of the robot; the environment calls this before it adds it."""
+        self.connected.connect()
+
+    def disconnect(self) -> None:
+        """Take the parts of connected bodies away; the environment calls this after it removed the robot."""
+        self.connected.disconnect()
+
+    def _place(
+        self, name: str, parts: Sequence[scene.Manipulator | scene.AttachedSensor], replaces: bool, caller: str
+    ) -> int:
+        """Return the place of a new part: that of the one of its name, or behind all.
+
+        Raises:
+            ArgumentError: there is one of that name, and the new one does not replace it.
+        """
+        index = next((index for index, part in enumerate(parts) if part.name == name), len(parts))
+        if index < len(parts) and not replaces:
+            raise ArgumentError(f"{caller}: '{self.GetName()}' already has one called '{name}'")
+        return index
