@@ -180,7 +180,8 @@ class ConnectedBodies:
         name = info._name
         self._check_removed("AddConnectedBody")
         if not name or (not replaces and any(body.GetName() == name for body in self.bodies)):
-            raise ArgumentError(f"AddConnectedBody: a body cannot be called '{name}': that is empty, or taken")
+            problem = f"has a connected body '{name}' already" if name else "needs a name for the body"
+            raise ArgumentError(f"AddConnectedBody: '{self._robot.GetName()}' {problem}; set another _name")
         if self._robot.GetLink(info._linkname or "") is None:
             raise ArgumentError(f"AddConnectedBody: '{self._robot.GetName()}' has no link '{info._linkname}'")
         added = ConnectedBody(self._robot, info)

@@ -1,4 +1,4 @@
-"""The devices of the sensors that a robot carries."""
+"""The sensors that a robot carries, as objects that measure."""
 
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class Devices:
-    """Keeps one object for the device of each sensor of a robot, made when it is first needed.
+    """One sensor object for each attached sensor of a robot, made when it is first used.
 
     Args:
         robot: The robot.
@@ -21,7 +21,7 @@ class Devices:
         self._by_name: dict[str, Sensor] = {}
 
     def of(self, attached: "AttachedSensor") -> Sensor | None:
-        """Return the one object that users have for the device of an attached sensor; None for a mere frame."""
+        """Return the sensor of an attached sensor, always the same object; None for a frame without a sensor."""
         name, description = attached.GetName(), attached.description
         if description.type is None:
             return None
@@ -32,7 +32,7 @@ class Devices:
             return self._by_name[name]
 
     def step(self, timestep: float, stamp: int) -> None:
-        """Let the sensors measure in a step of time [s] that ends at a stamp [microseconds]; others are not made."""
+        """Advance the sensors by a time step [s] that ends at a stamp [microseconds]. Unused sensors are not made."""
         for attached in self._robot.GetAttachedSensors():
             if attached.GetName() in self._by_name or attached.description.is_on:
                 sensor = self.of(attached)
@@ -40,7 +40,7 @@ class Devices:
                     sensor.advance(timestep, stamp)
 
     def take_over(self, other: "Devices") -> None:
-        """Go on like the devices of another robot of the same description; see ``Sensor.take_state``."""
+        """Copy the state of the sensors of another robot of the same description; see ``Sensor.take_state``."""
         self.forget()
         for name, device in other._by_name.items():
             attached = self._robot.GetAttachedSensor(name)
@@ -49,7 +49,7 @@ class Devices:
                 sensor.take_state(device)
 
     def forget(self, name: str | None = None) -> None:
-        """Switch a device off and forget it, with what is drawn of it; None: all."""
+        """Switch off and discard one sensor and its drawings; without a name, all of them."""
         for known in [*self._by_name] if name is None else [name]:
             sensor = self._by_name.pop(known, None)
             if sensor is not None:

@@ -271,11 +271,11 @@ class Robot(ActiveDofs, Equipment, KinBody):
         return self.InitFromKinBodyInfo(info)
 
     def InitFromKinBodyInfo(self, info: KinBodyInfo) -> bool:
-        """Make the robot, its name included, of a description.
+        """Replace the robot, including its name, by the one of a description.
 
         Args:
-            info: The description, for instance of ``ExtractInfo``; a ``RobotBaseInfo`` has grippers and connected
-                bodies, too.
+            info: The description, for instance a result of ``ExtractInfo``. A ``RobotBaseInfo`` has grippers and
+                connected bodies as well.
 
         Returns:
             True.
@@ -304,7 +304,7 @@ class Robot(ActiveDofs, Equipment, KinBody):
         return self.InitFromKinBodyInfo(info)
 
     def GetRobotStructureHash(self) -> str:
-        """Return a text that is the same for robots of the same structure, arms and sensors: 32 hexadecimal digits."""
+        """Return a hash of the robot's structure, manipulators and sensors, 32 hexadecimal digits."""
         return hashes.of_robot(self._state.scene)
 
     def ExtractInfo(self, options: int = ExtractInfoOptions.Everything) -> RobotBaseInfo:

@@ -440,7 +440,7 @@ class TestBatch:
             robot.batch_link_transforms([[0.1, np.nan]])
         with pytest.raises(ravemj.openrave_exception, match="out"):
             robot.batch_link_transforms([[0.1, 0.2]], np.empty((1, 3, 4, 4), dtype=np.float32))
-        with pytest.raises(ravemj.openrave_exception, match="as many"):
+        with pytest.raises(ravemj.openrave_exception, match="same number"):
             robot.batch_inverse_dynamics(np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((3, 2)))
 
 

@@ -264,7 +264,7 @@ class Simulation:
 
 @contextmanager
 def both_locks(one: Simulation, other: Simulation) -> Generator[None]:
-    """Hold the locks of two environments; taken in the same order by all, so that nobody waits for one another."""
+    """Hold the locks of two environments. All callers take them in the same order, which prevents deadlocks."""
     first, second = sorted((one, other), key=id)
     with first.lock, second.lock:
         yield

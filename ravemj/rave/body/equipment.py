@@ -243,10 +243,10 @@ class Equipment(Structure):
         return [AttachedSensor(self._robot, self._state, index) for index in range(len(self._state.scene.sensors))]
 
     def GetAttachedSensor(self, sensorname: str) -> AttachedSensor | None:
-        """Return an attached sensor, or None where there is none of that name.
+        """Return the attached sensor of a name, or None.
 
         Args:
-            sensorname: Its name.
+            sensorname: The name.
         """
         return next((sensor for sensor in self.GetAttachedSensors() if sensor.GetName() == sensorname), None)
 
@@ -259,20 +259,23 @@ class Equipment(Structure):
         """Attach a sensor to a link.
 
         Args:
-            attachedsensorinfo: Its description.
+            attachedsensorinfo: The description of the sensor.
             removeduplicate: Whether it replaces one of the same name.
 
         Returns:
             The new attached sensor.
 
         Raises:
-            openrave_exception: there is one of that name, or no such link. Nothing has changed then.
+            openrave_exception: the robot has a sensor of that name, or no such link, or the sensor cannot measure with
+                these properties. The robot stays as it is.
         """
         body = self._state.scene
         info = checked_kind(attachedsensorinfo, AttachedSensorInfo, "AddAttachedSensor: attachedsensorinfo")
         made = info.sensor([link.name for link in body.links])
         if made.link is None:
-            raise ArgumentError(f"AddAttachedSensor: '{body.name}' has no such link as {info!r} names")
+            known = ", ".join(link.name for link in body.links)
+            message = f"'{body.name}' has no link '{info._linkname}'; it has {known}"
+            raise ArgumentError(f"AddAttachedSensor: {message}")
         index = self._place(made.name, body.sensors, removeduplicate, "AddAttachedSensor")
         problem = made.problem()
         if problem is not None:
@@ -283,13 +286,13 @@ class Equipment(Structure):
         return self.GetAttachedSensors()[index]
 
     def RemoveAttachedSensor(self, attsensor: AttachedSensor) -> bool:
-        """Take a sensor off; those behind it move up.
+        """Remove a sensor from the robot.
 
         Args:
             attsensor: The attached sensor.
 
         Returns:
-            Whether it was there.
+            Whether the robot had it.
         """
         if attsensor not in self.GetAttachedSensors():
             return False
@@ -328,18 +331,18 @@ class Equipment(Structure):
             body.SetActive(active)
 
     def AddConnectedBody(self, connectedbodyinfo: ConnectedBodyInfo, removeduplicate: bool = False) -> ConnectedBody:
-        """Add a body that can be connected; it is where its description says so, from the next ``env.Add`` on.
+        """Add a body that can be connected. If it is active, the next ``env.Add`` makes it a part of the robot.
 
         Args:
-            connectedbodyinfo: Its description.
+            connectedbodyinfo: The description of the body.
             removeduplicate: Whether it replaces one of the same name.
 
         Returns:
             The body.
 
         Raises:
-            openrave_exception: the robot is in an environment (``InvalidState``); the description has no name, or that
-                of another, or names no link of the robot. Nothing has changed then.
+            openrave_exception: the robot is in an environment (``InvalidState``); or the description has no name, has
+                the name of another connected body, or names no link of the robot.
 
         Example:
             >>> env.Remove(robot)
@@ -353,7 +356,7 @@ class Equipment(Structure):
         return self.connected.add(info, removeduplicate)
 
     def RemoveConnectedBody(self, connectedbody: ConnectedBody) -> bool:
-        """Forget a body that can be connected; return whether it was there.
+        """Remove a body that can be connected, and return whether the robot had it.
 
         Args:
             connectedbody: The body.
@@ -364,11 +367,11 @@ class Equipment(Structure):
         return self.connected.remove(connectedbody)
 
     def connect(self) -> None:
-        """Make the active connected bodies parts of the robot; the environment calls this before it adds it."""
+        """Make the active connected bodies parts of the robot. The environment calls this before it adds the robot."""
         self.connected.connect()
 
     def disconnect(self) -> None:
-        """Take the parts of connected bodies away; the environment calls this after it removed the robot."""
+        """Remove the parts of connected bodies. The environment calls this after it has removed the robot."""
         self.connected.disconnect()
 
     def _place(

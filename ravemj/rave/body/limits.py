@@ -33,16 +33,14 @@ class Limits(ApiObject):
 
     @property
     def simulation_state(self) -> BodyState:
-        """The body below the OpenRAVE API: its scene and its kinematics."""
+        """The state of the body below OpenRAVE's API: its scene and its kinematics."""
         return self._state
 
     def _checked_link(self, index: int) -> int:
         return checked_index(index, len(self._state.scene.links), "linkindex")
 
     def GetDOF(self) -> int:
-        """Return the number of degrees of freedom: the joint axes that ``SetDOFValues`` sets.
-
-        Passive joints are not counted.
+        """Return the number of degrees of freedom: the axes of all joints that are not passive.
 
         Example:
             >>> robot.GetDOF()

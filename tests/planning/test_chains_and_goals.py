@@ -1,4 +1,4 @@
-"""``openravepy.planningutils`` where no case of the suites says what it answers."""
+"""``openravepy.planningutils``: Denavit-Hartenberg parameters, and goals of inverse kinematics."""
 
 import numpy as np
 import pytest
