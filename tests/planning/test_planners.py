@@ -468,7 +468,7 @@ def test_helpers_take_their_modules_with_them(env, robot):
 def test_execution_begins_with_the_next_step(env, robot):
     env.StopSimulation()
     helper = ravemj.interfaces.BaseManipulation(robot)
-    assert helper.MoveActiveJoints(goal=[-0.9, 0.3]) is None
+    assert not helper.MoveActiveJoints(goal=[-0.9, 0.3])  # an empty reply, as of OpenRAVE's module
     assert robot.GetDOFValues() == pytest.approx([-1.2, 0.2])
     for _ in range(200):
         env.StepSimulation(0.01)

@@ -243,7 +243,7 @@ class BaseManipulation(TrajectoryText):
             starts=_rows(None, initialconfigs, self._base.arm().GetArmDOF()),
             postprocessing=postprocessing,
         )
-        return self._done(traj, execute, outputtraj, outputtrajobj)
+        return self._done(traj, execute, outputtraj, outputtrajobj, "1")
 
     def MoveHandStraight(
         self,

@@ -61,14 +61,22 @@ class Helper(ApiObject):
     Clone = clone
 
     def _done(
-        self, traj: Trajectory, execute: bool | None, outputtraj: bool | None, outputtrajobj: bool | None
-    ) -> Trajectory | str | None:
-        """Execute a motion unless ``execute`` is False, and return it in the form that is asked for."""
+        self,
+        traj: Trajectory,
+        execute: bool | None,
+        outputtraj: bool | None,
+        outputtrajobj: bool | None,
+        reply: str = "",
+    ) -> Trajectory | str:
+        """Execute a motion unless ``execute`` is False, and return it in the requested form, by default the reply.
+
+        OpenRAVE's modules reply with an empty text, or "1" for motions to poses of the tool. It is never None.
+        """
         if execute is None or execute:
             self._manipulation.execute(traj)
         if outputtrajobj:
             return traj
-        return traj.serialize(AS_TEXT).decode() if outputtraj else None
+        return traj.serialize(AS_TEXT).decode() if outputtraj else reply
 
     def _pair(
         self,
@@ -80,7 +88,7 @@ class Helper(ApiObject):
     ) -> tuple[Floats | None, Trajectory | str | None]:
         """Execute a motion unless ``execute`` is False; return where it leads and itself, as far as they are asked."""
         final, traj = found
-        return final if outputfinal else None, self._done(traj, execute, outputtraj, outputtrajobj)
+        return final if outputfinal else None, self._done(traj, execute, outputtraj, outputtrajobj) or None
 
 
 def given(**options: Any) -> dict[str, Any]:  # noqa: ANN401 - options of any kind

@@ -246,7 +246,7 @@ class TaskManipulation(Helper):
         options |= given(random_grasps=randomgrasps, random_places=randomdests)
         places = [checked_transform(one, "destposes") for one in (() if destposes is None else destposes)]
         plan = self._task.plan_grasp(GraspQuery(body, rows, columns, approachoffset, places, **options))
-        return plan.goals, plan.number, plan.seconds, self._done(plan.traj, execute, outputtraj, outputtrajobj)
+        return plan.goals, plan.number, plan.seconds, self._done(plan.traj, execute, outputtraj, outputtrajobj) or None
 
     def EvaluateConstraints(
         self,

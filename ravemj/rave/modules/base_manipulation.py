@@ -155,40 +155,56 @@ class BaseManipulation(Manipulation):
             raise ArgumentError(f"direction {direction.tolist()} and stepsize {step:g} should not be 0")
         manip = self._solvable()
         T_world_tool = manip.GetTransform() if start is None else start.copy()
-        arm, robot = manip.GetArmIndices(), self.robot
-        rows = [manip.GetArmDOFValues()]
+        reached = 0
         with self.keeping_active(), Bodies(self.env, self._arm_groups(manip)).kept():
-            robot.SetActiveDOFs(arm)
-            for number in range(0 if start is not None else 1, most + 1):
-                pose = T_world_tool.copy()
-                pose[:3, 3] += direction / length * (step * number)
-                is_free = number * step <= ignored
-                row = self.next_solution(manip, pose, rows[-1], check=not is_free, jumps=number == 0)
-                if row is None:
-                    break
-                if number == 0:
-                    rows.clear()
-                rows.append(row)
-            reached = len(rows) - 1
-            if reached < max(least, 1):
-                raise PlanningError(f"the tool gets {reached} steps far, and should get {max(least, 1)}")
-            return self.straight(np.array(rows))
+            present = manip.GetArmDOFValues()
+            self.robot.SetActiveDOFs(manip.GetArmIndices())
+            first = [present] if start is None else self._nearest_first(manip, start, present, check=ignored < 0)
+            for row in first:
+                rows = self._along(manip, T_world_tool, direction / length * step, row, most, ignored)
+                reached = max(reached, len(rows) - 1)
+                if reached >= max(least, 1):
+                    return self.straight(np.array(rows))
+        raise PlanningError(f"the tool gets {reached} steps far, and should get {max(least, 1)}")
+
+    def _along(
+        self, manip: Manipulator, T_world_tool: Floats, step: Floats, first: Floats, most: int, ignored: float
+    ) -> list[Floats]:
+        """Return the arm's values in steps of the tool along a line, from its first values as far as it goes.
+
+        Args:
+            manip: The manipulator.
+            T_world_tool: The first pose of the tool, shape (4, 4).
+            step: The motion of the tool in one step, shape (3,) [m].
+            first: The first values of the arm.
+            most: The maximum number of steps.
+            ignored: The distance from the start in which collisions do not count [m].
+        """
+        rows = [first]
+        for number in range(1, most + 1):
+            pose = T_world_tool.copy()
+            pose[:3, 3] += step * number
+            is_free = number * float(np.linalg.norm(step)) <= ignored
+            row = self.next_solution(manip, pose, rows[-1], check=not is_free)
+            if row is None:
+                break
+            rows.append(row)
+        return rows
 
     def _arm_groups(self, manip: Manipulator) -> Any:  # noqa: ANN401 - groups
         return manip.GetArmConfigurationSpecification().GetGroups()
 
-    def next_solution(
-        self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool, jumps: bool
-    ) -> Floats | None:
+    def next_solution(self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool) -> Floats | None:
         """Return the IK solution nearest to joint values, or None if none is near them and free of collisions."""
+        found = self._nearest_first(manip, pose, before, check=check)
+        return found[0] if found and np.abs(found[0] - before).max() <= _LARGEST_JUMP else None
+
+    def _nearest_first(self, manip: Manipulator, pose: Floats, before: Floats, *, check: bool) -> list[Floats]:
+        """Return the IK solutions for a pose, in the order of their distances from joint values."""
         self.robot.SetDOFValues(before, manip.GetArmIndices())
         options = IkFilterOptions.CheckEnvCollisions if check else IkFilterOptions.IgnoreSelfCollisions
-        goal = IkParameterization(pose, IkParameterization.Type.Transform6D)
-        found = solutions(manip, goal, options)
-        if not found:
-            return None
-        nearest = min(found, key=lambda row: float(np.abs(row - before).max()))
-        return nearest if jumps or np.abs(nearest - before).max() <= _LARGEST_JUMP else None
+        found = solutions(manip, IkParameterization(pose, IkParameterization.Type.Transform6D), options)
+        return sorted(found, key=lambda row: float(np.abs(row - before).max()))
 
     def move_unsync_joints(
         self, hand: Floats, indices: Sequence[int], *, tries: int = 1, divisions: int = 10, planner: str = "BasicRRT"

@@ -235,7 +235,7 @@ class _Candidates:
             for number in range(1, count + 1):
                 pose = start.copy()
                 pose[:3, 3] += direction * (self._query.offset * number / count)
-                after = self._base.next_solution(self._manip, pose, row, check=True, jumps=False)
+                after = self._base.next_solution(self._manip, pose, row, check=True)
                 if after is None:
                     return False
                 row = after
