@@ -34,7 +34,7 @@ def steps(helper, **options):
 def test_the_solution_that_goes_far_enough_is_found_whatever_the_arm_does_now(robot):
     arm, helper = robot.GetActiveManipulator(), ravemj.interfaces.BaseManipulation(robot)
     indices = arm.GetArmIndices()
-    robot.SetDOFValues([0.9, 0.4, 0.6, 0.4, 0.7, -0.2], indices)
+    robot.SetDOFValues([1.2, 0.1, 0.785, -1.0, 0.6, 0.0], indices)
     start = arm.GetTransform()
     found = arm.FindIKSolutions(start, ravemj.IkFilterOptions.CheckEnvCollisions)
     reached = []
