@@ -178,8 +178,7 @@ class BaseManipulation(TrajectoryText):
             constraintfreedoms: What the tool keeps all the way: 1 for each rotation about x, y, z and each way along
                 them that ``constraintmatrix @ T_world_tool @ constrainttaskmatrix`` does not have, 0 for those that
                 are free, shape (6,); None: all are.
-            constraintmatrix: ``T_task_world``, the frame whose axes count; None: the world. The inverse of the tool's
-                present pose makes it keep what it has now.
+            constraintmatrix: ``T_task_world``, the task frame, whose axes count; by default the world.
             constrainterrorthresh: The error [m and rad] up to which the constraint is kept; None: 0.001.
             execute: False leaves the robot alone.
             outputtraj: Whether to return the motion's text.
@@ -193,7 +192,8 @@ class BaseManipulation(TrajectoryText):
             outputtrajobj: Whether to return the motion.
             postprocessing: The smoother and its parameters; None: OpenRAVE's.
             jittergoal: Not used.
-            constrainttaskmatrix: ``T_tool_point``, the point of the tool that is constrained; None: its origin.
+            constrainttaskmatrix: ``T_tool_point``, the constrained frame; by default the frame of the tool that is the
+                task frame at the start, so that the tool keeps what it has there.
             constrainttaskpose: The same as 7 numbers.
             goalsampleprob: The part of the iterations in which a further one is asked for; None: 0.1.
             goalmaxsamples: As ``goalsamples``.
@@ -211,10 +211,7 @@ class BaseManipulation(TrajectoryText):
 
             A glass is carried upright: since the start, the tool turns about the vertical only.
 
-            >>> upright = np.linalg.inv(manip.GetTransform())
-            >>> basemanip.MoveToHandPosition(
-            ...     matrices=[T_world_tool], constraintfreedoms=[1, 1, 0, 0, 0, 0], constrainttaskmatrix=upright
-            ... )
+            >>> basemanip.MoveToHandPosition(matrices=[T_world_tool], constraintfreedoms=[1, 1, 0, 0, 0, 0])
         """
         del affinedofs, steplength, minimumgoalpaths, jittergoal, goalmaxtries, releasegil, freevalues
         options = given(

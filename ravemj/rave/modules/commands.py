@@ -54,9 +54,8 @@ def _tool_constraint(options: Mapping[str, Any]) -> ToolConstraint | None:
 
 
 def _constraint(options: Mapping[str, Any]) -> ToolConstraint:
-    frame, point = (
-        options.get(f"{name}matrix", options.get(f"{name}pose", np.eye(4))) for name in ("constraint", "constrainttask")
-    )
+    frame = options.get("constraintmatrix", options.get("constraintpose", np.eye(4)))
+    point = options.get("constrainttaskmatrix", options.get("constrainttaskpose"))
     return ToolConstraint(frame, point, options["constraintfreedoms"], options.get("constrainterrorthresh", 1e-3))
 
 
@@ -231,7 +230,8 @@ class TaskCommands(_Commands[TaskManipulation]):
         dof = self._manipulation.robot.GetActiveDOF()
         configurations: list[Floats] = []
         config: Mapping[str, Reader] = {"config": lambda tokens: configurations.append(tokens.numbers(dof))}
-        options = {"constraintfreedoms": np.ones(6), **read_options(arguments, {**_CONSTRAINT, **config})}
+        options = {"constraintfreedoms": np.ones(6), "constrainttaskpose": np.eye(4)}
+        options |= read_options(arguments, {**_CONSTRAINT, **config})
         steps, rows = self._manipulation.evaluate_constraints(_constraint(options), configurations)
         return " ".join(map(str, steps)) + " " + "".join(_numbers(row) for row in rows)
 

@@ -121,7 +121,7 @@ class Manipulation:
             params.set_goal_sampler(more.sample, more.probability)
         jitter = search.jitter
         if search.constraint is not None:
-            params.given.manifold = hand_of(params.resolved()).to_constraint(search.constraint.checked())
+            params.given.manifold = hand_of(params.resolved()).to_constraint(search.constraint)
             jitter = 0.0
             if postprocessing is None:
                 params.SetPostProcessing("LinearTrajectoryRetimer", "")

@@ -68,7 +68,7 @@ class TaskManipulation(Manipulation):
         params.SetRobotActiveJoints(self.robot)
         values = params.resolved()
         hand = hand_of(values)
-        error, threshold = hand.to_constraint(constraint.checked())
+        error, threshold = hand.to_constraint(constraint)
         with hand.bodies.kept():
             found = [project(one, error, values.space(), threshold, PROJECTION_STEPS) for one in configurations]
         return [steps for steps, _ in found], [row for _, row in found]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ravemj.core.arrays import checked_transform, checked_vector
-from ravemj.core.transforms import Floats
+from ravemj.core.transforms import Floats, inverse
 from ravemj.errors import ArgumentError
 from ravemj.ik.residuals import rotation_between
 from ravemj.planning.constrained_edges import Manifold
@@ -27,19 +27,23 @@ class ToolConstraint(NamedTuple):
 
     Attributes:
         T_task_world: The task frame, whose axes ``freedoms`` refers to.
-        T_tool_point: The constrained frame, relative to the tool.
+        T_tool_point: The constrained frame, relative to the tool; None for the frame that is the task frame at the
+            start, so that the tool keeps what it has there.
         freedoms: 1 constrains, 0 leaves free: the rotations about x, y, z, then the translations along them, shape
             (6,).
         threshold: The tolerance of the constraint [m and rad].
     """
 
     T_task_world: Floats
-    T_tool_point: Floats
+    T_tool_point: Floats | None
     freedoms: Floats
     threshold: float
 
-    def checked(self) -> "ToolConstraint":
-        """Return the constraint, with rotations that are exact.
+    def checked(self, T_world_tool: Floats) -> tuple[Floats, Floats, Floats, float]:
+        """Return the fields, with the constrained frame filled in and rotations that are exact.
+
+        Args:
+            T_world_tool: The pose of the tool at the start.
 
         Raises:
             ArgumentError: its numbers are none of a constraint.
@@ -50,8 +54,9 @@ class ToolConstraint(NamedTuple):
         if not 0 < self.threshold < np.inf:
             raise ArgumentError(f"constrainterrorthresh: is {self.threshold:g}, and should be more than 0")
         T_task_world = checked_transform(self.T_task_world, "constraintmatrix")
-        T_tool_point = checked_transform(self.T_tool_point, "constrainttaskmatrix")
-        return ToolConstraint(T_task_world, T_tool_point, freedoms, self.threshold)
+        point = inverse(T_task_world @ T_world_tool) if self.T_tool_point is None else self.T_tool_point
+        T_tool_point = checked_transform(point, "constrainttaskmatrix")
+        return T_task_world, T_tool_point, freedoms, self.threshold
 
 
 @dataclass(frozen=True)
@@ -101,8 +106,12 @@ class Hand:
         return lacking
 
     def to_constraint(self, constraint: ToolConstraint) -> Manifold:
-        """Return the configurations that keep a constraint."""
-        T_task_world, T_tool_point, freedoms, threshold = constraint
+        """Return the configurations that keep a constraint; the tool starts where it is.
+
+        Raises:
+            ArgumentError: the constraint has numbers that make no sense.
+        """
+        T_task_world, T_tool_point, freedoms, threshold = constraint.checked(self.manip.GetTransform())
         rotation = T_task_world[:3, :3]
 
         def lacking(values: Floats) -> tuple[Floats, Floats]:
