@@ -315,6 +315,8 @@ class TestFiles:
     def test_archive_without_a_manifest(self, tmp_path):
         (tmp_path / "arm.zae").write_bytes(zipped({"arm.dae": ARM}))
         assert len(read_file(tmp_path / "arm.zae").scene.bodies) == 1
+        body = ravemj.load(tmp_path / "arm.zae").GetBodies()[0]
+        assert body.GetURI() == f"file:{tmp_path / 'arm.zae'}"  # what Load takes
 
     @pytest.mark.parametrize(
         ("members", "message"),

@@ -18,6 +18,9 @@ from ravemj.rave.link import Link
 if TYPE_CHECKING:
     from ravemj.rave.kinbody import KinBody
 
+_ARCHIVE = ".zae"
+"""The suffix of archives of COLLADA documents."""
+
 _NO_FILES = frozenset({FROM_SCRIPT.file, "data"})
 """Sources of bodies that were read from no file; ``data`` is what readers call a text."""
 
@@ -301,7 +304,8 @@ class Structure(Limits):
         if self._uri is not None:
             return self._uri
         file = self._state.scene.source.file
-        return "" if file in _NO_FILES else f"file:{os.path.abspath(file)}"
+        archive, inside, _ = file.partition(_ARCHIVE + "/")  # documents in archives are sources of their own
+        return "" if file in _NO_FILES else f"file:{os.path.abspath(archive + _ARCHIVE if inside else file)}"
 
     GetXMLFilename = GetURI
 
