@@ -86,6 +86,7 @@ def pack_scene(package: Package, model: mujoco.MjModel, shown: Surfaces) -> None
             "body": shape.body,
             "rows": [round(number, 9) for number in shape.T_body_shape.reshape(-1).tolist()],
             "rgba": [round(part, 4) for part in shape.rgba.tolist()],
+            "reach": round(shape.reach, 4),
         }
         for shape in shown.shapes
     ]

@@ -42,6 +42,7 @@ class Shape(NamedTuple):
         geom: Number of the geom in the model.
         T_body_shape: Pose with the scale in its columns, shape (3, 4) [m].
         rgba: Colour and opacity, 0 to 1.
+        reach: Radius of a sphere about the shape's origin that holds it [m].
     """
 
     mesh: int
@@ -49,6 +50,7 @@ class Shape(NamedTuple):
     geom: int
     T_body_shape: Floats
     rgba: Floats
+    reach: float
 
 
 class Surfaces(NamedTuple):
@@ -80,8 +82,11 @@ def surfaces(model: mujoco.MjModel, geoms: NDArray[np.bool_] | None = None, *, h
             meshes.append(_hull(model, data) if is_hull else _mesh(model, kind, data, size))
         rotation = np.empty(9)
         mujoco.mju_quat2Mat(rotation, model.geom_quat[geom])
+        reach = float(
+            np.linalg.norm(_scale(kind, size)) if kind == mujoco.mjtGeom.mjGEOM_PLANE else model.geom_rbound[geom]
+        )
         placed = np.column_stack([rotation.reshape(3, 3) * _scale(kind, size), model.geom_pos[geom]])
-        shapes.append(Shape(numbers[key], int(model.geom_bodyid[geom]), geom, placed, colours[geom]))
+        shapes.append(Shape(numbers[key], int(model.geom_bodyid[geom]), geom, placed, colours[geom], reach))
     return Surfaces(meshes, shapes)
 
 

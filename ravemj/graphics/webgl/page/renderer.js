@@ -1,6 +1,7 @@
 /* Draws what packing.py packs, with WebGL2: lit surfaces, points and lines of constant width. */
 "use strict";
 
+const HERE = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0], SOLID = [0, 0, 0, 1], CLEAR = [0, 0, 0, 0.5];
 const TYPES = { i8: Int8Array, u16: Uint16Array, u32: Uint32Array, f32: Float32Array };
 
 /** Unpack compressed bytes: the document, and a function that returns the array of a name in it. */
@@ -19,6 +20,9 @@ function summed(differences) {
   for (let i = 1; i < sums.length; i++) sums[i] += sums[i - 1];
   return sums;
 }
+
+/** The opacity of a side of what is clear: its back and its front are drawn. */
+const opacity = (both) => 1 - Math.sqrt(1 - Math.min(both, 1));
 
 /** The columns of a quantized array, each with whole numbers, its least number and its step. */
 function columns({ low, step, columns: name }, array) {
@@ -136,11 +140,12 @@ class Renderer {
   load({ content, array }) {
     const { gl } = this;
     this.content = content;
-    this.poses = content.bodies.map(() => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]);
-    this.remake("surfaces", () => { this.meshes = content.meshes.map((mesh) => this.mesh(mesh, array)); });
+    this.poses = content.bodies.map(() => HERE);
+    this.remake("surfaces", () => {
+      const meshes = content.meshes.map((mesh) => this.mesh(mesh, array));
+      this.shapes = content.shapes.map((shape) => ({ ...shape, mesh: meshes[shape.mesh], world: new Array(12) }));
+    });
     this.ball = (instances) => this.mesh(content.ball, array, instances);
-    this.shapes = content.shapes.map((shape) => ({ ...shape, world: new Array(12) }));
-    this.reach = this.shapes.map((shape) => this.radius(shape));
     if (content.drawings) this.show("drawings", content.drawings, array);
     const lights = content.lights, sum = (i) => lights.reduce((total, { ambient }) => total + ambient[i], 0);
     gl.useProgram(this.surface.made);
@@ -152,6 +157,7 @@ class Renderer {
 
   /** Make a part of what is on the graphics card anew. */
   remake(part, make) {
+    this.gl.bindVertexArray(null);  // or new indices would become those of what was drawn last
     for (const free of this.parts.get(part) || []) free();
     this.parts.set(part, this.made = []);
     make();
@@ -161,8 +167,7 @@ class Renderer {
   show(name, { lines, points, spheres, triangles }, array) {
     this.remake(name, () => this.groups.set(name, {
       strokes: [lines, points].filter(Boolean).map((batch) => this.stroke(batch, array)),
-      balls: spheres && this.ballsOf(spheres, array),
-      facets: triangles ? [true, false].map((isSolid) => this.facetsOf(triangles, array, isSolid)) : [],
+      figures: [...(spheres ? this.ballsOf(spheres, array) : []), ...(triangles ? this.facetsOf(triangles, array) : [])],
       marks: [lines, points, spheres, triangles].filter(Boolean).map(({ corners }) => array(corners)),
     }));
   }
@@ -205,16 +210,8 @@ class Renderer {
       instances();
     });
     const low = axes.map((axis) => axis.low), step = axes.map((axis) => axis.step);
-    const far = axes.map(({ low: least, step: by }) => Math.max(Math.abs(least), Math.abs(least + 65535 * by)));
     const type = indices instanceof Uint16Array ? gl.UNSIGNED_SHORT : gl.UNSIGNED_INT;
-    return { vertices, low, step, far, type, indices, faces, count: indices.length };
-  }
-
-  /** How far a shape reaches from the origin of its mesh, at most. */
-  radius({ mesh, rows }) {
-    const far = this.meshes[mesh].far;
-    return Math.hypot(...[0, 4, 8].map((row) => Math.abs(rows[row]) * far[0] + Math.abs(rows[row + 1]) * far[1]
-                                                + Math.abs(rows[row + 2]) * far[2]));
+    return { vertices, low, step, type, indices, faces, count: indices.length };
   }
 
   stroke({ corners, sizes, rgba }, array) {
@@ -231,34 +228,32 @@ class Renderer {
     return { vertices, count: widths.length };
   }
 
+  /** All spheres that nothing shines through as one figure; each of the others as one of its own. */
   ballsOf({ corners, sizes, rgba }, array) {
-    const { gl, surface } = this, centers = array(corners), radii = array(sizes);
-    const rows = new Float32Array(12 * radii.length);
-    radii.forEach((radius, i) => [0, 1, 2].forEach((row) => {
-      rows[12 * i + 5 * row] = radius;
-      rows[12 * i + 4 * row + 3] = centers[3 * i + row];
-    }));
+    const { gl, surface } = this, centers = array(corners), shades = array(rgba), solid = [], clear = [];
+    const balls = [...array(sizes)].map((radius, i) => {
+      const [x, y, z] = centers.subarray(3 * i, 3 * i + 3), [red, green, blue, alpha] = shades.subarray(4 * i, 4 * i + 4);
+      const world = [radius, 0, 0, x, 0, radius, 0, y, 0, 0, radius, z];
+      return { world, rgba: [red, green, blue, opacity(alpha)], reach: radius };
+    });
+    for (const ball of balls) (ball.rgba[3] < 1 ? clear : solid).push(ball);
     const mesh = this.ball(() => {
-      const placed = this.buffer(rows);
+      const placed = this.buffer(new Float32Array(solid.flatMap(({ world }) => world)));
       [surface.row0, surface.row1, surface.row2].forEach((place, row) => {
         this.attribute(place, placed, 4, gl.FLOAT, { stride: 48, offset: 16 * row, divisor: 1 });
       });
-      this.attribute(surface.rgba, this.buffer(array(rgba)), 4, gl.FLOAT, { divisor: 1 });
+      const painted = this.buffer(new Float32Array(solid.flatMap((ball) => ball.rgba)));
+      this.attribute(surface.rgba, painted, 4, gl.FLOAT, { divisor: 1 });
     });
-    return { ...mesh, instances: radii.length };
+    const one = clear.length ? this.ball() : null;
+    return [{ mesh: { ...mesh, instances: solid.length }, world: HERE, rgba: SOLID },
+            ...clear.map((ball) => ({ ...ball, mesh: one }))];
   }
 
-  /** Triangles that nothing shines through, or the others. */
-  facetsOf({ corners, rgba }, array, isSolid) {
-    const { gl, surface } = this, all = array(corners), shade = array(rgba);
-    const chosen = [...shade.keys()].filter((i) => i % 4 === 3 && (shade[i] >= 1) === isSolid).map((i) => (i - 3) / 4);
-    const places = new Float32Array(9 * chosen.length), colors = new Float32Array(4 * chosen.length);
-    chosen.forEach((from, to) => {
-      places.set(all.subarray(9 * from, 9 * from + 9), 9 * to);
-      colors.set(shade.subarray(4 * from, 4 * from + 4), 4 * to);
-    });
-    const count = 3 * chosen.length;
-    const normals = new Int8Array(2 * count), shades = new Float32Array(4 * count);
+  /** All triangles that nothing shines through as one figure; each of the others as one of its own. */
+  facetsOf({ corners, rgba }, array) {
+    const { gl, surface } = this, places = array(corners), colors = array(rgba), count = places.length / 3;
+    const normals = new Int8Array(2 * count), shades = new Float32Array(4 * count), solid = [], clear = [];
     for (let i = 0; i < count; i += 3) {
       const [a, b, c] = [0, 3, 6].map((start) => places.subarray(3 * i + start, 3 * i + start + 3));
       const n = cross([0, 1, 2].map((k) => b[k] - a[k]), [0, 1, 2].map((k) => c[k] - a[k]));
@@ -267,15 +262,26 @@ class Renderer {
       if (n[2] < 0) [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
       for (let k = i; k < i + 3; k++) {
         normals.set([Math.round(127 * x), Math.round(127 * y)], 2 * k);
-        shades.set(colors.subarray(4 * i / 3, 4 * i / 3 + 4), 4 * k);
+        shades.set(colors.subarray(4 * i / 3, 4 * i / 3 + 3), 4 * k);
+        shades[4 * k + 3] = opacity(colors[4 * i / 3 + 3]);
       }
+      const isClear = shades[4 * i + 3] < 1;
+      (isClear ? clear : solid).push(i, i + 1, i + 2);
     }
+    const faces = this.buffer(new Uint32Array([...solid, ...clear]), gl.ELEMENT_ARRAY_BUFFER);
     const vertices = this.vertices(() => {
       this.attribute(surface.position, this.buffer(places), 3, gl.FLOAT);
       this.attribute(surface.folded, this.buffer(normals), 2, gl.BYTE, { normalized: true });
       this.attribute(surface.rgba, this.buffer(shades), 4, gl.FLOAT);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, faces);
     });
-    return { vertices, count };
+    const mesh = { vertices, low: [0, 0, 0], step: [1, 1, 1], type: gl.UNSIGNED_INT };
+    const each = clear.filter((_, i) => i % 3 === 0).map((corner, i) => {
+      const [a, b, c] = [0, 3, 6].map((start) => places.subarray(3 * corner + start, 3 * corner + start + 3));
+      const reach = Math.max(...[b, c].map((end) => Math.hypot(...end.map((part, k) => part - a[k]))));
+      return { mesh: { ...mesh, first: solid.length + 3 * i, count: 3 }, world: HERE, center: a, isFlat: true, reach, rgba: CLEAR };
+    });
+    return [{ mesh: { ...mesh, count: solid.length }, world: HERE, rgba: SOLID }, ...each];
   }
 
   /** Set the pose of a body: position and quaternion wxyz. */
@@ -291,17 +297,37 @@ class Renderer {
     gl.clearColor(...(background || this.content.background), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     this.setUp(view, true);
-    const clear = this.shapes.filter(({ rgba }) => rgba[3] > 0 && rgba[3] < 1);
-    for (const shape of this.shapes) if (shape.rgba[3] >= 1) this.drawShape(shape, this.tinted(shape, marked));
+    const figures = [...this.groups.values()].flatMap((group) => group.figures);
+    const all = [...this.shapes, ...figures], isSolid = ({ rgba }) => rgba[3] >= 1;
+    for (const shape of all.filter(isSolid)) this.drawShape(shape, this.tinted(shape, marked));
     gl.enable(gl.BLEND);
-    for (const group of this.groups.values()) this.drawGroup(group);
-    clear.sort((a, b) => b.depth - a.depth);
-    gl.depthMask(false);
+    gl.useProgram(this.line.made);
+    for (const { vertices, count } of [...this.groups.values()].flatMap((group) => group.strokes)) {
+      gl.bindVertexArray(vertices);
+      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
+    }
     gl.useProgram(this.surface.made);
-    for (const shape of clear) this.drawShape(shape, this.tinted(shape, marked));
-    for (const { facets } of this.groups.values()) if (facets.length) this.drawFacets(facets[1]);
+    gl.depthMask(false);
+    this.drawClear(all.filter((shape) => shape.rgba[3] > 0 && !isSolid(shape)), view, marked);
     gl.depthMask(true);
     gl.disable(gl.BLEND);
+  }
+
+  /** Draw what is clear as MuJoCo does: first backs from the nearest to the farthest, then fronts the other way round. */
+  drawClear(shapes, { position }, marked) {
+    const { gl } = this;
+    const distance = ({ world, center = [world[3], world[7], world[11]], reach }) => (
+      Math.hypot(...position.map((part, i) => part - center[i])) - reach);
+    const sorted = shapes.map((shape) => [distance(shape), shape]).sort(([a], [b]) => a - b);
+    for (const hidden of [gl.FRONT, gl.BACK]) {
+      gl.cullFace(hidden);
+      for (const [, shape] of sorted) {
+        gl[shape.isFlat ? "disable" : "enable"](gl.CULL_FACE);
+        this.drawShape(shape, this.tinted(shape, marked));
+      }
+      sorted.reverse();
+    }
+    gl.disable(gl.CULL_FACE);
   }
 
   tinted({ rgba, body }, marked) {
@@ -336,9 +362,8 @@ class Renderer {
                     + (z - view.position[2]) * forward[2];
       near = Math.min(near, depth - radius);
       far = Math.max(far, depth + radius);
-      return depth;
     };
-    this.shapes.forEach((shape, number) => {
+    for (const shape of this.shapes) {
       const a = this.poses[shape.body], b = shape.rows, to = shape.world;
       for (let row = 0; row < 12; row += 4) {
         for (let column = 0; column < 4; column++) {
@@ -346,8 +371,8 @@ class Renderer {
         }
         to[row + 3] += a[row + 3];
       }
-      shape.depth = seen(to[3], to[7], to[11], this.reach[number]);
-    });
+      seen(to[3], to[7], to[11], shape.reach);
+    }
     for (const places of [...this.groups.values()].flatMap(({ marks }) => marks)) {
       for (let i = 0; i < places.length; i += 3) seen(places[i], places[i + 1], places[i + 2], 0.1);
     }
@@ -375,21 +400,23 @@ class Renderer {
     gl.uniformMatrix4fv(surface.clip, false, clip);
     gl.uniform3fv(surface.eye, view.position);
     gl.uniform1i(surface.isLit, isLit);
-    gl.uniform1f(surface.gloss, 0.5);
     gl.uniform3fv(surface.direction, this.content.lights.flatMap(({ direction }) => direction || z));
   }
 
-  drawShape({ mesh: number, world }, rgba) {
-    const { gl, surface } = this, mesh = this.meshes[number];
-    gl.bindVertexArray(mesh.vertices);
+  /** Draw a shape of a body, or a figure. */
+  drawShape({ mesh, world, body }, rgba) {
+    const { gl, surface } = this, { vertices, count, type, instances, first = 0 } = mesh;
+    gl.bindVertexArray(vertices);
     gl.uniform3fv(surface.low, mesh.low);
     gl.uniform3fv(surface.step_, mesh.step);
+    gl.uniform1f(surface.gloss, body === undefined ? 0 : 0.5);
     [surface.row0, surface.row1, surface.row2].forEach((place, row) => {
       gl.vertexAttrib4f(place, world[4 * row], world[4 * row + 1], world[4 * row + 2], world[4 * row + 3]);
     });
     gl.vertexAttrib4f(surface.rgba, ...rgba);
-    if (this.hasEdgesOnly) this.drawEdges(mesh);
-    else gl.drawElements(gl.TRIANGLES, mesh.count, mesh.type, 0);
+    if (this.hasEdgesOnly && body !== undefined) this.drawEdges(mesh);
+    else if (instances !== undefined) gl.drawElementsInstanced(gl.TRIANGLES, count, type, 0, instances);
+    else gl.drawElements(gl.TRIANGLES, count, type, 4 * first);
   }
 
   drawEdges(mesh) {
@@ -405,37 +432,5 @@ class Renderer {
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.edges);
     gl.drawElements(gl.LINES, 2 * count, type, 0);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, faces);
-  }
-
-  drawGroup({ strokes, balls, facets }) {
-    const { gl, surface } = this;
-    gl.useProgram(surface.made);
-    gl.uniform1f(surface.gloss, 0);
-    if (balls) {
-      gl.bindVertexArray(balls.vertices);
-      gl.uniform3fv(surface.low, balls.low);
-      gl.uniform3fv(surface.step_, balls.step);
-      gl.drawElementsInstanced(gl.TRIANGLES, balls.count, balls.type, 0, balls.instances);
-    }
-    gl.uniform1f(surface.gloss, 0.5);
-    if (facets.length) this.drawFacets(facets[0]);
-    gl.useProgram(this.line.made);
-    for (const { vertices, count } of strokes) {
-      gl.bindVertexArray(vertices);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
-    }
-  }
-
-  drawFacets({ vertices, count }) {
-    const { gl, surface } = this;
-    gl.uniform1f(surface.gloss, 0);
-    gl.bindVertexArray(vertices);
-    gl.uniform3f(surface.low, 0, 0, 0);
-    gl.uniform3f(surface.step_, 1, 1, 1);
-    [surface.row0, surface.row1, surface.row2].forEach((place, row) => {
-      gl.vertexAttrib4f(place, row === 0, row === 1, row === 2, 0);
-    });
-    gl.drawArrays(gl.TRIANGLES, 0, count);
-    gl.uniform1f(surface.gloss, 0.5);
   }
 }

@@ -1,7 +1,7 @@
 """What a page that draws by itself is sent: only what has changed.
 
-Texts are JSON objects with the fields that are new; ``changed`` holds controls that take the place of those of the same
-names. Binary messages begin with a number of 32 bits, their kind:
+Texts are JSON objects with the fields that are new; ``changed`` holds the new fields of controls, and their names.
+Binary messages begin with a number of 32 bits, their kind:
 
 - ``FRAME``: the page draws all that came since the last one. Then, little endian: how many messages of the page have
   been acted on, how many bodies and how many shapes follow, and whether a camera does (32 bits each); the camera's
@@ -26,6 +26,7 @@ from ravemj.engine.simulation.published import Published
 from ravemj.graphics.rendering.visibility import geom_rgba
 from ravemj.graphics.webgl.packing import Package, pack_drawings
 from ravemj.gui.interaction import Overlay, View
+from ravemj.gui.interaction.control import Control
 from ravemj.gui.viewers.web.scenes import Scene, Scenes
 from ravemj.model.drawing import Primitives
 
@@ -34,6 +35,9 @@ FRAME, DRAWINGS, FIGURES = range(3)
 _UNIT = 32767
 _DIGITS = 6
 """Decimals of positions [m]: what moves less stands still."""
+
+_VALUE_DIGITS = 4
+"""Decimals of where a slider is [rad, m or s]: less than a pixel of it."""
 
 _LEVEL = 1
 """How hard drawings are compressed: they may change with every frame."""
@@ -147,8 +151,15 @@ def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
     old, new = before.get("controls", ()), said.get("controls", ())
     if new and [control.name for control in old] == [control.name for control in new]:
         del said["controls"]
-        said["changed"] = [control for control, other in zip(new, old, strict=True) if control != other]
+        said["changed"] = [_difference(one, other) for one, other in zip(new, old, strict=True) if one != other]
     return said
+
+
+def _difference(control: Control, before: Control) -> dict[str, object]:
+    """Return the fields of a control that are new, and its name."""
+    old, new = asdict(before), asdict(control)
+    new["value"] = round(control.value, _VALUE_DIGITS)
+    return {name: value for name, value in new.items() if name == "name" or value != old[name]}
 
 
 def _frame(stage: Stage, news: tuple[NDArray[np.intp], NDArray[np.intp]] | None, camera: bytes, heard: int) -> bytes:

@@ -73,7 +73,7 @@ async function take(data, from) {
     if (news.task) return doTask(news);
     overlay = { ...overlay, ...news };
     for (const one of news.changed || []) {
-      overlay.controls = overlay.controls.map((other) => (other.name === one.name ? one : other));
+      overlay.controls = overlay.controls.map((other) => (other.name === one.name ? { ...other, ...one } : other));
     }
     isNews = true;
     if (drawing && news.scene && !await drawing.load(news.scene)) from.close();
