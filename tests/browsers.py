@@ -173,14 +173,14 @@ class Desk:
         """Wait until the page shows what the core's camera would see of the environment, pixel by pixel."""
 
         def look():
-            return self.picture(page)[CLEAR], self._expected(page)[CLEAR]
+            return self.picture(page)[CLEAR], self.expected(page)[CLEAR]
 
         if (page or self.page).evaluate("drawing === null"):
-            await_equal(lambda: self.picture(page)[CLEAR], lambda: self._expected(page)[CLEAR])
+            await_equal(lambda: self.picture(page)[CLEAR], lambda: self.expected(page)[CLEAR])
         else:
             await_that(lambda: len(unlike(*look())) < 20, "the page does not show what the camera sees")
 
-    def _expected(self, page=None) -> np.ndarray:
+    def expected(self, page=None) -> np.ndarray:
         over = self.viewer._views[(page or self.page).evaluate("tab")].overlay()
         look = {"gizmos": over.primitives, "style": over.style}
         return self.viewer._renderer.render(self.core.view.camera, self.viewer.background, Format(*SIZE), **look)

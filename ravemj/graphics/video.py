@@ -93,7 +93,7 @@ def write_frames(
     """
     suffix = _known_suffix(path, VIDEO_FORMATS)
     encoder, highest_fps = VIDEO_FORMATS[suffix]
-    rate = _rate(fps, highest_fps)
+    rate = frame_rate(fps, highest_fps)
     with new_folder(path, _FILES_OF_FOLDER) if suffix == _FOLDER else new_file(path) as temporary:
         _overlap(_checked(frames), lambda arriving: _encode(encoder, arriving, temporary, rate, path), on_frame)
     return Path(path)
@@ -331,7 +331,12 @@ def _known_suffix(path: AnyPath, known: Iterable[str]) -> str:
     return suffix
 
 
-def _rate(fps: float, highest: int) -> Fraction:
+def frame_rate(fps: float, highest: int) -> Fraction:
+    """Return a number of frames in a second as the fraction that a video gets.
+
+    Raises:
+        ArgumentError: It is unusable, or higher than the format allows.
+    """
     if not (math.isfinite(fps) and _LOWEST_FPS <= fps <= highest):
         raise ArgumentError(f"expected from {_LOWEST_FPS} to {highest} frames a second for this format, found {fps}")
     return Fraction(fps).limit_denominator(1001)

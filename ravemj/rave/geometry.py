@@ -91,15 +91,14 @@ class Geometry(ApiObject):
 
     def _sizes(self) -> Vec3:
         """Return the numbers that OpenRAVE keeps for boxes and round shapes: its getters read them for any of these."""
-        match self._scene.shape:
-            case scene.Box(half_extents=sizes):
-                return sizes
-            case scene.Sphere(radius=radius):
-                return radius, 0.0, 0.0
-            case scene.Cylinder(radius=radius, height=height) | scene.Capsule(radius=radius, height=height):
-                return radius, height, 0.0
-            case _:
-                raise self._has_none("radius, height or box extents")
+        shape = self._scene.shape
+        if isinstance(shape, scene.Box):
+            return shape.half_extents
+        sizes = shape.sizes()
+        if not sizes or any(size.type is not float for size in sizes):
+            raise self._has_none("radius, height or box extents")
+        x, y, z, *_ = *(getattr(shape, size.name) for size in sizes), 0.0, 0.0
+        return x, y, z
 
     def GetSphereRadius(self) -> float:
         """Return the radius of a sphere [m]."""

@@ -147,22 +147,22 @@ def test_a_copy_elsewhere_has_its_own_references(folder, mesh, tmp_path):
         assert read_mesh(str(other / "mesh.obj"))[0].diffuse == (0, 1, 0)
 
 
-@pytest.mark.parametrize("stale", ["_readers_digest", "_readers_stamp"])
+@pytest.mark.parametrize("stale", ["readers_digest", "readers_stamp"])
 def test_changed_readers(folder, later, mesh, reads, contents, monkeypatch, stale):
     read_mesh(mesh)
     contents.clear()
-    monkeypatch.setattr(cache, "_readers_stamp", lambda: b"other times")
-    if stale == "_readers_digest":
-        monkeypatch.setattr(cache, "_readers_digest", lambda: b"other source")
+    monkeypatch.setattr(cache, "readers_stamp", lambda: b"other times")
+    if stale == "readers_digest":
+        monkeypatch.setattr(cache, "readers_digest", lambda: b"other source")
     read_mesh(mesh)
     assert contents
-    assert len(reads) == (2 if stale == "_readers_digest" else 1)
+    assert len(reads) == (2 if stale == "readers_digest" else 1)
 
 
 def test_the_source_is_known():
-    names = {os.path.basename(path) for path in cache._sources()}
+    names = {os.path.basename(path) for path in cache.reader_sources()}
     assert {"cache.py", "entries.py", "reading.py", "old.py", "triangles.py", "mesh.py"} <= names
-    assert len(cache._readers_digest()) == len(cache._readers_stamp()) == 32
+    assert len(cache.readers_digest()) == len(cache.readers_stamp()) == 32
 
 
 def test_an_unchanged_file_is_not_even_read(folder, later, mesh, contents, tmp_path, monkeypatch):

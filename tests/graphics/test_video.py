@@ -522,4 +522,4 @@ def test_importing_is_cheap():
 
 @given(fps=st.floats(0.01, 1000))
 def test_every_fps_is_a_usable_fraction(fps):
-    assert float(ravemj.graphics.video._rate(fps, 1000)) == pytest.approx(fps, rel=0.1)
+    assert float(ravemj.graphics.video.frame_rate(fps, 1000)) == pytest.approx(fps, rel=0.1)

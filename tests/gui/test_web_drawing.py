@@ -374,7 +374,7 @@ class TestWhatIsSeen:
         for key in ("v", "t", "w"):  # what collides, transparent, and edges only
             desk.page.keyboard.press(key)
             place = slice(180, 330), slice(250, 390)
-            await_that(lambda place=place: self.is_alike(desk.picture()[place], desk._expected()[place]), key)
+            await_that(lambda place=place: self.is_alike(desk.picture()[place], desk.expected()[place]), key)
             desk.page.keyboard.press(key)
 
     def is_alike(self, picture, expected) -> bool:

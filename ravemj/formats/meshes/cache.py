@@ -62,7 +62,7 @@ def cached_file(path: str, kind: str, read: Callable[[bytes], tuple[Parts, Refer
         return read(read_bytes(path))[0]
     began, stamp = time.time_ns(), stamp_of(path)
     place = os.path.join(os.getcwd(), path) if stamp else ""  # as it is: behind a link, ".." leads elsewhere
-    shortcut = f"{folder}/{_name(_readers_stamp(), kind.encode(), os.fsencode(place))}.path"
+    shortcut = f"{folder}/{_name(readers_stamp(), kind.encode(), os.fsencode(place))}.path"
     entry = _loaded(shortcut, follow_shortcut) if stamp else None
     found = _loaded(f"{folder}/{entry}", unpack_entry) if entry else None
     if found:
@@ -112,8 +112,8 @@ def _by_content(
 
     Where there are such files, the entry belongs to the folder ``home``: elsewhere the same names are other files.
     """
-    alone = f"{_name(_readers_digest(), kind.encode(), content)}.mesh"
-    at_home = f"{_name(_readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"
+    alone = f"{_name(readers_digest(), kind.encode(), content)}.mesh"
+    at_home = f"{_name(readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"
     for entry in (alone, at_home):
         found = _loaded(f"{folder}/{entry}", unpack_entry)
         if found:
@@ -137,25 +137,25 @@ def _name(readers: bytes, *parts: bytes) -> str:
 
 
 @functools.cache
-def _readers_digest() -> bytes:
+def readers_digest() -> bytes:
     """Return a hash of the source of the readers."""
     digest = hashlib.sha256()
     with contextlib.suppress(OSError):
-        for path in _sources():
+        for path in reader_sources():
             with open(path, "rb") as file:
                 digest.update(file.read())
     return digest.digest()
 
 
 @functools.cache
-def _readers_stamp() -> bytes:
+def readers_stamp() -> bytes:
     """Return a hash of the stamps of that source, which is faster than reading it."""
     with contextlib.suppress(OSError):
-        return hashlib.sha256("\n".join(f"{path} {stamp_of(path)}" for path in _sources()).encode()).digest()
+        return hashlib.sha256("\n".join(f"{path} {stamp_of(path)}" for path in reader_sources()).encode()).digest()
     return b""
 
 
-def _sources() -> list[str]:
+def reader_sources() -> list[str]:
     """Return the paths of the modules beside this one, and of that with class ``Mesh``."""
     return [*sorted(_modules(os.path.dirname(__file__))), mesh.__file__]
 
