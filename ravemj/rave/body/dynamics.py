@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_first, checked_point, checked_vector
+from ravemj.core.arrays import checked_first, checked_numbers, checked_point, checked_vector, checked_whole_numbers
 from ravemj.core.transforms import Floats, wxyz_jacobian
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.base import BodyPart
@@ -222,7 +222,7 @@ class Dynamics(BodyPart):
             >>> inertia, coriolis, gravity = robot.ComputeInverseDynamics([1, 0], None, True)
         """
         accelerations = self._checked_accelerations(dofaccelerations, "ComputeInverseDynamics")
-        pushes = self._checked_pushes(externalforcetorque, "externalforcetorque") if externalforcetorque else {}
+        pushes = self._checked_pushes(externalforcetorque, "externalforcetorque")
         for joint in self._state.scene.passive_joints:
             if joint.mimic is None and not joint.static:  # random api-5000-92; graph-5000-102 where it closes a loop
                 message = f"joint '{joint.name}' has no DOF and follows no other, so no torques determine its motion"
@@ -239,15 +239,15 @@ class Dynamics(BodyPart):
         dof = self._state.dof
         if type(accelerations) is np.ndarray and accelerations.shape == (dof,):  # most often, and soon seen
             return checked_vector(accelerations, dof, name)
-        count = 0 if accelerations is None else np.size(accelerations)
-        if accelerations is None or not count:
+        given = checked_numbers([] if accelerations is None else accelerations, f"{name}: dofaccelerations")
+        if not given.size:
             return np.zeros(dof)
-        if count < dof:
-            raise IndexError(f"{name}: has {count} accelerations for {dof} DOFs")
-        return checked_first(accelerations, dof, name)
+        if given.size < dof:
+            raise IndexError(f"{name}: dofaccelerations: there are {given.size} for {dof} DOFs")
+        return checked_first(given, dof, name)
 
     def _checked_pushes(self, pushes: "Mapping[int, ArrayLike] | None", name: str) -> dict[int, Floats]:
-        if not pushes:
+        if pushes is None:
             return {}
         checked_kind(pushes, (dict, Mapping), name, "a dictionary")  # dict first, since it is faster to see
         return {self._checked_link(link): checked_vector(push, 6, name) for link, push in pushes.items()}
@@ -336,7 +336,7 @@ class Dynamics(BodyPart):
 
 def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
     """Return columns of a Jacobian, along the last axis; zeros for an index of no DOF."""
-    chosen = np.array([] if indices is None else indices, dtype=np.int_).reshape(-1)
+    chosen = checked_whole_numbers(indices, "indices")
     if not chosen.size:
         return jacobian
     count = jacobian.shape[-1]
