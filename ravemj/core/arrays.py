@@ -132,15 +132,19 @@ def checked_indices(indices: "ArrayLike | EllipsisType | None", count: int, name
     """
     if indices is ...:
         return np.arange(count)
-    checked = _whole_numbers(indices, name)
+    checked = checked_whole_numbers(indices, name)
     plain = checked.tolist()
     if plain and not (min(plain) >= 0 and max(plain) < count):
         raise IndexError(f"{name} are {plain}, and should be from 0 to {count - 1}")
     return checked
 
 
-def _whole_numbers(numbers: "ArrayLike | None", name: str) -> Ints:
-    """Return a copy as one row of whole numbers; ``checked_indices`` says what it raises."""
+def checked_whole_numbers(numbers: "ArrayLike | None", name: str) -> Ints:
+    """Return a copy as one row of whole numbers; None stands for none.
+
+    Raises:
+        ArgumentError: they are no whole numbers.
+    """
     try:
         whole = np.array(numbers)  # without a type: 1.5 would become 1
     except (TypeError, ValueError):

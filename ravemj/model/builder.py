@@ -159,8 +159,6 @@ class BodyBuilder:
         Raises:
             SourceError: a number is not finite.
         """
-        if not self.joints and not self.manipulators:
-            return self._frozen([link.pose for link in self.links], [], 0)
         listed = self._in_order()
         has_dofs = bool(listed and listed[0].active)
         mimics = resolve(_named(listed), diagnostics)
@@ -279,8 +277,7 @@ class BodyBuilder:
             return values
         asked = iter(self.joint_values)
         chosen = [[next(asked) for _ in joint.axes] for joint in active]
-        still = [[0.0] * len(axes) if joint.static else axes for joint, axes in zip(active, chosen, strict=True)]
-        return _limited(active, still, diagnostics) + values[len(active) :]
+        return _limited(active, chosen, diagnostics) + values[len(active) :]
 
 
 class BodyParts(NamedTuple):

@@ -66,7 +66,7 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
     for index in order:
         parent, child = ends[index]
         free = child != 0 and child not in placed_by
-        if (free or edges[index].fixed) and child not in _ancestors(parent, placed_by, ends):
+        if (free or edges[index].fixed) and child not in _ancestors(parent, placed_by, ends):  # none hangs on itself
             placed_by[child] = index
     return Hierarchy(swapped, _parents_first(set(placed_by.values()), ends, order))
 
@@ -150,16 +150,12 @@ def _parents(link: int, neighbours: Sequence[Sequence[int]]) -> list[int]:
 
 
 def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Sequence[int], *, has_dofs: bool) -> bool:
-    """Return True where the second listed link is the parent."""
+    """Return True where the second listed link is the parent; link 0 is never a child (gap-05, gap-06, gap-07)."""
     first, second = links
-    if static_links[first] and static_links[second]:
-        return False
-    if static_links[second]:
-        return first != 0  # link 0 is never a child
-    if not has_dofs:
-        return False
+    if static_links[second]:  # in bodies without DOFs, too
+        return not static_links[first] and first != 0
     if static_links[first]:
-        return second == 0
+        return has_dofs and second == 0
     return depths[second] < depths[first]
 
 

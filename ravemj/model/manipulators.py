@@ -67,22 +67,22 @@ def chain(body: scene.KinBody, base: int, effector: int) -> list[int] | None:
 
 
 def check_reach(manipulator: scene.Manipulator, body: scene.KinBody) -> None:
-    """Check that the joints of an arm move its effector.
+    """Check that the joints of an arm move its effector: each lies on a path from link 0 to it, or one that follows it.
 
     Raises:
-        SourceError: one does not, since it lies on no path from link 0 to the effector; OpenRAVE refuses the robot.
+        SourceError: one does not; OpenRAVE refuses the robot (gap-10, gap-39).
     """
     effector = manipulator.effector
     if effector is None:
         return
-    above = chains.joints_above(body, effector)
-    hangs_on_root = bool(above) and body.all_joints[above[-1]].parent == 0
-    if hangs_on_root and set(manipulator.arm_dofs) <= chains.dofs_moving(body, effector):
-        return
     edges = [(joint.parent, joint.child) for joint in body.all_joints]
     for dof in manipulator.arm_dofs:
         joint = body.joint_of_dof(dof)
-        if not lies_between(edges, (joint.parent, joint.child), 0, effector):
+        moved = [
+            joint,
+            *(other for other in body.passive_joints if other.mimic is not None and dof in other.mimic.dofs),
+        ]
+        if not any(lies_between(edges, (one.parent, one.child), 0, effector) for one in moved):
             message = f"manipulator '{manipulator.name}': joint '{joint.name}' does not move its effector"
             link = body.links[effector].name
             hint = f"name as base a link between '{body.links[0].name}' and '{link}'"

@@ -216,7 +216,7 @@ class CollisionChecker(CheckerExtras):
         counts = self._counts if self._env.collision_callbacks and not self._options & _IGNORE_CALLBACKS else None
         if report is None and counts is None:
             return world.collide(pairs)
-        report = report or CollisionReport()
+        report = CollisionReport() if report is None else checked_kind(report, CollisionReport, "report")
         report.Reset(self._options)
         found = find(world, pairs, self._wanted, report.minDistance, counts)
         report.collisionInfos += map(self._info, found.collisions)

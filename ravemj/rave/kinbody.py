@@ -76,7 +76,7 @@ class KinBody(Building, BodyCollision, Dynamics, Configuration):
             >>> env.GetRobot("swing") == robot
             True
         """
-        self._simulation.rename(self._state, name)
+        self._simulation.rename(self._state, checked_kind(name or "", str, "SetName: name", "a text"))
 
     def IsRobot(self) -> bool:
         """Return whether the body is a robot."""

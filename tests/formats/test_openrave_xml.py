@@ -550,6 +550,13 @@ class TestFindings:
         content = JOINT.format("type='hinge2'", children)
         assert codes(read_text(f'<KinBody name="b">{content}</KinBody>')) == []
 
+    def test_joint_values_of_a_weld(self, read_text):
+        weld = JOINT.format("", "<limits>0 0</limits>")
+        reading = read_text(f'<KinBody name="b">{weld}<jointvalues>0.1 0.2</jointvalues></KinBody>')
+        (finding,) = reading.diagnostics
+        assert finding.code == "value-outside-limits"
+        assert [joint.axes[0].value for joint in reading.scene.bodies[0].joints] == [0.1, 0]
+
     def test_manipulators_of_one_name(self, read_text):
         arm = '<Manipulator name="arm"><base>a</base><effector>{}</effector></Manipulator>'
         reading = read_text(f'<Robot name="r"><KinBody>{TWO}</KinBody>\n{arm.format("b")}\n{arm.format("a")}</Robot>')

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ravemj.core.arguments import checked_kind
 from ravemj.core.arrays import checked_numbers, checked_rows, checked_transform
 from ravemj.core.transforms import Floats, inverse
 from ravemj.engine.collision.moving import batch_collides
@@ -63,6 +64,10 @@ class BodyCollision(Structure, Interface):
         Args:
             collisionchecker: The checker; None selects that of the environment.
         """
+        from ravemj.rave.collision import CollisionChecker  # noqa: PLC0415 - it imports this module
+
+        if collisionchecker is not None:
+            checked_kind(collisionchecker, CollisionChecker, "SetSelfCollisionChecker: collisionchecker")
         self._self_checker = collisionchecker
 
     def GetSelfCollisionChecker(self) -> "CollisionChecker | None":

@@ -7,7 +7,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ravemj.core.arguments import checked_kind
-from ravemj.core.arrays import checked_first, checked_point, checked_rows, checked_vector, finite_vector
+from ravemj.core.arrays import (
+    checked_first,
+    checked_numbers,
+    checked_point,
+    checked_rows,
+    checked_vector,
+    checked_whole_numbers,
+    finite_vector,
+)
 from ravemj.core.transforms import Floats, wxyz_jacobian
 from ravemj.errors import ArgumentError, ErrorCode, RavemjError
 from ravemj.rave.body.limits import Limits
@@ -240,15 +248,15 @@ class Dynamics(Limits):
         dof = self._state.dof
         if type(accelerations) is np.ndarray and accelerations.shape == (dof,):  # the usual case, and a cheap test
             return finite_vector(accelerations, dof, name)
-        count = 0 if accelerations is None else np.size(accelerations)
-        if accelerations is None or not count:
+        given = checked_numbers([] if accelerations is None else accelerations, f"{name}: dofaccelerations")
+        if not given.size:
             return np.zeros(dof)
-        if count < dof:
-            raise IndexError(f"{name}: has {count} accelerations for {dof} DOFs")
-        return checked_first(accelerations, dof, name)
+        if given.size < dof:
+            raise IndexError(f"{name}: dofaccelerations: there are {given.size} for {dof} DOFs")
+        return checked_first(given, dof, name)
 
     def _checked_pushes(self, pushes: "Mapping[int, ArrayLike] | None", name: str) -> dict[int, Floats]:
-        if not pushes:
+        if pushes is None:
             return {}
         checked_kind(pushes, (dict, Mapping), name, "a dictionary")  # dict first: a test against an ABC is slow
         return {self._checked_link(link): finite_vector(push, 6, name) for link, push in pushes.items()}
@@ -338,7 +346,7 @@ class Dynamics(Limits):
 
 def _columns(jacobian: Floats, indices: "ArrayLike | None") -> Floats:
     """Return columns of a Jacobian, along its last axis; zeros for an index that is not a DOF."""
-    chosen = np.array([] if indices is None else indices, dtype=np.int_).reshape(-1)
+    chosen = checked_whole_numbers(indices, "indices")
     if not chosen.size:
         return jacobian
     count = jacobian.shape[-1]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, cast, overload
 
 from ravemj.core.arguments import checked_index
 from ravemj.core.arrays import checked_indices
+from ravemj.errors import ArgumentError
 from ravemj.model import chains, hashes
 from ravemj.model.adjacency import adjacent_pairs
 from ravemj.model.mimic import Equations
@@ -149,10 +150,12 @@ class Structure(Limits):
         Raises:
             IndexError: there is no such DOF.
         """
-        (dof,) = checked_indices(dofindex, self.GetDOF()).tolist()
+        dofs = checked_indices(dofindex, self.GetDOF(), "dofindex").tolist()
+        if len(dofs) != 1:
+            raise ArgumentError(f"GetJointFromDOFIndex: dofindex: are {dofs}, and should be one number")
         joints = self._state.scene.joints
         behind = itertools.accumulate(len(joint.axes) for joint in joints)  # the DOF behind each joint
-        return self._all_joints()[next(index for index, end in enumerate(behind) if dof < end)]
+        return self._all_joints()[next(index for index, end in enumerate(behind) if dofs[0] < end)]
 
     def GetAdjacentLinks(self) -> set[tuple[int, int]]:
         """Return the pairs of links, by index, that self-collision checks ignore."""
