@@ -144,7 +144,7 @@ class Structure(BodyPart):
 
     def GetAdjacentLinks(self) -> set[tuple[int, int]]:
         """Return the pairs of links, by index, that self-collision leaves out."""
-        return adjacent_pairs(self._state.scene)
+        return set(adjacent_pairs(self._state.scene))
 
     def GetJointIndex(self, name: str) -> int:
         """Return the place in ``GetJoints()`` of the joint of that name, or -1."""
