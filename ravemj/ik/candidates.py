@@ -43,8 +43,8 @@ def nearest_first(
 
 def _groups(solver: IKSolver, goal: Floats, seed: Floats, free: Floats | None, *, limits: bool) -> Iterator[Floats]:
     """Yield solutions in [-pi, pi], shape (K, n), that come one group after the other."""
-    pose = goal_poses(solver.chain, solver.task, goal)
     if solver.closed is None:
+        pose = goal_poses(solver.chain, solver.task, goal)
         found = solver.numeric.solve(pose, seed)
         if found is not None:
             yield found[None]
@@ -61,9 +61,9 @@ def _groups(solver: IKSolver, goal: Floats, seed: Floats, free: Floats | None, *
                 some = True
                 yield _with_singular(solver, row[valid], seed) if solutions.merged[0] else row[valid]
         if solutions.merged[0] and limits and not solver.free:
-            yield _descended(solver, pose, seed)
+            yield _descended(solver, goal, seed)
     if not some and limits and free is None:
-        yield _descended(solver, pose, seed)
+        yield _descended(solver, goal, seed)
 
 
 def _with_singular(solver: IKSolver, rows: Floats, seed: Floats) -> Floats:
@@ -74,9 +74,9 @@ def _with_singular(solver: IKSolver, rows: Floats, seed: Floats) -> Floats:
     return np.vstack([rows, *(redundancy.spread(solver.chain, one, seed) for one in found)])
 
 
-def _descended(solver: IKSolver, pose: Floats, seed: Floats) -> Floats:
+def _descended(solver: IKSolver, goal: Floats, seed: Floats) -> Floats:
     """Return the solution below a configuration, shape (1, n), or none, shape (0, n)."""
-    found = solver.numeric.descend(pose, seed)
+    found = solver.numeric.descend(goal_poses(solver.chain, solver.task, goal), seed)
     return found.values[None][: int(found.error < ACCURATE)]
 
 

@@ -3,17 +3,100 @@
 Joints are counted as in a body's list: active ones, then passive ones.
 """
 
+import itertools
 from collections import deque
 from collections.abc import Callable
+from functools import cached_property
 
-from ravemj.core.graphs import ShortestPaths
+import numpy as np
+
+from ravemj.core.graphs import Pair, ShortestPaths, ordered_pair
 from ravemj.model.scene import Joint, KinBody, Manipulator
+
+
+class Connections:
+    """How joints connect links, in tables, since scripts ask for it in loops.
+
+    Attributes:
+        joints: The joints.
+        dofs: For each active joint its DOFs.
+    """
+
+    def __init__(self, body: KinBody) -> None:
+        self.joints = body.all_joints
+        self._joined_by = body.joints, body.passive_joints  # kept, so that no others get their ``id``
+        self._count = len(body.links)
+        ends = list(itertools.accumulate((len(joint.axes) for joint in body.joints), initial=0))
+        self.dofs = [tuple(range(*pair)) for pair in itertools.pairwise(ends)]
+        self._above: dict[int, tuple[int, ...]] = {}
+        self._moving: dict[int, frozenset[int]] = {}
+
+    @cached_property
+    def ends(self) -> list[Pair]:
+        """Parent and child of each joint."""
+        return [(joint.parent, joint.child) for joint in self.joints]
+
+    @cached_property
+    def paths(self) -> ShortestPaths:
+        """The shortest ways between all links."""
+        return ShortestPaths(self._count, self.ends)
+
+    @cached_property
+    def close_pairs(self) -> frozenset[Pair]:
+        """Pairs of links that a joint joins, or between which at most one joint moves on the shortest path."""
+        moving = self.paths.totals([not joint.static for joint in self.joints])
+        apart = ((i, j) for i, j in np.argwhere(moving <= 1).tolist() if i < j)
+        return frozenset(itertools.starmap(ordered_pair, self.ends)).union(apart)
+
+    @cached_property
+    def _placing(self) -> dict[int, int]:
+        """For each link that a joint places this joint."""
+        return {joint.child: index for index, joint in enumerate(self.joints) if joint.places_child}
+
+    def above(self, link: int) -> tuple[int, ...]:
+        """Return the joints that place a link and the links that it hangs on, the nearest first."""
+        if link not in self._above:
+            above: list[int] = []
+            at = link
+            while at in self._placing:
+                above.append(self._placing[at])
+                at = self.joints[above[-1]].parent
+            self._above[link] = tuple(above)
+        return self._above[link]
+
+    def moving(self, link: int) -> frozenset[int]:
+        """Return the DOFs that move a link, also through joints that follow them."""
+        if link not in self._moving:
+            dofs: set[int] = set()
+            for index in self.above(link):
+                mimic = self.joints[index].mimic
+                if mimic is not None:
+                    dofs.update(mimic.dofs)
+                elif index < len(self.dofs):
+                    dofs.update(self.dofs[index])
+            self._moving[link] = frozenset(dofs)
+        return self._moving[link]
+
+
+_MOST_BODIES = 16
+_known: dict[tuple[int, int, int], Connections] = {}
+"""By the identity of the joints; only those of the last bodies, since it keeps them alive."""
+
+
+def connections(body: KinBody) -> Connections:
+    """Return how the joints of a body connect its links; the same object as long as these are the same."""
+    key = id(body.joints), id(body.passive_joints), len(body.links)
+    found = _known.get(key)
+    if found is None:
+        if len(_known) >= _MOST_BODIES:
+            _known.clear()
+        found = _known[key] = Connections(body)
+    return found
 
 
 def joint_dofs(body: KinBody, joint: int) -> tuple[int, ...]:
     """Return the DOFs of an active joint."""
-    first = sum(len(other.axes) for other in body.joints[:joint])
-    return tuple(range(first, first + len(body.joints[joint].axes)))
+    return connections(body).dofs[joint]
 
 
 def parents(body: KinBody, link: int) -> list[int]:
@@ -33,8 +116,7 @@ def chain(body: KinBody, first: int, last: int) -> tuple[list[int], list[int]]:
     Returns:
         The links on it, both ends included, and the joints between them; none where there is no way, or no need of one.
     """
-    ends = [(joint.parent, joint.child) for joint in body.all_joints]
-    joints = ShortestPaths(len(body.links), ends).path(first, last)
+    ends, joints = connections(body).ends, connections(body).paths.path(first, last)
     links = [first]
     for joint in joints:
         links.append(sum(ends[joint]) - links[-1])
@@ -68,28 +150,14 @@ def _way_back(reached: dict[int, tuple[int, int]], first: int, last: int) -> tup
     return links[::-1], joints[::-1]
 
 
-def joints_above(body: KinBody, link: int) -> list[int]:
+def joints_above(body: KinBody, link: int) -> tuple[int, ...]:
     """Return the joints that place a link and the links that it hangs on, the nearest first."""
-    joints = body.all_joints
-    placing = {joint.child: index for index, joint in enumerate(joints) if joint.places_child}
-    above: list[int] = []
-    while link in placing:
-        above.append(placing[link])
-        link = joints[placing[link]].parent
-    return above
+    return connections(body).above(link)
 
 
-def dofs_moving(body: KinBody, link: int) -> set[int]:
+def dofs_moving(body: KinBody, link: int) -> frozenset[int]:
     """Return the DOFs that move a link, also through joints that follow them."""
-    joints = body.all_joints
-    moving: set[int] = set()
-    for index in joints_above(body, link):
-        mimic = joints[index].mimic
-        if mimic is not None:
-            moving.update(mimic.dofs)
-        elif index < len(body.joints):
-            moving.update(joint_dofs(body, index))
-    return moving
+    return connections(body).moving(link)
 
 
 def dependency_order(body: KinBody) -> list[int]:
@@ -122,17 +190,16 @@ def links_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:
     """
     if manipulator.effector is None:
         return []
-    joints = body.all_joints
+    known = connections(body)
     fixed = set(rigidly_attached(body, manipulator.effector))
-    moving = dofs_moving(body, manipulator.effector) | set(manipulator.arm_dofs)
+    from_fixed = {index for index, joint in enumerate(known.joints) if joint.parent in fixed}
+    moving = known.moving(manipulator.effector) | set(manipulator.arm_dofs)
 
-    def hangs(link: int) -> bool:
-        return link in fixed or any(joints[index].parent in fixed for index in joints_above(body, link))
+    def takes_part(link: int) -> bool:
+        hangs = link in fixed or not from_fixed.isdisjoint(known.above(link))
+        return hangs or (bool(moving) and moving <= known.moving(link))
 
-    def follows(link: int) -> bool:
-        return bool(moving) and moving <= dofs_moving(body, link)
-
-    return [link for link in range(len(body.links)) if hangs(link) or follows(link)]
+    return [link for link in range(len(body.links)) if takes_part(link)]
 
 
 def joints_beyond(body: KinBody, manipulator: Manipulator) -> list[int]:

@@ -196,6 +196,8 @@ def _getters(what: str, robot: ravemj.Robot) -> Iterator[Row]:
         ("GetDOFLimits()", robot.GetDOFLimits, None),
         ("SetTransform", lambda: robot.SetTransform(place), None),
         ("GetJointFromDOFIndex", lambda: robot.GetJointFromDOFIndex(0), None),
+        ("GetChain", lambda: robot.GetChain(0, len(robot.GetLinks()) - 1), None),
+        ("ComputeAABB", robot.ComputeAABB, None),
         ("with robot:", entered, None),
     ]
     *measured, bared = take_turns([microseconds(call, 20) for _, call, _ in calls] + [microseconds(pose, 20)], 200)

@@ -159,7 +159,7 @@ class Structure(Limits):
 
     def GetAdjacentLinks(self) -> set[tuple[int, int]]:
         """Return the pairs of links, by index, that self-collision checks ignore."""
-        return adjacent_pairs(self._state.scene)
+        return set(adjacent_pairs(self._state.scene))
 
     def GetJointIndex(self, name: str) -> int:
         """Return the index in ``GetJoints()`` of the joint of a name, or -1."""
