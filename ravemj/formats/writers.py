@@ -17,7 +17,7 @@ from ravemj.formats.collada.external import ExternalBody, find_external
 from ravemj.formats.openrave_xml import writer as openrave_xml
 from ravemj.formats.openrave_xml.geom_writer import FOLDER, MeshFormat
 from ravemj.model.comparison import compare
-from ravemj.model.scene import KinBody, Scene, View
+from ravemj.model.scene import UNLIMITED, KinBody, Scene, View
 
 ModelFormat = Literal["collada", "openrave"]
 
@@ -68,6 +68,10 @@ def _warn_of_losses(body: KinBody, diagnostics: Diagnostics) -> None:
         if arm.gripper_name:
             message = f"the name '{arm.gripper_name}' of the gripper of the manipulator '{arm.name}' is left out"
             diagnostics.warn("not-written", message, arm.source, "OpenRAVE's JSON keeps it")
+    for joint in body.all_joints:
+        if any(axis.circular and (axis.lower, axis.upper) != (-UNLIMITED, UNLIMITED) for axis in joint.axes):
+            message = f"limits of the joint '{joint.name}' are left out: it is circular, and without end in a file"
+            diagnostics.warn("not-written", message, joint.source)
     for link in body.links:
         if link.inertial.undefined:
             message = f"the mass of link '{link.name}' is undefined, and becomes {link.inertial.mass:g} kg"

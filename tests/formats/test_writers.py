@@ -2,6 +2,8 @@
 
 import csv
 import json
+import re
+import signal
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -246,6 +248,12 @@ class TestSave:
         moved[:3, 3] += 0.25
         body.SetTransform(moved)
         body.GetLinks()[0].GetGeometries()[0].SetDiffuseColor([0.1, 0.2, 0.3])
+        robot.Grab(body, robot.GetLinks()[-1])
+        sensor = ravemj.AttachedSensorInfo(_name="eye", _linkname=robot.GetLinks()[1].GetName(), _sensorname="BaseIMU")
+        robot.AddAttachedSensor(sensor).SetRelativeTransform([0.6, 0, 0, 0.8, 0.1, 0.2, 0.3])
+        simulation = world.simulation
+        scene = Scene(tuple(map(snapshot, simulation.bodies)), simulation.view, simulation.gravity)
+        assert check_round_trip(scene, kind, tmp_path) == set()
         world.Save(tmp_path / NAMES[kind], atts={"format": kind})
         other = ravemj.load(tmp_path / NAMES[kind])
         robot2, body2 = other.GetRobot(robot.GetName()), other.GetKinBody(body.GetName())
@@ -450,6 +458,30 @@ class TestTrouble:
         assert {difference.quantity for difference in found} == {"links"}
 
     @pytest.mark.parametrize("kind", NAMES)
+    def test_full_disks(self, tmp_path, kind):
+        """An older file stays, nothing is left behind, and the error names the target."""
+        resource = pytest.importorskip("resource")  # Windows has none
+        env, path = ravemj.load(MODELS / "scara.dae"), tmp_path / NAMES[kind]
+        path.write_text("older")
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+        try:
+            with pytest.raises(OutputError, match=f"cannot write {re.escape(str(tmp_path))}.*: File too large"):
+                env.Save(path, atts={"format": kind})
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+            signal.signal(signal.SIGXFSZ, handler)
+        assert contents(tmp_path) == {path.name: b"older"}
+
+    @pytest.mark.parametrize("kind", NAMES)
+    def test_limits_of_circular_joints(self, env, robot, tmp_path, kind):
+        assert robot.GetJoints()[0].IsCircular(0)
+        robot.SetDOFLimits([-1, -2], [1, 2])
+        with pytest.warns(ravemj.RavemjWarning, match="limits of the joint 'Joint0' are left out"):
+            env.Save(tmp_path / NAMES[kind], atts={"format": kind})
+
+    @pytest.mark.parametrize("kind", NAMES)
     def test_what_no_format_can_say(self, tmp_path, kind):
         body = read_file(MODELS / "panda.xml").scene.bodies[0]
         link = body.links[0]
@@ -466,6 +498,21 @@ class TestTrouble:
         assert [word in "".join(messages) for word in ("'claw'", "undefined", "that a script gave")] == [True] * 3
         lost = {difference.quantity for difference in compare(Scene((body,)), read_file(tmp_path / NAMES[kind]).scene)}
         assert lost == {"gripper name", "has no defined mass", "has triangles of scripts"}
+
+    @pytest.mark.parametrize("name", ["a b", " a", "a\tb", "a\xa0b"])
+    def test_names_that_are_no_words(self, tmp_path, name):
+        """Lists of links and joints are words, so that OpenRAVE XML has other names for those in them."""
+        body = read_file(MODELS / "panda.xml").scene.bodies[0]
+        gripper = body.manipulators[0].gripper_joints[0]
+        joints = [replace(joint, name=name) if place == gripper else joint for place, joint in enumerate(body.joints)]
+        body = with_link(replace(body, joints=tuple(joints), passive_joints=body.passive_joints[:1]), name=name)
+        diagnostics = Diagnostics()
+        save(tmp_path / "a.robot.xml", Scene((body,)), diagnostics, "openrave")
+        reading = read_file(tmp_path / "a.robot.xml")
+        assert reading.failure is None
+        assert [finding.code for finding in diagnostics] == ["renamed", "renamed"]
+        lost = {difference.quantity for difference in compare(Scene((body,)), reading.scene)}
+        assert lost == {"links", "joints"}
 
     def test_meshes_without_triangles(self, tmp_path):
         text = '<KinBody name="k"><Body name="a"><Geom type="trimesh"/><Geom type="none"/></Body></KinBody>'
