@@ -505,7 +505,11 @@ class TestTrouble:
         body = read_file(MODELS / "panda.xml").scene.bodies[0]
         gripper = body.manipulators[0].gripper_joints[0]
         joints = [replace(joint, name=name) if place == gripper else joint for place, joint in enumerate(body.joints)]
-        body = with_link(replace(body, joints=tuple(joints), passive_joints=body.passive_joints[:1]), name=name)
+        passive = [
+            joint if joint.mimic is None else replace(joint, mimic=replace(joint.mimic, position=name, velocity=""))
+            for joint in body.passive_joints
+        ]
+        body = with_link(replace(body, joints=tuple(joints), passive_joints=tuple(passive)), name=name)
         diagnostics = Diagnostics()
         save(tmp_path / "a.robot.xml", Scene((body,)), diagnostics, "openrave")
         reading = read_file(tmp_path / "a.robot.xml")

@@ -47,6 +47,15 @@ class PartNames:
             if is_taken:
                 message = f"the joint '{name}' of '{body.name}' is called '{given}' in the file"
                 diagnostics.warn("renamed", message, body.all_joints[index].source)
+        self._in_file = dict(zip(reversed(joints), reversed(self.joints), strict=True))  # of one name, the first counts
+
+    def equation(self, text: str) -> str:
+        """Return an equation with the names that joints have in the file."""
+        if all(name == given for name, given in self._in_file.items()):
+            return text
+        from ravemj.model.expressions import substitute  # noqa: PLC0415 - rarely wanted
+
+        return substitute(text, self._in_file)
 
 
 def _unused(name: str, known: Collection[str]) -> str:
