@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import re
 import signal
 import zipfile
@@ -498,6 +499,13 @@ class TestTrouble:
         assert [word in "".join(messages) for word in ("'claw'", "undefined", "that a script gave")] == [True] * 3
         lost = {difference.quantity for difference in compare(Scene((body,)), read_file(tmp_path / NAMES[kind]).scene)}
         assert lost == {"gripper name", "has no defined mass", "has triangles of scripts"}
+
+    @pytest.mark.parametrize("kind", NAMES)
+    def test_numbers_that_are_not_finite(self, env, robot, tmp_path, kind):
+        robot.SetDOFVelocityLimits([1.0, math.inf])
+        with pytest.raises(OutputError, match=r"number in '(maxvel|float)': inf"):
+            env.Save(tmp_path / NAMES[kind], atts={"format": kind})
+        assert contents(tmp_path) == {}
 
     @pytest.mark.parametrize("name", ["a b", " a", "a\tb", "a\xa0b"])
     def test_names_that_are_no_words(self, tmp_path, name):
