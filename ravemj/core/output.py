@@ -68,7 +68,8 @@ def new_file(path: AnyPath) -> Generator[Path]:
     with _temporary(path) as temporary:
         with _output_errors(path):
             temporary.touch(exist_ok=False)
-        yield temporary
+        with _output_errors(path, (OSError,)):
+            yield temporary
         with _output_errors(path):
             os.replace(temporary, _real(path))
 
@@ -84,7 +85,8 @@ def new_folder(path: AnyPath, *patterns: str) -> Generator[Path]:
     with _temporary(path) as temporary:
         with _output_errors(path):
             temporary.mkdir()
-        yield temporary
+        with _output_errors(path, (OSError,)):
+            yield temporary
         check_folder(path, *patterns)  # while the files were written, others may have come
         with _output_errors(path):
             _replace_folder(temporary, _real(path))
@@ -108,7 +110,8 @@ def added_files(path: AnyPath) -> Generator[Path]:
     with _temporary(path) as temporary:
         with _output_errors(path):
             temporary.mkdir()
-        yield temporary
+        with _output_errors(path, (OSError,)):
+            yield temporary
         with _output_errors(path), signals_delayed():
             _move_all(temporary, target)
 
@@ -139,12 +142,13 @@ def output_error(path: AnyPath, error: Exception) -> OutputError:
 
 
 @contextmanager
-def _output_errors(path: AnyPath) -> Generator[None]:
+def _output_errors(path: AnyPath, kinds: tuple[type[Exception], ...] = (OSError, ValueError)) -> Generator[None]:
+    """Raise an ``OutputError`` in place of errors of some kinds; by default, also for a path that holds a null byte."""
     try:
         yield
-    except OutputError:
+    except (OutputError, BrokenPipeError):  # a pipe is not the target
         raise
-    except (OSError, ValueError) as error:  # ValueError: a path that holds a null byte
+    except kinds as error:
         raise output_error(path, error) from error
 
 

@@ -17,7 +17,7 @@ from ravemj.formats.collada.external import ExternalBody, find_external
 from ravemj.formats.openrave_xml import writer as openrave_xml
 from ravemj.formats.openrave_xml.geom_writer import FOLDER, MeshFormat
 from ravemj.model.comparison import compare
-from ravemj.model.scene import KinBody, Scene, View
+from ravemj.model.scene import UNLIMITED, KinBody, Scene, View
 
 ModelFormat = Literal["collada", "openrave"]
 
@@ -47,6 +47,8 @@ def save(
     Raises:
         OutputError: It cannot be written, or a name in it cannot.
     """
+    for body in scene.bodies:
+        _warn_of_losses(body, diagnostics)
     if kind == "openrave":
         _save_openrave_xml(Path(path), openrave_xml.write(scene, diagnostics, meshes))
         return
@@ -58,6 +60,25 @@ def save(
         content = _archive(f"{Path(path).stem}.dae", content)
     with new_file(path) as file:
         file.write_bytes(content)
+
+
+def _warn_of_losses(body: KinBody, diagnostics: Diagnostics) -> None:
+    """Warn of what neither format can say of a body; only scripts and JSON give it."""
+    for arm in body.manipulators:
+        if arm.gripper_name:
+            message = f"the name '{arm.gripper_name}' of the gripper of the manipulator '{arm.name}' is left out"
+            diagnostics.warn("not-written", message, arm.source, "OpenRAVE's JSON keeps it")
+    for joint in body.all_joints:
+        if any(axis.circular and (axis.lower, axis.upper) != (-UNLIMITED, UNLIMITED) for axis in joint.axes):
+            message = f"limits of the joint '{joint.name}' are left out: it is circular, and without end in a file"
+            diagnostics.warn("not-written", message, joint.source)
+    for link in body.links:
+        if link.inertial.undefined:
+            message = f"the mass of link '{link.name}' is undefined, and becomes {link.inertial.mass:g} kg"
+            diagnostics.warn("not-written", message, link.source)
+        if any(geometry.collision_mesh is not None for geometry in link.geometries):
+            message = f"triangles that a script gave the shapes of link '{link.name}' are left out"
+            diagnostics.warn("not-written", message, link.source, "OpenRAVE's JSON keeps them")
 
 
 def external_bodies(

@@ -1,5 +1,6 @@
 """XML documents under construction, shared by the writers of OpenRAVE XML and COLLADA."""
 
+import math
 import re
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
@@ -46,15 +47,19 @@ class XmlText:
     def element(self, tag: str, content: Content | None = None, /, **attributes: Content | None) -> None:
         """Write an element that holds a text, or nothing."""
         start = f"{self._indent}<{tag}{_attributes(attributes)}"
-        text = "" if content is None else text_of(content)
+        text = "" if content is None else text_of(content, tag)
         self._lines.append(f"{start}>{escape(text, {chr(13): '&#13;'})}</{tag}>" if text else f"{start}/>")
 
 
-def text_of(content: Content) -> str:
+def text_of(content: Content, tag: str) -> str:
     """Return the text of a content: numbers with all their digits, whole ones without a point.
 
+    Args:
+        content: The content.
+        tag: What holds it, for messages.
+
     Raises:
-        OutputError: XML cannot hold one of its characters.
+        OutputError: XML cannot hold one of its characters, or a number is not finite, which OpenRAVE reads as 0.
     """
     if isinstance(content, str):
         found = _FORBIDDEN.search(content)
@@ -63,10 +68,13 @@ def text_of(content: Content) -> str:
         return content
     if isinstance(content, bool):
         return "true" if content else "false"
-    numbers = (content,) if isinstance(content, float | int) else content
+    numbers = (content,) if isinstance(content, float | int) else tuple(content)
+    if not all(map(math.isfinite, numbers)):
+        found = " ".join(map(str, numbers))
+        raise OutputError(f"no file of OpenRAVE's can hold the number in '{tag}': {found}; choose a finite one")
     return " ".join([repr(float(number) + 0.0).removesuffix(".0") for number in numbers])  # + 0.0: -0 becomes 0
 
 
 def _attributes(attributes: dict[str, Content | None]) -> str:
     given = ((name.rstrip("_"), content) for name, content in attributes.items() if content is not None)
-    return "".join([f' {name}="{escape(text_of(content), _QUOTED)}"' for name, content in given])
+    return "".join([f' {name}="{escape(text_of(content, name), _QUOTED)}"' for name, content in given])

@@ -10,9 +10,22 @@ from numpy.typing import ArrayLike
 
 from ravemj.core.transforms import Floats, Pose
 from ravemj.model.adjacency import adjacent_pairs
+from ravemj.model.inertia import principal_frame
 from ravemj.model.joints import poses_at
 from ravemj.model.mimic import MimicJoints
-from ravemj.model.scene import AttachedSensor, Axis, Geometry, Joint, KinBody, Link, Manipulator, Mesh, Scene
+from ravemj.model.scene import (
+    AttachedSensor,
+    Axis,
+    Geometry,
+    Joint,
+    KinBody,
+    Link,
+    Manipulator,
+    Mesh,
+    Rgb,
+    Scene,
+    sensor_kind,
+)
 
 TOLERANCE = 1e-9
 """Of numbers, relative to the largest above 1."""
@@ -60,16 +73,26 @@ class _Comparison:
     tolerance: float
 
     def scenes(self, first: Scene, second: Scene) -> Iterator[Difference]:
-        """Compare the bodies, and gravity where both scenes have one."""
-        yield from self._same("the scene", "bodies", _names(first.bodies), _names(second.bodies))
+        """Compare the bodies and the loose sensors; gravity and view where both scenes have one."""
+        part = "the scene"
+        yield from self._same(part, "bodies", _names(first.bodies), _names(second.bodies))
+        yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))
         if first.gravity is not None and second.gravity is not None:
-            yield from self._near("the scene", "gravity", first.gravity, second.gravity)
+            yield from self._near(part, "gravity", first.gravity, second.gravity)
+        if first.view is not None and second.view is not None:
+            yield from self._near(part, "background", first.view.background, second.view.background)
+            yield from self._poses(part, "camera", first.view.T_world_camera, second.view.T_world_camera)
         for one, other in zip(first.bodies, second.bodies, strict=False):
             yield from self._bodies(one, other)
+        for one, other in zip(first.sensors, second.sensors, strict=False):
+            yield from self._sensors(f"sensor '{one.name}'", one, other)
 
     def _bodies(self, first: KinBody, second: KinBody) -> Iterator[Difference]:
         part = f"'{first.name}'"
         yield from self._same(part, "is a robot", first.is_robot, second.is_robot)
+        yield from self._same(
+            part, "has an active manipulator", first.has_active_manipulator, second.has_active_manipulator
+        )
         pairs = [sorted(adjacent_pairs(body)) for body in (first, second)]
         structure = [
             *self._same(part, "links", _names(first.links), _names(second.links)),
@@ -77,14 +100,31 @@ class _Comparison:
             *self._same(part, "passive joints", _names(first.passive_joints), _names(second.passive_joints)),
         ]
         yield from structure
-        yield from self._same(part, "manipulators", _names(first.manipulators), _names(second.manipulators))
-        yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))
         if len(first.links) == len(second.links):
             yield from self._same(part, "adjacent links", *pairs)
         for one, other in zip(first.links, second.links, strict=False):
             yield from self._links(f"{part} link '{one.name}'", one, other)
         for one, other in zip(first.all_joints, second.all_joints, strict=False):
             yield from self._joints(f"{part} joint '{one.name}'", one, other)
+        yield from self._equations(part, first, second)
+        yield from self._attached(part, first, second)
+        if not structure:
+            yield from self._configurations(part, first, second)
+
+    def _equations(self, part: str, first: KinBody, second: KinBody) -> Iterator[Difference]:
+        if not any(joint.mimic for body in (first, second) for joint in body.all_joints):
+            return
+        from ravemj.model.mimic_texts import mimic_texts  # noqa: PLC0415 - slow to import, and rarely wanted
+
+        texts = mimic_texts(first), mimic_texts(second)
+        for joint, one, other in zip(first.all_joints, *texts, strict=False):
+            for quantity in sorted(one.keys() | other.keys()):
+                yield from self._same(f"{part} joint '{joint.name}'", quantity, one.get(quantity), other.get(quantity))
+
+    def _attached(self, part: str, first: KinBody, second: KinBody) -> Iterator[Difference]:
+        """Compare manipulators, sensors and what is held."""
+        yield from self._same(part, "manipulators", _names(first.manipulators), _names(second.manipulators))
+        yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))
         for one, other in zip(first.manipulators, second.manipulators, strict=False):
             yield from self._manipulators(f"{part} manipulator '{one.name}'", one, other)
         yield from self._same(part, "holds", *([(x.body, x.link, x.ignored) for x in y.grabs] for y in (first, second)))
@@ -92,14 +132,14 @@ class _Comparison:
             yield from self._poses(part, "pose of what it holds", one.T_link_body, other.T_link_body)
         for one, other in zip(first.sensors, second.sensors, strict=False):
             yield from self._sensors(f"{part} sensor '{one.name}'", one, other)
-        if not structure:
-            yield from self._configurations(part, first, second)
 
     def _links(self, part: str, first: Link, second: Link) -> Iterator[Difference]:
         yield from self._poses(part, "pose", first.T_world_link, second.T_world_link)
         yield from self._near(part, "mass", first.inertial.mass, second.inertial.mass)
         yield from self._near(part, "centre of mass", first.inertial.com, second.inertial.com)
         yield from self._near(part, "inertia", first.inertial.inertia, second.inertial.inertia)
+        yield from self._poses(part, "axes of inertia", *(principal_frame(x.inertial) for x in (first, second)))
+        yield from self._same(part, "has no defined mass", first.inertial.undefined, second.inertial.undefined)
         yield from self._same(part, "static", first.static, second.static)
         yield from self._same(part, "enabled", first.enabled, second.enabled)
         yield from self._same(
@@ -132,16 +172,20 @@ class _Comparison:
         yield from self._same(part, "follows DOFs", *mimics)
 
     def _manipulators(self, part: str, first: Manipulator, second: Manipulator) -> Iterator[Difference]:
-        for name in ("base", "effector", "arm_dofs", "gripper_dofs", "chucking_direction"):
+        for name in (
+            "base", "effector", "arm_dofs", "gripper_joints", "gripper_dofs", "chucking_direction", "gripper_name",
+        ):  # fmt: skip
             yield from self._same(part, name.replace("_", " "), getattr(first, name), getattr(second, name))
         yield from self._poses(part, "tool", first.T_effector_tool, second.T_effector_tool)
         yield from self._near(part, "direction", first.direction, second.direction)
 
     def _sensors(self, part: str, first: AttachedSensor, second: AttachedSensor) -> Iterator[Difference]:
         yield from self._same(part, "link", first.link, second.link)
-        kinds = [None if one.device is None else type(one.device).__name__ for one in (first, second)]
+        kinds = [_kind(sensor) for sensor in (first, second)]
         yield from self._same(part, "kind", *kinds)
-        for name in () if first.device is None or kinds[0] != kinds[1] else first.device.__slots__:
+        devices = [type(sensor.device).__name__ for sensor in (first, second)]
+        yield from self._same(part, "device", *devices)
+        for name in () if first.device is None or devices[0] != devices[1] else first.device.__slots__:
             values = getattr(first.device, name), getattr(second.device, name)
             compare = self._same if isinstance(values[0], str) else self._near
             yield from compare(part, name.replace("_", " "), *values)
@@ -150,7 +194,7 @@ class _Comparison:
         yield from self._poses(part, "pose", first.T_link_sensor, second.T_link_sensor)
 
     def _geometries(self, part: str, first: Geometry, second: Geometry) -> Iterator[Difference]:
-        for name in ("name", "visible"):
+        for name in ("name", "visible", "modifiable"):
             yield from self._same(part, name, getattr(first, name), getattr(second, name))
         yield from self._poses(part, "pose", first.T_link_geometry, second.T_link_geometry)
         for name in ("diffuse", "ambient", "transparency"):
@@ -159,7 +203,13 @@ class _Comparison:
             for size in first.shape.sizes():
                 values = getattr(first.shape, size.name), getattr(second.shape, size.name)
                 yield from self._sizes(part, size.name.replace("_", " "), *values)
+        yield from self._same(
+            part, "has triangles of scripts", *(x.collision_mesh is not None for x in (first, second))
+        )
+        if first.collision_mesh is not None and second.collision_mesh is not None:
+            yield from self._meshes(part, "triangles of scripts", first.collision_mesh, second.collision_mesh)
         yield from self._meshes(part, "drawn triangles", _drawn(first), _drawn(second))
+        yield from self._same(part, "drawn colours", _colours(first), _colours(second))
 
     def _sizes(
         self, part: str, quantity: str, first: Mesh | ArrayLike, second: Mesh | ArrayLike
@@ -182,9 +232,18 @@ class _Comparison:
         if found:
             yield max(found, key=lambda difference: difference.error or math.inf)
 
-    def _poses(self, part: str, quantity: str, first: Pose, second: Pose) -> Iterator[Difference]:
+    def _poses(self, part: str, quantity: str, first: Pose | None, second: Pose | None) -> Iterator[Difference]:
         if first != second:
-            yield from self._near(part, quantity, first.matrix(), second.matrix())
+            matrices = (None if pose is None else pose.matrix() for pose in (first, second))
+            yield from self._optional(part, quantity, *matrices)
+
+    def _optional(
+        self, part: str, quantity: str, first: ArrayLike | None, second: ArrayLike | None
+    ) -> Iterator[Difference]:
+        if first is None or second is None:
+            yield from self._same(part, quantity, first is None, second is None)
+        else:
+            yield from self._near(part, quantity, first, second)
 
     def _meshes(self, part: str, quantity: str, first: Mesh, second: Mesh) -> Iterator[Difference]:
         if first is second or first == second:
@@ -243,6 +302,17 @@ def _names(parts: Iterable[Link | Joint | KinBody | Manipulator | AttachedSensor
 
 def _types(geometries: Sequence[Geometry]) -> list[str]:
     return [type(geometry.shape).__name__ for geometry in geometries]
+
+
+def _kind(sensor: AttachedSensor) -> str | None:
+    """Return the kind of a sensor; formats spell it in several ways."""
+    kind = sensor_kind(sensor.type or "")
+    return sensor.type if kind is None else kind.name
+
+
+def _colours(geometry: Geometry) -> list[tuple[Rgb, float]]:
+    """Return colour and transparency of each drawn surface."""
+    return [(surface.diffuse, surface.transparency) for surface in geometry.display or ()]
 
 
 def _drawn(geometry: Geometry) -> Mesh:

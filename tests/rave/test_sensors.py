@@ -295,6 +295,17 @@ def test_a_force_sensor_holds_a_known_mass():
     np.testing.assert_allclose(sensor.GetSensorData().force, -2 * held.force)
 
 
+def test_forces_follow_gravity_before_any_step():
+    sensors = on_link('<Sensor type="BaseForce6D"/>', "force", link="hand")
+    sensors += on_link('<Sensor type="BaseIMU"/>', "imu", link="hand")
+    env = with_physics(loaded(robot(sensors, HAND)))
+    force, imu = switched_on(env, "r:force"), switched_on(env, "r:imu")
+    for gravity in (1.62, 3.7):  # on the moon and on Mars
+        env.GetPhysicsEngine().SetGravity([0, 0, -gravity])
+        np.testing.assert_allclose(force.GetSensorData().force, [0, 0, 2 * gravity], atol=1e-9)
+        np.testing.assert_allclose(imu.GetSensorData().linear_acceleration, [0, 0, gravity], atol=1e-9)
+
+
 PENDULUM = """<Body name="base" type="static"/><Body name="rod"><Mass type="custom"><total>1.5</total>
 <com>0 0 -0.4</com><inertia>0.02 0 0 0 0.02 0 0 0 0.02</inertia></Mass></Body>
 <Joint name="hinge" type="hinge" circular="true">

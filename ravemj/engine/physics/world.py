@@ -67,7 +67,6 @@ class Physics:
         count = math.ceil(timestep / LONGEST_STEP)
         if not count:
             return
-        model.opt.gravity[:] = self._simulation.gravity
         model.opt.timestep = timestep / count
         before = data.qpos.copy()
         data.qfrc_applied[:], data.xfrc_applied[:] = 0.0, 0.0
@@ -98,7 +97,7 @@ class Physics:
                 self.loads(body.state).drive(body, applied)
 
     def prepare(self) -> None:
-        """Make the model anew if the bodies are others, and take over what users moved."""
+        """Make the model anew if the bodies are others, and take over gravity and what users moved."""
         states = self._simulation.bodies
         made_of: list[object] = [
             part for state in states for part in (state, state.scene, state.rest_poses, *state.grabs)
@@ -106,6 +105,7 @@ class Physics:
         if len(made_of) != len(self._made_of) or any(a is not b for a, b in zip(made_of, self._made_of, strict=True)):
             self._make(states)
             self._made_of = made_of
+        self._model.opt.gravity[:] = self._simulation.gravity
         for body in self._bodies.values():
             body.take_over()
 

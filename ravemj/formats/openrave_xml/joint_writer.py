@@ -74,7 +74,7 @@ class JointWriter:
             "type": joint.kind,
             "enable": False if disabled else None,
             "circular": True if joint.axes[0].circular else None,
-            **_equations(joint.mimic),
+            **_equations(joint.mimic, self._names),
         }
         with self._out.inside("Joint", **attributes):
             self._out.element("Body", self._names.links[joint.parent])
@@ -145,8 +145,8 @@ class JointWriter:
                 self._out.element("viscous_friction", first.viscous_friction)
 
 
-def _equations(mimic: Mimic | None) -> dict[str, str]:
+def _equations(mimic: Mimic | None, names: PartNames) -> dict[str, str]:
     if mimic is None:
         return {}
     texts = {"mimic_pos": mimic.position, "mimic_vel": mimic.velocity, "mimic_accel": mimic.acceleration}
-    return {name: text for name, text in texts.items() if text}
+    return {name: names.equation(text) for name, text in texts.items() if text}

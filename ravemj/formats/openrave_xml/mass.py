@@ -9,11 +9,11 @@ import struct
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ravemj.core.transforms import ZERO, Rows, Vec3, Wxyz, add, dot, rows_from_wxyz, scale
+from ravemj.core.transforms import ZERO, Rows, Vec3, Wxyz, add, dot, normalize, rows_from_wxyz, scale
 from ravemj.formats.openrave_xml.context import Context
 from ravemj.formats.openrave_xml.tags import Tag
 from ravemj.formats.openrave_xml.tree import Element
-from ravemj.formats.openrave_xml.values import hadamard, number, numbers, vector
+from ravemj.formats.openrave_xml.values import ROTATIONS, hadamard, number, numbers, vector
 from ravemj.model.builder import DEFAULT_INERTIAL
 from ravemj.model.scene import Box, Geometry, Inertial, Sphere
 
@@ -33,6 +33,7 @@ class MassRule(NamedTuple):
         custom_mass: Mass of a ``custom`` mass [kg]: the last total of the Body, which a KinBody does not give.
         com: Its centre of mass.
         inertia: Its inertia about the centre of mass.
+        axes: The orientation of its principal axes, or None for any that fit the inertia.
     """
 
     kind: str = "sphere"
@@ -43,6 +44,7 @@ class MassRule(NamedTuple):
     custom_mass: float = 1.0
     com: Vec3 = ZERO
     inertia: Rows = DEFAULT_INERTIAL.inertia
+    axes: Wxyz | None = None
 
 
 _SPHERE = MassRule()
@@ -121,6 +123,10 @@ class MassReader:
         xx, xy, xz, _, yy, yz, _, _, zz = numbers(element, 9, self._context.diagnostics, before)
         self._rule = self._rule._replace(inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
 
+    def axes(self, element: Element) -> None:
+        """Read which principal axes a custom mass has."""
+        self._rule = self._rule._replace(axes=normalize(ROTATIONS["quat"](element, self._context.diagnostics)))
+
     def extents(self, element: Element) -> None:
         """Accept ``<extents>``, which OpenRAVE does not read in a Body."""
 
@@ -137,6 +143,10 @@ MASS_TAGS: dict[str, Tag[MassReader]] = {
     "extents": Tag(MassReader.extents, "no effect, as in OpenRAVE; a warning says so"),
     "com": Tag(MassReader.com, "centre of a custom mass [m]"),
     "inertia": Tag(MassReader.inertia, "of a custom mass, about its centre: nine numbers [kg m²]"),
+    "principalaxes": Tag(
+        MassReader.axes,
+        "w x y z of the principal axes that a custom mass has of all that fit its inertia; ravemj's own",
+    ),
 }
 
 
@@ -213,7 +223,7 @@ def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Iner
     if rule is None:
         return DEFAULT_INERTIAL
     if rule.kind == "custom":
-        return Inertial(rule.custom_mass, rule.com, rule.inertia)
+        return Inertial(rule.custom_mass, rule.com, rule.inertia, rule.axes)
     if rule.kind == "mimicgeom":
         return _sum_of_shapes(rule, geometries)
     shape = Box(rule.half_extents) if rule.kind == "box" else Sphere(rule.half_extents[0])

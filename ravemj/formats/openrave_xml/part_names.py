@@ -27,7 +27,7 @@ class PartNames:
         self.links: list[str] = []
         for index, name in enumerate(links):
             in_any_case = any(name.lower() == other.lower() for other in self.links)
-            is_word = len(name.split()) == 1 or not name
+            is_word = name.split() == [name] or not name
             is_taken = (name and name in self.links) or (index in referred and (in_any_case or not is_word))
             given = _unused("_".join(name.split()) or "link", known) if is_taken else name
             self.links.append(given)
@@ -37,14 +37,25 @@ class PartNames:
                 diagnostics.warn("renamed", message, body.links[index].source)
         joints = [joint.name for joint in body.all_joints]
         active = set(joints[: len(body.joints)])
+        listed = {joint for one in body.manipulators for joint in one.gripper_joints}  # in a list of words
         self.joints: list[str] = []
         for index, name in enumerate(joints):
-            is_taken = name in active and name in self.joints
-            given = _unused(name or "joint", {*joints, *self.joints}) if is_taken else name
+            is_taken = (name in active and name in self.joints) or (index in listed and name.split() != [name])
+            known = {other.lower() for other in (*joints, *self.joints)}
+            given = _unused("_".join(name.split()) or "joint", known) if is_taken else name
             self.joints.append(given)
             if is_taken:
                 message = f"the joint '{name}' of '{body.name}' is called '{given}' in the file"
                 diagnostics.warn("renamed", message, body.all_joints[index].source)
+        self._in_file = dict(zip(reversed(joints), reversed(self.joints), strict=True))  # of one name, the first counts
+
+    def equation(self, text: str) -> str:
+        """Return an equation with the names that joints have in the file."""
+        if all(name == given for name, given in self._in_file.items()):
+            return text
+        from ravemj.model.expressions import substitute  # noqa: PLC0415 - rarely wanted
+
+        return substitute(text, self._in_file)
 
 
 def _unused(name: str, known: Collection[str]) -> str:

@@ -4,7 +4,7 @@ The reader's rules decide what stands where: links are placed as if every joint 
 given in the frame of their parent, and ``<jointvalues>`` moves them from there. What the format cannot say is reported.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ravemj.core.transforms import ZERO, Pose
 from ravemj.errors import Diagnostics, OutputError
@@ -16,6 +16,7 @@ from ravemj.formats.openrave_xml.part_names import PartNames
 from ravemj.formats.parameters import write_parameters
 from ravemj.formats.sensor_tags import written
 from ravemj.formats.xml_text import XmlText
+from ravemj.model.inertia import principal_frame
 from ravemj.model.scene import (
     OWN_SHAPES,
     SENSOR_COLOR,
@@ -160,6 +161,9 @@ class _Writer:
             if inertial.com != ZERO:
                 self.out.element("com", inertial.com)
             self.out.element("inertia", [part for row in inertial.inertia for part in row])
+            axes = settled.pose(principal_frame(inertial)).wxyz
+            if axes != settled.pose(principal_frame(replace(inertial, axes=None))).wxyz:
+                self.out.element("principalaxes", axes)
 
     def _write_manipulator(self, manipulator: Manipulator, names: PartNames) -> None:
         with self.out.inside("Manipulator", name=manipulator.name):
