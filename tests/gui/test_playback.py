@@ -521,7 +521,7 @@ def test_the_copied_line_sets_the_same_camera(env, viewer):
 # --- where a window has them
 
 
-@pytest.mark.parametrize("size", [(400, 300), (480, 430), (640, 480), (960, 720), (1920, 1080)])
+@pytest.mark.parametrize("size", [(400, 300), (320, 480), (480, 430), (640, 480), (960, 720), (1920, 1080)])
 @pytest.mark.parametrize("joints", [0, 2, 100])
 def test_controls_are_on_the_view_apart_from_each_other_and_from_the_wheels(size, joints):
     sliders = [Control(f"dof {i}", f"Joint{i}", "0 rad", 0, -1, 1, group="joints") for i in range(joints)]
@@ -545,7 +545,7 @@ def test_controls_are_on_the_view_apart_from_each_other_and_from_the_wheels(size
     for panel in layout.panels():
         assert panel.rect.x >= 0
         assert panel.rect.x + panel.rect.width <= size[0]
-    assert len(layout.places) > 7 or size[1] < 430
+    assert len(layout.places) > 7 or size[1] < 430 or size[0] < 400
 
 
 def test_many_joints_scroll():
@@ -576,18 +576,28 @@ def test_many_joints_scroll():
     assert all(len(part.text) <= 26 for part in panel.layout.panels())
 
 
+def test_a_narrow_view_has_whole_sliders_with_shorter_names():
+    sliders = [Control(f"dof {i}", f"a_joint_with_a_name_{i}", "0 rad", 0, -1, 1, group="joints") for i in range(3)]
+    for size, longest in (((320, 480), 15), ((960, 720), 26)):
+        layout = ControlLayout.of((Control("joints", "DOFs", "DOFs"), *sliders), size)
+        names = [panel.text for panel in layout.panels() if "joint" in panel.text or ".." in panel.text]
+        assert len(set(names)) == 3
+        assert max(map(len, names)) <= longest
+        assert all(panel.rect.x >= 0 for panel in layout.panels())
+
+
 def test_long_names_are_cut_so_that_they_differ():
     sides = [
         f"{side}_{part}_joint"
         for side in ("bl_caster_l", "bl_caster_r", "br_caster_l")
         for part in ("wheel_of_the_base", "wheel_of_the_bass", "rotation_about_z")
     ]
-    cut = shortened(["short", *sides])
+    cut = shortened(["short", *sides], 26)
     assert cut["short"] == "short"
     assert len(set(cut.values())) == len(sides) + 1
     assert max(map(len, cut.values())) <= 26
-    assert shortened([]) == {}
-    same = shortened(["x" * 50 + "a" + "x" * 50, "x" * 50 + "b" + "x" * 50])
+    assert shortened([], 26) == {}
+    same = shortened(["x" * 50 + "a" + "x" * 50, "x" * 50 + "b" + "x" * 50], 26)
     assert max(map(len, same.values())) <= 26, "there is no such place"
 
 

@@ -296,3 +296,22 @@ def test_controls_do_not_cover_each_other(desk, size):
                 or other["y"] + other["height"] <= one["y"]
             )
             assert apart, (one, other)
+
+
+@pytest.mark.parametrize("size", [(320, 480), (480, 320), (480, 640), (700, 400), (1000, 700)])
+def test_the_tools_leave_the_text_free_and_all_sliders_are_on_the_page(desk, size):
+    desk.page.set_viewport_size({"width": size[0], "height": size[1]})
+    desk.robot.GetEnv().GetViewer().interaction.controls.notices.say("a notice that is longer than a small page", 60)
+    await_that(lambda: "a notice" in desk.page.locator("#text").inner_text(), "the notice does not come")
+    text, tools = (desk.page.locator(f"#{name}").bounding_box() for name in ("text", "tools"))
+    apart = [
+        one[side] + one[length] <= other[side]
+        for one, other in ((text, tools), (tools, text))
+        for side, length in (("x", "width"), ("y", "height"))
+    ]
+    assert any(apart), (text, tools)
+    fold(desk, True)
+    joints = desk.page.locator("#joints").bounding_box()
+    assert joints["x"] >= 0
+    assert joints["x"] + joints["width"] <= size[0]
+    assert joints["y"] + joints["height"] <= size[1]

@@ -24,8 +24,12 @@ _BAR, _ICON = 26.0, 28.0
 _CLOCK, _SPEED, _PASSED = 110.0, 44.0, 130.0
 _SHORTEST_TRACK = 80.0
 _JOINT_ROW, _NAME, _TRACK, _VALUE = 22.0, 180.0, 104.0, 84.0
-_LONGEST_NAME = 26
-_TABLE = _NAME + _TRACK + _VALUE
+_NARROWEST = 0.2
+"""Least part of their widths that names and tracks have on narrow views."""
+
+_LETTER = 6.9
+"""Width of most letters."""
+
 _KNOB, _SCROLL_BAR = 8.0, 4.0
 _LOWEST_VIEW = 420.0
 """Height of a view from which on there is room for the column."""
@@ -49,12 +53,14 @@ class ControlLayout(NamedTuple):
         backs: What lies under several of them, and catches what misses them.
         first_row: Which of the joints' sliders, or of the rows of the tree, is the first that is seen.
         last_row: The greatest number that this can be.
+        name_width: Width of the names before sliders.
     """
 
     places: dict[Control, Rect]
     backs: tuple[Rect, ...]
     first_row: int
     last_row: int
+    name_width: float = _NAME
 
     @classmethod
     def of(cls, controls: tuple[Control, ...], size: tuple[int, int], first_row: int = 0) -> "ControlLayout":
@@ -82,18 +88,23 @@ class ControlLayout(NamedTuple):
         rows = joints or tree
         last = max(len(rows) - fitting, 0)
         first = min(max(first_row, 0), last)
-        table = Rect(left - _TABLE, _COLUMN_TOP, _TABLE, _JOINT_ROW)
+        part = min(max((left - _MARGIN - _VALUE) / (_NAME + _TRACK), _NARROWEST), 1.0)
+        name_width, track_width = part * _NAME, part * _TRACK
+        table_width = name_width + track_width + _VALUE
+        table = Rect(left - table_width, _COLUMN_TOP, table_width, _JOINT_ROW)
         shown = rows[first : first + fitting]
         for number, row in enumerate(shown):
-            x, width = (table.x + _NAME, _TRACK) if row.is_slider else (table.x + _SCROLL_BAR, _TABLE - _SCROLL_BAR)
+            x, width = table.x + _SCROLL_BAR, table_width - _SCROLL_BAR
+            if row.is_slider:
+                x, width = table.x + name_width, track_width
             places[row] = Rect(x, table.y + number * _JOINT_ROW, width, _JOINT_ROW)
         for column, tool in enumerate(joint_tools):
-            width = _TABLE / len(joint_tools)
+            width = table_width / len(joint_tools)
             y = table.y + len(shown) * _JOINT_ROW
             places[tool] = Rect(table.x + column * width + 2, y + 2, width - 4, _JOINT_ROW - 2)
         if shown:
             backs.append(table._replace(height=len(shown) * _JOINT_ROW))
-        return cls(places, tuple(backs), first, last)
+        return cls(places, tuple(backs), first, last, name_width)
 
     def at(self, point: _Point | None) -> Control | None:
         """Return the control at a point of the view [points], or None."""
@@ -117,10 +128,11 @@ class ControlLayout(NamedTuple):
         drawn = [Panel(back, _BACK) for back in self.backs]
         if self.last_row:
             drawn.append(self._scroll_bar(self.backs[-1]))
-        names = shortened([control.label for control in self.places if control.group == "joints"])
+        labels = [control.label for control in self.places if control.group == "joints"]
+        names = shortened(labels, int(self.name_width / _LETTER))
         for control, rect in self.places.items():
             if control.is_slider:
-                drawn += _slider(control, rect, names.get(control.label, ""))
+                drawn += _slider(control, rect, names.get(control.label, ""), self.name_width)
             elif control.group in {"playing", "time"}:
                 drawn += _icon(control, rect)
             elif control.group == "tree":
@@ -190,18 +202,18 @@ def _menu(menu: list[Control], right: float) -> dict[Control, Rect]:
     }
 
 
-def shortened(labels: list[str]) -> dict[str, str]:
-    """Return for each label a text that has room; where there is a place to cut at, all of them stay different."""
+def shortened(labels: list[str], most: int) -> dict[str, str]:
+    """Return for each label a text of so many letters; where there is a place to cut at, all stay different."""
     cut: dict[str, str] = {}
-    for tail in range(_LONGEST_NAME // 2, _LONGEST_NAME - 2):
-        head = _LONGEST_NAME - 2 - tail
-        cut = {label: label if len(label) <= _LONGEST_NAME else f"{label[:head]}..{label[-tail:]}" for label in labels}
+    for tail in range(most // 2, most - 2):
+        head = most - 2 - tail
+        cut = {label: label if len(label) <= most else f"{label[:head]}..{label[-tail:]}" for label in labels}
         if len(set(cut.values())) == len(cut):
             break
     return cut
 
 
-def _slider(control: Control, rect: Rect, name: str) -> list[Panel]:
+def _slider(control: Control, rect: Rect, name: str, name_width: float) -> list[Panel]:
     """Return groove, knob and text of a slider; those of joints have their name before them."""
     x, y, width, height = rect
     part = (min(max(control.value, control.lower), control.upper) - control.lower) / (control.upper - control.lower)
@@ -213,7 +225,7 @@ def _slider(control: Control, rect: Rect, name: str) -> list[Panel]:
         drawn.insert(1, done)
         clock = Panel(Rect(x + width, y, _CLOCK, height), _CLEAR, control.text)
         return [*drawn, clock] if control.text else drawn
-    before = Panel(Rect(x - _NAME, y, _NAME, height), _CLEAR, name)
+    before = Panel(Rect(x - name_width, y, name_width, height), _CLEAR, name)
     return [before, *drawn, Panel(Rect(x + width, y, _VALUE, height), _CLEAR, control.text)]
 
 
