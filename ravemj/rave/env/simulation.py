@@ -119,7 +119,7 @@ class Simulating(Contents):
     def UpdatePublishedBodies(self, timeout: float = 0.0) -> None:
         """Publish the state of the bodies for ``GetPublishedBodies``.
 
-        Viewers show every change at once. While a script has the environment, pages show what is published, by this or
+        Viewers show every change at once. While a script has the environment, they show what is published, by this or
         by a step of simulation time.
 
         Args:
